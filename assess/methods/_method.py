@@ -1,0 +1,135 @@
+"""What a method is: one published way to tell whether a piece of furniture overturns."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.settings import Settings
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cases:
+    """A batch of (piece, floor motion) pairs as arrays of one length n, in SI; NaN is unknown.
+
+    Parameters
+    ----------
+    breadth, height : (n,) arrays
+        Sizes of the piece [m]; breadth is the side parallel to the motion.
+    pfa, pfv : (n,) arrays
+        Peak floor acceleration [m/s2] and velocity [m/s].
+    friction : (n,) array
+        Coefficient of friction [-]; NaN where no sliding is assumed.
+    pfv_estimated : (n,) boolean array
+        Where `pfv` was estimated from PFA and the building's period.
+    """
+
+    breadth: FloatArray
+    height: FloatArray
+    pfa: FloatArray
+    pfv: FloatArray
+    friction: FloatArray
+    pfv_estimated: BoolArray
+
+    @property
+    def breadth_to_height(self) -> FloatArray:
+        """B/H [-]."""
+        return self.breadth / self.height
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Where a method has been checked: both ends belong to it. `unit` is how the ends are written."""
+
+    low: float
+    high: float
+    unit: str = ""
+
+    def holds(self, values: FloatArray) -> BoolArray:
+        """Tell for each of `values` (in this range's own unit) whether it lies inside; NaN does not."""
+        return np.asarray((values >= self.low) & (values <= self.high), dtype=np.bool_)
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The publication: who, when, what and where; `doi` where one is known."""
+
+    authors: str
+    year: str
+    title: str
+    source: str
+    doi: str = ""
+
+    def __str__(self) -> str:
+        lead = f"{self.authors} ({self.year}). " if self.authors else ""
+        return f"{lead}{self.title}. {self.source}." + (f" doi:{self.doi}" if self.doi else "")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What a method says of a batch of n cases.
+
+    Parameters
+    ----------
+    value : (n,) array
+        For a probability: the chance of overturning in [0, 1]. For a criterion: 1 met, 0 not met. NaN: not evaluated.
+    detail : mapping of name to (n,) array
+        What stands beside the value, ``raw`` or a median, under the name it has in results.json.
+    flags : mapping of flag to (n,) boolean array
+        Where a caution holds; the flag's meaning stands in `Method.flags`.
+    """
+
+    value: FloatArray
+    detail: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
+    flags: Mapping[str, BoolArray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """One published method: what it is called, needs and assumes, and the function that evaluates it.
+
+    Parameters
+    ----------
+    key, title : str
+        Name in results.json and in reports.
+    kind : "probability" or "criterion"
+        A probability has a class; a criterion is met or not met.
+    order : int
+        Place in reports.
+    predicts : str
+        One sentence: what a reader learns from it.
+    reference : Reference
+        The publication.
+    needs : frozenset of str
+        Fields of `Cases` it cannot do without.
+    valid : mapping of str to Range
+        Where it has been checked, by quantity.
+    equations, assumptions, departures : tuple of str
+        In the symbols of the publication; for the methods appendix.
+    flags : mapping of flag to str
+        Every flag it can raise, and what that means.
+    words : pair of str
+        A criterion's outcome in words: met, not met.
+    evaluate : callable
+        ``evaluate(cases, settings) -> Outcome``; inputs are left untouched.
+    """
+
+    key: str
+    title: str
+    kind: Literal["probability", "criterion"]
+    order: int
+    predicts: str
+    reference: Reference
+    needs: frozenset[str]
+    evaluate: Callable[[Cases, Settings], Outcome]
+    valid: Mapping[str, Range] = field(default_factory=dict)
+    equations: tuple[str, ...] = ()
+    assumptions: tuple[str, ...] = ()
+    departures: tuple[str, ...] = ()
+    flags: Mapping[str, str] = field(default_factory=dict)
+    words: tuple[str, str] = ("", "")

@@ -1,0 +1,51 @@
+"""Risk classes.
+
+The limits are those of Kaneko and Hayashi (2004) as section 2.2 of the paper prints them. The paper leaves open to
+which class a limit itself belongs; here it belongs to the higher one.
+"""
+
+import math
+from enum import IntEnum
+
+
+class RiskClass(IntEnum):
+    """Classes of the chance of overturning, in rising order. Each has a word and a symbol, never a colour alone."""
+
+    LOW = 0
+    MEDIUM = 1
+    HIGH = 2
+    VERY_HIGH = 3
+
+    @property
+    def word(self) -> str:
+        """The class in words, ``very high``."""
+        return ("low", "medium", "high", "very high")[self]
+
+    @property
+    def symbol(self) -> str:
+        """A shape that tells the class without colour."""
+        return ("○", "◇", "▲", "■")[self]
+
+    @property
+    def label(self) -> str:
+        """Symbol and word, ``■ very high``."""
+        return f"{self.symbol} {self.word}"
+
+
+LIMITS = (0.03, 0.3, 0.7)
+"""Lower limits of medium, high and very high [-]."""
+
+
+def classify(probability: float) -> RiskClass | None:
+    """Return the class of a probability in [0, 1], or None where it is unknown (NaN).
+
+    Raises
+    ------
+    ValueError
+        If `probability` lies outside [0, 1].
+    """
+    if math.isnan(probability):
+        return None
+    if not 0.0 <= probability <= 1.0:
+        raise ValueError(f"probability is {probability}, expected 0 to 1")
+    return RiskClass(sum(probability >= limit for limit in LIMITS))

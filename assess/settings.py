@@ -1,0 +1,50 @@
+"""What a run can be told, with its defaults."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+Verify = Literal["none"]
+VERIFY: tuple[str, ...] = get_args(Verify)
+
+Scenario = Literal["as filled", "recorded", "given"]
+SCENARIOS: tuple[str, ...] = get_args(Scenario)
+"""Where the floor motion comes from: per floor and axis a record, then given PFA and PFV; or one of them alone."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """How an inventory is assessed.
+
+    Parameters
+    ----------
+    scenario : str, optional
+        One of `SCENARIOS`; None takes the workbook's own, which is "as filled" where it is blank.
+    verify : str
+        Which pieces are verified by direct integration; "none" so far, and reports say "not verified".
+    zeta_acceleration, zeta_velocity : float
+        Logarithmic standard deviations of Kaneko and Hayashi's two branches [-]. The paper prints neither:
+        0.20 fits 23 of the 27 rows of its Table 2; 0.5 is assumed, after FEMA P-58's dispersion on PFV.
+    slide_coefficient : float
+        Kaneko and Hayashi's slide coefficient, alpha of eq. 5 [-]; 1 is no sliding, the paper's assumption.
+
+    Raises
+    ------
+    ValueError
+        If a value is not one of those allowed.
+    """
+
+    scenario: Scenario | None = None
+    verify: Verify = "none"
+    zeta_acceleration: float = 0.20
+    zeta_velocity: float = 0.5
+    slide_coefficient: float = 1.0
+
+    def __post_init__(self) -> None:
+        if self.scenario is not None and self.scenario not in SCENARIOS:
+            raise ValueError(f"scenario is {self.scenario!r}, expected one of: {', '.join(SCENARIOS)}")
+        if self.verify not in VERIFY:
+            raise ValueError(f"verify is {self.verify!r}, expected one of: {', '.join(VERIFY)}")
+        if self.zeta_acceleration <= 0 or self.zeta_velocity <= 0:
+            raise ValueError("zeta_acceleration and zeta_velocity must be above 0")
+        if not 0 <= self.slide_coefficient <= 1:
+            raise ValueError(f"slide_coefficient is {self.slide_coefficient}, expected 0 to 1")

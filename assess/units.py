@@ -1,0 +1,34 @@
+"""Units: one constant of gravity, one table of factors to SI.
+
+Inside the program every length is in m, every acceleration in m/s2, every velocity in m/s. Angles that describe how
+a thing lies (azimuths, the turn of a piece on the plan) stay in degrees and say so in their names.
+"""
+
+from collections.abc import Mapping
+
+GRAVITY = 9.80665
+"""Standard gravity [m/s2], the one value used everywhere."""
+
+LENGTH: Mapping[str, float] = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+ACCELERATION: Mapping[str, float] = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01}
+VELOCITY: Mapping[str, float] = {"cm/s": 0.01, "m/s": 1.0, "in/s": 0.0254}
+ANGLE: Mapping[str, float] = {"deg": 1.0}
+TIME: Mapping[str, float] = {"s": 1.0}
+
+QUANTITIES: Mapping[str, Mapping[str, float]] = {
+    "length": LENGTH,
+    "acceleration": ACCELERATION,
+    "velocity": VELOCITY,
+    "angle": ANGLE,
+    "time": TIME,
+}
+
+
+def read_unit(text: str) -> str:
+    """Return `text` as the tables above spell units: lower case, no spaces, ``m/s²`` as ``m/s2``."""
+    return "".join(text.split()).lower().replace("²", "2").replace("^", "")
+
+
+def to_edge(value: float, factor: float) -> float:
+    """Convert an SI value to a unit with `factor`, without the noise of binary fractions (29 cm, not 28.999...)."""
+    return float(f"{value / factor:.12g}")
