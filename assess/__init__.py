@@ -12,17 +12,18 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from assess.assessment import Assessment, run
+    from assess.assessment import run
     from assess.errors import AssessError, InputError, OutputError, Problem, RecordError, WorkbookError
     from assess.inventory.model import Inventory
     from assess.inventory.workbook import read_inventory
     from assess.report import write_reports
+    from assess.results import Assessment
     from assess.settings import Settings
 
 __version__ = "0.1.0"
 
 _HOME = {
-    "Assessment": "assess.assessment",
+    "Assessment": "assess.results",
     "run": "assess.assessment",
     "AssessError": "assess.errors",
     "InputError": "assess.errors",

@@ -1,11 +1,11 @@
 """What can go wrong, as a tree::
 
-    AssessError
-    ├── InputError          what the user gave cannot be used: nothing is written, exit status 2
-    │   ├── WorkbookError   ... in the workbook: every problem with its sheet and cell
-    │   └── RecordError     ... in a file of recorded motion
-    └── OutputError         a result could not be written, exit status 1
-        └── PdfUnavailable  the native libraries of the PDF are missing
+AssessError
+├── InputError          what the user gave cannot be used: nothing is written, exit status 2
+│   ├── WorkbookError   ... in the workbook: every problem with its sheet and cell
+│   └── RecordError     ... in a file of recorded motion
+└── OutputError         a result could not be written, exit status 1
+    └── PdfUnavailable  the native libraries of the PDF are missing
 """
 
 from collections.abc import Sequence

@@ -27,6 +27,16 @@ class RiskClass(IntEnum):
         return ("○", "◇", "▲", "■")[self]
 
     @property
+    def fill(self) -> str:
+        """Background colour, light to dark: told apart without red and green, and in grey."""
+        return ("#dcebf7", "#fbe29a", "#f0954a", "#8c1d3f")[self]
+
+    @property
+    def ink(self) -> str:
+        """Colour of text on `fill`."""
+        return ("#1c1c1c", "#1c1c1c", "#1c1c1c", "#ffffff")[self]
+
+    @property
     def label(self) -> str:
         """Symbol and word, ``■ very high``."""
         return f"{self.symbol} {self.word}"

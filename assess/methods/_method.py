@@ -1,16 +1,20 @@
 """What a method is: one published way to tell whether a piece of furniture overturns."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from assess.settings import Settings
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+
+ROUNDING = 1e-9
+"""Relative: what lies nearer to a limit than this lies on it, so that a change of units moves nothing across."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,6 +40,23 @@ class Cases:
     friction: FloatArray
     pfv_estimated: BoolArray
 
+    @classmethod
+    def of(
+        cls,
+        *,
+        breadth: ArrayLike,
+        height: ArrayLike,
+        pfa: ArrayLike = math.nan,
+        pfv: ArrayLike = math.nan,
+        friction: ArrayLike = math.nan,
+        pfv_estimated: ArrayLike = False,
+    ) -> Self:
+        """Build a batch from numbers and arrays, brought to one length; what is left out is unknown."""
+        given = np.broadcast_arrays(*np.atleast_1d(breadth, height, pfa, pfv, friction, pfv_estimated))
+        b, h, a, v, mu = (np.array(values, dtype=np.float64) for values in given[:-1])
+        estimated = np.array(given[-1], dtype=np.bool_)
+        return cls(breadth=b, height=h, pfa=a, pfv=v, friction=mu, pfv_estimated=estimated)
+
     @property
     def breadth_to_height(self) -> FloatArray:
         """B/H [-]."""
@@ -52,7 +73,8 @@ class Range:
 
     def holds(self, values: FloatArray) -> BoolArray:
         """Tell for each of `values` (in this range's own unit) whether it lies inside; NaN does not."""
-        return np.asarray((values >= self.low) & (values <= self.high), dtype=np.bool_)
+        above, below = values >= self.low * (1 - ROUNDING), values <= self.high * (1 + ROUNDING)
+        return np.asarray(above & below, dtype=np.bool_)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,3 +155,11 @@ class Method:
     departures: tuple[str, ...] = ()
     flags: Mapping[str, str] = field(default_factory=dict)
     words: tuple[str, str] = ("", "")
+
+
+_erfc = np.frompyfunc(math.erfc, 1, 1)
+
+
+def normal_cdf(x: FloatArray) -> FloatArray:
+    """Standard normal distribution function of `x` [-], accurate in both tails; NaN stays NaN."""
+    return np.asarray(0.5 * np.asarray(_erfc(-x / math.sqrt(2)), dtype=np.float64))

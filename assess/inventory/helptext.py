@@ -1,0 +1,19 @@
+"""What the sheet Help says before the list of columns."""
+
+FIRST_LINES = (
+    "1. Building: what you know of the building and the earthquake. Every line may stay blank.",
+    "2. Floors: one row a floor with furniture. Give its peak floor acceleration (PFA), or name the file of a recorded "
+    "motion that lies beside this workbook.",
+    "3. Items: one row a piece, or a row for several alike. Choose a Type, and its sizes come from the Catalogue; or "
+    "type the sizes. The columns at the right show the risk class at once.",
+    "4. Places and Routes are for evacuation routes and may stay empty.",
+    "5. Check it with: assess check FILE.xlsx. Make the report with: assess run FILE.xlsx.",
+    "The unit in the bracket of a header is the unit of the column: write Height [mm] or Height [in], and numbers below "
+    "are read as such. Lengths: mm, cm, m, in, ft; accelerations: g, m/s2, cm/s2, gal; velocities: cm/s, m/s, in/s.",
+    "Columns may stand in any order, and you may add your own: they are kept and come back in the Excel report. "
+    "Columns marked * are required.",
+    "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "
+    "in this scenario, not per year. A * behind a class: outside the range in which the formula was checked by tests.",
+)
+
+LISTS_NOTE = "Lists, units and helper columns for the drop-downs and live columns. Please leave this sheet as it is."

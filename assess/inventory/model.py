@@ -1,0 +1,174 @@
+"""The inventory: what a workbook holds, checked, in SI units."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from assess.errors import Problem
+from assess.motion.record import Record
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Axis = Literal["X", "Y"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Building:
+    """The building and the earthquake; a blank text or None where the workbook says nothing.
+
+    Lengths in m, `period` in s, accelerations in m/s2, `azimuth_deg` clockwise from north.
+    """
+
+    building: str = ""
+    address: str = ""
+    use: str = ""
+    storeys: int | None = None
+    height: float | None = None
+    period: float | None = None
+    azimuth_deg: float | None = None
+    prepared_by: str = ""
+    organisation: str = ""
+    logo: Path | None = None
+    scenario: str = ""
+    scenario_kind: str = ""
+    ground_pga: float | None = None
+    sds: float | None = None
+    friction: float | None = None
+    restitution: float | None = None
+    language: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloorRecord:
+    """One recorded motion that a floor names: the text of its cell (one of those split by ;) and the record."""
+
+    name: str
+    record: Record
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Floor:
+    """One floor. `elevation` [m], `pfa` [m/s2] and `pfv` [m/s] by axis where given, `records` by axis."""
+
+    row: int
+    floor: str
+    name: str = ""
+    elevation: float | None = None
+    pfa: Mapping[Axis, float] = field(default_factory=dict)
+    pfv: Mapping[Axis, float] = field(default_factory=dict)
+    records: Mapping[Axis, tuple[FloorRecord, ...]] = field(default_factory=dict)
+    plan: Path | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Item:
+    """One row of furniture. Sizes, positions and distances in m; `angle_deg` anticlockwise from X to Breadth.
+
+    `assumed` names the fields that were blank in the workbook and were filled in: sizes from the catalogue, the axis
+    from the angle, the building's friction. `extra` holds what stood in columns that `assess` does not know.
+    """
+
+    row: int
+    item: str
+    floor: str
+    room: str = ""
+    description: str = ""
+    type: str = ""
+    quantity: int = 1
+    breadth: float
+    width: float | None = None
+    height: float
+    axis: Axis | None = None
+    anchored: str = "unknown"
+    friction: float | None = None
+    x: float | None = None
+    y: float | None = None
+    angle_deg: float | None = None
+    route: str = ""
+    segment: str = ""
+    edge_distance: float | None = None
+    importance: str = ""
+    notes: str = ""
+    assumed: tuple[str, ...] = ()
+    extra: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """A room, door, stair or exit; position in m."""
+
+    row: int
+    place: str
+    floor: str
+    x: float | None = None
+    y: float | None = None
+    kind: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Segment:
+    """One segment of an evacuation route; widths in m."""
+
+    row: int
+    route: str
+    segment: str
+    floor: str = ""
+    start: str = ""
+    end: str = ""
+    clear_width: float | None = None
+    required_width: float | None = None
+    occupants: int | None = None
+    notes: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CatalogueType:
+    """A type of furniture with its sizes [m]."""
+
+    row: int
+    type: str
+    breadth: float | None = None
+    width: float | None = None
+    height: float | None = None
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inventory:
+    """A building's furniture, its floors and how they shake.
+
+    Parameters
+    ----------
+    source : Path
+        The workbook.
+    sha256 : str
+        Hash of the workbook's bytes.
+    building, floors, items, places, routes, catalogue
+        The sheets.
+    problems : tuple of Problem
+        Warnings and notes; an inventory with errors is never built.
+    extra_columns : tuple of str
+        Headers of the columns of Items that `assess` does not know.
+    files : mapping of str to str
+        Hashes (SHA-256) of the recorded motions, by name.
+    """
+
+    source: Path
+    sha256: str
+    building: Building
+    floors: tuple[Floor, ...]
+    items: tuple[Item, ...]
+    places: tuple[Place, ...] = ()
+    routes: tuple[Segment, ...] = ()
+    catalogue: tuple[CatalogueType, ...] = ()
+    problems: tuple[Problem, ...] = ()
+    extra_columns: tuple[str, ...] = ()
+    files: Mapping[str, str] = field(default_factory=dict)
+
+    def frame(self) -> "pd.DataFrame":
+        """Return the items as a table, one row an item, SI units."""
+        import pandas as pd
+
+        return pd.DataFrame([asdict(item) for item in self.items]).set_index("item", drop=False)

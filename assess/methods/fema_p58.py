@@ -1,0 +1,118 @@
+"""FEMA P-58 contents (key ``fema_p58``): the chance that unanchored contents overturn, lognormal in PFV.
+
+Reference
+---------
+FEMA P-58, second edition, fragility database 3.1.2, E.20.22.102a to 125a (unanchored bookcases and filing cabinets),
+as the SimCenter DamageAndLossModelLibrary carries it.
+
+Equations
+---------
+P = Φ(ln(PFV/PFV50)/β), β = 0.5
+PFV50 = V_imp/[2.31 - 0.41 ln(100 β_e)]
+V_imp = √[(4/3) g H (1/cos α - 1)/cos² α], α = atan(B/H)
+C_R = 1 - 1.5 sin² α, γ = -2 ln C_R, β_e = γ/√(4π² + γ²)
+
+Validity
+--------
+The nine published medians lie at B/H 0.155 to 0.625; the closed form gives all of them within 2 %.
+
+Departures
+----------
+FEMA P-58 publishes nine medians and no formula. The closed form is *inferred* from them: it is the reserve-energy
+method of ASCE 43-05, Appendix A, at a rotation of α, with the Newmark-Hall median amplification of velocity (1.65 at
+5 % damping).
+"""
+
+import numpy as np
+
+from assess.methods._method import Cases, FloatArray, Method, Outcome, Range, Reference, normal_cdf
+from assess.rocking.block import STOCKY, critical_angle, restitution
+from assess.settings import Settings
+from assess.units import GRAVITY, VELOCITY
+
+BETA = 0.5
+"""Published dispersion: logarithmic standard deviation of the median PFV [-]."""
+
+CHECKED_BREADTH_TO_HEIGHT = Range(0.155, 0.625)
+
+
+# Velocity of an impulse that just overturns the block (West, Ishiyama)
+def _impulse_velocity(H: FloatArray, alpha: FloatArray, g: float) -> FloatArray:
+    V_imp: FloatArray = np.sqrt(4 / 3 * g * H * (1 / np.cos(alpha) - 1) / np.cos(alpha) ** 2)
+    return V_imp
+
+
+# ASCE 43-05, Appendix A: damping that loses as much as the impacts do
+def _effective_damping(C_R: FloatArray) -> FloatArray:
+    gamma: FloatArray = -2 * np.log(C_R)
+    return gamma / np.sqrt(4 * np.pi**2 + gamma**2)
+
+
+# Newmark and Hall: median amplification of velocity
+def _velocity_amplification(beta_e: FloatArray) -> FloatArray:
+    return 2.31 - 0.41 * np.log(100 * beta_e)
+
+
+@np.errstate(all="ignore")
+def median_pfv(breadth: FloatArray, height: FloatArray) -> FloatArray:
+    """Median PFV that overturns the piece [m/s]; NaN where the piece does not rock."""
+    V_imp = _impulse_velocity(height, critical_angle(breadth, height), GRAVITY)
+    beta_e = _effective_damping(restitution(breadth, height))
+    return np.where(breadth / height < STOCKY, V_imp / _velocity_amplification(beta_e), np.nan)
+
+
+@np.errstate(all="ignore")
+def evaluate(cases: Cases, settings: Settings) -> Outcome:
+    """Evaluate the fragility at the floor's PFV."""
+    median = median_pfv(cases.breadth, cases.height)
+    value = normal_cdf(np.log(cases.pfv / median) / BETA)
+    known = ~np.isnan(value)
+    flags = {
+        "pfv_unknown": np.isnan(cases.pfv),
+        "pfv_estimated": known & cases.pfv_estimated,
+        "does_not_rock": cases.breadth_to_height >= STOCKY,
+        "extrapolated": known & ~CHECKED_BREADTH_TO_HEIGHT.holds(cases.breadth_to_height),
+    }
+    return Outcome(value, {"median_pfv_cm_s": median / VELOCITY["cm/s"]}, flags)
+
+
+METHOD = Method(
+    key="fema_p58",
+    title="FEMA P-58 contents",
+    kind="probability",
+    order=60,
+    predicts="The chance that unanchored contents overturn, from their size and the peak floor velocity.",
+    reference=Reference(
+        authors="Federal Emergency Management Agency",
+        year="2018",
+        title="Seismic Performance Assessment of Buildings, FEMA P-58, second edition",
+        source="Fragility database 3.1.2, E.20.22.102a to E.20.22.125a, as carried by the SimCenter "
+        "DamageAndLossModelLibrary",
+    ),
+    needs=frozenset({"breadth", "height", "pfv"}),
+    valid={"breadth_to_height": CHECKED_BREADTH_TO_HEIGHT},
+    evaluate=evaluate,
+    equations=(
+        "P = Φ(ln(PFV/PFV50)/β), β = 0.5;  PFV50 = V_imp/[2.31 - 0.41 ln(100 β_e)]",
+        "V_imp = √[(4/3) g H (1/cos α - 1)/cos² α], α = atan(B/H)",
+        "C_R = 1 - 1.5 sin² α;  γ = -2 ln C_R;  β_e = γ/√(4π² + γ²)",
+    ),
+    assumptions=(
+        "The published medians are for bookcases and filing cabinets of B/H 0.155 to 0.625; other pieces are taken "
+        "to be alike.",
+        "The piece is free-standing, rigid and homogeneous, its centroid at mid-height, and it does not slide.",
+    ),
+    departures=(
+        "FEMA P-58 publishes nine medians and no formula. The closed form is inferred from them: it is the "
+        "reserve-energy method of ASCE 43-05, Appendix A, with the Newmark-Hall median amplification of velocity, "
+        "and it gives all nine within 2 %. That FEMA P-58 used it was not confirmed.",
+        "Pieces of B/H 1.41 and above are not evaluated: Housner's restitution vanishes near there, and they do not "
+        "rock.",
+    ),
+    flags={
+        "pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here",
+        "pfv_estimated": "peak floor velocity estimated from PFA and the building's period",
+        "does_not_rock": "not evaluated: B/H is 1.41 or more, so the piece does not rock",
+        "extrapolated": "outside the B/H of the nine published medians (0.155 to 0.625)",
+    },
+)

@@ -1,0 +1,62 @@
+"""Japanese rule (key ``japan_rule``): pieces slender for their height must be fixed, whatever the shaking.
+
+Reference
+---------
+Consumer Affairs Agency of Japan (2010), at second hand (two Japanese safety sites that quote it).
+
+Equations
+---------
+Must be fixed where B/√H ≤ 4, B and H in cm, B the shorter plan side.
+
+Validity
+--------
+Furniture at home and at work in Japan; it looks at no motion. It is Ishiyama's velocity limit at a PFV of 40 cm/s.
+
+Departures
+----------
+A piece within rounding of the limit (1e-9) is on it, and must be fixed.
+"""
+
+import numpy as np
+
+from assess.methods._method import ROUNDING, Cases, FloatArray, Method, Outcome, Reference
+from assess.settings import Settings
+from assess.units import LENGTH
+
+LIMIT = 4.0
+"""B/√H [cm^0.5] up to which a piece must be fixed."""
+
+
+def _breadth_over_root_height(B: FloatArray, H: FloatArray) -> FloatArray:
+    return B / np.sqrt(H)
+
+
+def evaluate(cases: Cases, settings: Settings) -> Outcome:
+    """Tell which pieces must be fixed."""
+    ratio = _breadth_over_root_height(cases.breadth / LENGTH["cm"], cases.height / LENGTH["cm"])
+    value = np.where(np.isnan(ratio), np.nan, ratio <= LIMIT * (1 + ROUNDING))
+    return Outcome(value, {"breadth_over_root_height": ratio})
+
+
+METHOD = Method(
+    key="japan_rule",
+    title="Japanese rule",
+    kind="criterion",
+    order=50,
+    predicts="Whether a piece is so slender for its height that Japanese practice wants it fixed, whatever the "
+    "earthquake.",
+    reference=Reference(
+        authors="Consumer Affairs Agency (Japan)",
+        year="2010",
+        title="本棚等の転倒防止策について (On measures against the overturning of bookshelves)",
+        source="As quoted by Japanese safety sites; the original was not at hand",
+    ),
+    needs=frozenset({"breadth", "height"}),
+    evaluate=evaluate,
+    equations=("Must be fixed where B/√H ≤ 4 (cm)",),
+    assumptions=(
+        "B is the shorter plan side.",
+        "No motion enters: the rule screens pieces, it does not say what happens in this scenario.",
+    ),
+    words=("must be fixed", "need not be fixed"),
+)

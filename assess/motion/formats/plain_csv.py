@@ -1,0 +1,265 @@
+"""Plain CSV: what anyone can write from a spreadsheet.
+
+    # station: Town hall
+    # azimuth: north=0, east=90
+    time [s], north [cm/s2], east [cm/s2], up [cm/s2]
+    0.000, 0.12, -0.31, 0.05
+
+Comments come first, then the row of headings. The bracket is the unit; what stands before it is the channel's name.
+Cells are separated by commas, semicolons or tabs; with the last two, numbers may have a decimal comma.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.errors import RecordError
+from assess.motion.formats._format import Format
+from assess.motion.record import FloatArray, Record, build_series, peak
+from assess.units import ACCELERATION, TIME, read_unit
+
+TITLE = "plain CSV"
+KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
+UNITS = ", ".join(ACCELERATION)
+
+_ANSWERS = {"yes": True, "true": True, "no": False, "false": False, "": False}
+_VERTICAL = frozenset({"up", "down", "vertical", "vert", "ud", "z"})
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_DEGREES = re.compile(r"(\d{1,3}(?:\.\d+)?)\s*(?:deg|°)", re.IGNORECASE | re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """One channel's heading: its name, and the factor from its unit to m/s2."""
+
+    name: str
+    factor: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """A file's text, taken apart; `first` is the line [-], counted from 1, on which `rows` begin."""
+
+    comments: Mapping[str, str]
+    columns: Sequence[_Column]
+    separator: str
+    rows: Sequence[str]
+    first: int
+
+
+def recognises(head: bytes) -> bool:
+    """Tell whether the first line of `head` that is no comment starts with a heading for time."""
+    # UTF-16 and binary files have zeros; text has none.
+    if b"\0" in head:
+        return False
+    first = re.split(r"[,;\t]", _heading_line(_lines(_decode(head)))[1], maxsplit=1)[0].strip(' \t"').lower()
+    return first.startswith("time") and first[4:].lstrip()[:1] in {"", "["}
+
+
+def read(data: bytes, file: str) -> tuple[Record, ...]:
+    """Read every channel of a plain CSV file.
+
+    Raises
+    ------
+    RecordError
+        If a heading has no known unit, or a cell is no number; the message names the line.
+    """
+    table = _take_apart(_decode(data))
+    numbers = _read_numbers(table)
+    azimuths = _read_azimuths(table)
+    with np.errstate(over="ignore"):  # what becomes infinite is refused further on
+        numbers[:, 1:] *= [column.factor for column in table.columns]
+    return tuple(
+        _build_record(file, table, column, azimuths[column.name], numbers[:, 0], numbers[:, place])
+        for place, column in enumerate(table.columns, start=1)
+    )
+
+
+def _decode(data: bytes) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _lines(text: str) -> list[str]:
+    # Not str.splitlines, which also splits at characters that may stand inside a name.
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def _is_comment(line: str) -> bool:
+    # A spreadsheet puts a comment that holds commas into quotes.
+    return line.lstrip(' \t"').startswith("#")
+
+
+def _is_blank(line: str) -> bool:
+    return all(mark in ',;"' or mark.isspace() for mark in line)
+
+
+def _heading_line(lines: Sequence[str]) -> tuple[int, str]:
+    """Return the first line that is neither blank nor a comment, and its place; (-1, "") where there is none."""
+    return next(
+        ((place, line) for place, line in enumerate(lines) if not (_is_comment(line) or _is_blank(line))), (-1, "")
+    )
+
+
+def _take_apart(text: str) -> _Table:
+    lines = _lines(text)
+    place, heading = _heading_line(lines)
+    if place < 0:
+        raise RecordError("there is no row of headings, such as: time [s], north [cm/s2]")
+    separator = next((mark for mark in "\t;" if mark in heading), ",")
+    columns = _read_columns(_cells(heading, separator), place + 1)
+    comments = dict(filter(None, (_read_comment(line) for line in lines[:place])))
+    return _Table(comments, columns, separator, lines[place + 1 :], place + 2)
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    """Return the cells of a line, without the empty ones that spreadsheets leave at its end."""
+    cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
+    while cells and not cells[-1]:
+        cells.pop()
+    return cells
+
+
+def _read_comment(line: str) -> tuple[str, str] | None:
+    key, colon, value = line.strip(' \t"').lstrip("#").partition(":")
+    return (key.strip().lower(), value.strip(' \t,;"')) if colon else None
+
+
+def _read_columns(headings: Sequence[str], line: int) -> tuple[_Column, ...]:
+    _check_time_heading(headings[0], line)
+    columns = tuple(_read_column(heading, line) for heading in headings[1:])
+    names = [column.name.casefold() for column in columns]
+    if not columns:
+        raise RecordError(f"line {line}: there is no channel beside time. Add one, such as: north [cm/s2]")
+    twice = next((column.name for column in columns if names.count(column.name.casefold()) > 1), None)
+    if twice is not None:
+        raise RecordError(f"line {line}: two channels are called {twice!r}. Give each its own name")
+    return columns
+
+
+def _check_time_heading(heading: str, line: int) -> None:
+    if _take_unit(heading)[1] not in TIME:
+        raise RecordError(f"line {line}: {heading[:80]!r} needs its unit, seconds: time [s]")
+
+
+def _read_column(heading: str, line: int) -> _Column:
+    name, unit = _take_unit(heading)
+    if unit not in ACCELERATION:
+        raise RecordError(
+            f"line {line}: {heading[:80]!r} has no known unit of acceleration (known: {UNITS}). "
+            f"Write it in brackets: {name[:60]} [cm/s2]"
+        )
+    return _Column(name or "acceleration", ACCELERATION[unit])
+
+
+def _take_unit(heading: str) -> tuple[str, str]:
+    """Split ``name [unit]``; the unit is "" where there are no brackets."""
+    name, bracket, unit = heading.rpartition("[")
+    if not bracket or not unit.endswith("]"):
+        return heading, ""
+    return name.strip(), read_unit(unit.removesuffix("]"))
+
+
+def _read_numbers(table: _Table) -> FloatArray:
+    """Return times and channels, (n, 1 + channels), in the file's own units."""
+    numbers = [
+        _read_row(_cells(row, table.separator), table, line)
+        for line, row in enumerate(table.rows, start=table.first)
+        if not _is_blank(row)
+    ]
+    if not numbers:
+        raise RecordError("there are no rows below the headings")
+    return np.array(numbers, dtype=np.float64)
+
+
+def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:
+    width = 1 + len(table.columns)
+    if len(cells) != width:
+        raise RecordError(f"line {line}: it has {len(cells)} cells, the row of headings {width}")
+    return [_read_number(cell, table.separator, line) for cell in cells]
+
+
+def _read_number(cell: str, separator: str, line: int) -> float:
+    text = cell if separator == "," else cell.replace(",", ".")
+    if not _NUMBER.fullmatch(text):
+        raise RecordError(f"line {line}: {cell[:40]!r} is not a number")
+    return float(text)
+
+
+def _read_azimuths(table: _Table) -> dict[str, float | None]:
+    """Return for each channel its azimuth [deg], or infinity where it is vertical, or None where it is unknown."""
+    given = {column.name.casefold(): column.name for column in table.columns}
+    azimuths = {column.name: _azimuth_of_name(column.name) for column in table.columns}
+    parts = [part for part in re.split("[,;]", table.comments.get("azimuth", "")) if part.strip()]
+    for part in parts:
+        name, equals, value = part.rpartition("=")
+        if len(parts) > 1 and not equals:
+            raise RecordError("several azimuths need the names of their channels, such as: # azimuth: north=0, east=90")
+        if equals and name.strip().casefold() not in given:
+            raise RecordError(f"the azimuth is given of {name.strip()!r}, but the channels are: {', '.join(azimuths)}")
+        for own in [given[name.strip().casefold()]] if equals else list(azimuths):
+            azimuths[own] = _read_azimuth(value.strip())
+    return azimuths
+
+
+def _read_azimuth(text: str) -> float:
+    if text.lower() in _VERTICAL:
+        return np.inf
+    number = text.lower().removesuffix("deg").removesuffix("°").strip()
+    if not _NUMBER.fullmatch(number) or not 0 <= float(number) <= 360:
+        raise RecordError(f"the azimuth is {text[:40]!r}, expected 0 to 360 degrees clockwise from north, or up")
+    return float(number)
+
+
+def _azimuth_of_name(name: str) -> float | None:
+    words = re.split(r"[^a-z]+", name.lower().replace("u-d", "ud"))
+    if _VERTICAL.intersection(words):
+        return np.inf
+    found = _DEGREES.search(name)
+    return float(found[1]) if found and float(found[1]) <= 360 else None
+
+
+def _read_corrected(comments: Mapping[str, str]) -> bool:
+    answer = comments.get("corrected", "").lower()
+    if answer not in _ANSWERS:
+        raise RecordError(f"corrected is {answer[:40]!r}, expected yes or no")
+    return _ANSWERS[answer]
+
+
+def _build_record(
+    file: str, table: _Table, column: _Column, azimuth: float | None, times: FloatArray, own: FloatArray
+) -> Record:
+    try:
+        series = build_series(times, own)
+    except RecordError as error:
+        raise RecordError(f"channel {column.name!r}: {error}") from None
+    vertical = azimuth == np.inf
+    return Record(
+        file=file,
+        format=TITLE,
+        channel=column.name,
+        location=table.comments.get("location", ""),
+        azimuth_deg=None if vertical else azimuth,
+        vertical=vertical,
+        station=table.comments.get("station", ""),
+        event=table.comments.get("event", ""),
+        start=table.comments.get("start", ""),
+        corrected=_read_corrected(table.comments),
+        time_step=series.time_step,
+        acceleration=series.values,
+        file_pfa=peak(own),
+        header_pfa=None,
+        notes=(*_note_comments(table.comments), *series.notes),
+    )
+
+
+def _note_comments(comments: Mapping[str, str]) -> tuple[str, ...]:
+    unknown = ", ".join(repr(key[:40]) for key in comments if key not in KEYS)
+    return (f"comments that are not used: {unknown} (known: {', '.join(KEYS)})",) if unknown else ()
+
+
+FORMAT = Format(key="csv", title=TITLE, recognises=recognises, read=read)
