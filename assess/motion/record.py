@@ -257,7 +257,7 @@ def _note_gaps(times: FloatArray, median: float) -> tuple[str, ...]:
 def check_samples(values: FloatArray) -> None:
     """Raise RecordError unless `values` (n,) [m/s2] can be a recorded acceleration."""
     if values.size < FEWEST_SAMPLES:
-        raise RecordError(f"only {values.size} samples: at least {FEWEST_SAMPLES} are needed")
+        raise RecordError(f"the number of samples is {values.size}, expected at least {FEWEST_SAMPLES}")
     if not np.isfinite(values).all():
         raise RecordError(f"sample {int(np.isfinite(values).argmin()) + 1} is not a number: mend or remove it")
     if peak(values) > MOST_ACCELERATION:

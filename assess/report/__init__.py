@@ -1,0 +1,117 @@
+"""Reports: an assessment in, files out, whole or not at all.
+
+Every file is first written into a folder of its own beside the reports and then moved into place; the moves come last
+and take no space. A disk that fills, or a process that is killed, leaves the old report as it was.
+"""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from assess.errors import OutputError, PdfUnavailable
+from assess.results import Assessment
+
+FILES: Mapping[str, str] = {
+    "pdf": "report.pdf",
+    "xlsx": "report.xlsx",
+    "html": "report.html",
+    "json": "results.json",
+    "csv": "items.csv",
+}
+"""The formats, and the file that each is written to."""
+
+FORMATS = tuple(FILES)
+_STAGE = ".assess-writing-"
+
+
+def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[str] = FORMATS) -> dict[str, Path]:
+    """Write the reports of an assessment.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        From `assess.run`.
+    folder : str or Path
+        Where to; made where it is missing. Other files in it are left alone.
+    formats : sequence of str
+        Of "pdf", "xlsx", "html", "json", "csv"; all by default.
+
+    Returns
+    -------
+    dict of str to Path
+        The file of each format.
+
+    Raises
+    ------
+    ValueError
+        If a format is unknown.
+    PdfUnavailable
+        If the native libraries of the PDF are missing; all other formats have been written.
+    OutputError
+        If a file cannot be written; what was there before is left as it was.
+    """
+    unknown = [name for name in formats if name not in FILES]
+    if unknown:
+        raise ValueError(f"format is {unknown[0]!r}, expected some of: {', '.join(FORMATS)}")
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        stage = Path(tempfile.mkdtemp(prefix=_STAGE, dir=folder))
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be written to: {error.strerror}.") from None
+    try:
+        return _write_staged(assessment, folder, stage, formats)
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+
+
+def _write_staged(assessment: Assessment, folder: Path, stage: Path, formats: Sequence[str]) -> dict[str, Path]:
+    missing: PdfUnavailable | None = None
+    written: dict[str, Path] = {}
+    for name in dict.fromkeys(formats):
+        try:
+            _writer(name)(assessment, stage / FILES[name])
+            _flush(stage / FILES[name])
+            written[name] = folder / FILES[name]
+        except PdfUnavailable as error:
+            missing = error
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise OutputError(f"{FILES[name]} could not be written: {reason}. {folder} is left as it was.") from None
+    for name, path in written.items():
+        try:
+            (stage / FILES[name]).replace(path)
+        except OSError as error:
+            raise OutputError(
+                f"{path} could not be replaced: {error.strerror}. Is it open in another program?"
+            ) from None
+    if missing:
+        raise missing
+    return written
+
+
+def _writer(name: str) -> Callable[[Assessment, Path], None]:
+    """Return the function that writes a format; each is imported only when it is wanted."""
+    if name in ("json", "csv"):
+        from assess.report import data
+
+        return data.write_json if name == "json" else data.write_csv
+    if name == "xlsx":
+        from assess.report.xlsx import write_xlsx
+
+        return write_xlsx
+    if name == "html":
+        from assess.report.html import write_html
+
+        return write_html
+    from assess.report.pdf import write_pdf
+
+    return write_pdf
+
+
+def _flush(path: Path) -> None:
+    """Have the system put the file's bytes on the disk, where a full disk shows."""
+    with path.open("rb+") as file:
+        os.fsync(file.fileno())

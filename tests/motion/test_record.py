@@ -74,7 +74,7 @@ def test_market_street_as_its_header_says(letter: str) -> None:
     # The header prints one digit after the point.
     assert record.file_pfa == pytest.approx(record.header_pfa, abs=0.000501)
     beyond = next(note for note in record.notes if "beyond" in note)
-    assert beyond == f"8 numbers beyond the {2 * SAMPLES[letter]} that the header announces were left out"
+    assert beyond == f"8 numbers beyond the {2 * SAMPLES[letter]} that the header announces: left out"
     left_out = [int(note.split()[0]) for note in record.notes if "no later than" in note]
     assert left_out == ([NOT_INCREASING[letter]] if letter in NOT_INCREASING else [])
     assert record.time_step == RESAMPLED_STEP
@@ -231,7 +231,7 @@ def test_times_that_cannot_be(times: FloatArray, message: str) -> None:
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        (np.ones(FEWEST_SAMPLES - 1), r"only 9 samples: at least 10 are needed"),
+        (np.ones(FEWEST_SAMPLES - 1), r"the number of samples is 9, expected at least 10"),
         (np.append(np.arange(20.0), np.nan), r"sample 21 is not a number: mend or remove it"),
         (np.append(np.arange(20.0), np.inf), r"sample 21 is not a number"),
         (np.arange(20.0) * 100, r"the peak is 194 g, expected at most 50 g: is the unit right\?"),

@@ -105,7 +105,7 @@ def test_smc_damage(data: bytes, message: str) -> None:
 @pytest.mark.parametrize(
     ("data", "note"),
     [
-        (ROOF + b"\r\n 1.0000E+0", "1 numbers beyond the 8200 that the header announces were left out"),
+        (ROOF + b"\r\n 1.0000E+0", "1 number beyond the 8200 that the header announces: left out"),
         (header_line(ROOF, 13, 5, "17", 10), "the header gives two azimuths, 171 and 17 deg: the first is used"),
         (header_line(ROOF, 14, 1, "1", 10), "the header flags a problem with the data: read its comments"),
         (ROOF.replace(b"-5.14E+1", b"-4.14E+1"), "the header prints a peak of 41.4 cm/s2, the data have 51.4 cm/s2"),

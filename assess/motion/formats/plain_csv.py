@@ -179,7 +179,7 @@ def _read_numbers(table: _Table) -> FloatArray:
 def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:
     width = 1 + len(table.columns)
     if len(cells) != width:
-        raise RecordError(f"line {line}: it has {len(cells)} cells, the row of headings {width}")
+        raise RecordError(f"line {line}: the number of cells is {len(cells)}, that of headings {width}")
     return [_read_number(cell, table.separator, line) for cell in cells]
 
 

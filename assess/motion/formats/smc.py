@@ -158,7 +158,8 @@ def _read_data(lines: Sequence[str], header: _Header) -> tuple[FloatArray, tuple
     beyond = there - announced
     if beyond > MOST_BEYOND * announced:
         raise RecordError(f"the header announces {announced} numbers of data, there are {there}. Get the file again")
-    note = f"{beyond} numbers beyond the {announced} that the header announces were left out"
+    what = "1 number" if beyond == 1 else f"{beyond} numbers"
+    note = f"{what} beyond the {announced} that the header announces: left out"
     return _convert(fields[:announced], first), (note,) if beyond else ()
 
 
@@ -166,7 +167,7 @@ def _convert(fields: list[str], first: int) -> FloatArray:
     try:
         return np.array(fields, dtype=np.float64)
     except ValueError:
-        place = next(place for place, text in enumerate(fields) if not _is_number(text))
+        place = next((place for place, text in enumerate(fields) if not _is_number(text)), 0)
         line, text = first + place // (LINE // DATA_WIDTH) + 1, fields[place].strip()
         what = f"{text!r} is not a number" if text else "a number is missing"
         raise RecordError(f"line {line}: {what}. Get the file again") from None

@@ -1,0 +1,187 @@
+"""The report's figures, as SVG with their text as outlines: they look the same wherever they are opened."""
+
+import math
+from collections.abc import Callable, Sequence
+from functools import partial
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from assess.demand import Demand
+from assess.inventory.model import Inventory
+from assess.report import words
+from assess.report.content import Content, Counts, FloorPage
+from assess.results import ItemResult
+from assess.risk import RiskClass
+from assess.units import ACCELERATION
+
+MOST_BARS = 40
+MOST_POINTS = 1500
+
+
+def _draw(width: float, height: float, paint: Callable[[Any], None]) -> bytes:
+    """Draw one figure [inches] and return its SVG; nothing global of matplotlib is touched."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    style = {"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "font.family": "DejaVu Sans"}
+    with mpl.rc_context(style):
+        figure = Figure(figsize=(width, height), layout="constrained")
+        paint(figure)
+        file = BytesIO()
+        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+    return file.getvalue()
+
+
+def draw_counts(counts: Sequence[Counts], axis_label: str) -> bytes:
+    """Draw the pieces of each class as one bar a floor (or room), each class with its hatch and symbol."""
+    shown = [one for one in counts if one.total][:MOST_BARS]
+    return _draw(7, 1.1 + 0.3 * max(1, len(shown)), partial(_paint_counts, shown, axis_label))
+
+
+_HATCHES = {RiskClass.LOW: "", RiskClass.MEDIUM: "..", RiskClass.HIGH: "//", RiskClass.VERY_HIGH: ""}
+
+
+def _paint_counts(shown: Sequence[Counts], axis_label: str, figure: Any) -> None:
+    axes = figure.subplots()
+    left = np.zeros(len(shown))
+    for risk in RiskClass:
+        values = np.array([one.by_class[risk] for one in shown], dtype=float)
+        axes.barh(range(len(shown)), values, left=left, color=risk.fill, hatch=_HATCHES[risk], label=risk.label,
+                  edgecolor="#444444", linewidth=0.5)  # fmt: skip
+        for at, value in enumerate(values):
+            if value:
+                axes.text(left[at] + value / 2, at, f"{risk.symbol} {value:g}", ha="center", va="center",
+                          color=risk.ink, fontsize=7)  # fmt: skip
+        left += values
+    anchored = np.array([one.anchored for one in shown], dtype=float)
+    if anchored.any():
+        axes.barh(range(len(shown)), anchored, left=left, color="#d0d0d0", label="anchored", edgecolor="#444444", lw=0.5)
+    axes.set_yticks(range(len(shown)), [_label(one.label) for one in shown])
+    axes.invert_yaxis()
+    axes.set_xlabel(axis_label)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(ncols=5, loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, fontsize=7)
+
+
+def _label(text: str) -> str:
+    """Return a text of the workbook for a figure: short, and not taken for mathematics."""
+    return words.clip(text, 28).split("… (")[0].replace("$", r"\$")
+
+
+def draw_rooms(page: FloorPage) -> bytes:
+    """Draw the pieces of each room of a floor: what is shown where there are no positions."""
+    rooms: dict[str, list[ItemResult]] = {}
+    for one in page.results:
+        rooms.setdefault(one.item.room or "no room named", []).append(one)
+    counts = []
+    for room, results in sorted(rooms.items()):
+        by_class = dict.fromkeys(RiskClass, 0)
+        for one in results:
+            if not one.is_anchored:
+                by_class[one.adopted.risk] += one.item.quantity
+        counts.append(Counts(room, by_class, sum(one.item.quantity for one in results if one.is_anchored)))
+    return draw_counts(counts, "pieces")
+
+
+def draw_plan(page: FloorPage, inventory: Inventory) -> bytes:
+    """Draw the plan of a floor: every placed piece to scale with its class, the places and the routes between them."""
+    points = _points(page, inventory)
+    width = max(x for x, _ in points) - min(x for x, _ in points) + 4
+    height = max(y for _, y in points) - min(y for _, y in points) + 4
+    return _draw(7, min(8.5, max(2.5, 7 * height / width)), partial(_paint_plan, page, inventory))
+
+
+def _points(page: FloorPage, inventory: Inventory) -> list[tuple[float, float]]:
+    placed = [(one.item.x, one.item.y) for one in page.results] + [
+        (place.x, place.y) for place in inventory.places if place.floor == page.floor.floor
+    ]
+    return [(x, y) for x, y in placed if x is not None and y is not None]
+
+
+def _paint_plan(page: FloorPage, inventory: Inventory, figure: Any) -> None:
+    axes = figure.subplots()
+    places = {place.place: (place.x, place.y) for place in inventory.places
+              if place.floor == page.floor.floor and place.x is not None and place.y is not None}  # fmt: skip
+    for segment in inventory.routes:
+        if segment.start in places and segment.end in places:
+            (x0, y0), (x1, y1) = places[segment.start], places[segment.end]
+            axes.plot([x0, x1], [y0, y1], color="#2f6f4f", lw=2.5, ls=(0, (4, 1.5)), zorder=1)
+    for one in page.results:
+        if one.item.x is not None and one.item.y is not None:
+            _paint_piece(axes, one)
+    for name, (x, y) in places.items():
+        axes.plot([x], [y], "o", color="#2f6f4f", ms=4, zorder=4)
+        axes.annotate(_label(name), (x, y), xytext=(3, 3), textcoords="offset points", fontsize=6, color="#1d4a34")
+    axes.set_aspect("equal")
+    axes.margins(0.06)
+    axes.set_xlabel("X [m]")
+    axes.set_ylabel("Y [m]")
+    axes.grid(color="#e4e4e4", lw=0.5)
+    axes.set_axisbelow(True)
+
+
+def _paint_piece(axes: Any, one: ItemResult) -> None:
+    from matplotlib.patches import Rectangle
+
+    item, risk = one.item, one.adopted.risk
+    along, across = item.breadth, item.width or item.breadth
+    angle = item.angle_deg if item.angle_deg is not None else (90.0 if item.axis == "Y" else 0.0)
+    turn = math.radians(angle)
+    x, y = item.x or 0.0, item.y or 0.0
+    corner = (x - (along * math.cos(turn) - across * math.sin(turn)) / 2,
+              y - (along * math.sin(turn) + across * math.cos(turn)) / 2)  # fmt: skip
+    fill = "#d0d0d0" if one.is_anchored else risk.fill
+    axes.add_patch(Rectangle(corner, along, across, angle=angle, facecolor=fill, edgecolor="#222222", lw=0.6, zorder=3))
+    if not one.is_anchored:
+        axes.text(x, y, risk.symbol, ha="center", va="center", fontsize=5, color=risk.ink, zorder=5)
+
+
+def draw_motion(demand: Demand) -> bytes:
+    """Draw the treated acceleration of a recorded motion."""
+    return _draw(7, 1.6, partial(_paint_motion, demand))
+
+
+def _paint_motion(demand: Demand, figure: Any) -> None:
+    motion = demand.motion
+    if motion is None:
+        raise ValueError("the demand has no motion to draw")
+    axes = figure.subplots()
+    values = motion.acceleration / ACCELERATION["g"]
+    times = np.arange(values.size) * motion.time_step
+    times, values = _envelope(times, values)
+    axes.plot(times, values, lw=0.5, color="#1f3a4d")
+    peak = int(np.abs(values).argmax())
+    axes.plot([times[peak]], [values[peak]], "o", ms=4, mfc="none", color="#8c1d3f")
+    axes.annotate(f"PFA {abs(values[peak]):.3f} g", (times[peak], values[peak]), xytext=(6, 0),
+                  textcoords="offset points", fontsize=7, va="center")  # fmt: skip
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("acceleration [g]")
+    axes.margins(x=0.01)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _envelope(times: Any, values: Any) -> tuple[Any, Any]:
+    """Thin a long record out to the lowest and highest sample of each stretch, so that no peak is lost."""
+    stretch = math.ceil(values.size / (MOST_POINTS / 2))
+    if stretch <= 2:
+        return times, values
+    whole = values[: values.size // stretch * stretch].reshape(-1, stretch)
+    starts = np.arange(len(whole)) * stretch
+    kept = np.sort(np.concatenate([starts + whole.argmin(axis=1), starts + whole.argmax(axis=1)]))
+    return times[kept], values[kept]
+
+
+def draw_all(content: Content) -> dict[str, bytes]:
+    """Draw every figure of a report, by the name that the template asks for."""
+    figures = {"counts": draw_counts([*content.by_floor], "pieces")} if content.total.total else {}
+    for at, page in enumerate(content.floors):
+        if page.placed:
+            figures[f"plan-{at}"] = draw_plan(page, content.assessment.inventory)
+        elif page.results:
+            figures[f"rooms-{at}"] = draw_rooms(page)
+        for which, demand in enumerate(page.demands):
+            if demand.motion is not None and "one_axis_only" not in demand.flags:
+                figures[f"motion-{at}-{which}"] = draw_motion(demand)
+    return figures

@@ -1,0 +1,107 @@
+"""The HTML report: one file, nothing fetched, every text of the workbook escaped."""
+
+import base64
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from assess import resources
+from assess.report import content as content_module
+from assess.report import words
+from assess.report.content import Content, build_content
+from assess.report.figures import draw_all
+from assess.results import Assessment
+
+MOST_ROWS = 1000
+"""Rows of the item tables that HTML and PDF show; the Excel report holds all."""
+
+
+def write_html(assessment: Assessment, path: Path) -> None:
+    """Write report.html."""
+    path.write_text(render(assessment), encoding="utf-8")
+
+
+def render(assessment: Assessment, *, for_print: bool = False) -> str:
+    """Return the report as HTML; `for_print` adds the style of the page and the embedded fonts of the PDF."""
+    return _render_content(build_content(assessment), for_print)
+
+
+def _render_content(content: Content, for_print: bool) -> str:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(resources.templates()),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= _FILTERS
+    figures = {name: _data_uri(svg, "image/svg+xml") for name, svg in draw_all(content).items()}
+    return environment.get_template("report.html.j2").render(
+        content=content,
+        figures=_Figures(figures),
+        logo=_logo(content),
+        style=_style(for_print),
+        most_rows=MOST_ROWS,
+        treatment=content_module.describe_treatment,
+        source=content_module.describe_source,
+    )
+
+
+class _Figures(dict[str, str]):
+    """The figures by name; "" where a report has none of that name."""
+
+    def __missing__(self, name: str) -> str:
+        return ""
+
+
+_FILTERS: Mapping[str, Any] = {
+    "clip": words.clip,
+    "percent": words.percent,
+    "in_g": words.in_g,
+    "in_cm_s": words.in_cm_s,
+    "in_m": words.in_m,
+    "fixed": words.fixed,
+    "number": words.number,
+    "size": words.size,
+    "risk_words": words.risk_words,
+    "class_name": words.class_name,
+    "plural": words.plural,
+}
+
+
+def _style(for_print: bool) -> str:
+    folder = resources.templates() / "style"
+    names = ("base.css", "print.css") if for_print else ("base.css", "screen.css")
+    sheets = [_font_faces()] if for_print else []
+    return "\n".join([*sheets, _class_colours(), *((folder / name).read_text(encoding="utf-8") for name in names)])
+
+
+def _class_colours() -> str:
+    from assess.risk import RiskClass
+
+    return "\n".join(f".{words.class_name(risk)} {{ background: {risk.fill}; color: {risk.ink}; }}" for risk in RiskClass)
+
+
+def _font_faces() -> str:
+    """Embed the fonts, so that a machine without any renders the same PDF."""
+    faces = []
+    for (family, style), path in resources.fonts().items():
+        weight = "bold" if style == "bold" else "normal"
+        slant = "italic" if style == "italic" else "normal"
+        source = _data_uri(path.read_bytes(), "font/ttf")
+        faces.append(f"@font-face {{ font-family: {family}; font-weight: {weight}; font-style: {slant}; src: url({source}); }}")
+    return "\n".join(faces)
+
+
+def _logo(content: Content) -> str:
+    path = content.assessment.inventory.building.logo
+    if path is None:
+        return ""
+    data = path.read_bytes()
+    return _data_uri(data, "image/png" if data.startswith(b"\x89PNG") else "image/jpeg")
+
+
+def _data_uri(data: bytes, kind: str) -> str:
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
