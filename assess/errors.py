@@ -1,11 +1,13 @@
-"""What can go wrong, as a tree::
+"""What can go wrong, as a tree.
+
+::
 
 AssessError
 ├── InputError          what the user gave cannot be used: nothing is written, exit status 2
 │   ├── WorkbookError   ... in the workbook: every problem with its sheet and cell
 │   └── RecordError     ... in a file of recorded motion
 └── OutputError         a result could not be written, exit status 1
-    └── PdfUnavailable  the native libraries of the PDF are missing
+    └── PdfUnavailableError  the native libraries of the PDF are missing
 """
 
 from collections.abc import Sequence
@@ -59,5 +61,5 @@ class OutputError(AssessError):
     """A result could not be written; what was there before is left as it was."""
 
 
-class PdfUnavailable(OutputError):
+class PdfUnavailableError(OutputError):
     """The PDF needs native libraries that are not installed here."""

@@ -1,0 +1,1 @@
+"""The workbook and the inventory that it holds."""

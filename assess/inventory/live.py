@@ -14,14 +14,23 @@ OUTSIDE = "*"
 """Mark behind a class: outside the range in which the formula was checked by tests."""
 
 
+def equation_9(ratio: str, pfa: str) -> str:
+    """Return equation (9) as printed, without departures; `ratio` is B/H, `pfa` in g."""
+    return _plain(_terms(ratio, f"({pfa}*{kh.G!r})"))
+
+
+def _terms(ratio: str, pfa: str) -> str:
+    k = COEFFICIENTS
+    return f"{k.a!r}+{k.b!r}/{ratio}+{k.c!r}*{pfa}+{k.d!r}/{ratio}^2+{k.e!r}*{pfa}^2+{k.f!r}*{pfa}/{ratio}"
+
+
 def proposed_or(ratio: str, pfa: str) -> str:
     """Return the value of equation (9) with its departures; `ratio` is B/H, `pfa` in g."""
     k = COEFFICIENTS
     y = f"({pfa}*{kh.G!r})"
     thin = f"MAX({ratio},{-2 * k.d!r}/({k.b!r}+{k.f!r}*MIN({y},{THIN_PFA_CAP!r})))"
     held = f"MIN({y},({k.c!r}+{k.f!r}/{thin})/{-2 * k.e!r})"
-    terms = f"{k.a!r}+{k.b!r}/{thin}+{k.c!r}*{held}+{k.d!r}/{thin}^2+{k.e!r}*{held}^2+{k.f!r}*{held}/{thin}"
-    return _plain(f"MAX(0,MIN(1,{terms}))")
+    return _plain(f"MAX(0,MIN(1,{_terms(thin, held)}))")
 
 
 def kaneko_hayashi(ratio: str, height: str, pfa: str, pfv: str, zeta_a: str, zeta_v: str, alpha: str) -> str:

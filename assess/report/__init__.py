@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from assess.errors import OutputError, PdfUnavailable
+from assess.errors import OutputError, PdfUnavailableError
 from assess.results import Assessment
 
 FILES: Mapping[str, str] = {
@@ -47,7 +47,7 @@ def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[
     ------
     ValueError
         If a format is unknown.
-    PdfUnavailable
+    PdfUnavailableError
         If the native libraries of the PDF are missing; all other formats have been written.
     OutputError
         If a file cannot be written; what was there before is left as it was.
@@ -68,14 +68,14 @@ def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[
 
 
 def _write_staged(assessment: Assessment, folder: Path, stage: Path, formats: Sequence[str]) -> dict[str, Path]:
-    missing: PdfUnavailable | None = None
+    missing: PdfUnavailableError | None = None
     written: dict[str, Path] = {}
     for name in dict.fromkeys(formats):
         try:
             _writer(name)(assessment, stage / FILES[name])
             _flush(stage / FILES[name])
             written[name] = folder / FILES[name]
-        except PdfUnavailable as error:
+        except PdfUnavailableError as error:
             missing = error
         except OSError as error:
             reason = error.strerror or str(error)

@@ -184,10 +184,7 @@ def describe_source(demand: Demand) -> str:
     source = (
         "recorded motion"
         if demand.source == "record"
-        else "given PFA"
-        + (
-            "" if demand.pfv != demand.pfv or "pfv_estimated" in demand.flags else " and PFV"  # noqa: PLR0124 - NaN
-        )
+        else "given PFA" + ("" if demand.pfv != demand.pfv or "pfv_estimated" in demand.flags else " and PFV")
     )
     flags = [DEMAND_FLAGS[flag].split(":")[0] for flag in demand.flags]
     return source + (f" ({'; '.join(flags)})" if flags else "")
@@ -218,12 +215,11 @@ def _assumptions(assessment: Assessment) -> list[tuple[str, str]]:
         if counted[name]:
             label = ITEMS.column(name).label
             lines.append((f"{label} blank in {words.plural(counted[name], 'row')}", text))
+    axes = words.plural(sum(item.axis is None for item in items), "row")
+    frictions = words.plural(sum(item.friction is None for item in items), "row")
     lines += [
-        (f"Axis unknown in {words.plural(sum(item.axis is None for item in items), 'row')}", "the worse of X and Y governs"),
-        (
-            f"Friction unknown in {words.plural(sum(item.friction is None for item in items), 'row')}",
-            "no sliding, as the paper assumes",
-        ),
+        (f"Axis unknown in {axes}", "the worse of X and Y governs"),
+        (f"Friction unknown in {frictions}", "no sliding, as the paper assumes"),
         ("Kaneko-Hayashi, standard deviations (not printed in the source)",
          f"ζ_A = {settings.zeta_acceleration:g}, ζ_V = {settings.zeta_velocity:g}"),
         ("Kaneko-Hayashi, slide coefficient α", f"{settings.slide_coefficient:g}"),

@@ -219,7 +219,7 @@ def problem_record(problem: Problem) -> dict[str, str]:
 
 def edge(value: float | None, unit: str) -> float | None:
     """Convert an SI value to a unit of the edge; None for what is unknown."""
-    if value is None or value != value:  # noqa: PLR0124 - NaN
+    if value is None or value != value:
         return None
     return to_edge(value, _FACTORS[unit])
 

@@ -25,8 +25,9 @@ def _draw(width: float, height: float, paint: Callable[[Any], None]) -> bytes:
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    style = {"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "font.family": "DejaVu Sans"}
-    with mpl.rc_context(style):
+    with mpl.rc_context(
+        {"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "font.family": "DejaVu Sans"}
+    ):
         figure = Figure(figsize=(width, height), layout="constrained")
         paint(figure)
         file = BytesIO()
@@ -57,7 +58,9 @@ def _paint_counts(shown: Sequence[Counts], axis_label: str, figure: Any) -> None
         left += values
     anchored = np.array([one.anchored for one in shown], dtype=float)
     if anchored.any():
-        axes.barh(range(len(shown)), anchored, left=left, color="#d0d0d0", label="anchored", edgecolor="#444444", lw=0.5)
+        axes.barh(
+            range(len(shown)), anchored, left=left, color="#d0d0d0", label="anchored", edgecolor="#444444", lw=0.5
+        )
     axes.set_yticks(range(len(shown)), [_label(one.label) for one in shown])
     axes.invert_yaxis()
     axes.set_xlabel(axis_label)

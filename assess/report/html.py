@@ -81,7 +81,9 @@ def _style(for_print: bool) -> str:
 def _class_colours() -> str:
     from assess.risk import RiskClass
 
-    return "\n".join(f".{words.class_name(risk)} {{ background: {risk.fill}; color: {risk.ink}; }}" for risk in RiskClass)
+    return "\n".join(
+        f".{words.class_name(risk)} {{ background: {risk.fill}; color: {risk.ink}; }}" for risk in RiskClass
+    )
 
 
 def _font_faces() -> str:
@@ -91,7 +93,9 @@ def _font_faces() -> str:
         weight = "bold" if style == "bold" else "normal"
         slant = "italic" if style == "italic" else "normal"
         source = _data_uri(path.read_bytes(), "font/ttf")
-        faces.append(f"@font-face {{ font-family: {family}; font-weight: {weight}; font-style: {slant}; src: url({source}); }}")
+        faces.append(
+            f"@font-face {{ font-family: {family}; font-weight: {weight}; font-style: {slant}; src: url({source}); }}"
+        )
     return "\n".join(faces)
 
 

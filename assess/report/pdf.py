@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from assess.errors import PdfUnavailable
+from assess.errors import PdfUnavailableError
 from assess.report.html import render
 from assess.results import Assessment
 
@@ -17,7 +17,7 @@ def write_pdf(assessment: Assessment, path: Path) -> None:
 
     Raises
     ------
-    PdfUnavailable
+    PdfUnavailableError
         If WeasyPrint's native libraries are missing.
     """
     weasyprint = load_weasyprint()
@@ -27,20 +27,23 @@ def write_pdf(assessment: Assessment, path: Path) -> None:
 
 
 def load_weasyprint() -> Any:
-    """Return the module weasyprint; raises PdfUnavailable with the mend where its libraries are missing."""
+    """Return the module weasyprint; raises PdfUnavailableError with the mend where its libraries are missing."""
     logging.getLogger("weasyprint").addHandler(logging.NullHandler())
     try:
         import weasyprint
     except (ImportError, OSError) as error:
         reason = str(error).splitlines()[0]
-        raise PdfUnavailable(f"the PDF was not written: a native library is missing ({reason}). {mend()}") from None
+        raise PdfUnavailableError(
+            f"the PDF was not written: a native library is missing ({reason}). {mend()}"
+        ) from None
     return weasyprint
 
 
 def mend() -> str:
     """Return how to install the native libraries on this system."""
     if sys.platform == "darwin":
-        return "Install them: brew install pango. If that is not found: export DYLD_FALLBACK_LIBRARY_PATH=$(brew --prefix)/lib"
+        found = "export DYLD_FALLBACK_LIBRARY_PATH=$(brew --prefix)/lib"
+        return f"Install them: brew install pango. If they are not found then: {found}"
     if sys.platform == "win32":
         return "Install MSYS2, then in its UCRT64 shell: pacman -S mingw-w64-ucrt-x86_64-pango"
     return f"Install them: {DEBIAN} (Debian, Ubuntu), or the packages of Pango of your system."

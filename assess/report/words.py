@@ -25,12 +25,12 @@ def percent(value: float | None) -> str:
 
 def number(value: float | None, digits: int = 3) -> str:
     """Return a number with significant digits, a dash for what is unknown."""
-    return DASH if value is None or value != value else f"{value:.{digits}g}"  # noqa: PLR0124 - NaN
+    return DASH if value is None or value != value else f"{value:.{digits}g}"
 
 
 def fixed(value: float | None, decimals: int) -> str:
     """Return a number with decimals, a dash for what is unknown."""
-    return DASH if value is None or value != value else f"{value:.{decimals}f}"  # noqa: PLR0124 - NaN
+    return DASH if value is None or value != value else f"{value:.{decimals}f}"
 
 
 def in_g(value: float | None) -> str:

@@ -1,0 +1,1 @@
+"""One rigid block: its geometry."""

@@ -12,7 +12,7 @@ from assess.units import GRAVITY
 FloatArray = NDArray[np.float64]
 
 STOCKY = 1.41
-"""From this B/H on [-] a block does not rock: Housner's restitution 1 - 1.5 sin2(alpha) nears zero (at B/H = sqrt 2)."""
+"""From this B/H on [-] a block does not rock: Housner's restitution 1 - 1.5 sin2(alpha) is zero at B/H = sqrt 2."""
 
 
 def critical_angle(breadth: FloatArray, height: FloatArray) -> FloatArray:

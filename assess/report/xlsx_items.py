@@ -1,0 +1,126 @@
+"""The columns of the sheet Items in the Excel report: what stands in each, and its live formula."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from assess.inventory import live
+from assess.report.content import Content
+from assess.report.data import edge
+from assess.results import ItemResult
+
+
+@dataclass(frozen=True, slots=True)
+class ItemColumn:
+    """One column of Items: heading, width, and what stands in a row: a value, or a formula with its result."""
+
+    label: str
+    width: int
+    read: Callable[[ItemResult], Any]
+    formula: str = ""
+    number_format: str = ""
+
+
+def item_formula(which: str, cells: Mapping[str, str], last: int) -> str:
+    """Return a formula of `ItemColumn` for the cells of one row; `last` is the last row of Floors."""
+    ratio, pfa, pfv = cells["B/H"], cells["PFA used [g]"], cells["PFV used [cm/s]"]
+    formulas: dict[str, Callable[[], str]] = {
+        "ratio": lambda: f"{cells['Breadth [cm]']}/{cells['Height [cm]']}",
+        "axis": lambda: _axis(cells, last),
+        "pfa": lambda: _on_axis(cells, "C", "F", last),
+        "pfv": lambda: _on_axis(cells, "D", "G", last),
+        "raw": lambda: live.equation_9(ratio, pfa),
+        "or": lambda: live.proposed_or(ratio, pfa),
+        "kh": lambda: live.kaneko_hayashi(ratio, cells["Height [cm]"], pfa, pfv, "zeta_a", "zeta_v", "slide_alpha"),
+        "class": lambda: live.risk_class(cells["OR"], ratio, pfa, ("limit_medium", "limit_high", "limit_very_high")),
+    }
+    return f"={formulas[which]()}"
+
+
+def _floor_value(cells: Mapping[str, str], letter: str, last: int) -> str:
+    return f"INDEX(Floors!${letter}$2:${letter}${last},MATCH({cells['Floor']},Floors!$A$2:$A${last},0))"
+
+
+def _axis(cells: Mapping[str, str], last: int) -> str:
+    given, x, y = cells["Axis given"], _floor_value(cells, "C", last), _floor_value(cells, "F", last)
+    return f'IF({given}<>"",{given},IF({x}>={y},"X","Y"))'
+
+
+def _on_axis(cells: Mapping[str, str], for_x: str, for_y: str, last: int) -> str:
+    x, y = _floor_value(cells, for_x, last), _floor_value(cells, for_y, last)
+    chosen = f'IF({cells["Axis"]}="X",{x},{y})'
+    return f'IF({chosen}="","",{chosen})'
+
+
+INPUTS = ("Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis given", "Anchored")
+
+
+def item_columns(content: Content) -> list[ItemColumn]:
+    """Return the columns of Items, in order; those that the workbook had of its own come last."""
+
+    def value(key: str) -> Callable[[ItemResult], Any]:
+        return lambda one: one.governing.methods[key].value
+
+    columns = [
+        ItemColumn("Item", 12, lambda one: one.item.item),
+        ItemColumn("Floor", 8, lambda one: one.item.floor),
+        ItemColumn("Room", 16, lambda one: one.item.room),
+        ItemColumn("Description", 32, lambda one: one.item.description),
+        ItemColumn("Type", 26, lambda one: one.item.type),
+        ItemColumn("Quantity", 9, lambda one: one.item.quantity),
+        ItemColumn("Breadth [cm]", 10, lambda one: edge(one.item.breadth, "cm")),
+        ItemColumn("Width [cm]", 10, lambda one: edge(one.item.width, "cm")),
+        ItemColumn("Height [cm]", 10, lambda one: edge(one.item.height, "cm")),
+        ItemColumn("Axis given", 7, lambda one: one.item.axis),
+        ItemColumn("Anchored", 10, lambda one: one.item.anchored),
+        ItemColumn("B/H", 8, lambda one: one.item.breadth / one.item.height, "ratio", "0.000"),
+        ItemColumn("Axis", 6, lambda one: one.governing.demand.axis, "axis"),
+        ItemColumn("PFA used [g]", 9, lambda one: edge(one.governing.demand.pfa, "g"), "pfa", "0.000"),
+        ItemColumn("PFV used [cm/s]", 9, lambda one: edge(one.governing.demand.pfv, "cm/s"), "pfv", "0.0"),
+        ItemColumn("OR raw", 9, lambda one: one.governing.methods["proposed_or"].detail["raw"], "raw", "0.000"),
+        ItemColumn("OR", 9, value("proposed_or"), "or", "0.0%"),
+        ItemColumn("Kaneko-Hayashi", 10, value("kaneko_hayashi"), "kh", "0.0%"),
+        ItemColumn("Class (formula)", 16, _class_shown, "class"),
+    ]
+    columns += [
+        ItemColumn(f"{method.title} (as run)", 16, _as_run(method.key, method.words), "", "0.0%")
+        for method in content.methods
+        if method.key not in ("proposed_or", "kaneko_hayashi")
+    ]
+    columns += [
+        ItemColumn("Marks (as run)", 36, lambda one: ", ".join(flag.replace("_", " ") for flag in one.adopted.flags)),
+        ItemColumn("Assumed", 28, lambda one: ", ".join(one.item.assumed)),
+        ItemColumn("Friction", 9, lambda one: one.item.friction),
+        ItemColumn("Importance", 12, lambda one: one.item.importance),
+        ItemColumn("Route", 10, lambda one: one.item.route),
+        ItemColumn("Segment", 10, lambda one: one.item.segment),
+        ItemColumn("X [m]", 8, lambda one: one.item.x),
+        ItemColumn("Y [m]", 8, lambda one: one.item.y),
+        ItemColumn("Angle [deg]", 8, lambda one: one.item.angle_deg),
+        ItemColumn("Notes", 40, lambda one: one.item.notes),
+    ]
+    taken = {column.label for column in columns}
+    for at, label in enumerate(content.assessment.inventory.extra_columns):
+        name = label if label not in taken else f"{label} (own column)"
+        columns.append(ItemColumn(name, 16, _extra(at)))
+        taken.add(name)
+    return columns
+
+
+def _class_shown(one: ItemResult) -> str:
+    outside = live.OUTSIDE if "extrapolated" in one.governing.methods["proposed_or"].flags else ""
+    return one.adopted.risk.label + outside
+
+
+def _as_run(key: str, criterion: tuple[str, str]) -> Callable[[ItemResult], Any]:
+    def read(one: ItemResult) -> Any:
+        value = one.governing.methods[key].value
+        if value is None:
+            return "not evaluated"
+        return value if criterion == ("", "") else criterion[0 if value else 1]
+
+    return read
+
+
+def _extra(at: int) -> Callable[[ItemResult], str]:
+    return lambda one: one.item.extra[at] if at < len(one.item.extra) else ""
