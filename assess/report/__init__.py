@@ -7,6 +7,7 @@ and take no space. A disk that fills, or a process that is killed, leaves the ol
 import os
 import shutil
 import tempfile
+import time
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -24,6 +25,7 @@ FILES: Mapping[str, str] = {
 
 FORMATS = tuple(FILES)
 _STAGE = ".assess-writing-"
+_STALE = 24 * 3600.0
 
 
 def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[str] = FORMATS) -> dict[str, Path]:
@@ -58,6 +60,7 @@ def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        _sweep(folder)
         stage = Path(tempfile.mkdtemp(prefix=_STAGE, dir=folder))
     except OSError as error:
         raise OutputError(f"{folder} cannot be written to: {error.strerror}.") from None
@@ -65,6 +68,13 @@ def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[
         return _write_staged(assessment, folder, stage, formats)
     finally:
         shutil.rmtree(stage, ignore_errors=True)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what a killed run left behind over a day ago; a run that is still going is younger than that."""
+    for old in folder.glob(f"{_STAGE}*"):
+        if time.time() - old.stat().st_mtime > _STALE:
+            shutil.rmtree(old, ignore_errors=True)
 
 
 def _write_staged(assessment: Assessment, folder: Path, stage: Path, formats: Sequence[str]) -> dict[str, Path]:

@@ -4,10 +4,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from xlsxwriter.utility import xl_col_to_name
+
 from assess.inventory import live
 from assess.report.content import Content
 from assess.report.data import edge
+from assess.report.xlsx.pen import Pen
 from assess.results import ItemResult
+
+HEAD = 1
+"""Rows above the data of Items and Floors: the headings alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,6 +25,35 @@ class ItemColumn:
     read: Callable[[ItemResult], Any]
     formula: str = ""
     number_format: str = ""
+
+
+def write_items(pen: Pen, page: Any, content: Content) -> None:
+    """Write every row of furniture, with live formulas for axis, PFA, risks and class."""
+    columns = item_columns(content)
+    letters = {column.label: xl_col_to_name(at) for at, column in enumerate(columns)}
+    last = HEAD + max(1, len(content.results))
+    for at, column in enumerate(columns):
+        page.set_column(at, at, column.width)
+        page.write_string(0, at, column.label, pen.head)
+    for row, one in enumerate(content.results, HEAD):
+        cells = {label: f"${letter}{row + 1}" for label, letter in letters.items()}
+        for at, column in enumerate(columns):
+            form = pen.format(column.number_format) if column.number_format else None
+            value = column.read(one)
+            if column.formula:
+                formula = item_formula(column.formula, cells, HEAD + len(content.floors))
+                page.write_formula(row, at, formula, form, "" if value is None else value)
+            else:
+                pen.put(page, row, at, value, pen.input if column.label in INPUTS else form)
+    page.freeze_panes(1, 1)
+    page.repeat_rows(0)
+    page.autofilter(0, 0, last - 1, len(columns) - 1)
+    letter = letters["Class (formula)"]
+    pen.colour(page, f"{letter}2:{letter}{last}")
+    letter = letters["OR"]
+    bar = {"type": "data_bar", "bar_color": "#9db7c9", "bar_solid": True}
+    ends = {"min_type": "num", "max_type": "num", "min_value": 0, "max_value": 1}
+    page.conditional_format(f"{letter}2:{letter}{last}", bar | ends)
 
 
 def item_formula(which: str, cells: Mapping[str, str], last: int) -> str:

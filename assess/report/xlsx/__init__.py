@@ -1,0 +1,64 @@
+"""The Excel report: live formulas, so that an edited PFA, size or class limit recomputes classes and counts.
+
+Sheets are written row by row and in little memory. Every text of the workbook goes in as text.
+"""
+
+import datetime
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import xlsxwriter
+
+from assess.errors import OutputError
+from assess.report.content import Content, build_content
+from assess.report.xlsx import items, sheets, summary
+from assess.report.xlsx.pen import Pen
+from assess.results import Assessment
+
+SHEETS: dict[str, Callable[[Pen, Any, Content], None]] = {
+    "Summary": summary.write_summary,
+    "Fix first": summary.write_fix_first,
+    "Floors": sheets.write_floors,
+    "Items": items.write_items,
+    "Motions": sheets.write_motions,
+    "Routes": sheets.write_routes,
+    "Methods": sheets.write_methods,
+    "Assumptions": sheets.write_assumptions,
+    "Notes": sheets.write_notes,
+}
+"""The sheets in order, and the function that writes each."""
+
+
+def write_xlsx(assessment: Assessment, path: Path) -> None:
+    """Write report.xlsx.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    content = build_content(assessment)
+    options = dict.fromkeys(("strings_to_formulas", "strings_to_urls", "strings_to_numbers"), False)
+    try:
+        with xlsxwriter.Workbook(path, {"constant_memory": True, **options}) as book:
+            created = datetime.datetime.fromisoformat(content.date)
+            book.set_properties({"title": "Furniture in earthquakes: report", "created": created})
+            _write_sheets(Pen(book), content)
+    except xlsxwriter.exceptions.XlsxWriterException as error:
+        cause = error.__cause__ or error.__context__
+        raise (
+            cause if isinstance(cause, OSError) else OutputError(f"report.xlsx could not be written: {error}")
+        ) from None
+
+
+def _write_sheets(pen: Pen, content: Content) -> None:
+    pages = {name: pen.book.add_worksheet(name) for name in SHEETS}
+    for row, name in enumerate(sheets.NAMES, 2):
+        pen.book.define_name(name, f"=Assumptions!$B${row}")
+    for name, write in SHEETS.items():
+        pages[name].set_landscape()
+        pages[name].set_paper(9)
+        pages[name].fit_to_pages(1, 0)
+        pages[name].set_footer("&L&8Chance of overturning in this scenario, not per year&C&8&A&R&8Page &P of &N")
+        write(pen, pages[name], content)

@@ -1,0 +1,71 @@
+"""What the sheets share: formats, cells written as what they are, tables."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from assess.risk import RiskClass
+
+LONGEST = 32_000
+"""Characters of a text that are kept; a cell holds 32,767."""
+
+INPUT = {"font_color": "#0000c0", "bg_color": "#fffbe6"}
+"""Look of the cells that are meant to be edited."""
+
+
+class Pen:
+    """Writes into the sheets of one workbook; makes each format once."""
+
+    def __init__(self, book: Any) -> None:
+        self.book = book
+        self._formats: dict[str, Any] = {}
+        self.head = self.format(
+            bold=True, bg_color="#1f3a4d", font_color="#ffffff", text_wrap=True, valign="top", border=1
+        )
+        self.title = self.format(bold=True, font_size=15, font_color="#1f3a4d")
+        self.bold = self.format(bold=True)
+        self.wrap = self.format(text_wrap=True, valign="top")
+        self.input = self.format(**INPUT)
+
+    def format(self, num_format: str = "General", **more: Any) -> Any:
+        """Return a format, the same one for the same look."""
+        name = repr((num_format, sorted(more.items())))
+        if name not in self._formats:
+            self._formats[name] = self.book.add_format({"num_format": num_format, **more})
+        return self._formats[name]
+
+    def put(self, page: Any, row: int, column: int, value: Any, form: Any = None) -> None:
+        """Write a value as what it is: a text is never a formula, a link or a number."""
+        if value is None or value == "":
+            if form:
+                page.write_blank(row, column, None, form)
+        elif isinstance(value, bool | int | float):
+            page.write_number(row, column, value, form)
+        else:
+            text = str(value)
+            page.write_string(row, column, text if len(text) <= LONGEST else f"{text[:LONGEST]}… (cut)", form)
+
+    def listing(self, page: Any, heads: Sequence[str], widths: Sequence[int], rows: Sequence[Sequence[Any]]) -> None:
+        """Write a sheet that is one table: frozen head, filter, head repeated on each printed page."""
+        for at, (label, width) in enumerate(zip(heads, widths, strict=True)):
+            page.set_column(at, at, width)
+            page.write_string(0, at, label, self.head)
+        for number, row in enumerate(rows, 1):
+            for at, value in enumerate(row):
+                self.put(page, number, at, value, self.wrap if isinstance(value, str) and len(value) > 40 else None)
+        page.freeze_panes(1, 0)
+        page.repeat_rows(0)
+        if rows:
+            page.autofilter(0, 0, len(rows), len(heads) - 1)
+
+    def colour(self, page: Any, area: str) -> None:
+        """Colour the cells of an area by the symbol of the class that they begin with."""
+        for risk in reversed(RiskClass):
+            form = self.format(bg_color=risk.fill, font_color=risk.ink)
+            rule = {
+                "type": "text",
+                "criteria": "begins with",
+                "value": risk.symbol,
+                "format": form,
+                "stop_if_true": True,
+            }
+            page.conditional_format(area, rule)

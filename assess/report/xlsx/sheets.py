@@ -1,0 +1,152 @@
+"""The sheets Floors, Motions, Routes, Methods, Assumptions and Notes."""
+
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.demand import Demand
+from assess.inventory.model import Axis
+from assess.methods import kaneko_hayashi as kh
+from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
+from assess.report.content import Content, describe_source, describe_treatment
+from assess.report.data import edge
+from assess.report.xlsx.items import HEAD
+from assess.report.xlsx.pen import INPUT, Pen
+from assess.risk import LIMITS
+
+_EDIT_HERE = (
+    "Edit the PFA and PFV here: Items and Summary follow. Where several records serve an axis, the one with the "
+    "largest PFA stands here; the sheet Motions lists all."
+)
+
+NAMES = {
+    "limit_medium": "Lower limit of medium",
+    "limit_high": "Lower limit of high",
+    "limit_very_high": "Lower limit of very high",
+    "zeta_a": "Kaneko-Hayashi ζ_A",
+    "zeta_v": "Kaneko-Hayashi ζ_V",
+    "slide_alpha": "Kaneko-Hayashi slide coefficient α",
+}
+"""Cells that formulas refer to by name, in the order of the sheet Assumptions."""
+
+
+def write_floors(pen: Pen, page: Any, content: Content) -> None:
+    """Write the motion that serves each floor and axis, to be edited: Items and Summary follow."""
+    period = content.assessment.inventory.building.period
+    heads = (
+        "Floor",
+        "Name",
+        "PFA X [g]",
+        "PFV X [cm/s]",
+        "Source X",
+        "PFA Y [g]",
+        "PFV Y [cm/s]",
+        "Source Y",
+        "Elevation [m]",
+    )
+    for at, (label, width) in enumerate(zip(heads, (12, 22, 12, 14, 44, 12, 14, 44, 12), strict=True)):
+        page.set_column(at, at, width)
+        page.write_string(0, at, label, pen.head)
+    for row, floor_page in enumerate(content.floors, HEAD):
+        pen.put(page, row, 0, floor_page.floor.floor)
+        pen.put(page, row, 1, floor_page.floor.name)
+        _write_demand(pen, page, row, 2, _governing(content, floor_page.floor.floor, "X"), period)
+        _write_demand(pen, page, row, 5, _governing(content, floor_page.floor.floor, "Y"), period)
+        pen.put(page, row, 8, floor_page.floor.elevation)
+    page.freeze_panes(1, 1)
+    page.repeat_rows(0)
+    page.write_comment("C1", _EDIT_HERE, {"x_scale": 2})
+
+
+def _governing(content: Content, floor: str, axis: Axis) -> Demand:
+    return max(content.assessment.demands[floor, axis], key=lambda demand: demand.pfa)
+
+
+def _write_demand(pen: Pen, page: Any, row: int, at: int, demand: Demand, period: float | None) -> None:
+    form = pen.format("0.000", **INPUT)
+    page.write_number(row, at, edge(demand.pfa, "g"), form)
+    pfv = edge(demand.pfv, "cm/s")
+    if "pfv_estimated" in demand.flags and period is not None:
+        cell = f"{xl_col_to_name(at)}{row + 1}"
+        formula = f"={cell}*{kh.G!r}/(2*PI()*{min(1 / period, HIGHEST_FLOOR_FREQUENCY)!r})"
+        page.write_formula(row, at + 1, formula, pen.format("0.0"), pfv)
+    else:
+        pen.put(page, row, at + 1, pfv, pen.format("0.0", **INPUT))
+    pen.put(page, row, at + 2, f"{describe_source(demand)}{': ' + demand.name if demand.name else ''}")
+
+
+def write_motions(pen: Pen, page: Any, content: Content) -> None:
+    """Write every motion, with what was done to it."""
+    rows = [
+        (floor_page.floor.floor, demand.axis, describe_source(demand), demand.name, edge(demand.pfa, "g"),
+         edge(demand.pfv, "cm/s"), edge(demand.record.file_pfa, "g") if demand.record else None,
+         demand.record.station if demand.record else "", demand.record.event if demand.record else "",
+         demand.record.azimuth_deg if demand.record else None, describe_treatment(demand))
+        for floor_page in content.floors
+        for demand in floor_page.demands
+    ]  # fmt: skip
+    heads = ("Floor", "Axis", "Source", "Record", "PFA [g]", "PFV [cm/s]", "PFA in the file [g]", "Station",
+             "Event", "Azimuth [deg]", "Treatment")  # fmt: skip
+    pen.listing(page, heads, (9, 6, 34, 40, 10, 11, 12, 34, 34, 10, 80), rows)
+
+
+def write_routes(pen: Pen, page: Any, content: Content) -> None:
+    """Write the segments of routes as the workbook has them."""
+    segments = content.assessment.inventory.routes
+    rows = [
+        (one.route, one.segment, one.floor, one.start, one.end, one.clear_width, one.required_width, one.occupants,
+         ", ".join(piece.item.item for piece in content.results
+                   if piece.item.route == one.route and piece.item.segment in ("", one.segment)), one.notes)
+        for one in segments
+    ]  # fmt: skip
+    heads = ("Route", "Segment", "Floor", "From", "To", "Clear width [m]", "Required width [m]", "Occupants",
+             "Pieces beside it (blockage is not evaluated by this version)", "Notes")  # fmt: skip
+    pen.listing(page, heads, (14, 12, 9, 20, 20, 10, 10, 10, 60, 40), rows)
+
+
+def write_methods(pen: Pen, page: Any, content: Content) -> None:
+    """Write what the methods are, assume and change, what the marks mean, and the limits."""
+    rows = []
+    for method in content.methods:
+        parts = (
+            ("Predicts", (method.predicts,)),
+            ("Equation", method.equations),
+            ("Assumption", method.assumptions),
+            ("Departure from the source", method.departures),
+            ("Source", (str(method.reference),)),
+        )
+        rows += [(method.title, what, text) for what, texts in parts for text in texts]
+    rows += [("Marks", flag.replace("_", " "), meaning) for flag, meaning in content.flags.items()]
+    rows += [("Limits", "", text) for text in content.limits]
+    pen.listing(page, ("Method", "What", "Text"), (28, 26, 130), rows)
+
+
+def write_assumptions(pen: Pen, page: Any, content: Content) -> None:
+    """Write the values that formulas refer to, and what else was assumed."""
+    settings = content.assessment.settings
+    values = (*LIMITS, settings.zeta_acceleration, settings.zeta_velocity, settings.slide_coefficient)
+    pen.listing(page, ("Assumption", "Value"), (70, 60), ())
+    for row, ((_, label), value) in enumerate(zip(NAMES.items(), values, strict=True), 1):
+        page.write_string(row, 0, f"{label} (edit the value: classes and counts follow)")
+        page.write_number(row, 1, value, pen.input)
+    for row, (where, what) in enumerate(content.assumptions, len(NAMES) + 2):
+        pen.put(page, row, 0, where)
+        pen.put(page, row, 1, what, pen.wrap)
+
+
+def write_notes(pen: Pen, page: Any, content: Content) -> None:
+    """Write the data-quality log, the inputs and what the report was made with."""
+    rows: list[tuple[str, str, str]] = [
+        (one.severity, one.place, f"{one.message} {one.mend}".strip()) for one in content.problems
+    ]
+    inventory, platform = content.assessment.inventory, content.platform
+    rows.append(("input", inventory.source.name, f"SHA-256 {inventory.sha256}"))
+    rows += [("input", name, f"SHA-256 {digest}") for name, digest in inventory.files.items()]
+    rows.append(
+        (
+            "made with",
+            f"assess {content.version}",
+            ", ".join(f"{name} {value}" for name, value in platform.items()),
+        )
+    )
+    pen.listing(page, ("Kind", "Place", "What"), (12, 40, 120), rows)

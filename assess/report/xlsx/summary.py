@@ -1,0 +1,107 @@
+"""The sheets Summary and Fix first."""
+
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.report import words
+from assess.report.content import Content
+from assess.report.xlsx.items import HEAD, item_columns
+from assess.report.xlsx.pen import Pen
+from assess.risk import RiskClass
+
+CHART_ROWS = 18
+
+
+def write_summary(pen: Pen, page: Any, content: Content) -> None:
+    """Write the counts by floor and class as formulas over Items, their chart, and the worst pieces."""
+    page.set_column(0, 0, 34)
+    page.set_column(1, 6, 15)
+    page.write_string(0, 0, f"Furniture in earthquakes: {words.clip(content.title, 100)}", pen.title)
+    scenario = content.assessment.inventory.building.scenario
+    lines = [
+        f"Scenario: {words.clip(scenario, 300)}" if scenario else "",
+        "Chance of overturning in this scenario, not per year; the interval covers the number of records only.",
+        "Not verified: classes are those of a published formula; no direct integration has been run.",
+        "Counts are pieces and follow the sheets Floors, Items and Assumptions when those are edited.",
+    ]
+    for row, line in enumerate(lines, 1):
+        pen.put(page, row, 0, line)
+    top = len(lines) + 2
+    bottom = _write_counts(pen, page, content, top)
+    _chart(pen, page, top, bottom)
+    _write_worst(pen, page, content, bottom + CHART_ROWS)
+
+
+def _write_counts(pen: Pen, page: Any, content: Content, top: int) -> int:
+    """Write the table of counts and return the row of its totals."""
+    for at, label in enumerate(("Floor", *(risk.label for risk in RiskClass), "anchored", "all")):
+        page.write_string(top, at, label, pen.head)
+    last = HEAD + max(1, len(content.results))
+    item = {
+        column.label: f"Items!${xl_col_to_name(at)}${HEAD + 1}:${xl_col_to_name(at)}${last}"
+        for at, column in enumerate(item_columns(content))
+    }
+    total = top + 1 + len(content.floors)
+    for row, (at_floor, floor_page) in enumerate(enumerate(content.floors, HEAD + 1), top + 1):
+        pen.put(page, row, 0, floor_page.title)
+        on_floor = f"{item['Quantity']},{item['Floor']},Floors!$A${at_floor}"
+        counts = floor_page.counts
+        for at, risk in enumerate(RiskClass, 1):
+            formula = f'=SUMIFS({on_floor},{item["Class (formula)"]},"{risk.label}*",{item["Anchored"]},"<>yes")'
+            page.write_formula(row, at, formula, None, counts.by_class[risk])
+        page.write_formula(row, 5, f'=SUMIFS({on_floor},{item["Anchored"]},"yes")', None, counts.anchored)
+        page.write_formula(row, 6, f"=SUM(B{row + 1}:F{row + 1})", None, counts.total)
+    page.write_string(total, 0, "All floors", pen.bold)
+    totals = (*content.total.by_class.values(), content.total.anchored, content.total.total)
+    for at, value in enumerate(totals, 1):
+        letter = xl_col_to_name(at)
+        page.write_formula(total, at, f"=SUM({letter}{top + 2}:{letter}{total})", pen.bold, value)
+    return total
+
+
+def _chart(pen: Pen, page: Any, top: int, bottom: int) -> None:
+    chart = pen.book.add_chart({"type": "bar", "subtype": "stacked"})
+    for at, risk in enumerate(RiskClass, 1):
+        chart.add_series({
+            "name": ["Summary", top, at],
+            "categories": ["Summary", top + 1, 0, bottom - 1, 0],
+            "values": ["Summary", top + 1, at, bottom - 1, at],
+            "fill": {"color": risk.fill},
+            "border": {"color": "#444444", "width": 0.5},
+        })  # fmt: skip
+    chart.set_title({"name": "Pieces by class and floor", "name_font": {"size": 11}})
+    chart.set_y_axis({"reverse": True})
+    chart.set_legend({"position": "bottom"})
+    chart.set_size({"width": 760, "height": 320})
+    page.insert_chart(
+        bottom + 1, 0, chart, {"description": "Pieces of each class on every floor, as in the table above"}
+    )
+
+
+def _write_worst(pen: Pen, page: Any, content: Content, row: int) -> None:
+    page.write_string(row, 0, "The pieces most likely to fall (as run)", pen.bold)
+    for at, label in enumerate(("Item", "Floor", "Room", "Chance", "Class", "Pieces")):
+        page.write_string(row + 1, at, label, pen.head)
+    for number, one in enumerate(content.worst, row + 2):
+        described = words.clip(f"{one.item.item}: {one.item.description or one.item.type}", 80)
+        for at, value in enumerate((described, one.item.floor, one.item.room)):
+            pen.put(page, number, at, value)
+        page.write_number(number, 3, one.adopted.probability, pen.format("0.0%"))
+        pen.put(page, number, 4, one.adopted.risk.label)
+        page.write_number(number, 5, one.item.quantity)
+    pen.colour(page, f"E{row + 3}:E{row + 3 + len(content.worst)}")
+
+
+def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
+    """Write the pieces of at least medium class, what to fix first at the top."""
+    rows = [
+        (at, one.item.item, one.item.floor, one.item.room, one.item.description or one.item.type,
+         one.item.importance, one.item.route, one.adopted.risk.label, one.adopted.probability, one.item.quantity,
+         one.adopted.probability * one.item.quantity)
+        for at, one in enumerate(content.fix_first, 1)
+    ]  # fmt: skip
+    heads = ("No.", "Item", "Floor", "Room", "Description", "Importance", "Route", "Class (as run)", "Chance",
+             "Pieces", "Expected falls saved if the anchor holds")  # fmt: skip
+    pen.listing(page, heads, (6, 12, 9, 16, 36, 13, 12, 16, 10, 8, 16), rows)
+    pen.colour(page, f"H2:H{len(rows) + 2}")

@@ -1,0 +1,93 @@
+import csv
+import json
+import math
+
+import jsonschema
+import pytest
+
+from assess.report.data import SCHEMA, flatten, item_record, write_csv, write_json
+from tests.workbooks import ITEMS, assessed
+
+
+@pytest.fixture
+def results(tmp_path):
+    assessment = assessed(tmp_path / "w.xlsx", period=0.9, building="Hall", scenario="A test")
+    write_json(assessment, tmp_path / "results.json")
+    return assessment, json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+
+
+def test_results_follow_their_schema(results):
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    jsonschema.validate(results[1], schema)
+
+
+def test_schema_refuses_an_unknown_field_and_a_probability_above_one(results):
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
+    wrong = json.loads(json.dumps(results[1]))
+    wrong["items"][0]["adopted"]["probability"] = 1.2
+    with pytest.raises(jsonschema.ValidationError, match=r"1\.2"):
+        jsonschema.validate(wrong, schema)
+    wrong = json.loads(json.dumps(results[1])) | {"more": 1}
+    with pytest.raises(jsonschema.ValidationError, match="more"):
+        jsonschema.validate(wrong, schema)
+
+
+def test_results_hold_what_was_assessed(results):
+    assessment, found = results
+    assert [item["item"] for item in found["items"]] == [item["item"] for item in ITEMS]
+    first = found["items"][0]
+    assert (first["breadth_cm"], first["width_cm"], first["height_cm"]) == (30.0, 80.0, 200.0)
+    assert first["axis"] == "X"
+    assert first["axis_given"] is None
+    assert first["pfa_g"] == 0.3
+    assert {axis["axis"] for axis in first["axes"]} == {"X", "Y"}
+    assert first["adopted"]["probability"] == first["methods"]["proposed_or"]["value"]
+    assert first["verification"] is None
+    assert found["assess"]["inputs"]["sha256"] == assessment.inventory.sha256
+
+
+def test_converted_sizes_carry_no_binary_noise(tmp_path):
+    sizes = [29, 32.1, 47.2, 57, 58, 113.3]
+    items = [{"item": str(at), "floor": "1", "breadth": size, "height": 206.4} for at, size in enumerate(sizes)]
+    assessment = assessed(tmp_path / "w.xlsx", items)
+    assert [item_record(one)["breadth_cm"] for one in assessment] == sizes
+
+
+def test_unknown_pfv_is_null_not_nan(tmp_path):
+    assessment = assessed(tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_y": 0.3}])
+    write_json(assessment, tmp_path / "r.json")
+    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"), parse_constant=pytest.fail)
+    assert found["items"][0]["pfv_cm_s"] is None
+    assert found["items"][0]["methods"]["fema_p58"] == {
+        "value": None, "median_pfv_cm_s": found["items"][0]["methods"]["fema_p58"]["median_pfv_cm_s"],
+        "flags": ["pfv_unknown"],
+    }  # fmt: skip
+
+
+def test_csv_is_the_same_table(results, tmp_path):
+    assessment, found = results
+    write_csv(assessment, tmp_path / "items.csv")
+    assert (tmp_path / "items.csv").read_bytes().startswith(b"\xef\xbb\xbf")
+    with (tmp_path / "items.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(found["items"])
+    for row, item in zip(rows, found["items"], strict=True):
+        assert set(row) == set(flatten(item))
+        assert float(row["proposed_or"]) == item["methods"]["proposed_or"]["value"]
+        assert float(row["proposed_or_raw"]) == item["methods"]["proposed_or"]["raw"]
+        assert row["adopted_class"] == item["adopted"]["class"]
+        assert math.isclose(float(row["breadth_to_height"]), item["breadth_to_height"], abs_tol=0)
+
+
+def test_csv_defuses_formulas_and_leaves_negative_numbers(tmp_path):
+    items = [{"item": "=1+1", "floor": "1", "room": "@SUM(A1)", "description": "-2+3", "breadth": 30, "height": 200,
+              "edge_distance": -0.4, "notes": "+1"}]  # fmt: skip
+    write_csv(assessed(tmp_path / "w.xlsx", items), tmp_path / "items.csv")
+    with (tmp_path / "items.csv").open(encoding="utf-8-sig", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert row["item"] == "'=1+1"
+    assert row["room"] == "'@SUM(A1)"
+    assert row["description"] == "'-2+3"
+    assert row["notes"] == "'+1"
+    assert row["edge_distance_m"] == "-0.4"

@@ -1,0 +1,134 @@
+"""Text of the workbook stays text in all five outputs: never a formula, markup, a path or a hidden character."""
+
+import csv
+import json
+import re
+import zipfile
+
+import openpyxl
+import pypdfium2
+import pytest
+
+import assess
+from assess.inventory.columns import SHEETS
+from tests.workbooks import write
+
+FORMULA = '=HYPERLINK("http://x","y")'
+SCRIPT = "<script>alert(1)</script>"
+PATH = "../../etc/passwd"
+LONG = "long " * 6400
+CONTROL = "bell\x07null\x00 end"
+TURNED = "abc\u202edef\u200f"
+HOSTILE = (FORMULA, SCRIPT, PATH, LONG, CONTROL, TURNED)
+
+_TEXT = [column.name for column in SHEETS[2].columns if column.kind == "text" and not column.source and column.name != "item"]
+
+
+def _escaped(text):
+    """Write a text as a workbook's XML holds it: control characters as _xHHHH_."""
+    return re.sub("[\x00-\x08\x0b-\x1f]", lambda match: f"_x{ord(match[0]):04X}_", text)
+
+
+@pytest.fixture(scope="module")
+def outputs(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("text")
+    items = [
+        {"item": f"{at} {text[:60]}", "floor": "1", "breadth": 30, "height": 180} | dict.fromkeys(_TEXT, text)
+        for at, text in enumerate(HOSTILE)
+    ]
+    path = write(folder / "w.xlsx", [{**item, "segment": ""} for item in items], building=FORMULA, address=SCRIPT,
+                 use=PATH, prepared_by=CONTROL, organisation=TURNED, scenario=SCRIPT + FORMULA)  # fmt: skip
+    _unescape_controls(path)
+    assessment = assess.run(assess.read_inventory(path))
+    written = assess.write_reports(assessment, folder / "out")
+    return assessment, written
+
+
+def _unescape_controls(path):
+    """XlsxWriter escapes the escape; a hostile file has the control character itself behind _xHHHH_."""
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name).replace(b"_x005F_x00", b"_x00") for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in parts.items():
+            archive.writestr(name, data)
+
+
+def test_the_inventory_is_cleaned_and_says_so(outputs):
+    assessment, _ = outputs
+    texts = [one.item.notes for one in assessment]
+    assert texts[:4] == [FORMULA, SCRIPT, PATH, LONG.strip()]
+    assert texts[4] == "bell\ufffdnull\ufffd end"
+    assert texts[5] == "abcdef"
+    assert any("control or direction characters" in one.message for one in assessment.problems)
+
+
+def _no_hidden(text):
+    return not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f\u202a-\u202e\u2066-\u2069\u200e\u200f]", text)
+
+
+def test_json(outputs):
+    _, written = outputs
+    text = written["json"].read_text(encoding="utf-8")
+    items = json.loads(text)["items"]
+    for name in ("room", "description", "notes"):
+        assert [item[name] for item in items][:4] == [FORMULA, SCRIPT, PATH, LONG.strip()]
+    assert _no_hidden(text)
+
+
+def test_csv(outputs):
+    _, written = outputs
+    text = written["csv"].read_text(encoding="utf-8-sig")
+    assert _no_hidden(text)
+    rows = list(csv.DictReader(text.splitlines()))
+    for name in ("room", "description", "notes"):
+        assert rows[0][name] == "'" + FORMULA
+        assert rows[1][name] == SCRIPT
+        assert rows[3][name] == LONG.strip()
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_excel(outputs):
+    _, written = outputs
+    book = openpyxl.load_workbook(written["xlsx"])
+    texts = set()
+    for sheet in book:
+        for row in sheet.iter_rows():
+            for cell in row:
+                assert cell.hyperlink is None
+                if cell.data_type == "f":
+                    assert "HYPERLINK" not in cell.value
+                elif isinstance(cell.value, str):
+                    texts.add(cell.value)
+    assert {FORMULA, SCRIPT, PATH, LONG.strip()} <= texts
+    with zipfile.ZipFile(written["xlsx"]) as archive:
+        raw = b"".join(archive.read(name) for name in archive.namelist() if name.endswith(".xml")).decode()
+    assert "<f>HYPERLINK" not in raw
+    assert not any("hyperlink" in name for name in archive.namelist())
+    assert _no_hidden(raw)
+
+
+def test_html(outputs):
+    _, written = outputs
+    text = written["html"].read_text(encoding="utf-8")
+    assert "<script" not in text.lower()
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in text
+    assert "=HYPERLINK(&#34;http://x&#34;,&#34;y&#34;)" in text
+    assert PATH in text
+    assert not re.search(r"(?:href|src)=\"(?!data:|#)", text)
+    assert _no_hidden(text)
+
+
+def test_pdf(outputs):
+    _, written = outputs
+    document = pypdfium2.PdfDocument(written["pdf"])
+    text = "".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
+    flat = re.sub(r"[\s\ufffe]+", "", text)
+    assert FORMULA.replace(" ", "") in flat
+    assert SCRIPT in flat
+    assert PATH in flat
+    assert "characters;whole" in flat
+    assert len(document) < 60
+    document.close()
+    raw = written["pdf"].read_bytes()
+    assert b"/URI" not in raw
+    assert b"/JavaScript" not in raw

@@ -1,0 +1,182 @@
+"""The Excel report: what it stores, and that an edit recomputes it, in real spreadsheet engines."""
+
+import formualizer
+import openpyxl
+import pytest
+
+from assess.report.xlsx import write_xlsx
+from tests.recalculate import libreoffice, needs_libreoffice
+from tests.workbooks import ITEMS, assessed
+
+FLOORS = [
+    {"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0},
+    {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.62},
+    {"floor": "3", "pfa_y": 0.9, "pfv_y": 12.0},
+]
+
+
+def _items():
+    sizes = [(20, 200), (25, 180), (30, 200), (36, 92), (45, 90), (60, 60), (80, 70), (28, 202)]
+    return [
+        {"item": f"{floor}-{at}", "floor": floor, "breadth": breadth, "width": 120, "height": height, **axis}
+        for floor in "123"
+        for at, (breadth, height) in enumerate(sizes)
+        for axis in ({"axis": "X"}, {"axis": "Y"}, {})[at % 3 : at % 3 + 1]
+    ]
+
+
+def _cells(path):
+    book = openpyxl.load_workbook(path, data_only=True)
+    return {(sheet.title, cell.coordinate): cell.value for sheet in book for row in sheet.iter_rows() for cell in row
+            if cell.value is not None}  # fmt: skip
+
+
+def _column(sheet, label):
+    return next(cell.column for cell in sheet[1] if cell.value == label)
+
+
+def _poison(path):
+    """Replace every stored result by nonsense, so that agreement can only come from recalculation."""
+    import re
+    import zipfile
+
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in parts.items():
+            if name.startswith("xl/worksheets/sheet"):
+                data = re.sub(rb' t="str"(?=[^>]*><f>)', b"", data)
+                data = re.sub(rb"(</f>)<v>[^<]*</v>", rb"\1<v>0.123</v>", data)
+            archive.writestr(name, data)
+
+
+@pytest.fixture
+def report(tmp_path):
+    assessment = assessed(tmp_path / "w.xlsx", _items(), FLOORS, period=0.9)
+    write_xlsx(assessment, tmp_path / "report.xlsx")
+    return assessment, tmp_path / "report.xlsx"
+
+
+def _same(first, second):
+    if isinstance(first, int | float) and isinstance(second, int | float):
+        return abs(first - second) <= 1e-9
+    return first == second
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_stored_results_are_what_an_engine_computes(report):
+    _, path = report
+    stored = _cells(path)
+    _poison(path)
+    book = formualizer.load_workbook(str(path))
+    book.evaluate_all()
+    formulas = openpyxl.load_workbook(path)
+    checked = 0
+    for sheet in formulas:
+        for row in sheet.iter_rows():
+            for cell in row:
+                if cell.data_type == "f":
+                    found = book.evaluate_cell(sheet.title, cell.row, cell.column)
+                    assert _same(found, stored.get((sheet.title, cell.coordinate), "")), (sheet.title, cell.coordinate)
+                    checked += 1
+    assert checked > 8 * len(_items())
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.libreoffice
+@needs_libreoffice
+def test_libreoffice_agrees(report, tmp_path):
+    _, path = report
+    stored = _cells(path)
+    _poison(path)
+    found = _cells(libreoffice(path, tmp_path / "recalculated.xlsx"))
+    differing = [place for place, value in stored.items() if not _same(value, found.get(place))]
+    assert not differing
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_items_agree_with_the_program(report):
+    assessment, path = report
+    book = formualizer.load_workbook(str(path))
+    book.evaluate_all()
+    sheet = openpyxl.load_workbook(path)["Items"]
+    at = {label: _column(sheet, label) for label in ("B/H", "PFA used [g]", "OR raw", "OR", "Kaneko-Hayashi", "Class (formula)")}
+    for row, one in enumerate(assessment, 2):
+        methods = one.governing.methods
+        found = {label: book.evaluate_cell("Items", row, column) for label, column in at.items()}
+        assert found["B/H"] == pytest.approx(one.item.breadth / one.item.height, abs=1e-9)
+        assert found["OR raw"] == pytest.approx(methods["proposed_or"].detail["raw"], abs=1e-9)
+        assert found["OR"] == pytest.approx(methods["proposed_or"].value, abs=1e-9)
+        assert found["Kaneko-Hayashi"] == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
+        assert found["Class (formula)"].rstrip("*") == one.adopted.risk.label
+        assert found["Class (formula)"].endswith("*") == ("extrapolated" in methods["proposed_or"].flags)
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
+    _, path = report
+    floors = [FLOORS[0], {"floor": "2", "pfa_x": 1.1, "pfa_y": 0.62}, FLOORS[2]]
+    items = _items()
+    items[0]["breadth"], items[0]["height"] = 100, 150
+    again = assessed(tmp_path / "edited.xlsx", items, floors, period=0.9)
+
+    book = formualizer.load_workbook(str(path))
+    sheet = openpyxl.load_workbook(path)["Items"]
+    book.set_value("Floors", 3, 3, 1.1)
+    book.set_value("Items", 2, _column(sheet, "Breadth [cm]"), 100)
+    book.set_value("Items", 2, _column(sheet, "Height [cm]"), 150)
+    book.evaluate_all()
+    for row, one in enumerate(again, 2):
+        methods = one.governing.methods
+        assert book.evaluate_cell("Items", row, _column(sheet, "OR")) == pytest.approx(methods["proposed_or"].value, abs=1e-9)
+        found = book.evaluate_cell("Items", row, _column(sheet, "Kaneko-Hayashi"))
+        assert found == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
+    from assess.report.content import build_content
+
+    content = build_content(again)
+    summary = openpyxl.load_workbook(path)["Summary"]
+    top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
+    for row, counts in enumerate(content.by_floor, top + 1):
+        found = [book.evaluate_cell("Summary", row, column) for column in range(2, 8)]
+        assert found == [*counts.by_class.values(), counts.anchored, counts.total]
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_an_edited_class_limit_moves_the_classes(report):
+    assessment, path = report
+    book = formualizer.load_workbook(str(path))
+    sheet = openpyxl.load_workbook(path)["Items"]
+    before = sum(one.adopted.risk.word == "very high" for one in assessment)
+    book.set_value("Assumptions", 4, 2, 0.999999)
+    book.evaluate_all()
+    after = sum(
+        book.evaluate_cell("Items", row, _column(sheet, "Class (formula)")).startswith("■")
+        for row in range(2, 2 + len(assessment))
+    )
+    assert after < before
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_unknown_columns_come_back(tmp_path):
+    from tests.workbooks import write
+
+    path = write(tmp_path / "w.xlsx", ITEMS)
+    book = openpyxl.load_workbook(path)
+    sheet = book["Items"]
+    sheet.cell(1, 30, "Inventory tag")
+    sheet.cell(2, 30, "T-17")
+    book.save(path)
+    import assess
+
+    assessment = assess.run(assess.read_inventory(path))
+    write_xlsx(assessment, tmp_path / "r.xlsx")
+    items = openpyxl.load_workbook(tmp_path / "r.xlsx")["Items"]
+    assert items.cell(2, _column(items, "Inventory tag")).value == "T-17"
+
+
+def test_bytes_are_the_same_twice(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    assessment = assessed(tmp_path / "w.xlsx")
+    write_xlsx(assessment, tmp_path / "a.xlsx")
+    write_xlsx(assessment, tmp_path / "b.xlsx")
+    assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()

@@ -1,0 +1,54 @@
+"""The formula path stays light: what it imports, and how much memory 20,000 items take."""
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.workbooks import write
+
+HEAVY = ("pandas", "matplotlib", "weasyprint", "scipy.stats", "numba", "scipy", "xlsxwriter", "jinja2")
+
+
+def _child(code):
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def _items(count):
+    return [
+        {"item": f"i{at}", "floor": str(1 + at % 2), "room": f"room {at % 97}", "description": "Bookcase, steel",
+         "breadth": 20 + at % 70, "width": 120, "height": 100 + at % 130, "axis": "XY"[at % 2], "notes": "by the door"}
+        for at in range(count)
+    ]  # fmt: skip
+
+
+def test_the_formula_path_imports_nothing_heavy(tmp_path):
+    path = write(tmp_path / "w.xlsx", _items(50))
+    loaded = _child(
+        "import sys\n"
+        f"sys.argv = ['assess', 'run', {str(path)!r}, '--verify', 'none', '--formats', 'json,csv', '--out', {str(tmp_path / 'o')!r}]\n"
+        "from assess.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as stop:\n    assert not stop.code\n"
+        f"print([name for name in {HEAVY!r} if name in sys.modules])"
+    )
+    assert loaded.splitlines()[-1] == "[]"
+
+
+def test_import_assess_loads_next_to_nothing():
+    loaded = _child("import sys, assess; print([name for name in ('numpy', 'openpyxl', 'typer') if name in sys.modules])")
+    assert loaded.strip() == "[]"
+
+
+@pytest.mark.slow
+def test_20000_items_fit_in_300_mb(tmp_path):
+    path = write(tmp_path / "w.xlsx", _items(20_000))
+    peak = _child(
+        "import assess, resource\n"
+        f"assessment = assess.run(assess.read_inventory({str(path)!r}))\n"
+        f"written = assess.write_reports(assessment, {str(tmp_path / 'out')!r}, ('json', 'csv', 'xlsx'))\n"
+        "assert len(written) == 3 and len(assessment) == 20_000\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)"
+    )
+    assert float(peak) < 300

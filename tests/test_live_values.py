@@ -1,0 +1,54 @@
+"""The live columns' stored values, from assessments."""
+
+from dataclasses import replace
+
+import pytest
+
+from assess.assessment import run
+from assess.errors import WorkbookError
+from assess.inventory.blank import Content, write_workbook
+from assess.inventory.workbook import read_inventory
+from assess.live_values import RUN_ASSESS, stored_live, with_live
+from assess.settings import Settings
+
+RECORD = "time [s],acceleration [g]\n" + "".join(f"{at * 0.01:.2f},{0.2 * (-1) ** at}\n" for at in range(400))
+ITEMS = [
+    {"item": "a", "floor": "1", "breadth": 40, "height": 180, "axis": "X"},
+    {"item": "b", "floor": "1", "breadth": 40, "height": 180, "axis": "Y"},
+    {"item": "c", "floor": "1", "breadth": 40, "height": 180},
+    {"item": "d", "floor": "2", "breadth": 90, "height": 180, "anchored": "yes"},
+]
+CONTENT = Content(
+    {
+        "Floors": [{"floor": "1", "record_x": "x.csv", "pfa_y": 0.4, "pfv_y": 30}, {"floor": "2", "pfa_x": 0.3}],
+        "Items": ITEMS,
+    }
+)
+
+
+def test_a_record_on_any_axis_of_a_piece_asks_for_a_run(tmp_path):
+    (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
+    along_x, along_y, both, anchored = with_live(CONTENT, folder=tmp_path).live
+    assert along_x[1:] == both[1:] == [RUN_ASSESS] * 4
+    assert along_x[0] == along_y[0] == pytest.approx(40 / 180)
+    assert along_y[1] == pytest.approx(0.4)
+    assert along_y[4] == "■ very high"
+    assert anchored[4] == "◇ medium*", "outside the checked range, and classed as free-standing"
+
+
+def test_the_temporary_workbook_leaves_nothing_behind(tmp_path):
+    (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
+    with_live(CONTENT, folder=tmp_path)
+    with pytest.raises(WorkbookError, match="not beside the workbook"):
+        with_live(
+            replace(CONTENT, rows={**CONTENT.rows, "Floors": [{"floor": "1", "record_x": "y.csv"}]}), "si", tmp_path
+        )
+    assert [path.name for path in tmp_path.iterdir()] == ["x.csv"]
+
+
+def test_given_motion_hides_the_record(tmp_path):
+    (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
+    path = tmp_path / "book.xlsx"
+    write_workbook(path, CONTENT)
+    values = stored_live(run(read_inventory(path), Settings(scenario="given")))
+    assert all(row[1] == pytest.approx(0.4) for row in values[:3])

@@ -1,0 +1,194 @@
+"""The worked example: 575 Market Street with its own records, as committed and as its script builds it."""
+
+import importlib.util
+import itertools
+import shutil
+import sys
+from collections import Counter
+from math import hypot
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+from assess.assessment import run
+from assess.inventory.columns import ITEMS, LIVE
+from assess.inventory.model import Inventory, Item
+from assess.inventory.workbook import read_inventory
+from assess.live_values import RUN_ASSESS, stored_live
+from assess.units import GRAVITY
+
+FOLDER = Path(__file__).parents[1] / "inventories"
+WORKBOOK = FOLDER / "market-street.xlsx"
+FLOORS = ("42", "34", "25", "G")
+Box = tuple[float, float, float, float]
+FIRST = len(ITEMS.columns) + 1
+
+# Treated PFA [cm/s2] of each channel, as the README of the records has it.
+PFA = {"a": 218.1, "b": 181.4, "c": 133.3, "d": 151.2, "e": 147.6, "g": 184.1, "h": 218.4, "i": 161.8, "k": 132.8}
+CHANNELS = {
+    ("42", "X"): "ab", ("42", "Y"): "c", ("34", "X"): "de", ("34", "Y"): "de",
+    ("25", "X"): "gh", ("25", "Y"): "i", ("G", "X"): "k", ("G", "Y"): "k",
+}  # fmt: skip
+BORROWED = {("34", "Y"), ("G", "X")}
+
+
+@pytest.fixture(scope="module")
+def script():
+    spec = importlib.util.spec_from_file_location("market_street", FOLDER / "market_street.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["market_street"] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    yield module
+    del sys.modules["market_street"]
+
+
+@pytest.fixture(scope="module")
+def inventory():
+    return read_inventory(WORKBOOK)
+
+
+@pytest.fixture(scope="module")
+def assessment(inventory):
+    return run(inventory)
+
+
+def box(item: Item) -> Box:
+    """West, south, east and north edge of a placed piece."""
+    assert item.x is not None
+    assert item.y is not None
+    assert item.width is not None
+    assert item.angle_deg is not None
+    x, y = (item.breadth, item.width) if item.angle_deg % 180 == 0 else (item.width, item.breadth)
+    return item.x - x / 2, item.y - y / 2, item.x + x / 2, item.y + y / 2
+
+
+def gaps(a: Box, b: Box) -> list[float]:
+    """Clear distance of two boxes along X and along Y; negative where they overlap."""
+    return [max(a[at] - b[at + 2], b[at] - a[at + 2]) for at in (0, 1)]
+
+
+def placed(inventory: Inventory) -> list[Item]:
+    return [item for item in inventory.items if item.x is not None]
+
+
+def test_it_reads_without_errors_or_warnings(inventory):
+    assert not [problem for problem in inventory.problems if problem.severity != "note"]
+
+
+def test_building_it_again_gives_the_same_bytes(tmp_path, script):
+    shutil.copytree(FOLDER / "records", tmp_path / "records")
+    script.build(tmp_path / "again.xlsx")
+    assert (tmp_path / "again.xlsx").read_bytes() == WORKBOOK.read_bytes()
+    assert {path.name for path in tmp_path.iterdir()} == {"records", "again.xlsx"}
+
+
+def test_the_building_says_what_is_real_and_invents_nothing(inventory):
+    building = inventory.building
+    assert "The furniture is an example; the records are real." in building.scenario
+    assert building.azimuth_deg == 45
+    assert building.storeys is building.height is building.period is None
+    assert all(floor.elevation is None for floor in inventory.floors)
+
+
+def test_about_120_pieces_with_something_of_everything(inventory):
+    items = inventory.items
+    assert 110 <= len(items) <= 130
+    assert len(placed(inventory)) > 100
+    assert all(item.quantity == 1 for item in placed(inventory))
+    assert any(item.quantity > 1 for item in items)
+    assert {item.anchored for item in items} == {"no", "yes", "partly", "unknown"}
+    assert {item.importance for item in items} >= {"life safety", "function", "property"}
+    assert {item.axis for item in placed(inventory)} == {"X", "Y"}
+    assert len({item.type for item in items}) > 20
+
+
+@pytest.mark.parametrize("floor", FLOORS)
+def test_every_floor_has_pieces_and_a_route(inventory, floor):
+    own = [item for item in inventory.items if item.floor == floor]
+    assert len(own) >= 20
+    segments = [one for one in inventory.routes if one.floor == floor]
+    assert 2 <= len(segments) <= 4
+    assert len({one.route for one in segments}) == 1
+    assert all(one.end == other.start for one, other in itertools.pairwise(segments))
+    assert all(one.clear_width > one.required_width > 0.8 for one in segments)
+    floors = {place.place: place.floor for place in inventory.places}
+    assert all(floors[one.start] == floors[one.end] == floor for one in segments)
+    assert sum(bool(item.route) for item in own) >= 3
+
+
+def test_no_piece_overlaps_sticks_out_or_stands_in_the_core(inventory, script):
+    west, south, east, north = script.PLATE
+    for item in placed(inventory):
+        own = box(item)
+        assert west < own[0] and south < own[1] and own[2] < east and own[3] < north, item.item  # noqa: PT018
+        assert max(gaps(own, script.CORE)) > 0, item.item
+        room = script.ROOMS[item.floor][item.room]
+        assert own[0] > room[0] and own[1] > room[1] and own[2] < room[2] and own[3] < room[3], item.item  # noqa: PT018
+    for one, other in itertools.combinations(placed(inventory), 2):
+        assert one.floor != other.floor or max(gaps(box(one), box(other))) > 0, (one.item, other.item)
+
+
+def test_edge_distances_follow_from_the_positions(inventory):
+    point = {place.place: (place.x, place.y) for place in inventory.places}
+    routes = {(one.route, one.segment): one for one in inventory.routes}
+    beside = [item for item in inventory.items if item.route]
+    for item in beside:
+        segment = routes[item.route, item.segment]
+        assert item.floor == segment.floor
+        (x0, y0), (x1, y1) = point[segment.start], point[segment.end]
+        line = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
+        edge = hypot(*(max(0, gap) for gap in gaps(box(item), line))) - segment.clear_width / 2
+        assert item.edge_distance == pytest.approx(edge, abs=0.006)
+        assert item.edge_distance < item.height
+        assert item.importance == "life safety"
+    assert [item.description for item in beside if item.edge_distance < 0] == ["Photocopier in the corridor"]
+
+
+@pytest.mark.parametrize(("floor", "axis"), CHANNELS)
+def test_each_floor_and_axis_has_the_motion_of_its_channels(assessment, floor, axis):
+    demands = assessment.demands[floor, axis]
+    assert [demand.name[-5] for demand in demands] == list(CHANNELS[floor, axis])
+    for demand in demands:
+        assert demand.pfa * 100 == pytest.approx(PFA[demand.name[-5]], abs=0.051)
+        assert ("one_axis_only" in demand.flags) == ((floor, axis) in BORROWED)
+
+
+@pytest.mark.parametrize(("floor", "channels", "larger"), [("42", "ab", "a"), ("34", "de", "d"), ("25", "gh", "h")])
+def test_of_parallel_channels_the_larger_governs(assessment, floor, channels, larger):
+    along_x = [one for one in assessment if one.item.floor == floor and one.item.axis == "X"]
+    assert along_x
+    for one in along_x:
+        assert [case.demand.name[-5] for case in one.cases] == list(channels)
+        assert one.governing.demand.name[-5] == larger
+        assert one.governing.demand.pfa == max(case.demand.pfa for case in one.cases)
+
+
+def test_vertical_channels_are_not_used(inventory):
+    names = Counter(one.name[-5] for floor in inventory.floors for ones in floor.records.values() for one in ones)
+    assert names == Counter("abcdeghik")
+
+
+def test_every_class_is_there(assessment):
+    assert {one.adopted.risk.word for one in assessment} == {"low", "medium", "high", "very high"}
+    assert all(0 < one.governing.demand.pfa < 0.3 * GRAVITY for one in assessment)
+
+
+def test_stored_live_values_are_the_programs(assessment):
+    page = openpyxl.load_workbook(WORKBOOK, data_only=True)["Items"]
+    for row, values in enumerate(stored_live(assessment), 2):
+        stored = [page.cell(row, FIRST + at).value for at in range(len(LIVE))]
+        assert stored[0] == pytest.approx(values[0], abs=1e-9, rel=0)
+        assert stored[1:] == values[1:] == [RUN_ASSESS] * 4
+
+
+def test_a_spreadsheet_engine_computes_the_same(assessment):
+    formualizer = pytest.importorskip("formualizer")
+    book = formualizer.load_workbook(str(WORKBOOK))
+    book.evaluate_all()
+    for row, values in enumerate(stored_live(assessment), 2):
+        computed = [book.evaluate_cell("Items", row, FIRST + at) for at in range(len(LIVE))]
+        assert computed[0] == pytest.approx(values[0], abs=1e-9, rel=0)
+        assert computed[1:] == values[1:]

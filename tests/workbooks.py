@@ -1,0 +1,35 @@
+"""Workbooks for tests, written as a user would fill them in."""
+
+from pathlib import Path
+from typing import Any
+
+import assess
+from assess.inventory.blank import Content, Units, write_workbook
+from assess.results import Assessment
+
+FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0}, {"floor": "2", "pfa_x": 0.5}]
+ITEMS = [
+    {"item": "A1", "floor": "1", "room": "Hall", "description": "Bookcase", "breadth": 30, "width": 80, "height": 200},
+    {"item": "A2", "floor": "1", "breadth": 60, "width": 60, "height": 200, "axis": "Y", "importance": "life safety"},
+    {"item": "A3", "floor": "2", "breadth": 40, "width": 90, "height": 180, "quantity": 3, "anchored": "no"},
+    {"item": "A4", "floor": "2", "breadth": 45, "width": 90, "height": 90, "anchored": "yes"},
+    {"item": "A5", "floor": "2", "type": "Bookcase 5 shelves", "x": 2.0, "y": 3.0, "angle_deg": 90},
+]
+
+
+def write(
+    path: Path,
+    items: list[dict[str, Any]] | None = None,
+    floors: list[dict[str, Any]] | None = None,
+    units: Units = "si",
+    **building: Any,
+) -> Path:
+    """Write a workbook with these rows; a small one where none are given."""
+    rows = {"Building": [building], "Floors": floors or FLOORS, "Items": ITEMS if items is None else items}
+    write_workbook(path, Content(rows=rows), units)
+    return path
+
+
+def assessed(path: Path, *args: Any, **named: Any) -> Assessment:
+    """Write such a workbook and assess it."""
+    return assess.run(assess.read_inventory(write(path, *args, **named)))
