@@ -33,21 +33,14 @@ def start_workbook(path: Path, units: Units, *, example: bool = False, replace: 
         raise OutputError(f"{path} does not end in .xlsx: name it {path.stem or 'inventory'}.xlsx.")
     if path.exists() and not replace:
         raise OutputError(f"{path} is there already; add --force to replace it, or choose another name.")
+    from assess.inventory.example import example_content
+    from assess.live_values import with_live
+
     try:
         with tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=path.parent) as stage:
             part = Path(stage) / path.name
-            write_workbook(part, _example(part, units) if example else Content(), units)
+            content = with_live(example_content(units), units) if example else Content()
+            write_workbook(part, content, units)
             part.replace(path)
     except OSError as error:
         raise OutputError(f"{path} could not be written: {error.strerror or error}.") from None
-
-
-def _example(part: Path, units: Units) -> Content:
-    from assess.assessment import run
-    from assess.inventory.example import example_content
-    from assess.inventory.workbook import read_inventory
-    from assess.live_values import stored_live
-
-    content = example_content(units)
-    write_workbook(part, content, units)
-    return Content(rows=content.rows, live=stored_live(run(read_inventory(part))))

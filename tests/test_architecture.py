@@ -108,7 +108,7 @@ def test_files_and_functions_stay_short(path):
 @pytest.mark.parametrize("method", all_methods(), ids=lambda method: method.key)
 def test_every_method_is_tested_and_referenced(method):
     tests = ROOT / "tests" / "methods" / f"test_{method.key}.py"
-    assert re.search(r"^def test_", tests.read_text(encoding="utf-8"), re.MULTILINE)
+    assert re.search(r"^\s*def test_", tests.read_text(encoding="utf-8"), re.MULTILINE)
     assert method.reference.title
     assert method.reference.source
     assert method.equations
@@ -120,7 +120,9 @@ def test_every_method_is_tested_and_referenced(method):
 
 def test_readme_table_is_that_of_the_columns():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert readme_table() in text, "run: python -c 'from tests.test_architecture import readme_table; print(readme_table())'"
+    assert readme_table() in text, (
+        "run: python -c 'from tests.test_architecture import readme_table; print(readme_table())'"
+    )
 
 
 def readme_table():
@@ -140,8 +142,12 @@ def test_blank_workbook_is_in_step_with_the_columns(tmp_path):
     from assess.inventory.blank import write_workbook
 
     write_workbook(tmp_path / "blank.xlsx")
-    fresh, kept = (openpyxl.load_workbook(path) for path in (tmp_path / "blank.xlsx", ROOT / "inventories" / "blank.xlsx"))
+    fresh, kept = (
+        openpyxl.load_workbook(path) for path in (tmp_path / "blank.xlsx", ROOT / "inventories" / "blank.xlsx")
+    )
     assert fresh.sheetnames == kept.sheetnames
     for name in fresh.sheetnames:
-        cells = [{cell.coordinate: cell.value for row in book[name].iter_rows() for cell in row} for book in (fresh, kept)]
+        cells = [
+            {cell.coordinate: cell.value for row in book[name].iter_rows() for cell in row} for book in (fresh, kept)
+        ]
         assert cells[0] == cells[1], f"{name}: run `make blank`"

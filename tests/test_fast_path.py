@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -26,9 +27,9 @@ def _items(count):
 
 def test_the_formula_path_imports_nothing_heavy(tmp_path):
     path = write(tmp_path / "w.xlsx", _items(50))
+    command = ["assess", "run", str(path), "--verify", "none", "--formats", "json,csv", "--out", str(tmp_path / "out")]
     loaded = _child(
-        "import sys\n"
-        f"sys.argv = ['assess', 'run', {str(path)!r}, '--verify', 'none', '--formats', 'json,csv', '--out', {str(tmp_path / 'o')!r}]\n"
+        f"import sys\nsys.argv = {command!r}\n"
         "from assess.cli import main\n"
         "try:\n    main()\nexcept SystemExit as stop:\n    assert not stop.code\n"
         f"print([name for name in {HEAVY!r} if name in sys.modules])"
@@ -37,18 +38,22 @@ def test_the_formula_path_imports_nothing_heavy(tmp_path):
 
 
 def test_import_assess_loads_next_to_nothing():
-    loaded = _child("import sys, assess; print([name for name in ('numpy', 'openpyxl', 'typer') if name in sys.modules])")
+    loaded = _child(
+        "import sys, assess; print([name for name in ('numpy', 'openpyxl', 'typer') if name in sys.modules])"
+    )
     assert loaded.strip() == "[]"
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="peak memory is read from /proc")
 def test_20000_items_fit_in_300_mb(tmp_path):
     path = write(tmp_path / "w.xlsx", _items(20_000))
     peak = _child(
-        "import assess, resource\n"
+        "import assess, pathlib, re\n"
         f"assessment = assess.run(assess.read_inventory({str(path)!r}))\n"
         f"written = assess.write_reports(assessment, {str(tmp_path / 'out')!r}, ('json', 'csv', 'xlsx'))\n"
         "assert len(written) == 3 and len(assessment) == 20_000\n"
-        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)"
+        # the peak of this program alone: ru_maxrss would count the process that started it
+        "print(int(re.search(r'VmHWM:\\s+(\\d+)', pathlib.Path('/proc/self/status').read_text())[1]) / 1024)"
     )
     assert float(peak) < 300

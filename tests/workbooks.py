@@ -7,6 +7,8 @@ import assess
 from assess.inventory.blank import Content, Units, write_workbook
 from assess.results import Assessment
 
+RECORDS = Path(__file__).parents[1] / "samples" / "records"
+
 FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0}, {"floor": "2", "pfa_x": 0.5}]
 ITEMS = [
     {"item": "A1", "floor": "1", "room": "Hall", "description": "Bookcase", "breadth": 30, "width": 80, "height": 200},

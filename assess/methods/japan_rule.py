@@ -48,7 +48,7 @@ METHOD = Method(
     reference=Reference(
         authors="Consumer Affairs Agency (Japan)",
         year="2010",
-        title="本棚等の転倒防止策について (On measures against the overturning of bookshelves)",
+        title="Hondana tō no tentō bōshisaku ni tsuite (On measures against the overturning of bookshelves)",
         source="As quoted by Japanese safety sites; the original was not at hand",
     ),
     needs=frozenset({"breadth", "height"}),

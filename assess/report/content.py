@@ -199,11 +199,18 @@ def describe_treatment(demand: Demand) -> str:
 
 
 def _flags(assessment: Assessment) -> dict[str, str]:
-    meanings = dict(ITEM_FLAGS) | dict(DEMAND_FLAGS)
+    """Return what every mark means; where methods mean different things by one, each with its method."""
+    meanings: dict[str, dict[str, str]] = {}
     for method in assessment.methods:
         for flag, meaning in method.flags.items():
-            meanings.setdefault(flag, meaning)
-    return meanings
+            meanings.setdefault(flag, {}).setdefault(meaning, method.title)
+    told = {
+        flag: next(iter(by_meaning))
+        if len(by_meaning) == 1
+        else "; ".join(f"{title}: {text}" for text, title in by_meaning.items())
+        for flag, by_meaning in meanings.items()
+    }
+    return told | dict(ITEM_FLAGS) | dict(DEMAND_FLAGS)
 
 
 def _assumptions(assessment: Assessment) -> list[tuple[str, str]]:

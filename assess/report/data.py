@@ -132,23 +132,7 @@ def item_record(one: ItemResult) -> dict[str, Any]:
     """Return one item as it stands in results.json."""
     item, case = one.item, one.governing
     return {
-        "item": item.item,
-        "floor": item.floor,
-        "room": item.room,
-        "description": item.description,
-        "type": item.type,
-        "quantity": item.quantity,
-        "breadth_cm": edge(item.breadth, "cm"),
-        "width_cm": edge(item.width, "cm"),
-        "height_cm": edge(item.height, "cm"),
-        "breadth_to_height": item.breadth / item.height,
-        "axis": case.demand.axis,
-        "axis_given": item.axis,
-        "angle_deg": item.angle_deg,
-        "x_m": item.x,
-        "y_m": item.y,
-        "friction": item.friction,
-        "importance": item.importance or None,
+        **_piece_record(one),
         "pfa_g": edge(case.demand.pfa, "g"),
         "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
         "pfa_source": case.demand.name or "given",
@@ -163,6 +147,29 @@ def item_record(one: ItemResult) -> dict[str, Any]:
         "notes": item.notes,
         "assumed": list(item.assumed),
         "source": {"sheet": "Items", "row": item.row},
+    }
+
+
+def _piece_record(one: ItemResult) -> dict[str, Any]:
+    item = one.item
+    return {
+        "item": item.item,
+        "floor": item.floor,
+        "room": item.room,
+        "description": item.description,
+        "type": item.type,
+        "quantity": item.quantity,
+        "breadth_cm": edge(item.breadth, "cm"),
+        "width_cm": edge(item.width, "cm"),
+        "height_cm": edge(item.height, "cm"),
+        "breadth_to_height": item.breadth / item.height,
+        "axis": one.governing.demand.axis,
+        "axis_given": item.axis,
+        "angle_deg": item.angle_deg,
+        "x_m": item.x,
+        "y_m": item.y,
+        "friction": item.friction,
+        "importance": item.importance or None,
     }
 
 
@@ -244,6 +251,8 @@ def write_csv(assessment: Assessment, path: Path) -> None:
                 writer = csv.DictWriter(file, list(row), restval="", extrasaction="ignore")
                 writer.writeheader()
             writer.writerow(row)
+        if writer is None:
+            file.write("item\r\n")  # a table without rows still has a heading
 
 
 def flatten(record: Mapping[str, Any]) -> dict[str, Any]:

@@ -21,7 +21,9 @@ CONTROL = "bell\x07null\x00 end"
 TURNED = "abc\u202edef\u200f"
 HOSTILE = (FORMULA, SCRIPT, PATH, LONG, CONTROL, TURNED)
 
-_TEXT = [column.name for column in SHEETS[2].columns if column.kind == "text" and not column.source and column.name != "item"]
+_TEXT = [
+    column.name for column in SHEETS[2].columns if column.kind == "text" and not column.source and column.name != "item"
+]
 
 
 def _escaped(text):

@@ -18,8 +18,13 @@ def _contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
+def _code(path, out, *more, patch=""):
+    arguments = ["assess", "run", str(path), "--out", str(out), *more]
+    return f"{patch}\nimport sys\nfrom assess.cli import main\nsys.argv = {arguments!r}\nmain()"
+
+
 def _run(path, out, *more, limit=None, patch=""):
-    code = f"{patch}\nfrom assess.cli import main\nimport sys\nsys.argv=['assess','run',{str(path)!r},'--out',{str(out)!r},*{more!r}]\nmain()"
+    code = _code(path, out, *more, patch=patch)
     preexec = (lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))) if limit else None
     return subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, preexec_fn=preexec, check=False
@@ -83,7 +88,7 @@ def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
     for moment in range(12):
         assert _run(old, out, "--formats", formats).returncode == 0
         before = _contents(out)
-        code = f"from assess.cli import main\nimport sys\nsys.argv=['assess','run',{str(new)!r},'--out',{str(out)!r},'--formats',{formats!r}]\nmain()"
+        code = _code(new, out, "--formats", formats)
         process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         size = wanted["results.json"] * moment // 12
         while process.poll() is None:
@@ -117,7 +122,9 @@ def test_without_the_native_libraries_all_else_is_written(tmp_path):
 def test_an_interrupt_leaves_nothing_behind(tmp_path):
     items = [{"item": f"i{at}", "floor": "1", "breadth": 30, "height": 180} for at in range(2000)]
     new, out = write(tmp_path / "new.xlsx", items), tmp_path / "out"
-    code = f"from assess.cli import main\nimport sys\nsys.argv=['assess','run',{str(new)!r},'--out',{str(out)!r}]\nmain()"
+    code = (
+        f"from assess.cli import main\nimport sys\nsys.argv=['assess','run',{str(new)!r},'--out',{str(out)!r}]\nmain()"
+    )
     process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
     while process.poll() is None and not list(out.glob(".assess-writing-*/*")):
         os.sched_yield()

@@ -45,9 +45,10 @@ def _poison(path):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in parts.items():
             if name.startswith("xl/worksheets/sheet"):
-                data = re.sub(rb' t="str"(?=[^>]*><f>)', b"", data)
-                data = re.sub(rb"(</f>)<v>[^<]*</v>", rb"\1<v>0.123</v>", data)
-            archive.writestr(name, data)
+                plain = re.sub(rb' t="str"(?=[^>]*><f>)', b"", data)
+                archive.writestr(name, re.sub(rb"(</f>)<v>[^<]*</v>", rb"\1<v>0.123</v>", plain))
+            else:
+                archive.writestr(name, data)
 
 
 @pytest.fixture
@@ -100,7 +101,10 @@ def test_items_agree_with_the_program(report):
     book = formualizer.load_workbook(str(path))
     book.evaluate_all()
     sheet = openpyxl.load_workbook(path)["Items"]
-    at = {label: _column(sheet, label) for label in ("B/H", "PFA used [g]", "OR raw", "OR", "Kaneko-Hayashi", "Class (formula)")}
+    at = {
+        label: _column(sheet, label)
+        for label in ("B/H", "PFA used [g]", "OR raw", "OR", "Kaneko-Hayashi", "Class (formula)")
+    }
     for row, one in enumerate(assessment, 2):
         methods = one.governing.methods
         found = {label: book.evaluate_cell("Items", row, column) for label, column in at.items()}
@@ -128,7 +132,9 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
     book.evaluate_all()
     for row, one in enumerate(again, 2):
         methods = one.governing.methods
-        assert book.evaluate_cell("Items", row, _column(sheet, "OR")) == pytest.approx(methods["proposed_or"].value, abs=1e-9)
+        assert book.evaluate_cell("Items", row, _column(sheet, "OR")) == pytest.approx(
+            methods["proposed_or"].value, abs=1e-9
+        )
         found = book.evaluate_cell("Items", row, _column(sheet, "Kaneko-Hayashi"))
         assert found == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
     from assess.report.content import build_content

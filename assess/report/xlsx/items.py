@@ -92,54 +92,19 @@ INPUTS = ("Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis given",
 
 def item_columns(content: Content) -> list[ItemColumn]:
     """Return the columns of Items, in order; those that the workbook had of its own come last."""
-
-    def value(key: str) -> Callable[[ItemResult], Any]:
-        return lambda one: one.governing.methods[key].value
-
-    columns = [
-        ItemColumn("Item", 12, lambda one: one.item.item),
-        ItemColumn("Floor", 8, lambda one: one.item.floor),
-        ItemColumn("Room", 16, lambda one: one.item.room),
-        ItemColumn("Description", 32, lambda one: one.item.description),
-        ItemColumn("Type", 26, lambda one: one.item.type),
-        ItemColumn("Quantity", 9, lambda one: one.item.quantity),
-        ItemColumn("Breadth [cm]", 10, lambda one: edge(one.item.breadth, "cm")),
-        ItemColumn("Width [cm]", 10, lambda one: edge(one.item.width, "cm")),
-        ItemColumn("Height [cm]", 10, lambda one: edge(one.item.height, "cm")),
-        ItemColumn("Axis given", 7, lambda one: one.item.axis),
-        ItemColumn("Anchored", 10, lambda one: one.item.anchored),
-        ItemColumn("B/H", 8, lambda one: one.item.breadth / one.item.height, "ratio", "0.000"),
-        ItemColumn("Axis", 6, lambda one: one.governing.demand.axis, "axis"),
-        ItemColumn("PFA used [g]", 9, lambda one: edge(one.governing.demand.pfa, "g"), "pfa", "0.000"),
-        ItemColumn("PFV used [cm/s]", 9, lambda one: edge(one.governing.demand.pfv, "cm/s"), "pfv", "0.0"),
-        ItemColumn("OR raw", 9, lambda one: one.governing.methods["proposed_or"].detail["raw"], "raw", "0.000"),
-        ItemColumn("OR", 9, value("proposed_or"), "or", "0.0%"),
-        ItemColumn("Kaneko-Hayashi", 10, value("kaneko_hayashi"), "kh", "0.0%"),
-        ItemColumn("Class (formula)", 16, _class_shown, "class"),
-    ]
-    columns += [
-        ItemColumn(f"{method.title} (as run)", 16, _as_run(method.key, method.words), "", "0.0%")
-        for method in content.methods
-        if method.key not in ("proposed_or", "kaneko_hayashi")
-    ]
-    columns += [
-        ItemColumn("Marks (as run)", 36, lambda one: ", ".join(flag.replace("_", " ") for flag in one.adopted.flags)),
-        ItemColumn("Assumed", 28, lambda one: ", ".join(one.item.assumed)),
-        ItemColumn("Friction", 9, lambda one: one.item.friction),
-        ItemColumn("Importance", 12, lambda one: one.item.importance),
-        ItemColumn("Route", 10, lambda one: one.item.route),
-        ItemColumn("Segment", 10, lambda one: one.item.segment),
-        ItemColumn("X [m]", 8, lambda one: one.item.x),
-        ItemColumn("Y [m]", 8, lambda one: one.item.y),
-        ItemColumn("Angle [deg]", 8, lambda one: one.item.angle_deg),
-        ItemColumn("Notes", 40, lambda one: one.item.notes),
-    ]
+    others = [method for method in content.methods if method.key not in ("proposed_or", "kaneko_hayashi")]
+    as_run = [ItemColumn(f"{one.title} (as run)", 16, _as_run(one.key, one.words), "", "0.0%") for one in others]
+    columns = [*_SIZES, *_LIVE, *as_run, *_REST]
     taken = {column.label for column in columns}
     for at, label in enumerate(content.assessment.inventory.extra_columns):
         name = label if label not in taken else f"{label} (own column)"
         columns.append(ItemColumn(name, 16, _extra(at)))
         taken.add(name)
     return columns
+
+
+def _value(key: str) -> Callable[[ItemResult], Any]:
+    return lambda one: one.governing.methods[key].value
 
 
 def _class_shown(one: ItemResult) -> str:
@@ -159,3 +124,42 @@ def _as_run(key: str, criterion: tuple[str, str]) -> Callable[[ItemResult], Any]
 
 def _extra(at: int) -> Callable[[ItemResult], str]:
     return lambda one: one.item.extra[at] if at < len(one.item.extra) else ""
+
+
+_SIZES = (
+    ItemColumn("Item", 12, lambda one: one.item.item),
+    ItemColumn("Floor", 8, lambda one: one.item.floor),
+    ItemColumn("Room", 16, lambda one: one.item.room),
+    ItemColumn("Description", 32, lambda one: one.item.description),
+    ItemColumn("Type", 26, lambda one: one.item.type),
+    ItemColumn("Quantity", 9, lambda one: one.item.quantity),
+    ItemColumn("Breadth [cm]", 10, lambda one: edge(one.item.breadth, "cm")),
+    ItemColumn("Width [cm]", 10, lambda one: edge(one.item.width, "cm")),
+    ItemColumn("Height [cm]", 10, lambda one: edge(one.item.height, "cm")),
+    ItemColumn("Axis given", 7, lambda one: one.item.axis),
+    ItemColumn("Anchored", 10, lambda one: one.item.anchored),
+)
+
+_LIVE = (
+    ItemColumn("B/H", 8, lambda one: one.item.breadth / one.item.height, "ratio", "0.000"),
+    ItemColumn("Axis", 6, lambda one: one.governing.demand.axis, "axis"),
+    ItemColumn("PFA used [g]", 9, lambda one: edge(one.governing.demand.pfa, "g"), "pfa", "0.000"),
+    ItemColumn("PFV used [cm/s]", 9, lambda one: edge(one.governing.demand.pfv, "cm/s"), "pfv", "0.0"),
+    ItemColumn("OR raw", 9, lambda one: one.governing.methods["proposed_or"].detail["raw"], "raw", "0.000"),
+    ItemColumn("OR", 9, _value("proposed_or"), "or", "0.0%"),
+    ItemColumn("Kaneko-Hayashi", 10, _value("kaneko_hayashi"), "kh", "0.0%"),
+    ItemColumn("Class (formula)", 16, _class_shown, "class"),
+)
+
+_REST = (
+    ItemColumn("Marks (as run)", 36, lambda one: ", ".join(flag.replace("_", " ") for flag in one.adopted.flags)),
+    ItemColumn("Assumed", 28, lambda one: ", ".join(one.item.assumed)),
+    ItemColumn("Friction", 9, lambda one: one.item.friction),
+    ItemColumn("Importance", 12, lambda one: one.item.importance),
+    ItemColumn("Route", 10, lambda one: one.item.route),
+    ItemColumn("Segment", 10, lambda one: one.item.segment),
+    ItemColumn("X [m]", 8, lambda one: one.item.x),
+    ItemColumn("Y [m]", 8, lambda one: one.item.y),
+    ItemColumn("Angle [deg]", 8, lambda one: one.item.angle_deg),
+    ItemColumn("Notes", 40, lambda one: one.item.notes),
+)

@@ -1,0 +1,143 @@
+"""What the HTML and PDF reports say, read back from the files."""
+
+import json
+import re
+from html.parser import HTMLParser
+
+import pypdfium2
+import pytest
+
+import assess
+from assess.methods import all_methods
+from assess.report.html import render
+from tests.workbooks import assessed, write
+
+
+class _Page(HTMLParser):
+    """Collects the text, and the tags that are open in the wrong order."""
+
+    def __init__(self):
+        super().__init__()
+        self.text, self.open, self.wrong = [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "img", "br", "col", "link"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(tag)
+
+    def handle_data(self, data):
+        if not self.open or self.open[-1] != "style":
+            self.text.append(data)
+
+
+def _read(html):
+    page = _Page()
+    page.feed(html)
+    assert page.wrong == []
+    assert page.open == []
+    return " ".join(" ".join(page.text).split())
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("html")
+    assessment = assessed(folder / "w.xlsx", building="Town hall", scenario="A test", period=0.9)
+    return assessment, assess.write_reports(assessment, folder / "out", ("html", "pdf", "json"))
+
+
+def test_html_is_well_formed_and_says_what_must_be_said(report):
+    assessment, written = report
+    text = _read(written["html"].read_text(encoding="utf-8"))
+    assert (
+        "chance of overturning in this scenario , not per year; the interval covers the number of records only" in text
+    )
+    assert "Not verified" in text
+    assert "Town hall" in text
+    for method in all_methods():
+        assert method.title in text
+        assert " ".join(str(method.reference).split()) in text
+        for flag, meaning in method.flags.items():
+            assert flag.replace("_", " ") in text
+            assert meaning in text or flag in assess.demand.FLAGS or flag in assess.results.FLAGS
+    for one in assessment:
+        assert one.item.item in text
+        assert f"{100 * one.adopted.probability:.1f} %" in text
+
+
+def test_html_shows_raw_and_used_value_and_the_class_in_words(report):
+    _, written = report
+    text = _read(written["html"].read_text(encoding="utf-8"))
+    for item in json.loads(written["json"].read_text(encoding="utf-8"))["items"]:
+        assert f"{item['methods']['proposed_or']['raw']:.3f}" in text
+        assert item["adopted"]["class"] in text
+
+
+def test_anchored_pieces_stand_outside_the_classes(report):
+    _, written = report
+    text = _read(written["html"].read_text(encoding="utf-8"))
+    assert "depends on its anchor (free-standing:" in text
+    assert "1 further piece is anchored and only as safe as the anchor" in text
+
+
+def test_html_fetches_nothing_and_runs_nothing(report):
+    _, written = report
+    html = written["html"].read_text(encoding="utf-8")
+    assert "default-src 'none'" in html
+    assert not re.search(r'(?:src|href)="(?!data:image/|#)', html)
+    assert "<script" not in html
+    assert "url(" not in re.sub(r"url\(data:", "", html)
+
+
+def test_every_picture_has_an_alternative_text_and_every_heading_cell_a_scope(report):
+    _, written = report
+    html = written["html"].read_text(encoding="utf-8")
+    images = re.findall(r"<img [^>]*>", html)
+    assert images
+    assert all(re.search(r'alt="[^"]{10,}"', image) for image in images)
+    assert all('scope="' in head for head in re.findall(r"<th[ >][^>]*", html))
+
+
+def test_pdf_has_the_same_content_with_numbered_pages_and_embedded_fonts(report):
+    assessment, written = report
+    document = pypdfium2.PdfDocument(written["pdf"])
+    pages = [document[at].get_textpage().get_text_range() for at in range(len(document))]
+    text = " ".join(" ".join(pages).split())
+    for at in range(len(pages)):
+        assert f"Page {at + 1} of {len(pages)}" in " ".join(pages[at].split())
+    for one in assessment:
+        assert one.item.item in text
+        assert f"{100 * one.adopted.probability:.1f} %" in text
+    assert [mark.get_title() for mark in document.get_toc()][:2] == ["Summary", "The pieces most likely to fall"]
+    assert document.get_metadata_value("Title") == "Furniture in earthquakes: Town hall"
+    document.close()
+
+
+def test_a_report_of_a_single_floor_without_items_renders(tmp_path):
+    from dataclasses import replace
+
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
+    html = render(assess.run(replace(inventory, items=())))
+    assert "There are no free-standing pieces." in _read(html)
+
+
+def test_a_long_list_is_cut_with_a_word(tmp_path, monkeypatch):
+    monkeypatch.setattr("assess.report.html.MOST_ROWS", 3)
+    text = _read(render(assessed(tmp_path / "w.xlsx")))
+    assert "5 rows, the first 3 of which are shown: the Excel report holds all" in text
+
+
+def test_a_logo_is_embedded(tmp_path):
+    import struct
+    import zlib
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0))
+    png += chunk(b"IDAT", zlib.compress(b"\x00\x80")) + chunk(b"IEND", b"")
+    (tmp_path / "logo.png").write_bytes(png)
+    html = render(assessed(tmp_path / "w.xlsx", logo="logo.png", organisation="Us & Co"))
+    assert re.search(r'<img class="logo" src="data:image/png;base64,[^"]+" alt="Logo of Us &amp; Co">', html)
