@@ -32,9 +32,7 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
     columns = item_columns(content)
     letters = {column.label: xl_col_to_name(at) for at, column in enumerate(columns)}
     last = HEAD + max(1, len(content.results))
-    for at, column in enumerate(columns):
-        page.set_column(at, at, column.width)
-        page.write_string(0, at, column.label, pen.head)
+    pen.heads(page, [column.label for column in columns], [column.width for column in columns])
     for row, one in enumerate(content.results, HEAD):
         cells = {label: f"${letter}{row + 1}" for label, letter in letters.items()}
         for at, column in enumerate(columns):

@@ -1,12 +1,16 @@
 """What the sheets share: formats, cells written as what they are, tables."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from assess.risk import RiskClass
 
 LONGEST = 32_000
 """Characters of a text that are kept; a cell holds 32,767."""
+
+LINE = 15
+"""Height of a line [points]: not every program grows a row to its text by itself."""
 
 INPUT = {"font_color": "#0000c0", "bg_color": "#fffbe6"}
 """Look of the cells that are meant to be edited."""
@@ -24,6 +28,7 @@ class Pen:
         self.title = self.format(bold=True, font_size=15, font_color="#1f3a4d")
         self.bold = self.format(bold=True)
         self.wrap = self.format(text_wrap=True, valign="top")
+        self.top = self.format(valign="top")
         self.input = self.format(**INPUT)
 
     def format(self, num_format: str = "General", **more: Any) -> Any:
@@ -44,14 +49,31 @@ class Pen:
             text = str(value)
             page.write_string(row, column, text if len(text) <= LONGEST else f"{text[:LONGEST]}… (cut)", form)
 
-    def listing(self, page: Any, heads: Sequence[str], widths: Sequence[int], rows: Sequence[Sequence[Any]]) -> None:
-        """Write a sheet that is one table: frozen head, filter, head repeated on each printed page."""
+    def heads(self, page: Any, heads: Sequence[str], widths: Sequence[int]) -> None:
+        """Write the heading row of a table, and set its columns' widths."""
+        page.set_row(0, LINE * max(_lines(label, width) for label, width in zip(heads, widths, strict=True)))
         for at, (label, width) in enumerate(zip(heads, widths, strict=True)):
             page.set_column(at, at, width)
             page.write_string(0, at, label, self.head)
+
+    def listing(
+        self,
+        page: Any,
+        heads: Sequence[str],
+        widths: Sequence[int],
+        rows: Sequence[Sequence[Any]],
+        formats: Mapping[int, str] | None = None,
+    ) -> None:
+        """Write a sheet that is one table: frozen head, filter, head repeated on each printed page.
+
+        `formats` are the number formats of columns that need one.
+        """
+        self.heads(page, heads, widths)
+        shown = {at: self.format(code, valign="top") for at, code in (formats or {}).items()}
         for number, row in enumerate(rows, 1):
+            page.set_row(number, LINE * max(_lines(value, width) for value, width in zip(row, widths, strict=True)))
             for at, value in enumerate(row):
-                self.put(page, number, at, value, self.wrap if isinstance(value, str) and len(value) > 40 else None)
+                self.put(page, number, at, value, self.wrap if isinstance(value, str) else shown.get(at, self.top))
         page.freeze_panes(1, 0)
         page.repeat_rows(0)
         if rows:
@@ -69,3 +91,8 @@ class Pen:
                 "stop_if_true": True,
             }
             page.conditional_format(area, rule)
+
+
+def _lines(value: Any, width: int) -> int:
+    """Lines that a text takes in a column of a width [characters], 20 at most."""
+    return min(20, max(1, math.ceil(len(value) * 1.1 / width))) if isinstance(value, str) else 1

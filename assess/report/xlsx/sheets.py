@@ -44,9 +44,7 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
         "Source Y",
         "Elevation [m]",
     )
-    for at, (label, width) in enumerate(zip(heads, (12, 22, 12, 14, 44, 12, 14, 44, 12), strict=True)):
-        page.set_column(at, at, width)
-        page.write_string(0, at, label, pen.head)
+    pen.heads(page, heads, (12, 22, 12, 14, 44, 12, 14, 44, 12))
     for row, floor_page in enumerate(content.floors, HEAD):
         pen.put(page, row, 0, floor_page.floor.floor)
         pen.put(page, row, 1, floor_page.floor.name)
@@ -87,7 +85,7 @@ def write_motions(pen: Pen, page: Any, content: Content) -> None:
     ]  # fmt: skip
     heads = ("Floor", "Axis", "Source", "Record", "PFA [g]", "PFV [cm/s]", "PFA in the file [g]", "Station",
              "Event", "Azimuth [deg]", "Treatment")  # fmt: skip
-    pen.listing(page, heads, (9, 6, 34, 40, 10, 11, 12, 34, 34, 10, 80), rows)
+    pen.listing(page, heads, (9, 6, 34, 40, 10, 11, 12, 34, 34, 10, 80), rows, {4: "0.000", 5: "0.0", 6: "0.000"})
 
 
 def write_routes(pen: Pen, page: Any, content: Content) -> None:

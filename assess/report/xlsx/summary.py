@@ -103,5 +103,5 @@ def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
     ]  # fmt: skip
     heads = ("No.", "Item", "Floor", "Room", "Description", "Importance", "Route", "Class (as run)", "Chance",
              "Pieces", "Expected falls saved if the anchor holds")  # fmt: skip
-    pen.listing(page, heads, (6, 12, 9, 16, 36, 13, 12, 16, 10, 8, 16), rows)
+    pen.listing(page, heads, (6, 12, 9, 16, 36, 13, 12, 16, 10, 8, 16), rows, {8: "0.0%", 10: "0.00"})
     pen.colour(page, f"H2:H{len(rows) + 2}")
