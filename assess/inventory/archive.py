@@ -5,51 +5,37 @@ the saved results of formulas. Here each is checked on the raw bytes, cheaply an
 or damaged file ends in one clear sentence. The limits are far above honest use: 20,000 items take 15 MB.
 """
 
-import re
+import posixpath
+import struct
 import zipfile
 import zlib
-from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from collections.abc import Mapping
+from pathlib import Path
 
 from assess.errors import Problem, WorkbookError
 
 MAX_FILE = 100 * 2**20
 MAX_PARTS = 2000
 MAX_TOTAL = 256 * 2**20
-MAX_STRINGS = 64 * 2**20
-MAX_PART = 8 * 2**20
 MAX_RATIO = 200
-MAX_ROW_BYTES = 16 * 2**20
-FAR = 2**20
+MAX_ROWS = 100_000
+MAX_COLUMNS = 256
 
 _ZIP = b"PK\x03\x04"
 _OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+_TYPES = "[Content_Types].xml"
+_WORKBOOK = "xl/workbook.xml"
 _RELATIONS = "xl/_rels/workbook.xml.rels"
+_MAIN = ("sheet.main+xml", "template.main+xml", "sheet.macroEnabled.main+xml", "template.macroEnabled.main+xml")
+_LIMITS = {"sharedStrings+xml": (24 * 2**20, 2_000_000), "styles+xml": (8 * 2**20, 300_000)}
+"""Bytes and tags of the parts that are read whole, by how their content type ends."""
+
 _SPREADSHEET = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 _STRICT = "{http://purl.oclc.org/ooxml/spreadsheetml/main}"
 
-
-@dataclass(frozen=True, slots=True)
-class Scan:
-    """What the raw bytes of a sheet tell that openpyxl's quick reader does not.
-
-    Parameters
-    ----------
-    last : str
-        Address of the last cell that holds a value, "" in an empty sheet.
-    last_row : int
-        Its row; `FAR` where the cells do not say their addresses.
-    merged : tuple of str
-        Merged ranges, ``A1:C2``.
-    uncached : frozenset of str
-        Addresses of formulas without a saved result.
-    """
-
-    last: str
-    last_row: int
-    merged: tuple[str, ...]
-    uncached: frozenset[str]
+DAMAGE = (ValueError, TypeError, AttributeError, LookupError, OSError, EOFError, SyntaxError, AssertionError,
+          ArithmeticError, RuntimeError, struct.error, zipfile.BadZipFile, zlib.error)  # fmt: skip
+"""What openpyxl and the XML parser raise on a damaged file: ParseError is a SyntaxError, say."""
 
 
 def unreadable(message: str, mend: str) -> WorkbookError:
@@ -57,17 +43,23 @@ def unreadable(message: str, mend: str) -> WorkbookError:
     return WorkbookError([Problem("error", "", "", message, mend)])
 
 
+def damaged(message: str) -> WorkbookError:
+    """Build the error for a part of the workbook that no honest program writes."""
+    return unreadable(f"the workbook is damaged: {message}.", "Open it in Excel and save it again.")
+
+
 def check_file(path: Path) -> None:
     """Raise WorkbookError unless `path` is a file that looks like an .xlsx."""
-    if not path.exists():
-        raise unreadable(f"{path} is not there.", "Check the name and the folder.")
-    if not path.is_file():
-        raise unreadable(f"{path} is a folder, not a workbook.", "Name the .xlsx file in it.")
     try:
+        if path.exists() and not path.is_file():
+            raise unreadable(f"{path} is a folder, not a workbook.", "Name the .xlsx file in it.")
         with path.open("rb") as file:
             head = file.read(8)
-    except OSError as error:
-        raise unreadable(f"{path} cannot be opened: {error.strerror}.", "Check who may read it.") from None
+    except FileNotFoundError:
+        raise unreadable(f"{path} is not there.", "Check the name and the folder.") from None
+    except (OSError, ValueError) as error:  # ValueError: a zero character in the name
+        why = getattr(error, "strerror", None) or error
+        raise unreadable(f"{path} cannot be opened: {why}.", "Check its name and who may read it.") from None
     if head == _OLE:
         raise unreadable(
             f"{path.name} is an old .xls workbook or is protected by a password.",
@@ -92,7 +84,7 @@ def open_archive(path: Path) -> zipfile.ZipFile:
     check_file(path)
     try:
         archive = zipfile.ZipFile(path)
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError):
+    except DAMAGE:
         raise unreadable(
             f"{path.name} is damaged: its zip cannot be read.", "Open it in Excel and save it again."
         ) from None
@@ -106,99 +98,79 @@ def open_archive(path: Path) -> zipfile.ZipFile:
 
 def _check_directory(name: str, parts: list[zipfile.ZipInfo]) -> None:
     names = {part.filename for part in parts}
-    if "xl/workbook.xml" not in names or _RELATIONS not in names:
+    if not {_TYPES, _WORKBOOK, _RELATIONS} <= names:
         raise unreadable(f"{name} is a zip file, but not an Excel workbook (.xlsx).", "Save it from Excel as .xlsx.")
     if any(part.flag_bits & 1 for part in parts):
         raise unreadable(f"{name} is protected by a password.", "Save it without a password.")
-    if len(parts) > MAX_PARTS or sum(part.file_size for part in parts) > MAX_TOTAL or any(map(_swollen, parts)):
-        raise unreadable(
-            f"{name} unpacks to far more than a furniture list needs, as a zip bomb does; it was not opened.",
-            "Copy the tables into a new workbook made with `assess new`.",
-        )
+    if len(names) < len(parts):
+        raise damaged("its zip holds two parts of one name")
+    if any(part.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) for part in parts):
+        raise damaged("its zip is packed in a way that Excel does not use")
+    if len(parts) > MAX_PARTS or sum(part.file_size for part in parts) > MAX_TOTAL or any(map(_is_bloated, parts)):
+        raise _bomb(name)
 
 
-def _swollen(part: zipfile.ZipInfo) -> bool:
-    sheet = part.filename.startswith("xl/worksheets/")
-    limit = MAX_TOTAL if sheet else MAX_STRINGS if part.filename.endswith("sharedStrings.xml") else MAX_PART
-    if not part.filename.endswith((".xml", ".rels")):
-        limit = MAX_TOTAL
-    bloated = part.file_size > 2**20 and part.file_size > MAX_RATIO * max(part.compress_size, 1)
-    return part.file_size > limit or bloated
+def _is_bloated(part: zipfile.ZipInfo) -> bool:
+    return part.file_size > 2**20 and part.file_size > MAX_RATIO * max(part.compress_size, 1)
 
 
-def sheet_paths(archive: zipfile.ZipFile) -> dict[str, str]:
-    """Return the name and the path inside the zip of every worksheet, in the workbook's order."""
-    from defusedxml import ElementTree
-
-    relations = ElementTree.fromstring(archive.read(_RELATIONS))
-    target = {one.get("Id"): one.get("Target", "") for one in relations}
-    workbook = ElementTree.fromstring(archive.read("xl/workbook.xml"))
-    found = {}
-    for sheet in workbook.iter():
-        if sheet.tag in (f"{_SPREADSHEET}sheet", f"{_STRICT}sheet"):
-            link = next((value for name, value in sheet.attrib.items() if name.endswith("}id")), "")
-            path = target.get(link, "")
-            path = path.lstrip("/") if path.startswith("/") else str(PurePosixPath("xl") / path)
-            if path in archive.namelist():
-                found[sheet.get("name", "")] = path
-    return found
+def _bomb(name: str) -> WorkbookError:
+    return unreadable(
+        f"{name} unpacks to far more than a furniture list needs, as a zip bomb does; it was not opened.",
+        "Copy the tables into a new workbook made with `assess new`.",
+    )
 
 
-_CELL = re.compile(rb'\br="([A-Z]{1,3})(\d{1,7})"')
-_VALUE = (b"<v>", b":v>", b"<is>", b":is>", b"<f>", b":f>", b"<f ", b":f ")
-_TAG = rb"<(?:\w+:)?"
-_UNCACHED = re.compile(
-    _TAG + rb'c\b[^<>]*?\br="([A-Z]{1,3}\d{1,7})"[^<>]*>\s*' + _TAG + rb"f\b[^<>]*(?:/>|>[^<]*</(?:\w+:)?f>)\s*"
-    rb"(?:" + _TAG + rb"v\s*/>|" + _TAG + rb"v\s*>\s*</(?:\w+:)?v>)?\s*</(?:\w+:)?c>"
-)  # fmt: skip
-_MERGED = re.compile(_TAG + rb'mergeCell\b[^<>]*?\bref="([A-Z]{1,3}\d{1,7}(?::[A-Z]{1,3}\d{1,7})?)"')
-
-
-def scan_sheet(archive: zipfile.ZipFile, path: str) -> Scan:
-    """Read a sheet's bytes once, a stretch of whole rows at a time.
+def check_parts(archive: zipfile.ZipFile, name: str) -> None:
+    """Check the parts that are read whole, which each tag makes ten times as large in memory.
 
     Raises
     ------
     WorkbookError
-        If one row alone is larger than an honest sheet.
+        If one is larger than in an honest workbook, or the workbook itself is not where it belongs.
     """
-    last, last_row = "", 0
-    merged: list[str] = []
-    uncached: set[str] = set()
-    for stretch in _stretches(archive, path):
-        last, last_row = _last_value(stretch) or (last, last_row)
-        if b"<f" in stretch or b":f" in stretch:
-            uncached.update(match.decode() for match in _UNCACHED.findall(stretch))
-        if b"mergeCell" in stretch:
-            merged += [match.decode() for match in _MERGED.findall(stretch)]
-    return Scan(last, last_row, tuple(merged), frozenset(uncached))
+    from defusedxml import ElementTree
+
+    limits = dict.fromkeys((_TYPES, _WORKBOOK, _RELATIONS), _LIMITS["styles+xml"])
+    _check_sizes(archive, limits, name)
+    found: dict[str, tuple[int, int]] = {}
+    for one in ElementTree.fromstring(archive.read(_TYPES)):
+        part, kind = one.get("PartName", "").lstrip("/"), one.get("ContentType", "")
+        if part and kind.endswith(_MAIN) and part != _WORKBOOK:
+            raise damaged(f"{part} stands for {_WORKBOOK}")
+        found.update((part, limit) for end, limit in _LIMITS.items() if kind.endswith(end))
+    _check_sizes(archive, found, name)
 
 
-def _stretches(archive: zipfile.ZipFile, path: str) -> Iterator[bytes]:
-    """Yield the bytes of a part, cut where a row begins."""
-    rest = b""
-    with archive.open(path) as part:
-        while chunk := part.read(2**20):
-            rest += chunk
-            cut = max(rest.rfind(b"<row "), rest.rfind(b"<", 0, max(rest.rfind(b":row "), 0)))
-            if cut > 0:
-                yield rest[:cut]
-                rest = rest[cut:]
-            elif len(rest) > MAX_ROW_BYTES:
-                raise unreadable(f"{path} holds a row of over {MAX_ROW_BYTES >> 20} MB.", "Delete that row.")
-    yield rest
+def _check_sizes(archive: zipfile.ZipFile, limits: Mapping[str, tuple[int, int]], name: str) -> None:
+    present = set(archive.namelist())
+    for part, (size, tags) in limits.items():
+        if part in present and (archive.getinfo(part).file_size > size or archive.read(part).count(b"<") > tags):
+            raise _bomb(name)
 
 
-def _last_value(stretch: bytes) -> tuple[str, int] | None:
-    """Address of the last cell with a value, ("", FAR) where the cell does not say its address."""
-    place = max(stretch.rfind(tag) for tag in _VALUE)
-    if place < 0:
-        return None
-    start = max(stretch.rfind(b"<c ", 0, place), stretch.rfind(b":c ", 0, place), 0)
-    match = _CELL.search(stretch, start, place)
-    return (match[1].decode() + match[2].decode(), int(match[2])) if match else ("", FAR)
+def sheet_paths(archive: zipfile.ZipFile) -> dict[str, str]:
+    """Return the name and the path inside the zip of every worksheet, in the workbook's order.
 
+    Raises
+    ------
+    WorkbookError
+        If the workbook is of the strict kind, which openpyxl does not read.
+    """
+    from defusedxml import ElementTree
 
-DAMAGE = (KeyError, ValueError, TypeError, AttributeError, IndexError, OSError, EOFError, SyntaxError,
-          AssertionError, ArithmeticError, zipfile.BadZipFile, zlib.error, NotImplementedError)  # fmt: skip
-"""What openpyxl and the XML parser raise on a damaged file; ParseError is a SyntaxError, EntitiesForbidden a ValueError."""
+    relations = ElementTree.fromstring(archive.read(_RELATIONS))
+    target = {one.get("Id"): one.get("Target", "") for one in relations if one.get("TargetMode") != "External"}
+    workbook = ElementTree.fromstring(archive.read(_WORKBOOK))
+    if workbook.tag.startswith(_STRICT):
+        raise unreadable(
+            "the workbook is saved as Strict Open XML.", "In Excel: Save As, Excel Workbook (.xlsx), without Strict."
+        )
+    present = set(archive.namelist())
+    found = {}
+    for sheet in workbook.iter(f"{_SPREADSHEET}sheet"):
+        link = next((value for name, value in sheet.attrib.items() if name.endswith("}id")), "")
+        path = posixpath.normpath(posixpath.join("/xl", target.get(link, ""))).lstrip("/")
+        if path in present:
+            found[sheet.get("name", "")] = path
+    return found

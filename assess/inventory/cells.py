@@ -6,13 +6,14 @@ import math
 import re
 import unicodedata
 
-from assess.inventory.columns import Column, key
+from assess.inventory.columns import Column
+from assess.inventory.labels import key
 from assess.units import QUANTITIES
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
 _NUMERAL = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)\s*")
-_BIDI = frozenset("\u200e\u200f\u061c\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+_UNSEEN = frozenset("\u200e\u200f\u061c\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200b\u2060\ufeff")
 _ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
 _SHOWN = 60
 
@@ -34,8 +35,8 @@ def shorten(value: object) -> str:
 def clean(text: str) -> tuple[str, int]:
     """Take out of a text what is not text, and count it.
 
-    Control characters become the replacement character; marks that turn the direction of writing are left out, since
-    they can make a text show other than it reads. Line breaks and tabs stay.
+    Control characters become the replacement character; unseen marks, such as those that turn the direction of
+    writing, are left out, since they make a text show other than it reads. Line breaks and tabs stay.
     """
     if text.isascii() and text.isprintable() and "_x0" not in text:
         return text, 0
@@ -47,7 +48,7 @@ def clean(text: str) -> tuple[str, int]:
 def _plain(character: str) -> str:
     if character in "\n\t":
         return character
-    if character in _BIDI:
+    if character in _UNSEEN:
         return ""
     category = unicodedata.category(character)
     noncharacter = ord(character) & 0xFFFE == 0xFFFE
@@ -108,8 +109,9 @@ def read_choice(column: Column, value: object) -> str:
         if key(choice) == key(text):
             return choice
     allowed = ", ".join(column.choices)
-    near = difflib.get_close_matches(key(text), [key(choice) for choice in column.choices], 1)
-    hint = f"Did you mean {near[0]}?" if near else "Choose from the list."
+    near = difflib.get_close_matches(key(text), [key(choice) for choice in column.choices], 1, 0.75)
+    meant = next((choice for choice in column.choices if near and key(choice) == near[0]), None)
+    hint = f"Did you mean {meant}?" if meant else "Choose from the list."
     raise CellError(f"{column.label} is {shorten(text)}, expected one of: {allowed}.", hint)
 
 
@@ -172,7 +174,7 @@ def _likely_slip(column: Column, number: float, unit: str) -> str:
     if number < 0:
         return "Remove the minus sign." if (column.low or 0) >= 0 else ""
     names = {"m": "metres", "mm": "millimetres", "in": "inches", "cm": "centimetres", "ft": "feet"}
-    for other in (*names, "cm/s2", "m/s2", "cm/s", "m/s"):
+    for other in (*names, "g", "m/s2", "cm/s2", "m/s", "cm/s"):
         if other != unit and other in QUANTITIES.get(column.quantity, {}):
             usual = not is_unusual(column, number, other)
             if usual and _within(column, number, other):

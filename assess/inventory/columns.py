@@ -4,7 +4,6 @@ Reading, checking, the empty workbook, the report's headings and the README's ta
 A header is the label with its unit in brackets, ``Height [cm]``; the bracket is the unit of the column.
 """
 
-import re
 from dataclasses import dataclass
 from typing import Literal
 
@@ -102,6 +101,12 @@ def _size(name: str, label: str, text: str) -> Column:
     )  # fmt: skip
 
 
+def _type_size(name: str, label: str, text: str) -> Column:
+    return Column(
+        name=name, label=label, kind="number", help=text, quantity="length", unit="cm", imperial="in", low=5, high=600,
+    )  # fmt: skip
+
+
 def _metres(name: str, label: str, text: str, low: float = -1e5, high: float = 1e5) -> Column:
     return Column(
         name=name, label=label, kind="number", help=text, quantity="length", unit="m", imperial="ft",
@@ -112,14 +117,14 @@ def _metres(name: str, label: str, text: str, low: float = -1e5, high: float = 1
 def _acceleration(name: str, label: str, text: str) -> Column:
     return Column(
         name=name, label=label, kind="number", help=text, quantity="acceleration", unit="g", imperial="g",
-        low=0, high=5, usual_high=2,
+        low=0, high=5, usual_low=0.01, usual_high=2,
     )  # fmt: skip
 
 
 def _velocity(name: str, label: str, text: str) -> Column:
     return Column(
         name=name, label=label, kind="number", help=text, quantity="velocity", unit="cm/s", imperial="in/s",
-        low=0.01, high=1000, usual_high=300, default="estimated from T1, else bounded",
+        low=0.01, high=1000, usual_low=1, usual_high=300, default="estimated from T1, else bounded",
     )  # fmt: skip
 
 
@@ -282,9 +287,9 @@ CATALOGUE = Sheet(
     "Types of furniture with their sizes. Add your own; a type that is here twice counts as an error.",
     (
         Column(name="type", label="Type", kind="text", required=True, help="Name of the type.", width=34),
-        _size("breadth", "Breadth", "The shorter plan side."),
-        _size("width", "Width", "The longer plan side."),
-        _size("height", "Height", "From the floor to the top."),
+        _type_size("breadth", "Breadth", "The shorter plan side."),
+        _type_size("width", "Width", "The longer plan side."),
+        _type_size("height", "Height", "From the floor to the top."),
         Column(name="source", label="Source", kind="text", help="Where the sizes come from.", width=60),
     ),
 )
@@ -293,21 +298,3 @@ SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE)
 
 LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)")
 """Columns at the right of Items that Excel computes; reading leaves them out."""
-
-_BRACKET = re.compile(r"^(?P<label>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$", re.DOTALL)
-
-
-def split_header(header: str) -> tuple[str, str | None]:
-    """Split ``Height [cm]`` into label and unit; the unit is None where there is no bracket."""
-    match = _BRACKET.match(header.strip())
-    return (match["label"], match["unit"]) if match else (header.strip(), None)
-
-
-def fold(text: str) -> str:
-    """Return a label as labels are compared: letter case and spaces ignored."""
-    return "".join(text.split()).casefold()
-
-
-def key(text: str) -> str:
-    """Return a name as names are compared: letter case and the number of spaces ignored."""
-    return " ".join(text.split()).casefold()

@@ -8,8 +8,9 @@ FIRST_LINES = (
     "type the sizes. The columns at the right show the risk class at once.",
     "4. Places and Routes are for evacuation routes and may stay empty.",
     "5. Check it with: assess check FILE.xlsx. Make the report with: assess run FILE.xlsx.",
-    "The unit in the bracket of a header is the unit of the column: write Height [mm] or Height [in], and numbers below "
-    "are read as such. Lengths: mm, cm, m, in, ft; accelerations: g, m/s2, cm/s2, gal; velocities: cm/s, m/s, in/s.",
+    "The unit in the bracket of a header is the unit of the column: write Height [mm] or Height [in], and numbers "
+    "below are read as such. Lengths: mm, cm, m, in, ft; accelerations: g, m/s2, cm/s2, gal; velocities: cm/s, m/s, "
+    "in/s.",
     "Columns may stand in any order, and you may add your own: they are kept and come back in the Excel report. "
     "Columns marked * are required.",
     "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "

@@ -1,4 +1,4 @@
-"""Sheets as rows of values: finds the header, the columns and their units, and reads each cell by its column.
+"""Sheets as rows of values: reads each cell by its column.
 
 Every problem is collected with its cell; reading goes on, so that one run names them all.
 """
@@ -7,16 +7,17 @@ import difflib
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import chain, islice
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 from zipfile import ZipFile
 
-from openpyxl import DEFUSEDXML, load_workbook
+from openpyxl import DEFUSEDXML
+from openpyxl.reader.excel import ExcelReader
+from openpyxl.styles.stylesheet import apply_stylesheet
 from openpyxl.utils import get_column_letter, range_boundaries
 
-from assess.errors import Problem, WorkbookError
-from assess.inventory.archive import DAMAGE, Scan, open_archive, scan_sheet, sheet_paths, unreadable
+from assess.errors import Problem, Severity, WorkbookError
+from assess.inventory.archive import DAMAGE, MAX_COLUMNS, MAX_ROWS, check_parts, open_archive, sheet_paths, unreadable
 from assess.inventory.cells import (
     ERRORS,
     CellError,
@@ -29,14 +30,11 @@ from assess.inventory.cells import (
     shorten,
     usual_range,
 )
-from assess.inventory.columns import LIVE, SHEETS, Column, Sheet, fold, split_header
-from assess.units import QUANTITIES, read_unit
-
-MAX_ROWS = 100_000
-MAX_COLUMNS = 256
-HEADER_ROWS = 20
-
-Values = tuple[Any, ...]
+from assess.inventory.columns import SHEETS, Column, Sheet
+from assess.inventory.headers import Headers, Rows, Values, find_header
+from assess.inventory.labels import fold
+from assess.inventory.scan import Scan, scan_sheet
+from assess.units import QUANTITIES
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +55,7 @@ class Table:
     """
 
     sheet: Sheet
+    problems: list[Problem]
     found: bool = False
     letters: dict[str, str] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
@@ -66,13 +65,19 @@ class Table:
     failed: set[str] = field(default_factory=set)
     blind: set[str] = field(default_factory=set)
 
+    def report(self, cell: str, message: str, mend: str = "", severity: Severity = "error") -> None:
+        """Take down a problem of one cell."""
+        self.problems.append(Problem(severity, self.sheet.name, cell, message, mend))
+        if severity == "error":
+            self.failed.add(cell)
+
     def cell(self, name: str, row: int) -> str:
         """Address of a field in a row; the first column where the sheet lacks the field."""
         return f"{self.letters.get(name, 'A')}{row}"
 
     def spoilt(self, name: str, row: int) -> bool:
         """Tell whether a field of a row was filled in but could not be read, which has been reported."""
-        return name in self.blind or self.cell(name, row) in self.failed
+        return name in self.blind or (name in self.letters and self.cell(name, row) in self.failed)
 
 
 def read_tables(path: Path) -> tuple[dict[str, Table], list[Problem]]:
@@ -89,278 +94,192 @@ def read_tables(path: Path) -> tuple[dict[str, Table], list[Problem]]:
         )
     problems: list[Problem] = []
     try:
-        with open_archive(path) as archive:
+        with open_archive(path) as archive, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # openpyxl's remarks on drawings and the like mean nothing to a user
             return _read_sheets(path, archive, problems), problems
     except DAMAGE as error:
-        if type(error).__name__ in ("EntitiesForbidden", "DTDForbidden", "ExternalReferenceForbidden"):
+        if _declares_entities(error):
             raise unreadable(
                 f"{path.name} declares XML entities, as an attack does.", "Save it again from Excel."
-            ) from None
+            ) from error
         raise unreadable(
             f"{path.name} is damaged or is no Excel workbook ({type(error).__name__}).",
             "Open it in Excel and save it again.",
-        ) from None
+        ) from error
+
+
+def _declares_entities(error: BaseException | None) -> bool:
+    """Tell whether defusedxml stopped the reading; openpyxl wraps its errors."""
+    from defusedxml.common import DefusedXmlException
+
+    return error is not None and (isinstance(error, DefusedXmlException) or _declares_entities(error.__cause__))
 
 
 def _read_sheets(path: Path, archive: ZipFile, problems: list[Problem]) -> dict[str, Table]:
+    check_parts(archive, path.name)
     paths = sheet_paths(archive)
-    names = {fold(name): name for name in paths}
-    tables = {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # openpyxl's remarks on drawings, footers and the like mean nothing to a user
-        workbook = load_workbook(path, read_only=True, data_only=True, keep_links=False)
-    try:
-        for sheet in SHEETS:
-            tables[sheet.name] = table = Table(sheet)
-            name = names.get(fold(sheet.name))
-            if name is None:
-                problems += _missing_sheet(sheet, list(paths))
-                continue
-            table.found = True
-            scan = scan_sheet(archive, paths[name])
-            worksheet = workbook[name]
+    tables = {sheet.name: Table(sheet, problems) for sheet in SHEETS}
+    found = {name: _find_sheet(table, list(paths)) for name, table in tables.items()}
+    own = {name: paths[sheet] for name, sheet in found.items() if sheet}
+    scans = {name: scan_sheet(archive, part) for name, part in own.items()}
+    with path.open("rb") as file:
+        workbook = _open(file, list(own.values()))
+        for name, scan in scans.items():
+            tables[name].found = True
+            worksheet = workbook[found[name]]
             worksheet.reset_dimensions()
-            _Reader(table, scan, problems).read(worksheet)
-    finally:
-        workbook.close()
+            _Reader(tables[name], scan).read(worksheet)
     return tables
 
 
-def _missing_sheet(sheet: Sheet, present: list[str]) -> list[Problem]:
+def _open(file: IO[bytes], parts: list[str]) -> Any:
+    """Open the workbook as openpyxl's `load_workbook` does, but with these sheets alone and nothing beside them.
+
+    Other sheets, properties, themes and print areas need memory, and may be damaged, without being of use here.
+    """
+    reader = ExcelReader(file, read_only=True, data_only=True, keep_links=False)
+    reader.valid_files = parts
+    reader.read_manifest()
+    reader.read_strings()
+    reader.read_workbook()
+    apply_stylesheet(reader.archive, reader.wb)
+    reader.read_worksheets()
+    return reader.wb
+
+
+def _find_sheet(table: Table, present: list[str]) -> str | None:
+    """Return the name, as the workbook spells it, of a table's sheet; None where it is missing."""
+    sheet, report = table.sheet, table.report
+    found = [name for name in present if fold(name) == fold(sheet.name)]
+    if len(found) > 1:
+        report("", f"there are {len(found)} sheets of this name.", "Delete all but one, or rename them.")
+    if found:
+        return found[0]
     near = difflib.get_close_matches(fold(sheet.name), [fold(name) for name in present], 1, 0.75)
     if near:
         wrong = next(name for name in present if fold(name) == near[0])
-        return [
-            Problem(
-                "error", wrong, "", f"there is no sheet named {sheet.name}.", f"Did you mean {sheet.name}? Rename it."
-            )
-        ]
-    if sheet.required:
-        mend = "Add it, or start from a workbook made with `assess new`."
-        return [Problem("error", sheet.name, "", "the sheet is missing.", mend)]
-    return []
+        mend = f"Did you mean {sheet.name}? Rename it."
+        table.problems.append(Problem("error", wrong, "", f"there is no sheet named {sheet.name}.", mend))
+    elif sheet.required:
+        report("", "the sheet is missing.", "Add it, or start from a workbook made with `assess new`.")
+    return None
 
 
 class _Reader:
     """Reads one sheet into its table; holds what every step needs."""
 
-    def __init__(self, table: Table, scan: Scan, problems: list[Problem]) -> None:
-        self.table, self.scan, self.problems = table, scan, problems
-        self.sheet = table.sheet
-        self.units: dict[str, str] = {}
-        self.columns: dict[int, Column] = {}
-        self.others: list[int] = []
-
-    def report(self, cell: str, message: str, mend: str = "", severity: Any = "error") -> None:
-        self.problems.append(Problem(severity, self.sheet.name, cell, message, mend))
-        if severity == "error":
-            self.table.failed.add(cell)
+    def __init__(self, table: Table, scan: Scan) -> None:
+        self.table, self.scan, self.sheet, self.report = table, scan, table.sheet, table.report
+        self.headers = Headers(table.sheet, table.report)
 
     def read(self, worksheet: Any) -> None:
-        if self.scan.last and self.scan.last_row > MAX_ROWS:
-            self.report(
-                self.scan.last,
-                f"holds a value far below the table; at most {MAX_ROWS:,} rows are read.",
-                "Delete the rows below the table.",
-            )
-            return
-        rows = enumerate(self._rows(worksheet), 1)
-        if self.sheet.layout == "form":
-            self._read_form(rows)
+        if self.scan.last_row > MAX_ROWS:
+            message = f"holds a value far below the table; at most {MAX_ROWS:,} rows are read."
+            self.report(f"A{self.scan.last_row}", message, "Delete the rows below the table.")
+        elif self.scan.far:
+            message = f"holds a value far right of the table; {MAX_COLUMNS} columns are read."
+            self.report(self.scan.far, message, "Delete the columns right of the table.")
+        elif self.sheet.layout == "form":
+            self._read_form(self._rows(worksheet))
         else:
-            self._read_table(rows)
+            self._read_table(self._rows(worksheet))
+        self.table.blind = self.headers.blind
 
-    def _rows(self, worksheet: Any) -> Iterator[Values]:
-        last: int = min(self.scan.last_row, MAX_ROWS)
-        if not last:
-            return
-        for number, values in enumerate(worksheet.iter_rows(max_row=last, values_only=True), 1):
-            if len(values) > MAX_COLUMNS:
-                far = next((at for at, value in enumerate(values) if at >= MAX_COLUMNS and value is not None), None)
-                if far is not None:
-                    cell = f"{get_column_letter(far + 1)}{number}"
-                    mend = "Delete the columns right of the table."
-                    self.report(cell, f"holds a value far right of the table; {MAX_COLUMNS} columns are read.", mend)
+    def _rows(self, worksheet: Any) -> Iterator[tuple[int, Values]]:
+        """Yield the rows up to the last that holds a value: below it there can be a million that are only styled."""
+        last = self.scan.last_row
+        if last:
+            for number, values in enumerate(worksheet.iter_rows(1, last, 1, MAX_COLUMNS, values_only=True), 1):
+                yield number, values
+                if number == last:
                     return
-            yield values
 
     # ------------------------------------------------------------------ forms
 
-    def _read_form(self, rows: Iterator[tuple[int, Values]]) -> None:
-        seen: dict[str, str] = {}
-        for number, row in rows:
-            header, value = (*row, None, None)[:2]
+    def _read_form(self, rows: Rows) -> None:
+        for number, (header, value, *_) in rows:
             if _blank(header):
                 continue
-            column = self._column(read_text(header), f"A{number}", seen, "line")
+            cell, text = f"A{number}", read_text(header)
+            column, is_wrong = self.headers.match(text, cell, "line")
             if column:
                 self.table.lines[column.name] = number
                 self.table.form[column.name] = self._value(column, value, f"B{number}")
-            elif value is not None and f"A{number}" not in self.table.failed:
-                self.report(f"A{number}", f"{shorten(header)} is not known; it is not used.", severity="note")
+            elif value is not None and not is_wrong:
+                self.report(cell, f"{shorten(text)} is not known; it is not used.", severity="note")
 
     # ----------------------------------------------------------------- tables
 
-    def _read_table(self, rows: Iterator[tuple[int, Values]]) -> None:
-        head = self._find_header(rows)
+    def _read_table(self, rows: Rows) -> None:
+        head = find_header(self.sheet, rows, self.report)
         if head is None:
             return
         number, header, body = head
-        self._read_header(number, header)
+        self.headers.read(number, header)
+        self.table.letters = {column.name: get_column_letter(at + 1) for at, column in self.headers.columns.items()}
+        self.table.extra = tuple(self.headers.others.values())
         for reference in self.scan.merged:
-            if range_boundaries(reference)[3] >= number:
+            if (range_boundaries(reference)[3] or 0) >= number:
                 self.report(reference, "cells are merged inside the table.", "Unmerge them and fill each cell.")
         for at, values in body:
             self._read_row(at, values)
-        if self.sheet.required and not self.table.rows and self._complete():
+        if self.sheet.required and not self.table.rows and not self.headers.missing():
             self.report(f"A{number + 1}", "the table has no rows.", "Fill in at least one.")
 
-    def _find_header(
-        self, rows: Iterator[tuple[int, Values]]
-    ) -> tuple[int, Values, Iterator[tuple[int, Values]]] | None:
-        """Return number and values of the header row, and the rows below it."""
-        known = {fold(column.label) for column in self.sheet.columns}
-        top = list(islice(rows, HEADER_ROWS))
-        scores = [
-            sum(fold(split_header(str(cell))[0]) in known for cell in values if cell is not None) for _, values in top
-        ]
-        if not any(scores):
-            if self.sheet.required or any(value is not None for _, values in top for value in values):
-                needed = " and ".join(column.header() for column in self.sheet.columns if column.required)
-                self.report(
-                    "A1", f"no header row was found in the first {HEADER_ROWS} rows.", f"It needs the columns {needed}."
-                )
-            return None
-        best = scores.index(max(scores))
-        return top[best][0], top[best][1], chain(top[best + 1 :], rows)
-
-    def _read_header(self, number: int, header: Values) -> None:
-        seen: dict[str, str] = {}
-        labels = {fold(split_header(str(cell))[0]) for cell in header if cell is not None}
-        live = {fold(split_header(label)[0]) for label in LIVE}
-        extra = []
-        for at, value in enumerate(header):
-            text = read_text(value) if value is not None else ""
-            if not text or fold(split_header(text)[0]) in live:
-                continue
-            cell = f"{get_column_letter(at + 1)}{number}"
-            column = self._column(text, cell, seen, "column", labels)
-            if column:
-                self.columns[at] = column
-                self.table.letters[column.name] = get_column_letter(at + 1)
-            elif cell not in self.table.failed:
-                self.others.append(at)
-                extra.append(text)
-                self.report(cell, f"the column {shorten(text)} is not known; it is kept, not used.", severity="note")
-        self.table.extra = tuple(extra)
-        for column in self.sheet.columns:
-            if column.required and column.name not in self.table.letters:
-                self.report(f"A{number}", f"the column {column.header()} is missing.", "Add it to the header row.")
-
-    def _complete(self) -> bool:
-        return all(column.name in self.table.letters for column in self.sheet.columns if column.required)
-
-    def _column(
-        self, header: str, cell: str, seen: dict[str, str], what: str, labels: Sequence[str] | set[str] = ()
-    ) -> Column | None:
-        """Return the column that a header names, with its unit noted; report what is wrong with it."""
-        label, unit = split_header(header)
-        column = next((one for one in self.sheet.columns if fold(one.label) == fold(label)), None)
-        if column is None:
-            near = self._near(label, unit, labels)
-            if near:
-                self.report(cell, f"the {what} {shorten(header)} is not known.", f"Did you mean {near.header()}?")
-            return None
-        if column.name in seen:
-            self.report(
-                cell, f"the {what} {column.label} is here twice, also in {seen[column.name]}.", "Delete one of them."
-            )
-            return None
-        seen[column.name] = cell
-        self.units[column.name] = spelt = read_unit(unit or "")
-        if column.quantity and spelt not in QUANTITIES[column.quantity]:
-            known = ", ".join(QUANTITIES[column.quantity])
-            what_unit = (
-                f"the unit [{unit}] of {column.label} is not known"
-                if unit is not None
-                else f"{column.label} has no unit"
-            )
-            self.report(cell, f"{what_unit}.", f"Write {column.header()}; known units: {known}.")
-            self.units[column.name] = ""
-            self.table.blind.add(column.name)
-        return column
-
-    def _near(self, label: str, unit: str | None, labels: Sequence[str] | set[str]) -> Column | None:
-        """Return the column that a header nearly names; Weight [kg] beside Height [cm] is no slip."""
-        folded = fold(label)
-        for one in self.sheet.columns:
-            known = fold(one.label)
-            if unit is not None and read_unit(unit) not in QUANTITIES.get(one.quantity, {}):
-                continue
-            if difflib.SequenceMatcher(None, folded, known).ratio() < 0.8:
-                continue
-            if known not in labels or folded[:1] == known[:1]:
-                return one
-        return None
-
     def _read_row(self, number: int, values: Values) -> None:
-        cells = {at: values[at] if at < len(values) else None for at in self.columns}
-        if all(_blank(value) for value in cells.values()) and not self._uncached(number):
-            others = [at for at in self.others if at < len(values) and not _blank(values[at])]
-            if others:
-                cell = f"{get_column_letter(others[0] + 1)}{number}"
+        columns, others = self.headers.columns, self.headers.others
+        if all(_blank(values[at]) for at in columns) and not self._uncached(number):
+            stray = next((at for at in others if not _blank(values[at])), None)
+            if stray is not None:
+                cell = f"{get_column_letter(stray + 1)}{number}"
                 self.report(cell, "stands in a row without an entry; the row is left out.", severity="warning")
             return
-        extra = tuple(
-            read_text(values[at]) if at < len(values) and not _blank(values[at]) else "" for at in self.others
-        )
+        extra = tuple("" if _blank(values[at]) else read_text(values[at]) for at in others)
         parsed = {
-            column.name: self._value(column, cells[at], f"{get_column_letter(at + 1)}{number}")
-            for at, column in self.columns.items()
+            column.name: self._value(column, values[at], f"{get_column_letter(at + 1)}{number}")
+            for at, column in columns.items()
         }
         self.table.rows.append(Row(number, parsed, extra))
 
     def _uncached(self, number: int) -> bool:
         return bool(self.scan.uncached) and any(
-            f"{self.table.letters[column.name]}{number}" in self.scan.uncached for column in self.columns.values()
+            f"{letter}{number}" in self.scan.uncached for letter in self.table.letters.values()
         )
 
     # ------------------------------------------------------------------ cells
 
     def _value(self, column: Column, value: Any, cell: str) -> Any:
         """Return a cell's value in SI, None where it is blank or wrong."""
-        if _blank(value):
-            if cell in self.scan.uncached:
-                self.report(cell, "holds a formula with no saved value.", "Open the workbook in Excel and save it.")
-            elif column.required:
-                self.report(cell, f"{column.label} is blank.", "Fill it in, or delete the row.")
+        if _blank(value) and cell in self.scan.uncached:
+            self.report(cell, "holds a formula with no saved value.", "Open the workbook in Excel and save it.")
             return None
         try:
-            return self._parse(column, value, cell)
+            found = None if _blank(value) else self._parse(column, value, cell)
         except CellError as error:
             self.report(cell, error.message, error.mend)
             return None
+        if found is None and column.required:
+            self.report(cell, f"{column.label} is blank.", "Fill it in, or delete the row.")
+        return found
 
     def _parse(self, column: Column, value: Any, cell: str) -> Any:
         if column.kind == "number":
             return self._number(column, value, cell)
         if column.kind == "count":
             return read_count(column, value)
+        if isinstance(value, str) and value.strip() in ERRORS:
+            raise CellError(f"{column.label} holds the error {value.strip()}.", "Mend the formula in the cell.")
         if column.kind == "choice":
             return read_choice(column, value)
-        text = read_text(value)
-        if isinstance(value, str):
-            if value.strip() in ERRORS:
-                raise CellError(f"{column.label} holds the error {value.strip()}.", "Mend the formula in the cell.")
-            removed = clean(value)[1]
-            if removed:
-                message = f"{removed} control or direction characters in {column.label} were taken out."
-                self.report(cell, message, severity="warning")
-        return text
+        removed = clean(value)[1] if isinstance(value, str) else 0
+        if removed:
+            message = f"{removed} control or direction characters in {column.label} were taken out."
+            self.report(cell, message, severity="warning")
+        return read_text(value) or None
 
     def _number(self, column: Column, value: Any, cell: str) -> float | None:
-        unit = self.units[column.name]
-        if column.quantity and not unit:
+        unit = self.headers.units[column.name]
+        if column.name in self.headers.blind:
             return None  # the header's unit is unknown, and has been reported there
         number = read_number(column, value, unit)
         if is_unusual(column, number, unit):

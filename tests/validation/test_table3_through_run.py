@@ -30,7 +30,19 @@ def items(rows, tmp_path_factory):
         for name, row in zip(names, rows, strict=True)
     ]
     path = write(folder / "table3.xlsx", blocks, floors)
-    command = [sys.executable, "-m", "assess", "run", str(path), "--verify", "none", "--formats", "json", "--out", str(folder)]
+    command = [
+        sys.executable,
+        "-m",
+        "assess",
+        "run",
+        str(path),
+        "--verify",
+        "none",
+        "--formats",
+        "json",
+        "--out",
+        str(folder),
+    ]
     subprocess.run(command, check=True, capture_output=True, timeout=120)
     found = json.loads((folder / "results.json").read_text(encoding="utf-8"))["items"]
     return dict(zip(names, found, strict=True))

@@ -1,0 +1,126 @@
+"""The floors and how they shake: given peaks, and records with their directions."""
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from assess.errors import RecordError
+from assess.inventory.axes import NEAR_AXIS, angle_between
+from assess.inventory.cells import CellError, shorten
+from assess.inventory.files import find_file, find_picture
+from assess.inventory.model import Axis, Building, Floor, FloorRecord
+from assess.inventory.names import check_unique
+from assess.inventory.tables import Row, Table
+from assess.motion.formats import read_records, select
+from assess.motion.record import Record
+
+_AXES: tuple[Axis, Axis] = ("X", "Y")
+
+
+@dataclass(slots=True)
+class FloorReader:
+    """Builds the floors from their table. Each file of records is read once; `hashes` holds SHA-256 by its name."""
+
+    table: Table
+    folder: Path
+    building: Building
+    hashes: dict[str, str] = field(default_factory=dict)
+    _files: dict[Path, tuple[Record, ...] | str] = field(default_factory=dict)
+
+    def read(self) -> tuple[Floor, ...]:
+        """Return the floors; problems are reported to the table."""
+        check_unique(self.table, "floor")
+        return tuple(self._floor(row) for row in self.table.rows if row.values.get("floor") is not None)
+
+    def _floor(self, row: Row) -> Floor:
+        values = row.values
+        pfa, pfv = (
+            {axis: value for axis in _AXES if (value := values.get(f"{what}_{axis.lower()}")) is not None}
+            for what in ("pfa", "pfv")
+        )
+        records = {axis: found for axis in _AXES if (found := tuple(self._records(row, axis)))}
+        self._check_demand(row)
+        return Floor(
+            row=row.number,
+            floor=values["floor"],
+            name=values.get("name") or "",
+            elevation=values.get("elevation"),
+            pfa=pfa,
+            pfv=pfv,
+            records=records,
+            plan=self._plan(row),
+        )
+
+    def _check_demand(self, row: Row) -> None:
+        """Report a floor that says nothing of its motion; what is wrong with what it says has been reported."""
+        names = [f"{what}_{axis.lower()}" for what in ("pfa", "record") for axis in _AXES]
+        if not any(row.values.get(name) is not None or self.table.spoilt(name, row.number) for name in names):
+            where = "pfa_x" if "pfa_x" in self.table.letters else "floor"
+            message = f"floor {shorten(row.values['floor'])} has neither a record nor a PFA."
+            self.table.report(self.table.cell(where, row.number), message, "Fill in PFA X or PFA Y, or name a record.")
+
+    def _plan(self, row: Row) -> Path | None:
+        text, cell = row.values.get("plan"), self.table.cell("plan", row.number)
+        if text is None:
+            return None
+        self.table.report(cell, "Plan image is kept, not drawn by this version.", severity="note")
+        try:
+            return find_picture(text, self.folder)
+        except CellError as error:
+            self.table.report(cell, error.message, error.mend)
+            return None
+
+    # ----------------------------------------------------------------- records
+
+    def _records(self, row: Row, axis: Axis) -> Iterator[FloorRecord]:
+        """Yield the records that a cell names, split by semicolons."""
+        name = f"record_{axis.lower()}"
+        cell, value = self.table.cell(name, row.number), row.values.get(name)
+        if value is None:
+            return
+        texts = [text for part in value.split(";") if (text := part.strip())]
+        if not texts:
+            self.table.report(cell, f"{shorten(value)} names no file.", "Name a record, or clear the cell.")
+        for text in texts:
+            try:
+                record = self._record(text)
+            except CellError as error:
+                self.table.report(cell, error.message, error.mend)
+                continue
+            if record.vertical:
+                self.table.report(cell, f"{shorten(text)} is a vertical channel.", "Name a horizontal one.")
+                continue
+            self._check_direction(cell, text, record, axis)
+            yield FloorRecord(name=text, record=record)
+
+    def _record(self, text: str) -> Record:
+        """Return the record that ``file`` or ``file#channel`` names."""
+        file, _, channel = text.partition("#")
+        path = find_file(file.strip(), self.folder)
+        if path not in self._files:
+            self._files[path] = self._read_file(path, file.strip())
+        found = self._files[path]
+        if isinstance(found, str):
+            raise CellError(f"the record cannot be read: {found}.")
+        try:
+            return select(found, channel.strip() or None)
+        except RecordError as error:
+            raise CellError(f"{error}.") from None
+
+    def _read_file(self, path: Path, name: str) -> tuple[Record, ...] | str:
+        try:
+            records = read_records(path)
+            self.hashes[name] = hashlib.sha256(path.read_bytes()).hexdigest()
+        except RecordError as error:
+            return str(error)
+        return records
+
+    def _check_direction(self, cell: str, text: str, record: Record, axis: Axis) -> None:
+        if self.building.azimuth_deg is None or record.azimuth_deg is None:
+            return
+        along = self.building.azimuth_deg + (90 if axis == "Y" else 0)
+        off = angle_between(record.azimuth_deg, along)
+        if off > NEAR_AXIS:
+            message = f"{shorten(text)} points to {record.azimuth_deg:g} deg, {off:.0f} deg off the {axis} axis."
+            self.table.report(cell, message, "Check the axis, or Azimuth of X in Building.", "warning")

@@ -1,0 +1,133 @@
+"""Headers: which row holds them, which column each names, and the unit in its brackets."""
+
+import difflib
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+from itertools import chain, islice
+from typing import Any, Protocol
+
+from openpyxl.utils import get_column_letter
+
+from assess.errors import Severity
+from assess.inventory.cells import read_text, shorten
+from assess.inventory.columns import LIVE, Column, Sheet
+from assess.inventory.labels import fold, split_header
+from assess.units import QUANTITIES, read_unit
+
+HEADER_ROWS = 20
+
+Values = tuple[Any, ...]
+Rows = Iterator[tuple[int, Values]]
+
+
+class Report(Protocol):
+    """Takes down a problem of one cell."""
+
+    def __call__(self, cell: str, message: str, mend: str = "", severity: Severity = "error") -> None:
+        """Take down a problem."""
+
+
+@dataclass(slots=True)
+class Headers:
+    """The headers of one sheet.
+
+    `columns` and `others` tell by place what stands in a column: one that is known, or the header of one that is not.
+    `cells` and `units` tell by field name where the header stands and which unit it gives; `blind` are the fields
+    whose unit is not known.
+    """
+
+    sheet: Sheet
+    report: Report
+    columns: dict[int, Column] = field(default_factory=dict)
+    others: dict[int, str] = field(default_factory=dict)
+    cells: dict[str, str] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    blind: set[str] = field(default_factory=set)
+
+    def read(self, number: int, values: Values) -> None:
+        """Read the header row of a table."""
+        live = {fold(split_header(label)[0]) for label in LIVE}
+        texts = {at: read_text(value) for at, value in enumerate(values) if value is not None}
+        labels = {fold(split_header(text)[0]) for text in texts.values()}
+        for at, text in texts.items():
+            cell = f"{get_column_letter(at + 1)}{number}"
+            if not text or fold(split_header(text)[0]) in live:
+                continue
+            column, is_wrong = self.match(text, cell, "column", labels)
+            if column:
+                self.columns[at] = column
+            elif not is_wrong:
+                self.others[at] = text
+                self.report(cell, f"the column {shorten(text)} is not known; it is kept, not used.", severity="note")
+        for column in self.missing():
+            self.report(f"A{number}", f"the column {column.header()} is missing.", "Add it to the header row.")
+
+    def missing(self) -> list[Column]:
+        """Return the required columns that no header names."""
+        return [column for column in self.sheet.columns if column.required and column.name not in self.cells]
+
+    def match(self, header: str, cell: str, what: str, labels: Collection[str] = ()) -> tuple[Column | None, bool]:
+        """Return the column that a header names, and whether the header was reported as wrong."""
+        label, unit = split_header(header)
+        column = next((one for one in self.sheet.columns if fold(one.label) == fold(label)), None)
+        if column is None:
+            near = self._near(label, unit, labels)
+            if near:
+                self.report(cell, f"the {what} {shorten(header)} is not known.", f"Did you mean {near.header()}?")
+            return None, near is not None
+        if column.name in self.cells:
+            also = self.cells[column.name]
+            self.report(cell, f"the {what} {column.label} is here twice, also in {also}.", "Delete one of them.")
+            return None, True
+        self.cells[column.name] = cell
+        self._read_unit(column, unit, cell)
+        return column, False
+
+    def _read_unit(self, column: Column, unit: str | None, cell: str) -> None:
+        spelt = read_unit(unit or "")
+        self.units[column.name] = spelt if column.quantity else ""
+        if column.quantity and spelt not in QUANTITIES[column.quantity]:
+            known = ", ".join(QUANTITIES[column.quantity])
+            wrong = f"{column.label} has no unit"
+            if unit is not None:
+                wrong = f"the unit {shorten(unit)} of {column.label} is not known"
+            self.report(cell, f"{wrong}.", f"Write {column.header()}; known units: {known}.")
+            self.blind.add(column.name)
+
+    def _near(self, label: str, unit: str | None, labels: Collection[str]) -> Column | None:
+        """Return the column that a header nearly names; Weight [kg] beside Height [cm] is no slip."""
+        folded = fold(label)
+        for one in self.sheet.columns:
+            known = fold(one.label)
+            if unit is None and _has_bare_unit(folded, known, one):
+                return one
+            if unit is not None and read_unit(unit) not in QUANTITIES.get(one.quantity, {}):
+                continue
+            if difflib.SequenceMatcher(None, folded, known).ratio() < 0.8:
+                continue
+            if known not in labels or folded[:1] == known[:1]:
+                return one
+        return None
+
+
+def _has_bare_unit(folded: str, known: str, column: Column) -> bool:
+    """Tell whether a header gives its unit without brackets: ``Height (cm)``, ``Height, cm``."""
+    rest = folded.removeprefix(known).strip("()_,;:-/.")
+    return folded.startswith(known) and read_unit(rest) in QUANTITIES.get(column.quantity, {})
+
+
+def find_header(sheet: Sheet, rows: Rows, report: Report) -> tuple[int, Values, Rows] | None:
+    """Return number and values of the header row, and the rows below it; None, reported, where there is none."""
+    known = {fold(column.label) for column in sheet.columns}
+    top = list(islice(rows, HEADER_ROWS))
+    scores = [
+        sum(fold(split_header(str(cell))[0]) in known for cell in values if cell is not None) for _, values in top
+    ]
+    if any(scores):
+        best = scores.index(max(scores))
+        return top[best][0], top[best][1], chain(top[best + 1 :], rows)
+    if sheet.required or any(value is not None for _, values in top for value in values):
+        needed = " and ".join(column.header() for column in sheet.columns if column.required)
+        message = f"no header row was found in the first {HEADER_ROWS} rows."
+        report("A1", message, f"It needs the columns {needed}.")
+    return None

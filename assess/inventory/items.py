@@ -1,0 +1,117 @@
+"""The furniture: sizes from the catalogue, the axis from the angle, and what does not fit together."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from assess.inventory.axes import axis_of
+from assess.inventory.cells import shorten
+from assess.inventory.labels import key
+from assess.inventory.model import Building, CatalogueType, Item
+from assess.inventory.names import check_references, check_unique, defined_names
+from assess.inventory.tables import Row, Table
+
+ROUNDING = 1e-9
+"""Relative: sizes nearer than this are alike, so that a change of units moves nothing across."""
+
+
+@dataclass(frozen=True, slots=True)
+class ItemReader:
+    """Builds the items from their table; problems are reported to it."""
+
+    tables: Mapping[str, Table]
+    building: Building
+    types: Mapping[str, CatalogueType]
+
+    def read(self) -> tuple[Item, ...]:
+        """Return the items."""
+        table = self.tables["Items"]
+        check_unique(table, "item")
+        check_references(table, "floor", self.tables["Floors"], "floor")
+        check_references(table, "type", self.tables["Catalogue"], "type")
+        _check_routes(table, self.tables["Routes"])
+        built = (self._item(table, row) for row in table.rows)
+        return tuple(item for item in built if item is not None)
+
+    def _item(self, table: Table, row: Row) -> Item | None:
+        values = dict(row.values)
+        assumed = _fill_sizes(table, row.number, values, self.types.get(key(values.get("type") or "")))
+        _check_sizes(table, row.number, values)
+        _check_position(table, row.number, values)
+        if values.get("axis") is None and values.get("angle_deg") is not None:
+            values["axis"] = axis_of(values["angle_deg"])
+            assumed += ["axis"] if values["axis"] else []
+        if values.get("friction") is None and self.building.friction is not None:
+            values["friction"] = self.building.friction
+            assumed.append("friction")
+        assumed += [name for name in ("quantity", "anchored") if values.get(name) is None]
+        if any(values.get(name) is None for name in ("item", "floor", "breadth", "height")):
+            return None  # the reason has been reported
+        filled = {name: value for name, value in values.items() if value is not None}
+        return Item(row=row.number, **filled, assumed=tuple(assumed), extra=row.extra)
+
+
+def _fill_sizes(table: Table, row: int, values: dict[str, Any], kind: CatalogueType | None) -> list[str]:
+    """Fill blank sizes in from the catalogue; return the fields filled in."""
+    assumed = []
+    for name in ("breadth", "width", "height"):
+        if values.get(name) is not None or table.spoilt(name, row):
+            continue
+        values[name] = getattr(kind, name, None)
+        if values[name] is not None:
+            assumed.append(name)
+        elif name != "width" and not table.spoilt("type", row):
+            message = f"{table.sheet.column(name).label} is blank and no Type gives it."
+            table.report(table.cell(name, row), message, "Fill it in, or choose a Type that has one.")
+    return assumed
+
+
+def check_plan_sides(table: Table, row: int, values: Mapping[str, Any]) -> None:
+    """Report a Breadth that is greater than the Width: Breadth is the shorter plan side."""
+    breadth, width = values.get("breadth"), values.get("width")
+    if breadth is not None and width is not None and breadth > width * (1 + ROUNDING):
+        message = f"Breadth {breadth * 100:g} cm is greater than Width {width * 100:g} cm."
+        mend = "Breadth is the shorter plan side: exchange the two."
+        table.report(table.cell("breadth", row), message, mend)
+
+
+def _check_sizes(table: Table, row: int, values: Mapping[str, Any]) -> None:
+    check_plan_sides(table, row, values)
+    breadth, height = values.get("breadth"), values.get("height")
+    if breadth is not None and height is not None and breadth > height * (1 + ROUNDING):
+        message = f"Breadth {breadth * 100:g} cm is greater than Height {height * 100:g} cm."
+        table.report(table.cell("breadth", row), message, "Are the two exchanged?", "warning")
+
+
+def _check_position(table: Table, row: int, values: Mapping[str, Any]) -> None:
+    x, y, quantity = (values.get(name) for name in ("x", "y", "quantity"))
+    if (x is not None or y is not None) and (quantity or 1) > 1:
+        message = f"Quantity is {quantity} on a row with a position."
+        table.report(table.cell("quantity", row), message, "Write one row a piece, or clear X and Y.")
+    if (x is None) != (y is None) and not (table.spoilt("x", row) or table.spoilt("y", row)):
+        cell = table.cell("y" if y is None else "x", row)
+        table.report(cell, "a position needs both X and Y.", "Fill in the other, or clear both.", "warning")
+
+
+def _check_routes(table: Table, routes: Table) -> None:
+    named = [row for row in table.rows if row.values.get("route")]
+    if named and not routes.found:
+        more = f" (and {len(named) - 1} more rows)" if len(named) > 1 else ""
+        message = f"Route {shorten(named[0].values['route'])}{more} is named, but there is no Routes sheet."
+        table.report(table.cell("route", named[0].number), message, "Add the sheet, or clear the column.")
+        return
+    check_references(table, "route", routes, "route")
+    known = {(key(row.values.get("route") or ""), key(row.values.get("segment") or "")) for row in routes.rows}
+    names = defined_names(routes, "route")
+    for row in table.rows:
+        _check_segment(table, row, names, known)
+
+
+def _check_segment(table: Table, row: Row, names: Mapping[str, str], known: set[tuple[str, str]]) -> None:
+    route, segment = row.values.get("route"), row.values.get("segment")
+    cell = table.cell("segment", row.number)
+    if segment and not route:
+        table.report(cell, "a Segment is named without its Route.", "Fill in Route.")
+    elif route and segment and key(route) in names and (key(route), key(segment)) not in known:
+        message = f"Route {shorten(route)} has no segment {shorten(segment)}."
+        table.report(cell, message, "Add it to Routes, or clear the cell.")

@@ -1,0 +1,155 @@
+"""The sheet Lists: what the drop-downs and the live columns of the other sheets refer to.
+
+It holds the choices, the factor that each header's bracket stands for, and for every row of Floors the PFA and PFV
+that serve each axis.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.inventory.columns import BUILDING, SHEETS, Column
+from assess.inventory.helptext import LISTS_NOTE
+from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
+from assess.units import GRAVITY, QUANTITIES
+
+Units = Literal["si", "imperial"]
+
+ROWS = {"Floors": 100, "Items": 500, "Places": 200, "Routes": 200, "Catalogue": 200}
+"""Rows of each table that are prepared; a longer table is read all the same."""
+
+LETTERS = {(sheet.name, column.name): xl_col_to_name(at) for sheet in SHEETS for at, column in enumerate(sheet.columns)}
+"""Column of the sheet in which the empty workbook has a field."""
+
+RUN_ASSESS = "run assess"
+"""What the live columns say of a floor that has a record, which no spreadsheet formula can read."""
+
+_NEEDED_FACTORS = (
+    ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
+    ("Floors", "pfa_x"), ("Floors", "pfa_y"), ("Floors", "pfv_x"), ("Floors", "pfv_y"), ("Building", "period"),
+)  # fmt: skip
+
+_FLOOR_HELPERS = ("own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best")
+
+
+def slug(column: Column) -> str:
+    """Return the part of a defined name that stands for a column."""
+    return column.label.lower().replace(" ", "_")
+
+
+@dataclass(frozen=True, slots=True)
+class ListsWriter:
+    """Writes the sheet and defines its names; `last` tells the last row of each table."""
+
+    book: Any
+    page: Any
+    title: Any
+    units: Units
+    last: Mapping[str, int]
+
+    def write(self) -> None:
+        """Write everything, one block beside the other."""
+        self.page.write_string(0, 0, LISTS_NOTE, self.title)
+        at = self._write_choices()
+        at = self._write_units(at + 1)
+        at = self._write_factors(at + 1)
+        self._write_floors(at + 1)
+        for name in ("Floors", "Catalogue", "Places", "Routes"):
+            self._name(f"list_{name.lower()}", name, "A", 2, self.last[name])
+        for name in ("period", "scenario_kind"):
+            row = BUILDING.columns.index(BUILDING.column(name)) + 1
+            self.book.define_name(name, f"=Building!$B${row}")
+
+    def _name(self, name: str, sheet: str, column: str, first: int, last: int) -> None:
+        self.book.define_name(name, f"={sheet}!${column}${first}:${column}${last}")
+
+    def _write_choices(self) -> int:
+        chosen = {slug(column): column for sheet in SHEETS for column in sheet.columns if column.choices}
+        for at, (name, column) in enumerate(chosen.items()):
+            self.page.write_column(2, at, (column.label, *column.choices))
+            self._name(f"list_{name}", "Lists", xl_col_to_name(at), 4, 3 + len(column.choices))
+        return len(chosen)
+
+    def _write_units(self, at: int) -> int:
+        for quantity in ("length", "acceleration", "velocity", "time"):
+            units = dict(QUANTITIES[quantity])
+            units |= {unit.replace("s2", sign): factor for unit, factor in units.items() for sign in ("s²", "s^2")}
+            self.page.write_column(2, at, (quantity, *units))
+            self.page.write_column(2, at + 1, ("SI", *units.values()))
+            first, second = xl_col_to_name(at), xl_col_to_name(at + 1)
+            self.book.define_name(f"units_{quantity}", f"=Lists!${first}$4:${second}${3 + len(units)}")
+            at += 2
+        return at
+
+    def _write_factors(self, at: int) -> int:
+        """Write the factor of every header that a live formula needs, read from the header's own bracket."""
+        self.page.write_row(2, at, ("header", "factor"))
+        for row, (name, field) in enumerate(_NEEDED_FACTORS, 4):
+            sheet = next(sheet for sheet in SHEETS if sheet.name == name)
+            column = sheet.column(field)
+            cell = f"$A${sheet.columns.index(column) + 1}" if sheet.layout == "form" else f"{LETTERS[name, field]}$1"
+            unit = _bracket(f"{name}!{cell}")
+            factor = QUANTITIES[column.quantity][column.header(self.units).partition("[")[2].rstrip("]")]
+            formula = f'=IFERROR(VLOOKUP({unit},units_{column.quantity},2,FALSE),"unit?")'
+            self.page.write_string(row - 1, at, f"{name}: {column.label}")
+            self.page.write_formula(row - 1, at + 1, formula, None, factor)
+            self.book.define_name(f"unit_{name.lower()}_{field}", f"=Lists!${xl_col_to_name(at + 1)}${row}")
+        return at + 2
+
+    # ------------------------------------------------------------------ floors
+
+    def _write_floors(self, at: int) -> None:
+        """Write, for every row of Floors, its own PFA and PFV on each axis and then those that serve each axis."""
+        letters = {name: xl_col_to_name(at + place) for place, name in enumerate(_FLOOR_HELPERS)}
+        last = self.last["Floors"]
+        self.page.write_row(0, at, _FLOOR_HELPERS)
+        for row in range(2, last + 1):
+            cells = {name: f"${letter}{row}" for name, letter in letters.items()}
+            formulas = (*self._own_pfa(row), *self._own_pfv(row, cells), *_serving(cells), _best(cells))
+            for place, formula in enumerate(formulas):
+                self.page.write_formula(row - 1, at + place, f"={formula}", None, "")
+        for name, letter in letters.items():
+            self._name(f"floor_{name}", "Lists", letter, 2, last)
+
+    def _floor(self, name: str, row: int) -> str:
+        """Refer to a cell of Floors so that rows inserted or sorted there do not move the reference."""
+        letter = LETTERS["Floors", name]
+        return f"INDEX(Floors!${letter}$1:${letter}${self.last['Floors']},{row})"
+
+    def _own_pfa(self, row: int) -> Iterator[str]:
+        for axis in "xy":
+            pfa, record = self._floor(f"pfa_{axis}", row), self._floor(f"record_{axis}", row)
+            number = f'IF(ISTEXT(unit_floors_pfa_{axis}),"unit?",{pfa}*unit_floors_pfa_{axis}/{GRAVITY!r})'
+            given = f'IF(OR({pfa}="",scenario_kind="recorded"),"",{number})'
+            yield f'IF(AND(TRIM({record})<>"",scenario_kind<>"given"),"{RUN_ASSESS}",{given})'
+
+    def _own_pfv(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
+        for axis in "xy":
+            pfa, pfv = cells[f"own_pfa_{axis}"], self._floor(f"pfv_{axis}", row)
+            frequency = f"MIN(1/(period*unit_building_period),{HIGHEST_FLOOR_FREQUENCY!r})"
+            estimate = f'IF(ISNUMBER(period),{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency}),"")'
+            given = f'IF(ISTEXT(unit_floors_pfv_{axis}),"unit?",{pfv}*unit_floors_pfv_{axis}*100)'
+            yield f'IF(ISNUMBER({pfa}),IF({pfv}<>"",{given},{estimate}),"")'
+
+
+def _bracket(cell: str) -> str:
+    """Expression for the unit in a header's brackets, spelt as in the lists of units."""
+    start = f'FIND("[",{cell})'
+    return f'LOWER(SUBSTITUTE(MID({cell},{start}+1,FIND("]",{cell})-{start}-1)," ",""))'
+
+
+def _serving(cells: Mapping[str, str]) -> list[str]:
+    """Expressions for PFA and PFV on X and Y: where one axis alone is known, it serves both."""
+    return [
+        f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]})'
+        for what in ("pfa", "pfv")
+        for axis, other in ("xy", "yx")
+    ]
+
+
+def _best(cells: Mapping[str, str]) -> str:
+    """Expression for the axis that governs a piece which may topple along both: one without a number comes first."""
+    x, y = cells["pfa_x"], cells["pfa_y"]
+    return f'IF(ISNUMBER({x}),IF(ISNUMBER({y}),IF({x}>={y},"X","Y"),"Y"),"X")'

@@ -1,0 +1,44 @@
+"""Names that must fit together: each defined once, each use spelt as where it is defined."""
+
+import difflib
+
+from assess.inventory.cells import shorten
+from assess.inventory.labels import key
+from assess.inventory.tables import Table
+
+
+def defined_names(table: Table, name: str) -> dict[str, str]:
+    """Return the names that a column defines, by how they are compared."""
+    named = [row.values[name] for row in reversed(table.rows) if row.values.get(name) is not None]
+    return {key(one): one for one in named}
+
+
+def check_unique(table: Table, name: str) -> None:
+    """Report every name that a column defines a second time."""
+    first: dict[str, int] = {}
+    label = table.sheet.column(name).label
+    for row in table.rows:
+        value = row.values.get(name)
+        if value is None:
+            continue
+        if key(value) in first:
+            message = f"{label} {shorten(value)} is here twice, also in {table.cell(name, first[key(value)])}."
+            table.report(table.cell(name, row.number), message, "Give each its own name.")
+        first.setdefault(key(value), row.number)
+
+
+def check_references(table: Table, name: str, source: Table, defining: str) -> None:
+    """Spell every name of a column as `source` does; report those that it does not define."""
+    if source.sheet.required and not (source.found and defining in source.letters):
+        return  # the missing sheet or column has been reported
+    label, sheet = table.sheet.column(name).label, source.sheet.name
+    found = defined_names(source, defining)
+    for row in table.rows:
+        value = row.values.get(name)
+        if value is not None and key(value) in found:
+            row.values[name] = found[key(value)]
+        elif value is not None:
+            near = difflib.get_close_matches(key(value), found, 1, 0.75)
+            hint = f" Did you mean {found[near[0]]}?" if near else ""
+            mend = f"Choose one of the {sheet} sheet, or add it there.{hint}"
+            table.report(table.cell(name, row.number), f"{label} {shorten(value)} is not in the {sheet} sheet.", mend)

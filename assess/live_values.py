@@ -1,0 +1,66 @@
+"""What the live columns of a workbook show, from an assessment.
+
+They are stored in a workbook beside the formulas, so that a viewer that does not calculate shows them too.
+"""
+
+import os
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from assess.assessment import run
+from assess.inventory.blank import Content, Units, write_workbook
+from assess.inventory.live import OUTSIDE
+from assess.inventory.workbook import read_inventory
+from assess.results import FORMULA, Assessment, ItemResult
+from assess.units import GRAVITY
+
+RUN_ASSESS = "run assess"
+"""What the live columns say of a floor that has a record, which no spreadsheet formula can read."""
+
+
+def stored_live(assessment: Assessment) -> list[list[float | str]]:
+    """Return what the columns `assess.inventory.columns.LIVE` show, five values an item.
+
+    They equal what the formulas compute where the assessment was made with the workbook's own scenario and the default
+    settings, which are all that the formulas know.
+    """
+    return [_live_row(one) for one in assessment]
+
+
+def _live_row(one: ItemResult) -> list[float | str]:
+    breadth_to_height = one.item.breadth / one.item.height
+    if any(case.demand.source == "record" for case in one.cases):
+        return [breadth_to_height, *[RUN_ASSESS] * 4]
+    methods = one.governing.methods
+    risks = [methods[key].value for key in (FORMULA, "kaneko_hayashi")]
+    label = one.adopted.risk.label + (OUTSIDE if "extrapolated" in methods[FORMULA].flags else "")
+    pfa_g = one.governing.demand.pfa / GRAVITY
+    return [breadth_to_height, pfa_g, *("" if risk is None else risk for risk in risks), label]
+
+
+def with_live(content: Content, units: Units = "si", folder: Path | None = None) -> Content:
+    """Return a content with the results of its live columns, worked out by assessing a temporary workbook.
+
+    Parameters
+    ----------
+    content : Content
+        The rows; a `live` that it has is replaced.
+    units : "si" or "imperial"
+        Of its values.
+    folder : Path, optional
+        Where the files lie that it names, such as records; the temporary workbook stands there for a moment.
+
+    Raises
+    ------
+    WorkbookError
+        If the rows do not make an inventory.
+    """
+    handle, name = tempfile.mkstemp(suffix=".xlsx", dir=folder)
+    os.close(handle)
+    path = Path(name)
+    try:
+        write_workbook(path, replace(content, live=()), units)
+        return replace(content, live=stored_live(run(read_inventory(path))))
+    finally:
+        path.unlink()

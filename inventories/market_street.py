@@ -1,0 +1,300 @@
+"""Build `market-street.xlsx`: 575 Market Street, San Francisco, in the Loma Prieta earthquake.
+
+The floor motions are those recorded in the building (`records/575-market/README.md`). The floor plan and the furniture
+are an example: nobody counted what stood there. What the headers of the records do not say (height, storeys, period,
+elevations) stays blank. Run it with ``python inventories/market_street.py``.
+
+The plan is a plate of 32 x 24 m with a core in the middle, a corridor around it and rooms along the windows. X runs
+along the longer side. Every piece stands with its back to a wall, or in a row parallel to one.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from math import hypot
+from pathlib import Path
+from typing import Any, Literal
+
+from assess.inventory.blank import Content, Rows, read_catalogue, write_workbook
+from assess.live_values import with_live
+
+Wall = Literal["S", "N", "W", "E"]
+Box = tuple[float, float, float, float]
+"""West, south, east and north edge [m]."""
+
+PATH = Path(__file__).with_name("market-street.xlsx")
+
+PLATE: Box = (0, 0, 32, 24)
+CORE: Box = (9, 8, 23, 16)
+FROM_WALL, BETWEEN = 0.1, 0.03
+"""Space behind a piece and between two of a row [m]."""
+
+
+def _records(channels: str) -> str:
+    """Return the records of one level and direction, as the workbook names them."""
+    return "; ".join(f"records/575-market/891018_1.cra-1.0210{channel}.smc" for channel in channels)
+
+
+FLOORS: tuple[dict[str, str], ...] = (  # X: channels that point to 45 or 225 deg; Y: to 135 or 315 deg
+    {"floor": "42", "name": "42nd floor", "record_x": _records("ab"), "record_y": _records("c")},
+    {"floor": "34", "name": "34th floor", "record_x": _records("de")},
+    {"floor": "25", "name": "25th floor", "record_x": _records("gh"), "record_y": _records("i")},
+    {"floor": "G", "name": "Ground floor", "record_y": _records("k")},
+)
+
+BUILDING = {
+    "building": "575 Market Street", "address": "575 Market Street, San Francisco, California", "use": "Office",
+    "scenario": "Loma Prieta earthquake, 17 October 1989, as recorded in the building. "
+    "The furniture is an example; the records are real.", "azimuth_deg": 45,
+}  # fmt: skip
+
+_OFFICE: Mapping[str, Box] = {
+    "South office": (0, 0, 25.4, 5.6),
+    "Meeting room": (25.4, 0, 32, 5.6),
+    "Archive": (25.4, 5.6, 32, 12),
+    "Server room": (25.4, 12, 32, 18.4),
+    "North office": (6.6, 18.4, 32, 24),
+    "Kitchen": (0, 18.4, 6.6, 24),
+    "Library": (0, 12, 6.6, 18.4),
+    "Copy room": (0, 5.6, 6.6, 12),
+    "Corridor": (6.6, 5.6, 25.4, 18.4),
+}
+_GROUND: Mapping[str, Box] = {
+    "Lobby": (6.6, 0, 25.4, 8),
+    "Mail room": (0, 0, 6.6, 8),
+    "Cafe": (25.4, 0, 32, 11),
+    "Security office": (25.4, 11, 32, 18.4),
+    "Storage": (0, 8, 6.6, 18.4),
+    "Workshop": (0, 18.4, 16, 24),
+    "Building archive": (16, 18.4, 32, 24),
+    "Corridor": (6.6, 8, 25.4, 18.4),
+}
+ROOMS = {"42": _OFFICE, "34": _OFFICE, "25": _OFFICE, "G": _GROUND}
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Pieces alike, side by side along a wall of a room, or `off` [m] in front of it and parallel to it.
+
+    `start` is measured along the wall from its west or south end [m]; `more` holds further cells of the rows.
+    """
+
+    room: str
+    wall: Wall
+    start: float
+    description: str
+    type: str
+    count: int = 1
+    off: float = 0.0
+    more: Mapping[str, Any] = field(default_factory=dict)
+
+
+SIDEWAYS = {"Vertical file 3 drawers", "Vertical file 5 drawers", "Server rack 42U", "Server rack 42U wide"}
+"""Types that stand in a row with their Breadth along the wall: deeper than wide."""
+
+_BOLTED = {"anchored": "yes"}
+_FREE = {"anchored": "no"}
+_FILE = {"width": 91.4, "anchored": "no"}
+_SHELVES = {"width": 90, "anchored": "no"}
+_COPIER = {"breadth": 60, "width": 65, "height": 115, "anchored": "no", "notes": "On castors"}
+_STONE = {"friction": 0.4, "notes": "On a stone floor"}
+
+FURNITURE: Mapping[str, tuple[Run, ...]] = {
+    "42": (
+        Run("South office", "S", 1, "Low cabinet under the windows", "Stationery cabinet counter height", 3, 0, _FREE),
+        Run("South office", "S", 11, "Bookcase at the aisle", "Bookcase tall", 3, 1.6, _FREE),
+        Run("South office", "N", 15, "Cabinet at the aisle", "Storage cabinet steel", 3, 1.4, _FREE),
+        Run("South office", "N", 2, "Lateral file", "Lateral file 5 drawers", 2, 0, _FILE),
+        Run("Meeting room", "E", 3.4, "Cabinet with crockery", "Storage cabinet sliding doors", 1, 0, _BOLTED),
+        Run("Meeting room", "N", 2.5, "Glass cabinet with models", "Display cabinet glass", 2),
+        Run("Archive", "E", 0.8, "Shelving with box files", "Steel shelving", 4, 0, _BOLTED),
+        Run("Server room", "S", 2, "Server rack", "Server rack 42U", 2, 0.9, _BOLTED | {"importance": "function"}),
+        Run("North office", "N", 4, "Bookcase", "Bookcase 5 shelves", 2, 0, _SHELVES),
+        Run("North office", "N", 12, "Wardrobe", "Wardrobe 2 doors", 2, 0, {"anchored": "partly"}),
+        Run("Library", "W", 1, "Bookcase", "Bookcase tall", 4, 0, {"anchored": "partly", "notes": "One bracket each"}),
+        Run("Copy room", "W", 1, "Photocopier", "", 1, 0, _COPIER),
+        Run("Kitchen", "W", 1, "Refrigerator", "Refrigerator top freezer"),
+        Run("Corridor", "W", 3.4, "Lateral file in the corridor", "Lateral file 5 drawers", 2, 0, _FILE),
+    ),
+    "34": (
+        Run("South office", "S", 4, "Low lateral file", "Lateral file 2 drawers", 3, 0, _FREE),
+        Run("South office", "N", 12, "Wardrobe", "Wardrobe cabinet steel", 2, 0, _BOLTED),
+        Run("Meeting room", "E", 3.8, "Cupboard with projector", "Cupboard"),
+        Run("Archive", "E", 0.8, "Shelving with box files", "Steel shelving", 5, 0, _FREE | {"notes": "Full"}),
+        Run("Archive", "E", 1.6, "File cabinet", "Vertical file 5 drawers", 3, 2.4, _FREE),
+        Run("Server room", "N", 2, "Server rack", "Server rack 42U wide", 3, 0.9, _BOLTED | {"importance": "function"}),
+        Run("North office", "N", 4, "Bookcase at the aisle", "Bookcase tall", 3, 1.6, _FREE),
+        Run("North office", "S", 9, "Cabinet at the aisle", "Stationery cabinet", 3, 1.45, _FREE),
+        Run("Library", "W", 1, "Narrow bookcase", "Bookcase tall narrow", 3, 0, _BOLTED),
+        Run("Copy room", "W", 1, "Photocopier", "", 1, 0, _COPIER),
+        Run("Copy room", "W", 2.5, "Paper cupboard", "Storage cabinet narrow", 2, 0, {"anchored": "partly"}),
+        Run("Kitchen", "W", 2, "Vending machine", "Vending machine snacks"),
+        Run("Corridor", "E", 8, "Steel cabinet in the corridor", "Storage cabinet steel", 2, 0, _FREE),
+    ),
+    "25": (
+        Run("South office", "S", 9, "Cabinet at the aisle", "Stationery cabinet", 3, 1.5, _FREE),
+        Run("South office", "N", 18, "File cabinet", "Vertical file 5 drawers", 3, 1.15, _FREE),
+        Run("South office", "N", 5, "Narrow bookcase", "Bookcase tall narrow", 3),
+        Run("Archive", "E", 0.8, "Shelving with box files", "Steel shelving", 5, 0, {"anchored": "partly"}),
+        Run("Archive", "E", 0.8, "Shelving with box files", "Steel shelving", 4, 2, _FREE),
+        Run("Server room", "N", 2, "Server rack", "Server rack 42U", 2, 0.9, _FREE | {"importance": "function"}),
+        Run("North office", "N", 3, "Lateral file", "Lateral file 4 drawers", 3, 0, _FILE),
+        Run("North office", "N", 13, "Wardrobe", "Wardrobe", 2, 0, _BOLTED),
+        Run("Library", "W", 1.5, "Chest of drawers for plans", "Chest of drawers 6 drawers", 2, 0, _FREE),
+        Run("Kitchen", "N", 2, "Cupboard with dishes", "Cupboard", 2, 0, _BOLTED),
+        Run("Kitchen", "W", 1, "Refrigerator", "Refrigerator top freezer", 1, 0, _FREE),
+        Run("Corridor", "E", 3, "Photocopier in the corridor", "", 1, 0.4,
+            _COPIER | {"notes": "On castors; stands in the way, to be moved"}),
+    ),
+    "G": (
+        Run("Lobby", "W", 2, "Reception counter", "", 1, 3, {"breadth": 80, "width": 280, "height": 110} | _BOLTED),
+        Run("Lobby", "W", 3, "Glass cabinet at the way out", "Display cabinet glass", 2, 7.4, _FREE | _STONE),
+        Run("Lobby", "E", 4, "Brochure shelf", "Bookcase 4 shelves", 1, 7.5, _SHELVES | _STONE),
+        Run("Mail room", "W", 1, "Mail sorting shelf", "Steel shelving", 3, 0, _FREE),
+        Run("Cafe", "E", 2, "Drinks machine", "Vending machine drinks", 2, 0, _BOLTED),
+        Run("Cafe", "E", 6, "Refrigerator", "Refrigerator top freezer"),
+        Run("Security office", "N", 3, "File cabinet", "Vertical file 3 drawers", 2, 0, _FREE),
+        Run("Storage", "W", 1, "Storage shelving", "Steel shelving", 4, 0, {"anchored": "partly"}),
+        Run("Workshop", "N", 3, "Tool cabinet", "Storage cabinet steel", 2, 0, _FREE),
+        Run("Building archive", "N", 4, "Plan chest", "Chest of drawers 6 drawers", 2),
+    ),
+}  # fmt: skip
+
+LOOSE: tuple[dict[str, Any], ...] = (
+    {"floor": "42", "room": "South office", "description": "Desks", "type": "Desk", "quantity": 16},
+    {"floor": "42", "room": "Meeting room", "description": "Tables", "type": "Conference table", "quantity": 4},
+    {"floor": "34", "room": "North office", "description": "Desks", "type": "Desk", "quantity": 20},
+    {"floor": "25", "room": "South office", "description": "Desks", "type": "Desk", "quantity": 18},
+    {"floor": "25", "room": "South office", "description": "Pedestals under the desks", "quantity": 18,
+     "breadth": 42, "width": 55, "height": 58, "anchored": "no"},
+    {"floor": "G", "room": "Storage", "description": "Lockers of the cleaners", "quantity": 8, "axis": "Y",
+     "breadth": 50, "width": 50, "height": 180, "anchored": "no", "notes": "Backs to the wall; measured"},
+)  # fmt: skip
+
+
+CORRIDOR, DOOR = 1.118, 0.813
+"""Required widths [m]: 44 in and 32 in, as the International Building Code asks of a corridor and a door."""
+
+POINTS: Mapping[str, tuple[str, float, float, str]] = {  # of the routes: floor, x, y, kind
+    "42 South office": ("42", 22, 2.8, "room"), "42 aisle": ("42", 8.25, 2.8, "corridor"),
+    "42 office door": ("42", 8.25, 5.6, "door"), "42 corridor": ("42", 8.25, 12, "corridor"),
+    "42 stair": ("42", 11.5, 12, "stair"),
+    "34 North office": ("34", 9, 21.2, "room"), "34 aisle": ("34", 23.75, 21.2, "corridor"),
+    "34 office door": ("34", 23.75, 18.4, "door"), "34 corridor": ("34", 23.75, 12, "corridor"),
+    "34 stair": ("34", 20.5, 12, "stair"),
+    "25 South office": ("25", 3, 2.8, "room"), "25 aisle": ("25", 23.75, 2.8, "corridor"),
+    "25 office door": ("25", 23.75, 5.6, "door"), "25 corridor": ("25", 23.75, 12, "corridor"),
+    "25 stair": ("25", 20.5, 12, "stair"),
+    "G stair": ("G", 16, 9.5, "stair"), "G Lobby": ("G", 16, 6.8, "room"),
+    "G street doors": ("G", 16, 1.2, "door"), "G street": ("G", 16, 0, "exit"),
+}  # fmt: skip
+_ROUTES = (("42 west", "South office", 60), ("34 east", "North office", 60), ("25 east", "South office", 60))
+SEGMENTS: tuple[tuple[str, str, str, str, str, float, float, int], ...] = (
+    # route, segment, room, from, to, clear width, required width, occupants
+    *(
+        (name, segment, room or office, f"{name[:2]} {start}", f"{name[:2]} {end}", clear, required, people)
+        for name, office, people in _ROUTES
+        for segment, room, start, end, clear, required in (
+            ("aisle", "", office, "aisle", 1.2, CORRIDOR),
+            ("door", "", "aisle", "office door", 0.9, DOOR),
+            ("corridor", "Corridor", "office door", "corridor", 1.5, CORRIDOR),
+            ("stair door", "Corridor", "corridor", "stair", 0.9, DOOR),
+        )
+    ),
+    ("Ground", "stair door", "Lobby", "G stair", "G Lobby", 0.9, DOOR, 200),
+    ("Ground", "lobby", "Lobby", "G Lobby", "G street doors", 2.4, CORRIDOR, 200),
+    ("Ground", "street doors", "Lobby", "G street doors", "G street", 1.8, CORRIDOR, 200),
+)
+
+_TYPES = {row["type"]: row for row in read_catalogue()}
+_FACING: Mapping[Wall, int] = {"W": 0, "S": 90, "E": 180, "N": 270}
+"""Direction that a piece with its back to a wall looks to, anticlockwise from X [deg]."""
+
+
+def _size(row: Mapping[str, Any]) -> tuple[float, float]:
+    """Breadth and width of a row [m], the catalogue's where it has none of its own."""
+    sizes = {**_TYPES.get(row.get("type", ""), {}), **row}
+    return sizes["breadth"] / 100, sizes["width"] / 100
+
+
+def _box(row: Mapping[str, Any]) -> Box:
+    """Return what a placed row covers on the plan."""
+    breadth, width = _size(row)
+    along_x, along_y = (breadth, width) if row["angle_deg"] % 180 == 0 else (width, breadth)
+    x, y = row["x"], row["y"]
+    return x - along_x / 2, y - along_y / 2, x + along_x / 2, y + along_y / 2
+
+
+def _pieces(floor: str, run: Run) -> Iterator[dict[str, Any]]:
+    """Return the rows of a run, one a piece, from the start of the wall on."""
+    row = {"floor": floor, "room": run.room, "description": run.description, "type": run.type or None, **run.more}
+    breadth, width = _size(row)
+    sideways = run.type in SIDEWAYS
+    length, depth = (breadth, width) if sideways else (width, breadth)
+    west, south, east, north = ROOMS[floor][run.room]
+    out = FROM_WALL + run.off + depth / 2
+    for number in range(run.count):
+        along = run.start + length / 2 + number * (length + BETWEEN)
+        x, y = {"S": (west + along, south + out), "N": (west + along, north - out),
+                "W": (west + out, south + along), "E": (east - out, south + along)}[run.wall]  # fmt: skip
+        angle = (_FACING[run.wall] - (90 if sideways else 0)) % 360
+        yield row | {"x": round(x, 2), "y": round(y, 2), "angle_deg": angle}
+
+
+def _distance(a: Box, b: Box) -> float:
+    """Clear distance of two boxes; 0 where they touch or overlap."""
+    return hypot(*(max(0.0, a[at] - b[at + 2], b[at] - a[at + 2]) for at in (0, 1)))
+
+
+def _beside_route(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Name the segment that a piece can reach when it falls: its edge in the same room is nearer than its height."""
+    near = []
+    for route, segment, room, start, end, clear, *_ in SEGMENTS:
+        (floor, x0, y0, _), (_, x1, y1, _) = POINTS[start], POINTS[end]
+        if (floor, room) == (row["floor"], row["room"]):
+            line = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
+            near.append((round(_distance(_box(row), line) - clear / 2, 2), route, segment))
+    edge, route, segment = min(near, default=(100.0, "", ""))
+    if edge * 100 >= {**_TYPES.get(row["type"], {}), **row}["height"]:
+        return {}
+    return {"route": route, "segment": segment, "edge_distance": edge, "importance": "life safety"}
+
+
+def item_rows() -> list[dict[str, Any]]:
+    """Return the rows of Items, floor by floor, each floor's rows without a position last."""
+    rows = []
+    for floor in ROOMS:
+        placed = (piece for run in FURNITURE[floor] for piece in _pieces(floor, run))
+        own = [{"importance": "property", **row, **_beside_route(row)} for row in placed]
+        own += [row for row in LOOSE if row["floor"] == floor]
+        rows += [{"item": f"{floor}-{number:02d}", **row} for number, row in enumerate(own, 1)]
+    return rows
+
+
+def _place_rows() -> list[dict[str, Any]]:
+    rooms = {
+        f"{floor} {name}": (floor, (west + east) / 2, (south + north) / 2, "room")
+        for floor, plan in ROOMS.items()
+        for name, (west, south, east, north) in plan.items()
+        if name != "Corridor"
+    }
+    return [
+        {"place": name, "floor": floor, "x": round(x, 2), "y": round(y, 2), "kind": kind}
+        for name, (floor, x, y, kind) in (rooms | dict(POINTS)).items()
+    ]
+
+
+def content() -> Content:
+    """Return the whole workbook, without the results of its live columns."""
+    names = ("route", "segment", "start", "end", "clear_width", "required_width", "occupants")
+    routes = [dict(zip(names, row[:2] + row[3:], strict=True), floor=POINTS[row[3]][0]) for row in SEGMENTS]
+    rows: dict[str, Rows] = {"Building": [BUILDING], "Floors": FLOORS, "Items": item_rows(), "Places": _place_rows()}
+    return Content(rows | {"Routes": routes})
+
+
+def build(path: Path = PATH) -> None:
+    """Write the workbook; the records must lie beside it."""
+    write_workbook(path, with_live(content(), folder=path.parent))
+
+
+if __name__ == "__main__":
+    build()
