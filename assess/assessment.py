@@ -6,6 +6,7 @@ from assess.demand import LOSS_TO_TELL, Demand, build_demands
 from assess.errors import Problem
 from assess.inventory.model import Axis, Inventory, Item
 from assess.methods import Cases, all_methods
+from assess.methods._method import ALIKE
 from assess.results import FORMULA, Assessment
 from assess.settings import SCENARIOS, Settings
 from assess.units import GRAVITY
@@ -84,7 +85,7 @@ def _cases(items: tuple[Item, ...], pairs: list[tuple[int, Demand]]) -> Cases:
 
 def _governing(case_item: np.ndarray, probability: np.ndarray, pfa: np.ndarray) -> np.ndarray:
     """Index of the case that governs each item: larger probability, then larger PFA, then the first, which is X."""
-    order = np.lexsort((-pfa, -probability, case_item))
+    order = np.lexsort((-np.round(pfa / GRAVITY, ALIKE), -np.round(probability, ALIKE), case_item))
     first = np.searchsorted(case_item[order], np.arange(case_item[-1] + 1 if len(case_item) else 0))
     return order[first]
 

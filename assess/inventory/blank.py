@@ -9,16 +9,17 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from importlib.resources import files
 from io import StringIO
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 import xlsxwriter
 from xlsxwriter.utility import xl_col_to_name
 
-from assess.inventory.columns import CATALOGUE, ITEMS, LIVE, SHEETS, Column, Sheet
+from assess.inventory.columns import CATALOGUE, ITEMS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.inventory.helptext import FIRST_LINES
 from assess.inventory.lists import ROWS, ListsWriter, Units, slug
-from assess.inventory.live import OUTSIDE
+from assess.inventory.live import OUTSIDE, write_plainly
 from assess.inventory.live_row import FIRST, LiveRow
 from assess.risk import RiskClass
 
@@ -85,7 +86,7 @@ class _Writer:
                                           "text_wrap": True, "valign": "top", "border": 1})  # fmt: skip
         self.text = book.add_format({"num_format": "@"})
         self.live_formats = [book.add_format({"num_format": code, "bg_color": "#f1f3f5"}) for code in
-                             ("0.000", "0.000", "0.00", "0.00", "General")]  # fmt: skip
+                             ("0.000", "0.000", "0.00", "0.00", "General", "General", "0.0", "0.0")]  # fmt: skip
         self.title = book.add_format({"bold": True, "font_size": 14})
         self.wrap = book.add_format({"text_wrap": True, "valign": "top"})
         self.bold = book.add_format({"bold": True, "valign": "top"})
@@ -95,6 +96,8 @@ class _Writer:
         help_sheet = self.book.add_worksheet("Help")
         pages = {sheet.name: self.book.add_worksheet(sheet.name) for sheet in SHEETS}
         lists = self.book.add_worksheet("Lists")
+        for page in (*pages.values(), lists):
+            write_plainly(page)
         ListsWriter(self.book, lists, self.title, self.units, self.last).write()
         self._write_help(help_sheet)
         for sheet in SHEETS:
@@ -126,7 +129,8 @@ class _Writer:
             for at, column in enumerate(sheet.columns):
                 self._write_cell(page, number, at, column, row.get(column.name))
         page.freeze_panes(1, 1)
-        page.autofilter(0, 0, last, len(sheet.columns) - 1 + (len(LIVE) if sheet.name == "Items" else 0))
+        more = len(LIVE) + len(WORKINGS)
+        page.autofilter(0, 0, last, len(sheet.columns) - 1 + (more if sheet.name == "Items" else 0))
         page.set_landscape()
         page.fit_to_pages(1, 0)
         page.repeat_rows(0)
@@ -166,16 +170,17 @@ class _Writer:
     # --------------------------------------------------------------- live columns
 
     def _write_live(self, page: Any) -> None:
-        for at, label in enumerate(LIVE):
+        for at, label in enumerate((*LIVE, *WORKINGS)):
             page.write_string(0, FIRST + at, label, self.live_head)
             page.set_column(FIRST + at, FIRST + at, 16 if at == len(LIVE) - 1 else 10)
         page.write_comment(0, FIRST + 4, f"Computed by Excel from this row. {OUTSIDE} behind a class: outside the "
                            "range in which the formula was checked by tests.", {"x_scale": 2})  # fmt: skip
         last = self.last[ITEMS.name]
         for row in range(2, last + 1):
-            stored = self.content.live[row - 2] if row - 2 < len(self.content.live) else [""] * len(LIVE)
-            for at, formula in enumerate(LiveRow(row, self.last).formulas()):
-                page.write_formula(row - 1, FIRST + at, formula, self.live_formats[at], stored[at])
+            stored = self.content.live[row - 2] if row - 2 < len(self.content.live) else ()
+            formulas = LiveRow(row, self.last).formulas()
+            for at, (formula, value) in enumerate(zip_longest(formulas, stored, fillvalue="")):
+                page.write_formula(row - 1, FIRST + at, formula, self.live_formats[at], value)
         self._colour(page, last)
 
     def _colour(self, page: Any, last: int) -> None:

@@ -298,3 +298,6 @@ SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE)
 
 LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)")
 """Columns at the right of Items that Excel computes; reading leaves them out."""
+
+WORKINGS = ("Axis used", "PFV used [cm/s]", "Height used [cm]")
+"""Right of those, what they are computed from: each formula stays short, and its input can be seen."""

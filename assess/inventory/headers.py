@@ -10,7 +10,7 @@ from openpyxl.utils import get_column_letter
 
 from assess.errors import Severity
 from assess.inventory.cells import read_text, shorten
-from assess.inventory.columns import LIVE, Column, Sheet
+from assess.inventory.columns import LIVE, WORKINGS, Column, Sheet
 from assess.inventory.labels import fold, split_header
 from assess.units import QUANTITIES, read_unit
 
@@ -46,7 +46,7 @@ class Headers:
 
     def read(self, number: int, values: Values) -> None:
         """Read the header row of a table."""
-        live = {fold(split_header(label)[0]) for label in LIVE}
+        live = {fold(split_header(label)[0]) for label in (*LIVE, *WORKINGS)}
         texts = {at: read_text(value) for at, value in enumerate(values) if value is not None}
         labels = {fold(split_header(text)[0]) for text in texts.values()}
         for at, text in texts.items():

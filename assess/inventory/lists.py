@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from xlsxwriter.utility import xl_col_to_name
 
+from assess.inventory import live
 from assess.inventory.columns import BUILDING, SHEETS, Column
 from assess.inventory.helptext import LISTS_NOTE
 from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
@@ -96,7 +97,16 @@ class ListsWriter:
             self.page.write_string(row - 1, at, f"{name}: {column.label}")
             self.page.write_formula(row - 1, at + 1, formula, None, factor)
             self.book.define_name(f"unit_{name.lower()}_{field}", f"=Lists!${xl_col_to_name(at + 1)}${row}")
+        self._write_sizes_unit(len(_NEEDED_FACTORS) + 4, at)
         return at + 2
+
+    def _write_sizes_unit(self, row: int, at: int) -> None:
+        """Write what the live columns say where a header of a size has no known unit."""
+        sizes = (f"unit_{sheet}_{name}" for sheet in ("items", "catalogue") for name in ("breadth", "height"))
+        self.page.write_string(row - 1, at, "unknown unit of a size")
+        formula = f'=IF(OR({",".join(f"ISTEXT({size})" for size in sizes)}),"unit?","")'
+        self.page.write_formula(row - 1, at + 1, formula, None, "")
+        self.book.define_name("sizes_unit", f"=Lists!${xl_col_to_name(at + 1)}${row}")
 
     # ------------------------------------------------------------------ floors
 
@@ -152,4 +162,4 @@ def _serving(cells: Mapping[str, str]) -> list[str]:
 def _best(cells: Mapping[str, str]) -> str:
     """Expression for the axis that governs a piece which may topple along both: one without a number comes first."""
     x, y = cells["pfa_x"], cells["pfa_y"]
-    return f'IF(ISNUMBER({x}),IF(ISNUMBER({y}),IF({x}>={y},"X","Y"),"Y"),"X")'
+    return f'IF(ISNUMBER({x}),IF(ISNUMBER({y}),{live.worse_axis(x, y)},"Y"),"X")'

@@ -5,10 +5,22 @@ The numbers come from the methods themselves, so the sheet and the program canno
 workbooks in a spreadsheet engine and holds both to 1e-9.
 """
 
+from typing import Any
+
 from assess.methods import kaneko_hayashi as kh
-from assess.methods._method import ROUNDING
+from assess.methods._method import ALIKE, ROUNDING
 from assess.methods.proposed_or import CHECKED_BREADTH_TO_HEIGHT, CHECKED_PFA, COEFFICIENTS, THIN_PFA_CAP
 from assess.risk import LIMITS, RiskClass
+
+
+def write_plainly(page: Any) -> None:
+    """Have a sheet of XlsxWriter take formulas as they are.
+
+    It searches each for some 70 functions that are newer than Excel 2007, which ours are not: that was nine tenths of
+    the time of writing a report. Should a later XlsxWriter name its search otherwise, it is merely slow again.
+    """
+    page._prepare_formula = lambda formula, expand_future_functions=False: formula.lstrip("=")
+
 
 OUTSIDE = "*"
 """Mark behind a class: outside the range in which the formula was checked by tests."""
@@ -36,7 +48,7 @@ def proposed_or(ratio: str, pfa: str) -> str:
 def kaneko_hayashi(ratio: str, height: str, pfa: str, pfv: str, zeta_a: str, zeta_v: str, alpha: str) -> str:
     """Return equation (5); `height` in cm, `pfa` in g, `pfv` in cm/s or an empty text, where the upper bound stands."""
     y = f"({pfa}*{kh.G!r})"
-    k = f"LN({y}/({ratio}*{kh.G!r}*(1+{ratio})))"
+    k = f"LN({pfa}/({ratio}*(1+{ratio})))"
     v = f"LN({pfv}/({kh.VELOCITY_FACTOR!r}*{ratio}*SQRT({height})*(1+{ratio})^{kh.VELOCITY_POWER!r}))"
     boundary = f"{kh.BOUNDARY_FACTOR!r}/SQRT({height})*(1+{ratio})^({kh.BOUNDARY_POWER!r})"
     by_pfa = f"NORMSDIST({k}/{zeta_a})"
@@ -54,6 +66,11 @@ def risk_class(probability: str, ratio: str, pfa: str, limits: tuple[str, str, s
     inside = ",".join((_between(ratio, CHECKED_BREADTH_TO_HEIGHT.low, CHECKED_BREADTH_TO_HEIGHT.high),
                        _between(pfa, CHECKED_PFA.low, CHECKED_PFA.high)))  # fmt: skip
     return _plain(f'{words}&IF(AND({inside}),"","{OUTSIDE}")')
+
+
+def worse_axis(x: str, y: str) -> str:
+    """Return the axis of the larger PFA [g], X where they are alike to `ALIKE` decimals, as conversions leave them."""
+    return f'IF(ROUND({x},{ALIKE})>=ROUND({y},{ALIKE}),"X","Y")'
 
 
 def _between(value: str, low: float, high: float) -> str:

@@ -16,6 +16,9 @@ BoolArray = NDArray[np.bool_]
 ROUNDING = 1e-9
 """Relative: what lies nearer to a limit than this lies on it, so that a change of units moves nothing across."""
 
+ALIKE = 9
+"""Decimals to which two PFA [g] or two probabilities are held against each other when one of them has to govern."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cases:

@@ -104,5 +104,5 @@ def test_a_spreadsheet_engine_computes_the_same(path, assessment):
     book = formualizer.load_workbook(str(path))
     book.evaluate_all()
     for row, values in enumerate(stored_live(assessment), 2):
-        computed = [book.evaluate_cell("Items", row, FIRST + at) for at in range(len(LIVE))]
+        computed = [book.get_value("Items", row, FIRST + at) for at in range(len(LIVE))]
         assert all(same(*pair) for pair in zip(computed, values, strict=True)), (row, computed, values)

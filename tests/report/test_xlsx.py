@@ -77,7 +77,7 @@ def test_stored_results_are_what_an_engine_computes(report):
         for row in sheet.iter_rows():
             for cell in row:
                 if cell.data_type == "f":
-                    found = book.evaluate_cell(sheet.title, cell.row, cell.column)
+                    found = book.get_value(sheet.title, cell.row, cell.column)
                     assert _same(found, stored.get((sheet.title, cell.coordinate), "")), (sheet.title, cell.coordinate)
                     checked += 1
     assert checked > 8 * len(_items())
@@ -107,7 +107,7 @@ def test_items_agree_with_the_program(report):
     }
     for row, one in enumerate(assessment, 2):
         methods = one.governing.methods
-        found = {label: book.evaluate_cell("Items", row, column) for label, column in at.items()}
+        found = {label: book.get_value("Items", row, column) for label, column in at.items()}
         assert found["B/H"] == pytest.approx(one.item.breadth / one.item.height, abs=1e-9)
         assert found["OR raw"] == pytest.approx(methods["proposed_or"].detail["raw"], abs=1e-9)
         assert found["OR"] == pytest.approx(methods["proposed_or"].value, abs=1e-9)
@@ -132,10 +132,10 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
     book.evaluate_all()
     for row, one in enumerate(again, 2):
         methods = one.governing.methods
-        assert book.evaluate_cell("Items", row, _column(sheet, "OR")) == pytest.approx(
+        assert book.get_value("Items", row, _column(sheet, "OR")) == pytest.approx(
             methods["proposed_or"].value, abs=1e-9
         )
-        found = book.evaluate_cell("Items", row, _column(sheet, "Kaneko-Hayashi"))
+        found = book.get_value("Items", row, _column(sheet, "Kaneko-Hayashi"))
         assert found == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
     from assess.report.content import build_content
 
@@ -143,7 +143,7 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
     summary = openpyxl.load_workbook(path)["Summary"]
     top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
     for row, counts in enumerate(content.by_floor, top + 1):
-        found = [book.evaluate_cell("Summary", row, column) for column in range(2, 8)]
+        found = [book.get_value("Summary", row, column) for column in range(2, 8)]
         assert found == [*counts.by_class.values(), counts.anchored, counts.total]
 
 
@@ -156,7 +156,7 @@ def test_an_edited_class_limit_moves_the_classes(report):
     book.set_value("Assumptions", 4, 2, 0.999999)
     book.evaluate_all()
     after = sum(
-        book.evaluate_cell("Items", row, _column(sheet, "Class (formula)")).startswith("■")
+        book.get_value("Items", row, _column(sheet, "Class (formula)")).startswith("■")
         for row in range(2, 2 + len(assessment))
     )
     assert after < before

@@ -11,6 +11,7 @@ from typing import Any
 import xlsxwriter
 
 from assess.errors import OutputError
+from assess.inventory.live import write_plainly
 from assess.report.content import Content, build_content
 from assess.report.xlsx import items, sheets, summary
 from assess.report.xlsx.pen import Pen
@@ -57,6 +58,7 @@ def _write_sheets(pen: Pen, content: Content) -> None:
     for row, name in enumerate(sheets.NAMES, 2):
         pen.book.define_name(name, f"=Assumptions!$B${row}")
     for name, write in SHEETS.items():
+        write_plainly(pages[name])
         pages[name].set_landscape()
         pages[name].set_paper(9)
         pages[name].fit_to_pages(1, 0)

@@ -76,7 +76,7 @@ def _floor_value(cells: Mapping[str, str], letter: str, last: int) -> str:
 
 def _axis(cells: Mapping[str, str], last: int) -> str:
     given, x, y = cells["Axis given"], _floor_value(cells, "C", last), _floor_value(cells, "F", last)
-    return f'IF({given}<>"",{given},IF({x}>={y},"X","Y"))'
+    return f'IF({given}<>"",{given},{live.worse_axis(x, y)})'
 
 
 def _on_axis(cells: Mapping[str, str], for_x: str, for_y: str, last: int) -> str:

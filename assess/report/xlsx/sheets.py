@@ -7,12 +7,14 @@ from xlsxwriter.utility import xl_col_to_name
 from assess.demand import Demand
 from assess.inventory.model import Axis
 from assess.methods import kaneko_hayashi as kh
+from assess.methods._method import ALIKE
 from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
 from assess.report.content import Content, describe_source, describe_treatment
 from assess.report.data import edge
 from assess.report.xlsx.items import HEAD
 from assess.report.xlsx.pen import INPUT, Pen
 from assess.risk import LIMITS
+from assess.units import GRAVITY
 
 _EDIT_HERE = (
     "Edit the PFA and PFV here: Items and Summary follow. Where several records serve an axis, the one with the "
@@ -57,7 +59,7 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
 
 
 def _governing(content: Content, floor: str, axis: Axis) -> Demand:
-    return max(content.assessment.demands[floor, axis], key=lambda demand: demand.pfa)
+    return max(content.assessment.demands[floor, axis], key=lambda demand: round(demand.pfa / GRAVITY, ALIKE))
 
 
 def _write_demand(pen: Pen, page: Any, row: int, at: int, demand: Demand, period: float | None) -> None:
