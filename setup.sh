@@ -34,7 +34,7 @@ fi
 [ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
 .venv/bin/python -m pip install --quiet --disable-pip-version-check -e "$1"
 
-works() { .venv/bin/python -c "import weasyprint" 2>/dev/null; }
+works() { .venv/bin/python -c "import weasyprint" >/dev/null 2>&1; }
 if ! works; then
     echo "Installing the system libraries of the PDF: $LIBRARIES ..."
     install_packages "$LIBRARIES" || true

@@ -16,7 +16,7 @@ from assess.errors import Problem, WorkbookError
 
 MAX_FILE = 100 * 2**20
 MAX_PARTS = 2000
-MAX_TOTAL = 256 * 2**20
+MAX_TOTAL = 128 * 2**20
 MAX_RATIO = 200
 MAX_ROWS = 100_000
 MAX_COLUMNS = 256
@@ -27,7 +27,7 @@ _TYPES = "[Content_Types].xml"
 _WORKBOOK = "xl/workbook.xml"
 _RELATIONS = "xl/_rels/workbook.xml.rels"
 _MAIN = ("sheet.main+xml", "template.main+xml", "sheet.macroEnabled.main+xml", "template.macroEnabled.main+xml")
-_LIMITS = {"sharedStrings+xml": (24 * 2**20, 2_000_000), "styles+xml": (8 * 2**20, 300_000)}
+_LIMITS = {"sharedStrings+xml": (24 * 2**20, 1_000_000), "styles+xml": (8 * 2**20, 300_000)}
 """Bytes and tags of the parts that are read whole, by how their content type ends."""
 
 _SPREADSHEET = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"

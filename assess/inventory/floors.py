@@ -10,7 +10,7 @@ from assess.inventory.axes import NEAR_AXIS, angle_between
 from assess.inventory.cells import CellError, shorten
 from assess.inventory.files import find_file, find_picture
 from assess.inventory.model import Axis, Building, Floor, FloorRecord
-from assess.inventory.names import check_unique
+from assess.inventory.names import check_unique, check_wildcards
 from assess.inventory.tables import Row, Table
 from assess.motion.formats import read_records, select
 from assess.motion.record import Record
@@ -31,6 +31,7 @@ class FloorReader:
     def read(self) -> tuple[Floor, ...]:
         """Return the floors; problems are reported to the table."""
         check_unique(self.table, "floor")
+        check_wildcards(self.table, "floor")
         return tuple(self._floor(row) for row in self.table.rows if row.values.get("floor") is not None)
 
     def _floor(self, row: Row) -> Floor:

@@ -27,6 +27,17 @@ def check_unique(table: Table, name: str) -> None:
         first.setdefault(key(value), row.number)
 
 
+def check_wildcards(table: Table, name: str) -> None:
+    """Warn of names that a spreadsheet's look-up takes for patterns, so that a live column may take another row."""
+    label = table.sheet.column(name).label
+    for row in table.rows:
+        value = row.values.get(name)
+        if value is not None and any(sign in value for sign in "*?~"):
+            message = f"{label} {shorten(value)} holds *, ? or ~, which Excel's look-ups read as patterns."
+            mend = "Rename it: the live columns may show another row's values."
+            table.report(table.cell(name, row.number), message, mend, "warning")
+
+
 def check_references(table: Table, name: str, source: Table, defining: str) -> None:
     """Spell every name of a column as `source` does; report those that it does not define."""
     if source.sheet.required and not (source.found and defining in source.letters):

@@ -10,7 +10,7 @@ from assess.inventory.floors import FloorReader
 from assess.inventory.items import ItemReader, check_plan_sides
 from assess.inventory.labels import key
 from assess.inventory.model import Building, CatalogueType, Inventory, Place, Segment
-from assess.inventory.names import check_references, check_unique
+from assess.inventory.names import check_references, check_unique, check_wildcards
 from assess.inventory.tables import Row, Table, raise_errors, read_tables
 
 
@@ -82,6 +82,7 @@ def _read_building(table: Table, folder: Path) -> Building:
 
 def _read_catalogue(table: Table) -> tuple[CatalogueType, ...]:
     check_unique(table, "type")
+    check_wildcards(table, "type")
     for row in table.rows:
         check_plan_sides(table, row.number, row.values)
     return tuple(CatalogueType(row=row.number, **_filled(row)) for row in _with(table, "type"))

@@ -1,5 +1,7 @@
 """The PDF report: the HTML with print.css, laid out by WeasyPrint."""
 
+import contextlib
+import io
 import logging
 import sys
 from pathlib import Path
@@ -30,7 +32,8 @@ def load_weasyprint() -> Any:
     """Return the module weasyprint; raises PdfUnavailableError with the mend where its libraries are missing."""
     logging.getLogger("weasyprint").addHandler(logging.NullHandler())
     try:
-        import weasyprint
+        with contextlib.redirect_stdout(io.StringIO()):  # it prints a page of advice where a library is missing
+            import weasyprint
     except (ImportError, OSError) as error:
         reason = str(error).splitlines()[0]
         raise PdfUnavailableError(

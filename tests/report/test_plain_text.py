@@ -5,13 +5,14 @@ import json
 import re
 import zipfile
 
+import formualizer
 import openpyxl
 import pypdfium2
 import pytest
 
 import assess
+from assess.inventory.blank import Content, write_workbook
 from assess.inventory.columns import SHEETS
-from tests.workbooks import write
 
 FORMULA = '=HYPERLINK("http://x","y")'
 SCRIPT = "<script>alert(1)</script>"
@@ -26,20 +27,28 @@ _TEXT = [
 ]
 
 
-def _escaped(text):
-    """Write a text as a workbook's XML holds it: control characters as _xHHHH_."""
-    return re.sub("[\x00-\x08\x0b-\x1f]", lambda match: f"_x{ord(match[0]):04X}_", text)
-
-
 @pytest.fixture(scope="module")
 def outputs(tmp_path_factory):
+    """A workbook with a hostile text in every text column of every sheet, and all that is made of it."""
     folder = tmp_path_factory.mktemp("text")
-    items = [
-        {"item": f"{at} {text[:60]}", "floor": "1", "breadth": 30, "height": 180} | dict.fromkeys(_TEXT, text)
-        for at, text in enumerate(HOSTILE)
-    ]
-    path = write(folder / "w.xlsx", [{**item, "segment": ""} for item in items], building=FORMULA, address=SCRIPT,
-                 use=PATH, prepared_by=CONTROL, organisation=TURNED, scenario=SCRIPT + FORMULA)  # fmt: skip
+    names = [f"{at} {text[:60]}" for at, text in enumerate(HOSTILE)]
+    rows = {
+        "Building": [{"building": FORMULA, "address": SCRIPT, "use": PATH, "prepared_by": CONTROL,
+                      "organisation": TURNED, "scenario": SCRIPT + FORMULA}],
+        "Floors": [{"floor": FORMULA, "name": SCRIPT, "pfa_x": 0.4}, {"floor": SCRIPT, "name": LONG, "pfa_y": 0.2}],
+        "Catalogue": [{"type": FORMULA, "source": SCRIPT, "breadth": 40, "height": 180},
+                      {"type": SCRIPT, "source": FORMULA, "breadth": 40, "height": 180}],
+        "Places": [{"place": name, "floor": FORMULA, "x": at, "y": 2} for at, name in enumerate((FORMULA, SCRIPT))],
+        "Routes": [{"route": FORMULA, "segment": SCRIPT, "floor": FORMULA, "start": FORMULA, "end": SCRIPT,
+                    "notes": PATH}],
+        "Items": [
+            {"item": name, "floor": FORMULA, "type": SCRIPT} | dict.fromkeys(_TEXT, text) | {"segment": ""}
+            for name, text in zip(names, HOSTILE, strict=True)
+        ] + [{"item": "placed", "floor": FORMULA, "type": FORMULA, "route": FORMULA, "segment": SCRIPT, "x": 1,
+              "y": 1}],
+    }  # fmt: skip
+    path = folder / "w.xlsx"
+    write_workbook(path, Content(rows=rows))
     _unescape_controls(path)
     assessment = assess.run(assess.read_inventory(path))
     written = assess.write_reports(assessment, folder / "out")
@@ -86,6 +95,17 @@ def test_csv(outputs):
         assert rows[0][name] == "'" + FORMULA
         assert rows[1][name] == SCRIPT
         assert rows[3][name] == LONG.strip()
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_excel_counts_a_floor_with_such_a_name(outputs):
+    """A name such as =HYPERLINK(...) is no criterion: the floor's pieces are counted."""
+    assessment, written = outputs
+    book = formualizer.load_workbook(str(written["xlsx"]))
+    book.evaluate_all()
+    summary = openpyxl.load_workbook(written["xlsx"])["Summary"]
+    top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
+    assert book.get_value("Summary", top + 1, 7) == len(assessment)
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")

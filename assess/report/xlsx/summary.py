@@ -4,6 +4,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
+from assess.inventory.live import OUTSIDE
 from assess.report import words
 from assess.report.content import Content
 from assess.report.xlsx.items import HEAD, item_columns
@@ -45,12 +46,14 @@ def _write_counts(pen: Pen, page: Any, content: Content, top: int) -> int:
     total = top + 1 + len(content.floors)
     for row, (at_floor, floor_page) in enumerate(enumerate(content.floors, HEAD + 1), top + 1):
         pen.put(page, row, 0, floor_page.title)
-        on_floor = f"{item['Quantity']},{item['Floor']},Floors!$A${at_floor}"
+        on_floor = f"{item['Quantity']}*({item['Floor']}=Floors!$A${at_floor})"  # SUMIFS would read names as criteria
         counts = floor_page.counts
         for at, risk in enumerate(RiskClass, 1):
-            formula = f'=SUMIFS({on_floor},{item["Class (formula)"]},"{risk.label}*",{item["Anchored"]},"<>yes")'
+            shown = item["Class (formula)"]
+            classed = f'(({shown}="{risk.label}")+({shown}="{risk.label}{OUTSIDE}"))'
+            formula = f'=SUMPRODUCT({on_floor}*{classed}*({item["Anchored"]}<>"yes"))'
             page.write_formula(row, at, formula, None, counts.by_class[risk])
-        page.write_formula(row, 5, f'=SUMIFS({on_floor},{item["Anchored"]},"yes")', None, counts.anchored)
+        page.write_formula(row, 5, f'=SUMPRODUCT({on_floor}*({item["Anchored"]}="yes"))', None, counts.anchored)
         page.write_formula(row, 6, f"=SUM(B{row + 1}:F{row + 1})", None, counts.total)
     page.write_string(total, 0, "All floors", pen.bold)
     totals = (*content.total.by_class.values(), content.total.anchored, content.total.total)
