@@ -11,6 +11,8 @@ Names are loaded when first used, so that ``import assess`` costs next to nothin
 import importlib
 from typing import TYPE_CHECKING
 
+from assess.version import __version__
+
 if TYPE_CHECKING:
     from assess.assessment import run
     from assess.errors import AssessError, InputError, OutputError, Problem, RecordError, WorkbookError
@@ -19,8 +21,6 @@ if TYPE_CHECKING:
     from assess.report import write_reports
     from assess.results import Assessment
     from assess.settings import Settings
-
-__version__ = "0.1.0"
 
 _HOME = {
     "Assessment": "assess.results",

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess import __version__
 from assess.errors import InputError, OutputError, Problem, WorkbookError
+from assess.version import __version__
 
 if TYPE_CHECKING:
     from assess.results import Assessment
@@ -178,17 +178,10 @@ def _print_problems(problems: Sequence[Problem]) -> None:
 
 
 def _print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
-    from collections import Counter
-
+    from assess.results import count_pieces
     from assess.risk import RiskClass
 
-    counts: Counter[RiskClass] = Counter()
-    anchored = 0
-    for one in assessment:
-        if one.is_anchored:
-            anchored += one.item.quantity
-        else:
-            counts[one.adopted.risk] += one.item.quantity
+    counts, anchored = count_pieces(assessment)
     for risk in reversed(RiskClass):
         typer.echo(f"{risk.label:<13} {counts[risk]:>6,} pieces")
     if anchored:

@@ -4,8 +4,9 @@ import platform
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
-from assess import __version__, resources
+from assess import resources
 from assess.errors import PdfUnavailableError
+from assess.version import __version__
 
 _PACKAGES = (
     "numpy",

@@ -1,7 +1,7 @@
 """What an assessment found: arrays for computing, one view per item for reading."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -206,6 +206,17 @@ def _adopt(case: CaseResult) -> Adopted:
     piece = [flag for flag in FLAGS if any(flag in method.flags for method in case.methods.values())]
     flags = dict.fromkeys((*formula.flags, *case.demand.flags, *piece))
     return Adopted(FORMULA, probability, None, None, risk, risk, None, tuple(flags))
+
+
+def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
+    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which stand outside the classes."""
+    by_class, anchored = dict.fromkeys(RiskClass, 0), 0
+    for one in results:
+        if one.is_anchored:
+            anchored += one.item.quantity
+        else:
+            by_class[one.adopted.risk] += one.item.quantity
+    return by_class, anchored
 
 
 def fix_first(results: Iterator[ItemResult]) -> list[ItemResult]:

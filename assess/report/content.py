@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from assess import __version__
 from assess.demand import FLAGS as DEMAND_FLAGS
 from assess.demand import Demand
 from assess.errors import Problem
@@ -17,8 +16,9 @@ from assess.motion.record import treatment
 from assess.report import words
 from assess.report.data import versions
 from assess.results import FLAGS as ITEM_FLAGS
-from assess.results import Assessment, ItemResult, fix_first
+from assess.results import Assessment, ItemResult, count_pieces, fix_first
 from assess.risk import LIMITS, RiskClass
+from assess.version import __version__
 
 WORST = 10
 """Pieces in the lists of the summary."""
@@ -109,7 +109,7 @@ def build_content(assessment: Assessment) -> Content:
         platform=versions(),
         building=_building(assessment),
         results=results,
-        total=_count("All floors", results),
+        total=Counts("All floors", *count_pieces(results)),
         by_floor=tuple(page.counts for page in floors),
         worst=sorted(free, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))[:WORST],
         fix_first=tuple(fix_first(iter(results))),
@@ -142,17 +142,6 @@ def _building(assessment: Assessment) -> list[tuple[str, str]]:
     return lines
 
 
-def _count(label: str, results: Sequence[ItemResult]) -> Counts:
-    by_class = Counter(dict.fromkeys(RiskClass, 0))
-    anchored = 0
-    for one in results:
-        if one.is_anchored:
-            anchored += one.item.quantity
-        else:
-            by_class[one.adopted.risk] += one.item.quantity
-    return Counts(label, by_class, anchored)
-
-
 def floor_title(floor: Floor) -> str:
     """Return the floor's name for people."""
     return words.clip(f"{floor.floor} – {floor.name}" if floor.name else f"Floor {floor.floor}", 60)
@@ -166,7 +155,7 @@ def _floors(assessment: Assessment, results: Sequence[ItemResult]) -> tuple[Floo
     for floor in assessment.inventory.floors:
         demands = [demand for axis in ("X", "Y") for demand in assessment.demands[floor.floor, axis]]
         own = by_floor[floor.floor]
-        pages.append(FloorPage(floor, floor_title(floor), demands, _count(floor_title(floor), own), own))
+        pages.append(FloorPage(floor, floor_title(floor), demands, Counts(floor_title(floor), *count_pieces(own)), own))
     return tuple(pages)
 
 

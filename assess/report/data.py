@@ -12,13 +12,13 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TextIO
 
-from assess import __version__
 from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.columns import BUILDING
 from assess.results import Assessment, CaseResult, ItemResult, MethodResult
 from assess.risk import RiskClass
 from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
+from assess.version import __version__
 
 SCHEMA_VERSION = "1.0"
 SCHEMA = Path(__file__).with_name("results.schema.json")

@@ -12,7 +12,7 @@ from assess.demand import Demand
 from assess.inventory.model import Inventory
 from assess.report import words
 from assess.report.content import Content, Counts, FloorPage
-from assess.results import ItemResult
+from assess.results import ItemResult, count_pieces
 from assess.risk import RiskClass
 from assess.units import ACCELERATION
 
@@ -78,13 +78,7 @@ def draw_rooms(page: FloorPage) -> bytes:
     rooms: dict[str, list[ItemResult]] = {}
     for one in page.results:
         rooms.setdefault(one.item.room or "no room named", []).append(one)
-    counts = []
-    for room, results in sorted(rooms.items()):
-        by_class = dict.fromkeys(RiskClass, 0)
-        for one in results:
-            if not one.is_anchored:
-                by_class[one.adopted.risk] += one.item.quantity
-        counts.append(Counts(room, by_class, sum(one.item.quantity for one in results if one.is_anchored)))
+    counts = [Counts(room, *count_pieces(results)) for room, results in sorted(rooms.items())]
     return draw_counts(counts, "pieces")
 
 

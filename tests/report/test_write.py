@@ -125,7 +125,12 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path):
     code = (
         f"from assess.cli import main\nimport sys\nsys.argv=['assess','run',{str(new)!r},'--out',{str(out)!r}]\nmain()"
     )
-    process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
+    )
     while process.poll() is None and not list(out.glob(".assess-writing-*/*")):
         os.sched_yield()
     process.send_signal(signal.SIGINT)
