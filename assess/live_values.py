@@ -10,13 +10,11 @@ from pathlib import Path
 
 from assess.assessment import run
 from assess.inventory.blank import Content, Units, write_workbook
+from assess.inventory.lists import RUN_ASSESS
 from assess.inventory.live import OUTSIDE
 from assess.inventory.workbook import read_inventory
 from assess.results import FORMULA, Assessment, ItemResult
 from assess.units import GRAVITY
-
-RUN_ASSESS = "run assess"
-"""What the live columns say of a floor that has a record, which no spreadsheet formula can read."""
 
 
 def stored_live(assessment: Assessment) -> list[list[float | str]]:

@@ -209,7 +209,7 @@ def _adopt(case: CaseResult) -> Adopted:
 
 
 def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
-    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which stand outside the classes."""
+    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which have no class."""
     by_class, anchored = dict.fromkeys(RiskClass, 0), 0
     for one in results:
         if one.is_anchored:

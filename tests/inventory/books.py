@@ -10,7 +10,7 @@ import pytest
 import xlsxwriter
 
 from assess.errors import Problem, WorkbookError
-from assess.inventory.model import Inventory
+from assess.inventory.model import Inventory, Item
 from assess.inventory.workbook import read_inventory
 
 Sheet = Sequence[Sequence[Any]]
@@ -96,3 +96,8 @@ def replace(old: str, new: str) -> Callable[[bytes], bytes]:
         return data.replace(old.encode(), new.encode())
 
     return change
+
+
+def read_item(folder: Path, header: list[str], row: list[Any], **others: Sheet) -> Item:
+    """Return the one item of a workbook with these columns beside Item and Floor."""
+    return read(folder, [["Item", "Floor", *header], ["A1", "1", *row]], **others).items[0]

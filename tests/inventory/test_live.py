@@ -182,23 +182,31 @@ def differences(path: Path, engine: Engine) -> Iterator[str]:
 BUILDINGS = [{}, {"period": 0.4}, {"period": 1.7, "scenario_kind": "given"}]
 
 
-@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("building", BUILDINGS, ids=["no T1", "short T1", "long T1"])
 @pytest.mark.parametrize("units", ["si", "imperial"])
-def test_live_columns_equal_the_program(tmp_path: Path, engine: Engine, units: Units, building: dict[str, Any]) -> None:
-    if engine is by_libreoffice and building is not BUILDINGS[1]:
-        pytest.skip("one building is enough for the slow engine")
-    path = fill(tmp_path / "book.xlsx", GRID, FLOORS, building, units)
-    check(path, engine)
+def test_live_columns_equal_the_program(tmp_path: Path, units: Units, building: dict[str, Any]) -> None:
+    check(fill(tmp_path / "book.xlsx", GRID, FLOORS, building, units), by_formualizer)
 
 
-@pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("units", RETYPED)
-def test_live_columns_follow_the_headers(tmp_path: Path, engine: Engine, units: str) -> None:
-    if engine is by_libreoffice and units != "mixed":
-        pytest.skip("one is enough for the slow engine")
+def test_live_columns_follow_the_headers(tmp_path: Path, units: str) -> None:
     path = fill(tmp_path / "book.xlsx", GRID, FLOORS, {"period": 0.9})
-    check(retype(path, RETYPED[units]), engine)
+    check(retype(path, RETYPED[units]), by_formualizer)
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_live_columns_equal_the_program_in_libreoffice(tmp_path: Path, units: Units) -> None:
+    check(fill(tmp_path / "book.xlsx", GRID, FLOORS, {"period": 0.4}, units), by_libreoffice)
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+@pytest.mark.parametrize("units", ["mm", "mixed"])
+def test_live_columns_follow_the_headers_in_libreoffice(tmp_path: Path, units: str) -> None:
+    path = fill(tmp_path / "book.xlsx", GRID, FLOORS, {"period": 0.9})
+    check(retype(path, RETYPED[units]), by_libreoffice)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
