@@ -7,8 +7,9 @@ import pytest
 from assess.assessment import run
 from assess.errors import WorkbookError
 from assess.inventory.blank import Content, write_workbook
+from assess.inventory.lists import RUN_ASSESS
 from assess.inventory.workbook import read_inventory
-from assess.live_values import RUN_ASSESS, stored_live, with_live
+from assess.live_values import stored_live, with_live
 from assess.settings import Settings
 
 RECORD = "time [s],acceleration [g]\n" + "".join(f"{at * 0.01:.2f},{0.2 * (-1) ** at}\n" for at in range(400))

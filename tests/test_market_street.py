@@ -13,9 +13,10 @@ import pytest
 
 from assess.assessment import run
 from assess.inventory.columns import ITEMS, LIVE
+from assess.inventory.lists import RUN_ASSESS
 from assess.inventory.model import Inventory, Item
 from assess.inventory.workbook import read_inventory
-from assess.live_values import RUN_ASSESS, stored_live
+from assess.live_values import stored_live
 from assess.units import GRAVITY
 
 FOLDER = Path(__file__).parents[1] / "inventories"
