@@ -1,10 +1,9 @@
 """What an assessment found: arrays for computing, one view per item for reading."""
 
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -168,21 +167,21 @@ class _Reader:
     """Reads one method's outcome case by case, from lists: indexing arrays one by one is slow."""
 
     def __init__(self, outcome: Outcome) -> None:
-        self.values: list[float] = outcome.value.tolist()
-        self.detail = {name: array.tolist() for name, array in outcome.detail.items()}
+        self.values = _known(outcome.value)
+        self.detail = {name: _known(array) for name, array in outcome.detail.items()}
         self.flags = {flag: array.tolist() for flag, array in outcome.flags.items() if array.any()}
 
     def __call__(self, case: int) -> MethodResult:
         return MethodResult(
-            _known(self.values[case]),
-            {name: _known(values[case]) for name, values in self.detail.items()},
-            tuple(flag for flag, raised in self.flags.items() if raised[case]),
+            self.values[case],
+            {name: values[case] for name, values in self.detail.items()},
+            tuple([flag for flag, raised in self.flags.items() if raised[case]]),
         )
 
 
-def _known(value: float) -> float | None:
-    """Return the value, None for NaN; words pass through."""
-    return None if isinstance(value, float) and math.isnan(value) else value
+def _known(array: NDArray[Any]) -> list[Any]:
+    """Return an array as a list, None in place of NaN; words pass through."""
+    return [None if value != value else value for value in array.tolist()]
 
 
 FORMULA = "proposed_or"

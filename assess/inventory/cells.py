@@ -57,6 +57,8 @@ def _plain(character: str) -> str:
 
 def read_text(value: object) -> str:
     """Return a cell's content as text: whole numbers without a decimal point, dates as ISO dates."""
+    if isinstance(value, str):
+        return clean(value)[0].strip()
     if isinstance(value, bool):
         return str(value).upper()
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:

@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from functools import lru_cache
 
 _BRACKET = re.compile(r"^(?P<label>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$", re.DOTALL)
 
@@ -12,6 +13,7 @@ def split_header(header: str) -> tuple[str, str | None]:
     return (match["label"], match["unit"]) if match else (header.strip(), None)
 
 
+@lru_cache(maxsize=4096)  # the same floors and choices stand in row after row
 def key(text: str) -> str:
     """Return a name as names are compared: letter case and the number of spaces ignored."""
     return " ".join(unicodedata.normalize("NFKC", text).split()).casefold()

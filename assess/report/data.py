@@ -46,8 +46,7 @@ def _write_list(file: TextIO, name: str, records: Iterator[Mapping[str, Any]]) -
     file.write("\n ]")
 
 
-def _dump(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(", ", ": "))
+_dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 
 def describe_run(assessment: Assessment) -> dict[str, Any]:
@@ -244,15 +243,16 @@ def write_csv(assessment: Assessment, path: Path) -> None:
     A text that a spreadsheet would take for a formula is written behind an apostrophe; numbers stay numbers.
     """
     with path.open("w", encoding="utf-8-sig", newline="") as file:
-        writer: Any = None
+        writer = csv.writer(file)
+        heads: list[str] = []
         for one in assessment:
-            row = {name: _safe(value) for name, value in flatten(item_record(one)).items()}
-            if writer is None:
-                writer = csv.DictWriter(file, list(row), restval="", extrasaction="ignore")
-                writer.writeheader()
-            writer.writerow(row)
-        if writer is None:
-            file.write("item\r\n")  # a table without rows still has a heading
+            row = flatten(item_record(one))
+            if not heads:
+                heads = list(row)
+                writer.writerow(heads)
+            writer.writerow([_safe(row[name]) for name in heads])
+        if not heads:
+            writer.writerow(["item"])  # a table without rows still has a heading
 
 
 def flatten(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -273,8 +273,10 @@ def flatten(record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _safe(value: object) -> object:
+    if value is None or isinstance(value, (float, int)):
+        return value
     if isinstance(value, list):
-        value = "; ".join(str(one) for one in value)
+        value = "; ".join(map(str, value))
     if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r", "\n"):
         return "'" + value
     return value
