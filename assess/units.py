@@ -24,9 +24,17 @@ QUANTITIES: Mapping[str, Mapping[str, float]] = {
 }
 
 
+ALIASES: Mapping[str, str] = {
+    "inch": "in", "inches": "in", "in.": "in", "feet": "ft", "foot": "ft", "ft.": "ft",
+    "m/s²": "m/s2", "m/s^2": "m/s2", "cm/s²": "cm/s2", "cm/s^2": "cm/s2",
+}  # fmt: skip
+"""Other spellings that are understood."""
+
+
 def read_unit(text: str) -> str:
-    """Return `text` as the tables above spell units: lower case, no spaces, ``m/s²`` as ``m/s2``."""
-    return "".join(text.split()).lower().replace("²", "2").replace("^", "")
+    """Return `text` as the tables above spell units: lower case, no spaces, no other spelling."""
+    spelt = "".join(text.split()).lower()
+    return ALIASES.get(spelt, spelt)
 
 
 def to_edge(value: float, factor: float) -> float:

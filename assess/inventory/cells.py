@@ -137,10 +137,9 @@ def _not_a_number(label: str, text: str, unit: str) -> CellError:
             f"{label} holds the error {text.strip()}.", "Mend the formula in the cell, or type the number."
         )
     if _COMMA.fullmatch(text):
-        dotted = text.strip().replace(",", ".")
         return CellError(
             f"{label} is the text {quoted} with a decimal comma, expected a number{_in(unit)}.",
-            f"Type {dotted} as your Excel writes numbers, without quotes or spaces.",
+            "Set the cell's format to General and type the number again.",
         )
     if _NUMERAL.fullmatch(text):
         return CellError(
@@ -175,7 +174,7 @@ def _likely_slip(column: Column, number: float, unit: str) -> str:
     """Guess the unit that was meant: one in which the number would be usual."""
     if number < 0:
         return "Remove the minus sign." if (column.low or 0) >= 0 else ""
-    names = {"m": "metres", "mm": "millimetres", "in": "inches", "cm": "centimetres", "ft": "feet"}
+    names = {"cm": "centimetres", "m": "metres", "mm": "millimetres", "in": "inches", "ft": "feet"}
     for other in (*names, "g", "m/s2", "cm/s2", "m/s", "cm/s"):
         if other != unit and other in QUANTITIES.get(column.quantity, {}):
             usual = not is_unusual(column, number, other)

@@ -42,6 +42,7 @@ class FloorReader:
         )
         records = {axis: found for axis in _AXES if (found := tuple(self._records(row, axis)))}
         self._check_demand(row)
+        self._check_velocities(row)
         return Floor(
             row=row.number,
             floor=values["floor"],
@@ -60,6 +61,19 @@ class FloorReader:
             where = "pfa_x" if "pfa_x" in self.table.letters else "floor"
             message = f"floor {shorten(row.values['floor'])} has neither a record nor a PFA."
             self.table.report(self.table.cell(where, row.number), message, "Fill in PFA X or PFA Y, or name a record.")
+
+    def _check_velocities(self, row: Row) -> None:
+        """Report a PFV that nothing would use: it tells of shaking that the PFA then would not."""
+        for axis in _AXES:
+            name, letter = f"pfv_{axis.lower()}", axis.lower()
+            others = [f"pfa_{letter}", f"record_{letter}"]
+            if row.values.get(name) is not None and not any(
+                row.values.get(other) is not None or self.table.spoilt(other, row.number) for other in others
+            ):
+                message = f"PFV {axis} stands without PFA {axis} and would not be used."
+                self.table.report(
+                    self.table.cell(name, row.number), message, f"Fill in PFA {axis}, or clear PFV {axis}."
+                )
 
     def _plan(self, row: Row) -> Path | None:
         text, cell = row.values.get("plan"), self.table.cell("plan", row.number)

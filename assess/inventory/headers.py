@@ -91,7 +91,8 @@ class Headers:
             wrong = f"{column.label} has no unit"
             if unit is not None:
                 wrong = f"the unit {shorten(unit)} of {column.label} is not known"
-            self.report(cell, f"{wrong}.", f"Write {column.header()}; known units: {known}.")
+            mend = f"Write the unit that the numbers are in, such as {column.header()}; known units: {known}."
+            self.report(cell, f"{wrong}.", mend)
             self.blind.add(column.name)
 
     def _near(self, label: str, unit: str | None, labels: Collection[str]) -> Column | None:

@@ -31,13 +31,16 @@ class ItemReader:
         check_references(table, "type", self.tables["Catalogue"], "type")
         _check_routes(table, self.tables["Routes"])
         built = (self._item(table, row) for row in table.rows)
-        return tuple(item for item in built if item is not None)
+        items = tuple(item for item in built if item is not None)
+        _check_size_columns(table)
+        return items
 
     def _item(self, table: Table, row: Row) -> Item | None:
         values = dict(row.values)
         assumed = _fill_sizes(table, row.number, values, self.types.get(key(values.get("type") or "")))
         _check_sizes(table, row.number, values)
         _check_position(table, row.number, values)
+        _check_axis(table, row.number, values)
         if values.get("axis") is None and values.get("angle_deg") is not None:
             values["axis"] = axis_of(values["angle_deg"])
             assumed += ["axis"] if values["axis"] else []
@@ -60,10 +63,30 @@ def _fill_sizes(table: Table, row: int, values: dict[str, Any], kind: CatalogueT
         values[name] = getattr(kind, name, None)
         if values[name] is not None:
             assumed.append(name)
-        elif name != "width" and not table.spoilt("type", row):
+        elif name in table.letters and name != "width" and not table.spoilt("type", row):
             message = f"{table.sheet.column(name).label} is blank and no Type gives it."
             table.report(table.cell(name, row), message, "Fill it in, or choose a Type that has one.")
     return assumed
+
+
+def _check_size_columns(table: Table) -> None:
+    """Report a column of sizes that is missing once, not in every row that would need it."""
+    for name in ("breadth", "height"):
+        needing = [row for row in table.rows if row.values.get("type") is None]
+        if name not in table.letters and needing:
+            header = table.sheet.column(name).header()
+            rows = f"row {needing[0].number}" + (f" and {len(needing) - 1} more" if len(needing) > 1 else "")
+            message = f"the column {header} is missing, and {rows} have no Type that gives it."
+            table.report("A1", message, "Add the column, or give those rows a Type.")
+
+
+def _check_axis(table: Table, row: int, values: Mapping[str, Any]) -> None:
+    """Warn of an axis that the angle contradicts: one of the two is a slip, and one of them may be the milder."""
+    axis, angle = values.get("axis"), values.get("angle_deg")
+    turned = axis_of(angle) if angle is not None else None
+    if axis is not None and turned is not None and axis != turned:
+        message = f"Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used."
+        table.report(table.cell("axis", row), message, "Correct one of the two.", "warning")
 
 
 def check_plan_sides(table: Table, row: int, values: Mapping[str, Any]) -> None:

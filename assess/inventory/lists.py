@@ -14,7 +14,7 @@ from assess.inventory import live
 from assess.inventory.columns import BUILDING, SHEETS, Column
 from assess.inventory.helptext import LISTS_NOTE
 from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
-from assess.units import GRAVITY, QUANTITIES
+from assess.units import ALIASES, GRAVITY, QUANTITIES
 
 Units = Literal["si", "imperial"]
 
@@ -76,7 +76,7 @@ class ListsWriter:
     def _write_units(self, at: int) -> int:
         for quantity in ("length", "acceleration", "velocity", "time"):
             units = dict(QUANTITIES[quantity])
-            units |= {unit.replace("s2", sign): factor for unit, factor in units.items() for sign in ("s²", "s^2")}
+            units |= {other: units[unit] for other, unit in ALIASES.items() if unit in units}
             self.page.write_column(2, at, (quantity, *units))
             self.page.write_column(2, at + 1, ("SI", *units.values()))
             first, second = xl_col_to_name(at), xl_col_to_name(at + 1)

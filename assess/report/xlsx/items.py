@@ -12,6 +12,9 @@ from assess.report.data import edge
 from assess.report.xlsx.pen import Pen
 from assess.results import ItemResult
 
+ANCHORED = "⚓ "
+"""Mark before the class of an anchored piece, which is that of the piece without its anchor; it is not coloured."""
+
 HEAD = 1
 """Rows above the data of Items and Floors: the headings alone."""
 
@@ -57,15 +60,22 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
 def item_formula(which: str, cells: Mapping[str, str], last: int) -> str:
     """Return a formula of `ItemColumn` for the cells of one row; `last` is the last row of Floors."""
     ratio, pfa, pfv = cells["B/H"], cells["PFA used [g]"], cells["PFV used [cm/s]"]
+    breadth, height = cells["Breadth [cm]"], cells["Height [cm]"]
+    risk, limits = cells["OR"], ("limit_medium", "limit_high", "limit_very_high")
+    shown = f'IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa, limits)},"check")'
+
+    def checked(formula: str) -> str:
+        return f'IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},"check")'
+
     formulas: dict[str, Callable[[], str]] = {
-        "ratio": lambda: f"{cells['Breadth [cm]']}/{cells['Height [cm]']}",
+        "ratio": lambda: f'IFERROR(IF(OR({breadth}<=0,{height}<=0),"check",{breadth}/{height}),"check")',
         "axis": lambda: _axis(cells, last),
         "pfa": lambda: _on_axis(cells, "C", "F", last),
         "pfv": lambda: _on_axis(cells, "D", "G", last),
-        "raw": lambda: live.equation_9(ratio, pfa),
-        "or": lambda: live.proposed_or(ratio, pfa),
-        "kh": lambda: live.kaneko_hayashi(ratio, cells["Height [cm]"], pfa, pfv, "zeta_a", "zeta_v", "slide_alpha"),
-        "class": lambda: live.risk_class(cells["OR"], ratio, pfa, ("limit_medium", "limit_high", "limit_very_high")),
+        "raw": lambda: checked(live.equation_9(ratio, pfa)),
+        "or": lambda: checked(live.proposed_or(ratio, pfa)),
+        "kh": lambda: checked(live.kaneko_hayashi(ratio, height, pfa, pfv, "zeta_a", "zeta_v", "slide_alpha")),
+        "class": lambda: f'IF({cells["Anchored"]}="yes","{ANCHORED}","")&{shown}',
     }
     return f"={formulas[which]()}"
 
@@ -107,7 +117,7 @@ def _value(key: str) -> Callable[[ItemResult], Any]:
 
 def _class_shown(one: ItemResult) -> str:
     outside = live.OUTSIDE if "extrapolated" in one.governing.methods["proposed_or"].flags else ""
-    return one.adopted.risk.label + outside
+    return (ANCHORED if one.is_anchored else "") + one.adopted.risk.label + outside
 
 
 def _as_run(key: str, criterion: tuple[str, str]) -> Callable[[ItemResult], Any]:

@@ -50,8 +50,8 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
     for row, floor_page in enumerate(content.floors, HEAD):
         pen.put(page, row, 0, floor_page.floor.floor)
         pen.put(page, row, 1, floor_page.floor.name)
-        _write_demand(pen, page, row, 2, _governing(content, floor_page.floor.floor, "X"), period)
-        _write_demand(pen, page, row, 5, _governing(content, floor_page.floor.floor, "Y"), period)
+        _write_demand(pen, page, row, _COLUMNS["X"], _governing(content, floor_page.floor.floor, "X"), period)
+        _write_demand(pen, page, row, _COLUMNS["Y"], _governing(content, floor_page.floor.floor, "Y"), period)
         pen.put(page, row, 8, floor_page.floor.elevation)
     page.freeze_panes(1, 1)
     page.repeat_rows(0)
@@ -63,6 +63,15 @@ def _governing(content: Content, floor: str, axis: Axis) -> Demand:
 
 
 def _write_demand(pen: Pen, page: Any, row: int, at: int, demand: Demand, period: float | None) -> None:
+    if "one_axis_only" in demand.flags:  # what serves this axis is the other one's: it follows when that is edited
+        other = _COLUMNS["Y" if demand.axis == "X" else "X"]
+        values = (edge(demand.pfa, "g"), edge(demand.pfv, "cm/s"))
+        for place, (value, code) in enumerate(zip(values, ("0.000", "0.0"), strict=True)):
+            cell = f"{xl_col_to_name(other + place)}{row + 1}"
+            formula = f'=IF({cell}="","",{cell})'
+            page.write_formula(row, at + place, formula, pen.format(code), "" if value is None else value)
+        pen.put(page, row, at + 2, _source(demand))
+        return
     form = pen.format("0.000", **INPUT)
     page.write_number(row, at, edge(demand.pfa, "g"), form)
     pfv = edge(demand.pfv, "cm/s")
@@ -72,7 +81,15 @@ def _write_demand(pen: Pen, page: Any, row: int, at: int, demand: Demand, period
         page.write_formula(row, at + 1, formula, pen.format("0.0"), pfv)
     else:
         pen.put(page, row, at + 1, pfv, pen.format("0.0", **INPUT))
-    pen.put(page, row, at + 2, f"{describe_source(demand)}{': ' + demand.name if demand.name else ''}")
+    pen.put(page, row, at + 2, _source(demand))
+
+
+_COLUMNS = {"X": 2, "Y": 5}
+"""Where PFA, PFV and source of an axis begin in the sheet Floors."""
+
+
+def _source(demand: Demand) -> str:
+    return describe_source(demand) + (f": {demand.name}" if demand.name else "")
 
 
 def write_motions(pen: Pen, page: Any, content: Content) -> None:
@@ -126,12 +143,16 @@ def write_assumptions(pen: Pen, page: Any, content: Content) -> None:
     settings = content.assessment.settings
     values = (*LIMITS, settings.zeta_acceleration, settings.zeta_velocity, settings.slide_coefficient)
     pen.listing(page, ("Assumption", "Value"), (70, 60), ())
-    for row, ((_, label), value) in enumerate(zip(NAMES.items(), values, strict=True), 1):
-        page.write_string(row, 0, f"{label} (edit the value: classes and counts follow)")
+    for row, ((name, label), value) in enumerate(zip(NAMES.items(), values, strict=True), 1):
+        page.write_string(row, 0, f"{label} (edit the value: {_follows(name)})")
         page.write_number(row, 1, value, pen.input)
     for row, (where, what) in enumerate(content.assumptions, len(NAMES) + 2):
         pen.put(page, row, 0, where)
         pen.put(page, row, 1, what, pen.wrap)
+
+
+def _follows(name: str) -> str:
+    return "classes and counts follow" if name.startswith("limit") else "the column Kaneko-Hayashi follows"
 
 
 def write_notes(pen: Pen, page: Any, content: Content) -> None:

@@ -46,14 +46,16 @@ def _write_counts(pen: Pen, page: Any, content: Content, top: int) -> int:
     total = top + 1 + len(content.floors)
     for row, (at_floor, floor_page) in enumerate(enumerate(content.floors, HEAD + 1), top + 1):
         pen.put(page, row, 0, floor_page.title)
-        on_floor = f"{item['Quantity']}*({item['Floor']}=Floors!$A${at_floor})"  # SUMIFS would read names as criteria
+        on_floor = f"({item['Floor']}=Floors!$A${at_floor})"  # SUMIFS would read names as criteria
         counts = floor_page.counts
         for at, risk in enumerate(RiskClass, 1):
             shown = item["Class (formula)"]
             classed = f'(({shown}="{risk.label}")+({shown}="{risk.label}{OUTSIDE}"))'
-            formula = f'=SUMPRODUCT({on_floor}*{classed}*({item["Anchored"]}<>"yes"))'
+            formula = f'=SUMPRODUCT({on_floor}*{classed}*({item["Anchored"]}<>"yes"),{item["Quantity"]})'
             page.write_formula(row, at, formula, None, counts.by_class[risk])
-        page.write_formula(row, 5, f'=SUMPRODUCT({on_floor}*({item["Anchored"]}="yes"))', None, counts.anchored)
+        page.write_formula(
+            row, 5, f'=SUMPRODUCT({on_floor}*({item["Anchored"]}="yes"),{item["Quantity"]})', None, counts.anchored
+        )
         page.write_formula(row, 6, f"=SUM(B{row + 1}:F{row + 1})", None, counts.total)
     page.write_string(total, 0, "All floors", pen.bold)
     totals = (*content.total.by_class.values(), content.total.anchored, content.total.total)
