@@ -1,9 +1,11 @@
 """The main job: an inventory in, an assessment out."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from assess.demand import LOSS_TO_TELL, Demand, build_demands
-from assess.errors import Problem
+from assess.demand import LOSS_TO_TELL, LOSS_TO_WARN, Demand, build_demands
+from assess.errors import Problem, Severity
 from assess.inventory.model import Axis, Inventory, Item
 from assess.methods import Cases, all_methods
 from assess.methods._method import ALIKE
@@ -58,7 +60,7 @@ def run(inventory: Inventory, settings: Settings | None = None) -> Assessment:
         case_demand=tuple(demand for _, demand in pairs),
         outcomes=outcomes,
         governing=_governing(case_item, outcomes[FORMULA].value, cases.pfa),
-        problems=(*inventory.problems, *_demand_problems(demands)),
+        problems=(*inventory.problems, *_demand_problems(inventory, demands)),
     )
 
 
@@ -90,13 +92,23 @@ def _governing(case_item: np.ndarray, probability: np.ndarray, pfa: np.ndarray) 
     return order[first]
 
 
-def _demand_problems(demands: dict[tuple[str, Axis], tuple[Demand, ...]]) -> list[Problem]:
-    """Say where treatment took a noticeable part of a record's own peak."""
+def _demand_problems(inventory: Inventory, demands: Mapping[tuple[str, Axis], tuple[Demand, ...]]) -> list[Problem]:
+    """Say where treatment took a noticeable part of a record's own peak, and where a given PFA is not used."""
     problems = []
     for demand in (one for ones in demands.values() for one in ones if "one_axis_only" not in one.flags):
         if demand.loss > LOSS_TO_TELL:
             message = f"treatment lowers the PFA of {demand.name} from the file's {_in_g(demand, demand.loss)}."
-            problems.append(Problem("note", "Floors", f"A{demand.floor.row}", message))
+            much = demand.loss > LOSS_TO_WARN
+            mend = "If the file is corrected already, say so in it (plain CSV: # corrected: yes)." if much else ""
+            problems.append(Problem("warning" if much else "note", "Floors", f"A{demand.floor.row}", message, mend))
+    for floor in inventory.floors:
+        for axis, pfa in floor.pfa.items():
+            used = [one for one in demands[floor.floor, axis] if one.source == "record"]
+            if used:
+                largest = max(one.pfa for one in used)
+                message = f"PFA {axis} is not used: the record serves, with {largest / GRAVITY:.3f} g."
+                kind: Severity = "warning" if pfa > largest else "note"
+                problems.append(Problem(kind, "Floors", f"A{floor.row}", message, "Scenario 'given' uses it."))
     return problems
 
 

@@ -107,6 +107,8 @@ def run(
     if unknown or not wanted:
         raise typer.BadParameter(f"{formats!r} is not a list of: {', '.join(FORMATS)}.", param_hint="--formats")
     folder = out or Path(f"{path.stem}-report")
+    if folder.exists() and not folder.is_dir():
+        raise typer.BadParameter(f"{folder} is a file; name a folder.", param_hint="--out")
     with _exits():
         assessment = _assess(path, verify, scenario)
         _print_problems([one for one in assessment.problems if one.severity == "warning"])
@@ -147,9 +149,10 @@ def _assess(path: Path, verify: str = "none", scenario: str | None = None) -> "A
 
     if verify not in VERIFY:
         raise typer.BadParameter(f"{verify!r} is not one of: {', '.join(VERIFY)}.", param_hint="--verify")
-    if scenario is not None and scenario not in SCENARIOS:
+    if scenario is not None and scenario.lower() not in SCENARIOS:
         raise typer.BadParameter(f"{scenario!r} is not one of: {', '.join(SCENARIOS)}.", param_hint="--scenario")
-    return run_assessment(read_inventory(path), Settings(verify=verify, scenario=scenario))  # type: ignore[arg-type]
+    settings = Settings(verify=verify, scenario=scenario and scenario.lower())  # type: ignore[arg-type]
+    return run_assessment(read_inventory(path), settings)
 
 
 @contextmanager
@@ -183,9 +186,9 @@ def _print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
 
     counts, anchored = count_pieces(assessment)
     for risk in reversed(RiskClass):
-        typer.echo(f"{risk.label:<13} {counts[risk]:>6,} pieces")
+        typer.echo(f"{risk.label:<13} {counts[risk]:>6,} {'piece' if counts[risk] == 1 else 'pieces'}")
     if anchored:
-        typer.echo(f"{'  anchored':<13} {anchored:>6,} pieces, as safe as their anchors")
+        typer.echo(f"{'  anchored':<13} {anchored:>6,}, only as safe as the anchors")
     typer.echo("Chance of overturning in this scenario, not per year. Not verified.")
     for file in files:
         typer.echo(f"wrote {file}", err=True)

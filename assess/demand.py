@@ -17,8 +17,11 @@ from assess.motion.record import Motion, Record, treat
 LOSS_TO_TELL = 0.02
 """Where treatment lowers PFA by more than this share, the report says so."""
 
+LOSS_TO_WARN = 0.1
+"""Where it lowers PFA by more than this share, the record may be a corrected one that does not say so."""
+
 FLAGS: Mapping[str, str] = {
-    "one_axis_only": "motion is known along one axis only; it serves both",
+    "one_axis_only": "motion of the kind used is known along one axis only; it serves both",
     "pfv_estimated": "PFV was not given: estimated from PFA and the building's period T1",
 }
 

@@ -75,13 +75,18 @@ class ItemResult:
         """Whether its fall endangers life or a route, which comes first in the list of what to fix."""
         return self.item.importance == "life safety" or bool(self.item.route)
 
+    def worst(self, key: str) -> float | None:
+        """Return the largest value of a method over all motions, which may be above that of the governing one."""
+        values = [value for case in self.cases if (value := case.methods[key].value) is not None]
+        return max(values, default=None)
+
     @property
     def does_not_rock(self) -> bool:
         """Whether it is too stocky for Housner's equations."""
         return "does_not_rock" in self.adopted.flags
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Assessment:
     """The result of `assess.run`.
 
@@ -125,8 +130,12 @@ class Assessment:
     def __iter__(self) -> Iterator[ItemResult]:
         return (self.result(index) for index in range(len(self)))
 
+    def __repr__(self) -> str:
+        return f"<Assessment of {self.inventory.source.name}: {len(self):,} items, scenario {self.scenario!r}>"
+
     def result(self, index: int) -> ItemResult:
-        """Return the result of the item at `index` in the inventory."""
+        """Return the result of the item at `index` in the inventory; raises IndexError beyond it."""
+        index = range(len(self))[index]
         own = range(self._first[index], self._first[index + 1])
         cases = {case: self._case(case) for case in own}
         governing = cases[int(self.governing[index])]
@@ -155,8 +164,12 @@ class Assessment:
                 "pfa": one.governing.demand.pfa,
                 "pfv": one.governing.demand.pfv,
                 **{key: method.value for key, method in one.governing.methods.items()},
+                "proposed_or_raw": one.governing.methods[FORMULA].detail["raw"],
                 "probability": one.adopted.probability,
                 "risk_class": one.adopted.risk.word,
+                "risk_class_upper": one.adopted.upper.word,
+                "is_anchored": one.is_anchored,
+                "flags": ", ".join(one.adopted.flags),
             }
             for one in self
         ]

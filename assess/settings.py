@@ -1,5 +1,6 @@
 """What a run can be told, with its defaults."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -44,7 +45,7 @@ class Settings:
             raise ValueError(f"scenario is {self.scenario!r}, expected one of: {', '.join(SCENARIOS)}")
         if self.verify not in VERIFY:
             raise ValueError(f"verify is {self.verify!r}, expected one of: {', '.join(VERIFY)}")
-        if self.zeta_acceleration <= 0 or self.zeta_velocity <= 0:
-            raise ValueError("zeta_acceleration and zeta_velocity must be above 0")
+        if not (0 < self.zeta_acceleration < math.inf and 0 < self.zeta_velocity < math.inf):
+            raise ValueError("zeta_acceleration and zeta_velocity must be finite and above 0")
         if not 0 <= self.slide_coefficient <= 1:
             raise ValueError(f"slide_coefficient is {self.slide_coefficient}, expected 0 to 1")

@@ -122,7 +122,7 @@ def test_frames_are_for_notebooks(tmp_path):
     [
         ({"scenario": "tsunami"}, "scenario is 'tsunami', expected one of: as filled, recorded, given"),
         ({"verify": "all"}, "verify is 'all', expected one of: none"),
-        ({"zeta_velocity": 0.0}, "must be above 0"),
+        ({"zeta_velocity": 0.0}, "must be finite and above 0"),
         ({"slide_coefficient": 1.5}, r"slide_coefficient is 1\.5, expected 0 to 1"),
     ],
 )

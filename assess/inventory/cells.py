@@ -144,7 +144,7 @@ def _not_a_number(label: str, text: str, unit: str) -> CellError:
     if _NUMERAL.fullmatch(text):
         return CellError(
             f"{label} is {quoted} stored as text, expected a number{_in(unit)}.",
-            "In Excel: select the column, Data, Text to Columns, Finish.",
+            "Clear the cell, set its format to General, and type the number again.",
         )
     return CellError(f"{label} is the text {quoted}, expected a number{_in(unit)}.", "Type the number alone.")
 
@@ -175,7 +175,8 @@ def _likely_slip(column: Column, number: float, unit: str) -> str:
     if number < 0:
         return "Remove the minus sign." if (column.low or 0) >= 0 else ""
     names = {"cm": "centimetres", "m": "metres", "mm": "millimetres", "in": "inches", "ft": "feet"}
-    for other in (*names, "g", "m/s2", "cm/s2", "m/s", "cm/s"):
+    first = ("in", "ft") if unit in ("in", "ft") else ()
+    for other in (*first, *names, "g", "m/s2", "cm/s2", "m/s", "cm/s"):
         if other != unit and other in QUANTITIES.get(column.quantity, {}):
             usual = not is_unusual(column, number, other)
             if usual and _within(column, number, other):

@@ -1,7 +1,7 @@
 """The furniture: sizes from the catalogue, the axis from the angle, and what does not fit together."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from assess.inventory.axes import axis_of
@@ -22,6 +22,7 @@ class ItemReader:
     tables: Mapping[str, Table]
     building: Building
     types: Mapping[str, CatalogueType]
+    lacking: dict[str, list[int]] = field(default_factory=dict)
 
     def read(self) -> tuple[Item, ...]:
         """Return the items."""
@@ -32,12 +33,16 @@ class ItemReader:
         _check_routes(table, self.tables["Routes"])
         built = (self._item(table, row) for row in table.rows)
         items = tuple(item for item in built if item is not None)
-        _check_size_columns(table)
+        for name, rows in self.lacking.items():
+            header = table.sheet.column(name).header()
+            which = f"row {rows[0]} has" if len(rows) == 1 else f"row {rows[0]} and {len(rows) - 1} more have"
+            message = f"the column {header} is missing, and {which} no Type that gives it."
+            table.report("A1", message, "Add the column, or give those rows such a Type.")
         return items
 
     def _item(self, table: Table, row: Row) -> Item | None:
         values = dict(row.values)
-        assumed = _fill_sizes(table, row.number, values, self.types.get(key(values.get("type") or "")))
+        assumed = self._fill_sizes(table, row.number, values)
         _check_sizes(table, row.number, values)
         _check_position(table, row.number, values)
         _check_axis(table, row.number, values)
@@ -53,31 +58,21 @@ class ItemReader:
         filled = {name: value for name, value in values.items() if value is not None}
         return Item(row=row.number, **filled, assumed=tuple(assumed), extra=row.extra)
 
-
-def _fill_sizes(table: Table, row: int, values: dict[str, Any], kind: CatalogueType | None) -> list[str]:
-    """Fill blank sizes in from the catalogue; return the fields filled in."""
-    assumed = []
-    for name in ("breadth", "width", "height"):
-        if values.get(name) is not None or table.spoilt(name, row):
-            continue
-        values[name] = getattr(kind, name, None)
-        if values[name] is not None:
-            assumed.append(name)
-        elif name in table.letters and name != "width" and not table.spoilt("type", row):
-            message = f"{table.sheet.column(name).label} is blank and no Type gives it."
-            table.report(table.cell(name, row), message, "Fill it in, or choose a Type that has one.")
-    return assumed
-
-
-def _check_size_columns(table: Table) -> None:
-    """Report a column of sizes that is missing once, not in every row that would need it."""
-    for name in ("breadth", "height"):
-        needing = [row for row in table.rows if row.values.get("type") is None]
-        if name not in table.letters and needing:
-            header = table.sheet.column(name).header()
-            rows = f"row {needing[0].number}" + (f" and {len(needing) - 1} more" if len(needing) > 1 else "")
-            message = f"the column {header} is missing, and {rows} have no Type that gives it."
-            table.report("A1", message, "Add the column, or give those rows a Type.")
+    def _fill_sizes(self, table: Table, row: int, values: dict[str, Any]) -> list[str]:
+        """Fill blank sizes in from the catalogue; return the fields filled in."""
+        assumed, kind = [], self.types.get(key(values.get("type") or ""))
+        for name in ("breadth", "width", "height"):
+            if values.get(name) is not None or table.spoilt(name, row):
+                continue
+            values[name] = getattr(kind, name, None)
+            if values[name] is not None:
+                assumed.append(name)
+            elif name != "width" and name not in table.letters:
+                self.lacking.setdefault(name, []).append(row)  # said once for the column, not in every row
+            elif name != "width" and not table.spoilt("type", row):
+                message = f"{table.sheet.column(name).label} is blank and no Type gives it."
+                table.report(table.cell(name, row), message, "Fill it in, or choose a Type that has one.")
+        return assumed
 
 
 def _check_axis(table: Table, row: int, values: Mapping[str, Any]) -> None:

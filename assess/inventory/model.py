@@ -135,7 +135,7 @@ class CatalogueType:
     source: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Inventory:
     """A building's furniture, its floors and how they shake.
 
@@ -166,6 +166,9 @@ class Inventory:
     problems: tuple[Problem, ...] = ()
     extra_columns: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<Inventory {self.source.name}: {len(self.items):,} items on {len(self.floors):,} floors>"
 
     def frame(self) -> "pd.DataFrame":
         """Return the items as a table, one row an item, SI units."""

@@ -28,7 +28,9 @@ _STAGE = ".assess-writing-"
 _STALE = 24 * 3600.0
 
 
-def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[str] = FORMATS) -> dict[str, Path]:
+def write_reports(
+    assessment: Assessment, folder: str | Path, formats: str | Sequence[str] = FORMATS
+) -> dict[str, Path]:
     """Write the reports of an assessment.
 
     Parameters
@@ -37,7 +39,7 @@ def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[
         From `assess.run`.
     folder : str or Path
         Where to; made where it is missing. Other files in it are left alone.
-    formats : sequence of str
+    formats : str or sequence of str
         Of "pdf", "xlsx", "html", "json", "csv"; all by default.
 
     Returns
@@ -54,6 +56,7 @@ def write_reports(assessment: Assessment, folder: str | Path, formats: Sequence[
     OutputError
         If a file cannot be written; what was there before is left as it was.
     """
+    formats = (formats,) if isinstance(formats, str) else formats
     unknown = [name for name in formats if name not in FILES]
     if unknown:
         raise ValueError(f"format is {unknown[0]!r}, expected some of: {', '.join(FORMATS)}")

@@ -84,6 +84,13 @@ class Content:
     notes: Sequence[ItemResult] = field(default_factory=tuple)
 
     @property
+    def cannot_rock(self) -> tuple[int, int]:
+        """Pieces of high and very high class, and those of them that the static criterion says cannot start to rock."""
+        risky = [one for one in self.results if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH]
+        still = [one for one in risky if one.governing.methods["static"].value == 0]
+        return sum(one.item.quantity for one in risky), sum(one.item.quantity for one in still)
+
+    @property
     def class_limits(self) -> Sequence[tuple[RiskClass, str]]:
         """The classes with their limits in words."""
         medium, high, very_high = (f"{100 * limit:g} %" for limit in LIMITS)
@@ -179,12 +186,18 @@ def describe_source(demand: Demand) -> str:
     return source + (f" ({'; '.join(flags)})" if flags else "")
 
 
+def has_worse_motion(one: ItemResult, key: str) -> bool:
+    """Tell whether a method gives more under another motion of the item than under the governing one."""
+    governing, worst = one.governing.methods[key].value, one.worst(key)
+    return worst is not None and (governing is None or worst > governing + 0.0005)
+
+
 def describe_treatment(demand: Demand) -> str:
     """Say what was done to the record of a demand."""
     if demand.record is None:
         return ""
-    notes = "; ".join((treatment(demand.record), *demand.record.notes))
-    return f"{notes}." if not notes.endswith(".") else notes
+    parts = (treatment(demand.record), *demand.record.notes)
+    return "; ".join(part.rstrip(".") for part in parts) + "."
 
 
 def _flags(assessment: Assessment) -> dict[str, str]:
@@ -249,5 +262,7 @@ LIMITS_OF_THE_METHOD = (
     "0.39 and PFA 0.10 to 0.90 g only; results outside are marked.",
     "The proposed OR formula knows no size: a large piece and a small one of the same proportions get the same value, "
     "although the larger is harder to overturn.",
+    "The proposed OR formula calls pieces high below the acceleration at which they can start to rock; the comparison "
+    "shows the static criterion beside it.",
     "A piece marked as anchored is only as safe as its anchor; its free-standing risk is shown, never zero.",
 )

@@ -1,6 +1,7 @@
 """The report's figures, as SVG with their text as outlines: they look the same wherever they are opened."""
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
 from io import BytesIO
@@ -25,9 +26,9 @@ def _draw(width: float, height: float, paint: Callable[[Any], None]) -> bytes:
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    with mpl.rc_context(
-        {"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "font.family": "DejaVu Sans"}
-    ):
+    style = mpl.rc_context({"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8})
+    with style, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing")  # a character without a glyph shows as a box
         figure = Figure(figsize=(width, height), layout="constrained")
         paint(figure)
         file = BytesIO()

@@ -46,6 +46,7 @@ def _render_content(content: Content, for_print: bool) -> str:
         most_rows=MOST_ROWS,
         treatment=content_module.describe_treatment,
         source=content_module.describe_source,
+        more=content_module.has_worse_motion,
     )
 
 

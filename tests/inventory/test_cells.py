@@ -39,9 +39,9 @@ SIZES = [
                   "Set the cell's format to General and type the number again."),
     ("180 cm", "Height is the text '180 cm', expected a number [cm]. Type the number alone."),
     ("180", "Height is '180' stored as text, expected a number [cm]. "
-            "In Excel: select the column, Data, Text to Columns, Finish."),
+            "Clear the cell, set its format to General, and type the number again."),
     ("1,80", "Height is the text '1,80' with a decimal comma, expected a number [cm]. "
-             "Type 1.80 as your Excel writes numbers, without quotes or spaces."),
+             "Set the cell's format to General and type the number again."),
     ("#N/A", "Height holds the error #N/A. Mend the formula in the cell, or type the number."),
     ("x" * 100, f"Height is the text '{'x' * 60}…', expected a number [cm]. Type the number alone."),
 ]  # fmt: skip
@@ -60,7 +60,7 @@ def test_sizes_that_are_wrong(tmp_path: Path, value: Any, message: str) -> None:
     [
         ("Height [mm]", 180, None),
         ("Height [m]", 180, "Height is 180 m, expected 0.05 to 6 m. Did you type centimetres?"),
-        ("Height [in]", 1.8, "Height is 1.8 in, expected 1.969 to 236.2 in. Did you type metres?"),
+        ("Height [in]", 1.8, "Height is 1.8 in, expected 1.969 to 236.2 in. Did you type feet?"),
         ("Height [ft]", 72, "Height is 72 ft, expected 0.164 to 19.69 ft. Did you type inches?"),
         ("Height [mm]", 6, "Height is 6 mm, expected 50 to 6000 mm. Did you type feet?"),
         ("Friction", 3, "Friction is 3, expected 0.01 to 2. Check the number and the unit in the header."),
@@ -95,7 +95,7 @@ def test_cells_that_are_wrong(tmp_path: Path, header: str, value: Any, message: 
             0,
             "PFV X is 0 cm/s, expected 0.01 to 1000 cm/s. Check the number and the unit in the header.",
         ),
-        ("Elevation [m]", 5000, "Elevation is 5000 m, expected -200 to 1000 m. Did you type millimetres?"),
+        ("Elevation [m]", 5000, "Elevation is 5000 m, expected -200 to 1000 m. Did you type centimetres?"),
     ],
 )
 def test_floors_that_are_wrong(tmp_path: Path, header: str, value: float, message: str) -> None:

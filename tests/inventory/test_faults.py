@@ -64,14 +64,14 @@ EXPECTED = {
     "Items!I13: Route 'R1' (and 1 more rows) is named, but there is no Routes sheet. "
     "Add the sheet, or clear the column.",
     "Items!E15: Breadth is the text '38,5' with a decimal comma, expected a number [cm]. "
-    "Type 38.5 as your Excel writes numbers, without quotes or spaces.",
+    "Set the cell's format to General and type the number again.",
     "Items!F16: Width holds a date or time (2024-03-01 00:00:00), expected a number [cm]. "
     "Set the cell's format to General and type the number again.",
     "Items!E17: Breadth 90 cm is greater than Width 80 cm. Breadth is the shorter plan side: exchange the two.",
     "Items!D18: Quantity is 0, expected a whole number from 1 to 10000. Delete the row if the piece is not there.",
     "Items!D19: Quantity is 1.5, expected a whole number from 1 to 10000. Type a whole number.",
     "Floors!B1: the column 'Elevaton [m]' is not known. Did you mean Elevation [m]?",
-    "Floors!C1: the unit 'm/s3' of PFA X is not known. Write PFA X [g]; known units: g, m/s2, cm/s2, gal.",
+    "Floors!C1: the unit 'm/s3' of PFA X is not known. Write the unit that the numbers are in, such as PFA X [g]; known units: g, m/s2, cm/s2, gal.",
     "Floors!D3: the file 'roof.csv' is not beside the workbook. Check the name, or copy the file there.",
     "Floors!D4: the file '../secret/roof.csv' lies outside the workbook's folder. "
     "Copy it beside the workbook and write its name alone.",

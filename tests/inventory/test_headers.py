@@ -43,16 +43,25 @@ def test_accelerations(tmp_path: Path, unit: str, number: float) -> None:
 
 @pytest.mark.parametrize(("unit", "number"), [("cm/s", 50), ("m/s", 0.5), ("in/s", 50 / 2.54)])
 def test_velocities(tmp_path: Path, unit: str, number: float) -> None:
-    floor = read(tmp_path, floors=[["Floor", "PFA X [g]", f"PFV Y [{unit}]"], ["1", 0.5, number]]).floors[0]
-    assert floor.pfv == {"Y": pytest.approx(0.5, rel=1e-12)}
+    floor = read(tmp_path, floors=[["Floor", "PFA X [g]", f"PFV X [{unit}]"], ["1", 0.5, number]]).floors[0]
+    assert floor.pfv == {"X": pytest.approx(0.5, rel=1e-12)}
 
 
 @pytest.mark.parametrize(
     ("header", "message"),
     [
-        ("Height [kg]", "the unit 'kg' of Height is not known. Write Height [cm]; known units: mm, cm, m, in, ft."),
-        ("Height []", "the unit '' of Height is not known. Write Height [cm]; known units: mm, cm, m, in, ft."),
-        ("Height", "Height has no unit. Write Height [cm]; known units: mm, cm, m, in, ft."),
+        (
+            "Height [kg]",
+            "the unit 'kg' of Height is not known. Write the unit that the numbers are in, such as Height [cm]; known units: mm, cm, m, in, ft.",
+        ),
+        (
+            "Height []",
+            "the unit '' of Height is not known. Write the unit that the numbers are in, such as Height [cm]; known units: mm, cm, m, in, ft.",
+        ),
+        (
+            "Height",
+            "Height has no unit. Write the unit that the numbers are in, such as Height [cm]; known units: mm, cm, m, in, ft.",
+        ),
         ("Height (cm)", "the column 'Height (cm)' is not known. Did you mean Height [cm]?"),
         ("Height cm", "the column 'Height cm' is not known. Did you mean Height [cm]?"),
         ("Heigth [mm]", "the column 'Heigth [mm]' is not known. Did you mean Height [cm]?"),
@@ -77,7 +86,7 @@ def test_a_form_has_lines(tmp_path: Path) -> None:
     path = write(tmp_path, Building=building)
     assert errors_of(path) == {
         "Building!A1: the line 'Buildng' is not known. Did you mean Building?",
-        "Building!A2: the unit 'ms' of Period T1 is not known. Write Period T1 [s]; known units: s.",
+        "Building!A2: the unit 'ms' of Period T1 is not known. Write the unit that the numbers are in, such as Period T1 [s]; known units: s.",
         "Building!A4: the line Storeys is here twice, also in A3. Delete one of them.",
     }
 

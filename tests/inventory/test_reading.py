@@ -38,7 +38,7 @@ def test_a_type_without_that_size(tmp_path: Path) -> None:
     path = write(tmp_path, [["Item", "Floor", "Type"], ["A1", "1", "Shelf"]],
                  Catalogue=[["Type", "Breadth [cm]"], ["Shelf", 30]])  # fmt: skip
     assert errors_of(path) == {
-        "Items!A2: Height is blank and no Type gives it. Fill it in, or choose a Type that has one."
+        "Items!A1: the column Height [cm] is missing, and row 2 has no Type that gives it. Add the column, or give those rows such a Type."
     }
 
 
