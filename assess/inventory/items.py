@@ -114,7 +114,8 @@ def _check_position(table: Table, row: int, values: Mapping[str, Any]) -> None:
 def _check_routes(table: Table, routes: Table) -> None:
     named = [row for row in table.rows if row.values.get("route")]
     if named and not routes.found:
-        more = f" (and {len(named) - 1} more rows)" if len(named) > 1 else ""
+        others = len(named) - 1
+        more = f" (and {others} more row{'s' if others > 1 else ''})" if others else ""
         message = f"Route {shorten(named[0].values['route'])}{more} is named, but there is no Routes sheet."
         table.report(table.cell("route", named[0].number), message, "Add the sheet, or clear the column.")
         return

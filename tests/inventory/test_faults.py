@@ -6,7 +6,9 @@ from typing import Any
 
 import openpyxl
 import pytest
+from typer.testing import CliRunner
 
+from assess.cli import app
 from tests.inventory.books import FLOORS, ITEMS, Sheet, errors_of, problems_of, read, write, write_book
 
 HEADER = [
@@ -61,7 +63,7 @@ EXPECTED = {
     "Items!E9: Breadth holds the error #DIV/0!. Mend the formula in the cell, or type the number.",
     "Items!G10: holds a formula with no saved value. Open the workbook in Excel and save it.",
     "Items!J11:J12: cells are merged inside the table. Unmerge them and fill each cell.",
-    "Items!I13: Route 'R1' (and 1 more rows) is named, but there is no Routes sheet. "
+    "Items!I13: Route 'R1' (and 1 more row) is named, but there is no Routes sheet. "
     "Add the sheet, or clear the column.",
     "Items!E15: Breadth is the text '38,5' with a decimal comma, expected a number [cm]. "
     "Set the cell's format to General and type the number again.",
@@ -89,6 +91,17 @@ def faulty(folder: Path) -> Path:
 
 def test_one_run_names_every_fault(tmp_path: Path) -> None:
     assert errors_of(faulty(tmp_path)) == EXPECTED
+
+
+def test_one_run_of_the_command_names_every_fault_and_writes_nothing(tmp_path: Path) -> None:
+    path = faulty(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 2
+    shown = {line.removeprefix("error").strip() for line in done.stderr.splitlines() if line.startswith("error")}
+    assert shown == EXPECTED
+    assert f"{len(EXPECTED)} errors; nothing was written." in done.stderr
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_every_fault_has_a_cell_and_a_mend(tmp_path: Path) -> None:
