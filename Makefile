@@ -4,7 +4,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: example test lint benchmark golden blank clean
+.PHONY: example test lint benchmark blank clean
 
 example: .venv/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street

@@ -186,3 +186,44 @@ def test_bytes_are_the_same_twice(tmp_path, monkeypatch):
     write_xlsx(assessment, tmp_path / "a.xlsx")
     write_xlsx(assessment, tmp_path / "b.xlsx")
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_an_axis_that_borrows_its_motion_follows_the_edit(report, tmp_path):
+    _, path = report
+    floors = [*FLOORS[:2], {"floor": "3", "pfa_y": 0.2, "pfv_y": 80.0}]
+    again = assessed(tmp_path / "edited.xlsx", _items(), floors, period=0.9)
+    book = formualizer.load_workbook(str(path))
+    sheet = openpyxl.load_workbook(path)["Items"]
+    book.set_value("Floors", 4, 6, 0.2)
+    book.set_value("Floors", 4, 7, 80.0)
+    book.evaluate_all()
+    for row, one in enumerate(again, 2):
+        for label, key in (("OR", "proposed_or"), ("Kaneko-Hayashi", "kaneko_hayashi")):
+            found = book.get_value("Items", row, _column(sheet, label))
+            assert found == pytest.approx(one.governing.methods[key].value, abs=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_a_size_that_is_cleared_shows_check_and_leaves_the_counts_alive(report):
+    _, path = report
+    book = formualizer.load_workbook(str(path))
+    sheet = openpyxl.load_workbook(path)["Items"]
+    book.set_value("Items", 2, _column(sheet, "Breadth [cm]"), "abc")
+    book.evaluate_all()
+    for label in ("B/H", "OR raw", "OR", "Kaneko-Hayashi", "Class (formula)"):
+        assert book.get_value("Items", 2, _column(sheet, label)) == "check"
+    summary = openpyxl.load_workbook(path)["Summary"]
+    top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
+    assert book.get_value("Summary", top + 1, 7) == 7
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_an_anchored_piece_is_marked_and_not_coloured(tmp_path):
+    from assess.report.xlsx.items import ANCHORED
+
+    write_xlsx(assessed(tmp_path / "w.xlsx", ITEMS), tmp_path / "r.xlsx")
+    sheet = openpyxl.load_workbook(tmp_path / "r.xlsx", data_only=True)["Items"]
+    shown = {row[0].value: row[_column(sheet, "Class (formula)") - 1].value for row in sheet.iter_rows(min_row=2)}
+    assert shown["A4"].startswith(ANCHORED)
+    assert not shown["A3"].startswith(ANCHORED)
