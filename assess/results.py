@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 Detail = float | str | bool | None
 
+MOST_KEPT = 2000
+"""Items up to which results are kept once they have been read; a larger inventory's would fill the memory."""
+
 
 @dataclass(frozen=True, slots=True)
 class MethodResult:
@@ -128,7 +131,12 @@ class Assessment:
         return len(self.inventory.items)
 
     def __iter__(self) -> Iterator[ItemResult]:
-        return (self.result(index) for index in range(len(self)))
+        return iter(self._kept) if len(self) <= MOST_KEPT else map(self.result, range(len(self)))
+
+    @cached_property
+    def _kept(self) -> list[ItemResult]:
+        """The results of a small inventory: every report reads them again."""
+        return [self.result(index) for index in range(len(self))]
 
     def __repr__(self) -> str:
         return f"<Assessment of {self.inventory.source.name}: {len(self):,} items, scenario {self.scenario!r}>"

@@ -115,7 +115,7 @@ class _Writer:
         page.set_column(2, 2, 80, self.wrap)
         for at, column in enumerate(sheet.columns):
             page.write_string(at, 0, column.header(self.units), self.head)
-            self._write_cell(page, at, 1, column, values.get(column.name))
+            self._write_cell(page, at, 1, values.get(column.name))
             page.write_string(at, 2, column.help)
             self._validate(page, column, at, 1, at)
 
@@ -127,7 +127,7 @@ class _Writer:
             self._validate(page, column, 1, at, last)
         for number, row in enumerate(self._rows(sheet.name), 1):
             for at, column in enumerate(sheet.columns):
-                self._write_cell(page, number, at, column, row.get(column.name))
+                self._write_cell(page, number, at, row.get(column.name))
         page.freeze_panes(1, 1)
         more = len(LIVE) + len(WORKINGS)
         page.autofilter(0, 0, last, len(sheet.columns) - 1 + (more if sheet.name == "Items" else 0))
@@ -140,13 +140,11 @@ class _Writer:
         rows = self.content.rows.get(sheet, ())
         return read_catalogue(self.units) if sheet == CATALOGUE.name and not rows else rows
 
-    def _write_cell(self, page: Any, row: int, at: int, column: Column, value: Any) -> None:
+    def _write_cell(self, page: Any, row: int, at: int, value: Any) -> None:
         if isinstance(value, str):
             page.write_string(row, at, value, self.text)
         elif value is not None:
             page.write_number(row, at, value)
-        elif column.kind == "text":
-            page.write_blank(row, at, None, self.text) if row <= ROWS.get(page.name, 1) else None
 
     def _validate(self, page: Any, column: Column, row: int, at: int, last: int) -> None:
         """Attach the drop-down or the check of a number, and the input message."""

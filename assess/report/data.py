@@ -246,30 +246,42 @@ def write_csv(assessment: Assessment, path: Path) -> None:
         writer = csv.writer(file)
         heads: list[str] = []
         for one in assessment:
-            row = flatten(item_record(one))
+            record = item_record(one)
             if not heads:
-                heads = list(row)
+                heads = list(flatten(record))
                 writer.writerow(heads)
-            writer.writerow([_safe(row[name]) for name in heads])
+            writer.writerow([_safe(value) for value in _flat_values(record)])
         if not heads:
             writer.writerow(["item"])  # a table without rows still has a heading
 
 
 def flatten(record: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an item's record as one flat row: nested names joined by ``_``, lists by ``; ``."""
-    row: dict[str, Any] = {}
+    """Return an item's record as one flat row: nested names joined by ``_``."""
+    return dict(zip(_flat_names(record), _flat_values(record), strict=True))
+
+
+def _flat_names(record: Mapping[str, Any]) -> Iterator[str]:
     for name, value in record.items():
         if name == "methods":
             for key, method in value.items():
-                row[key] = method["value"]
-                row |= {f"{key}_{part}": method[part] for part in method if part != "value"}
-        elif name == "axes":
-            row["axes"] = [f"{axis['axis']}: {axis['source']} {axis['pfa_g']} g" for axis in value]
+                yield from (key if part == "value" else f"{key}_{part}" for part in method)
         elif isinstance(value, Mapping):
-            row |= {f"{name}_{part}": inner for part, inner in value.items()}
+            yield from (f"{name}_{part}" for part in value)
         else:
-            row[name] = value
-    return row
+            yield name
+
+
+def _flat_values(record: Mapping[str, Any]) -> Iterator[Any]:
+    for name, value in record.items():
+        if name == "methods":
+            for method in value.values():
+                yield from method.values()
+        elif name == "axes":
+            yield [f"{axis['axis']}: {axis['source']} {axis['pfa_g']} g" for axis in value]
+        elif isinstance(value, dict):
+            yield from value.values()
+        else:
+            yield value
 
 
 def _safe(value: object) -> object:
