@@ -9,6 +9,9 @@ from collections.abc import Mapping
 GRAVITY = 9.80665
 """Standard gravity [m/s2], the one value used everywhere."""
 
+ROUNDING = 1e-9
+"""Relative: what lies nearer to a limit than this lies on it, so that a change of units moves nothing across."""
+
 LENGTH: Mapping[str, float] = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 ACCELERATION: Mapping[str, float] = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01}
 VELOCITY: Mapping[str, float] = {"cm/s": 0.01, "m/s": 1.0, "in/s": 0.0254}

@@ -10,9 +10,7 @@ from assess.inventory.labels import key
 from assess.inventory.model import Building, CatalogueType, Item
 from assess.inventory.names import check_references, check_unique, defined_names
 from assess.inventory.tables import Row, Table
-
-ROUNDING = 1e-9
-"""Relative: sizes nearer than this are alike, so that a change of units moves nothing across."""
+from assess.units import ROUNDING
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,9 +8,10 @@ workbooks in a spreadsheet engine and holds both to 1e-9.
 from typing import Any
 
 from assess.methods import kaneko_hayashi as kh
-from assess.methods._method import ALIKE, ROUNDING
+from assess.methods._method import ALIKE
 from assess.methods.proposed_or import CHECKED_BREADTH_TO_HEIGHT, CHECKED_PFA, COEFFICIENTS, THIN_PFA_CAP
 from assess.risk import LIMITS, RiskClass
+from assess.units import ROUNDING
 
 
 def write_plainly(page: Any) -> None:

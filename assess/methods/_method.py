@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from assess.settings import Settings
+from assess.units import ROUNDING
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
-
-ROUNDING = 1e-9
-"""Relative: what lies nearer to a limit than this lies on it, so that a change of units moves nothing across."""
 
 ALIKE = 9
 """Decimals to which two PFA [g] or two probabilities are held against each other when one of them has to govern."""

@@ -19,9 +19,9 @@ A piece within rounding of the limit (1e-9) is on it, and must be fixed.
 
 import numpy as np
 
-from assess.methods._method import ROUNDING, Cases, FloatArray, Method, Outcome, Reference
+from assess.methods._method import Cases, FloatArray, Method, Outcome, Reference
 from assess.settings import Settings
-from assess.units import LENGTH
+from assess.units import LENGTH, ROUNDING
 
 LIMIT = 4.0
 """B/√H [cm^0.5] up to which a piece must be fixed."""

@@ -32,9 +32,9 @@ import math
 
 import numpy as np
 
-from assess.methods._method import ROUNDING, Cases, FloatArray, Method, Outcome, Reference, normal_cdf
+from assess.methods._method import Cases, FloatArray, Method, Outcome, Reference, normal_cdf
 from assess.settings import Settings
-from assess.units import ACCELERATION, GRAVITY, LENGTH, VELOCITY
+from assess.units import ACCELERATION, GRAVITY, LENGTH, ROUNDING, VELOCITY
 
 G = GRAVITY / ACCELERATION["cm/s2"]
 """g of equation (6) [cm/s2]."""

@@ -64,7 +64,6 @@ _FILTERS: Mapping[str, Any] = {
     "in_cm_s": words.in_cm_s,
     "in_m": words.in_m,
     "fixed": words.fixed,
-    "number": words.number,
     "size": words.size,
     "risk_words": words.risk_words,
     "class_name": words.class_name,

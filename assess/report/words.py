@@ -23,11 +23,6 @@ def percent(value: float | None) -> str:
     return DASH if value is None else f"{100 * value:.1f} %"
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    """Return a number with significant digits, a dash for what is unknown."""
-    return DASH if value is None or value != value else f"{value:.{digits}g}"
-
-
 def fixed(value: float | None, decimals: int) -> str:
     """Return a number with decimals, a dash for what is unknown."""
     return DASH if value is None or value != value else f"{value:.{decimals}f}"
