@@ -13,7 +13,6 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-import xlsxwriter
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.inventory.columns import CATALOGUE, ITEMS, LIVE, SHEETS, WORKINGS, Column, Sheet
@@ -21,6 +20,7 @@ from assess.inventory.helptext import FIRST_LINES
 from assess.inventory.lists import ROWS, ListsWriter, Units, slug
 from assess.inventory.live import OUTSIDE, write_plainly
 from assess.inventory.live_row import FIRST, LiveRow
+from assess.inventory.writer import write_book
 from assess.risk import RiskClass
 
 __all__ = ["ROWS", "Content", "Rows", "Units", "describe", "read_catalogue", "write_workbook"]
@@ -68,11 +68,19 @@ def write_workbook(path: Path, content: Content | None = None, units: Units = "s
         What to fill in; an empty workbook still has the catalogue.
     units : "si" or "imperial"
         Of the headers.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
     """
-    content = content or Content()
-    with xlsxwriter.Workbook(path, {"strings_to_formulas": False, "strings_to_urls": False}) as book:
+    filled = content or Content()
+
+    def fill(book: Any) -> None:
         book.set_properties({"title": "Furniture inventory", "comments": "Made with assess new", "created": CREATED})
-        _Writer(book, content, units).write()
+        _Writer(book, filled, units).write()
+
+    write_book(path, fill)
 
 
 class _Writer:

@@ -77,6 +77,22 @@ def test_a_disk_that_fills_leaves_the_old_report_whole(tmp_path, limit, formats)
     assert _contents(out) == before
 
 
+@pytest.mark.parametrize("limit", [100, 4_000, 20_000])
+def test_a_disk_that_fills_leaves_the_old_workbook_whole(tmp_path, limit):
+    """At 100 and 4,000 bytes a part of the workbook fails, at 20,000 the whole."""
+    path, argv = tmp_path / "office.xlsx", ["assess", "new", str(tmp_path / "office.xlsx"), "--force"]
+    code = f"import sys\nfrom assess.cli import main\nsys.argv = {argv!r}\nmain()"
+    path.write_bytes(b"mine")
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr.split() == f"error {path} could not be written: File too large.".split()
+    assert [each.name for each in tmp_path.iterdir()] == ["office.xlsx"]
+    assert path.read_bytes() == b"mine"
+
+
 def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
     """Killed at 12 moments, from the first file on: what is in place is all old or a whole new file, never a part."""
     items = [{"item": f"i{at}", "floor": "1", "breadth": 30, "height": 180} for at in range(400)]

@@ -10,8 +10,8 @@ from typing import Any
 
 import xlsxwriter
 
-from assess.errors import OutputError
 from assess.inventory.live import write_plainly
+from assess.inventory.writer import write_book
 from assess.report.content import Content, build_content
 from assess.report.xlsx import items, sheets, summary
 from assess.report.xlsx.pen import Pen
@@ -36,21 +36,17 @@ def write_xlsx(assessment: Assessment, path: Path) -> None:
 
     Raises
     ------
-    OutputError
+    OSError
         If the file cannot be written.
     """
     content = build_content(assessment)
-    options = dict.fromkeys(("strings_to_formulas", "strings_to_urls", "strings_to_numbers"), False)
-    try:
-        with xlsxwriter.Workbook(path, {"constant_memory": True, **options}) as book:
-            created = datetime.datetime.fromisoformat(content.date)
-            book.set_properties({"title": "Furniture in earthquakes: report", "created": created})
-            _write_sheets(Pen(book), content)
-    except xlsxwriter.exceptions.XlsxWriterException as error:
-        cause = error.__cause__ or error.__context__
-        raise (
-            cause if isinstance(cause, OSError) else OutputError(f"report.xlsx could not be written: {error}")
-        ) from None
+
+    def fill(book: xlsxwriter.Workbook) -> None:
+        created = datetime.datetime.fromisoformat(content.date)
+        book.set_properties({"title": "Furniture in earthquakes: report", "created": created})
+        _write_sheets(Pen(book), content)
+
+    write_book(path, fill, by_row=True)
 
 
 def _write_sheets(pen: Pen, content: Content) -> None:
