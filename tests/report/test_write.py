@@ -18,17 +18,22 @@ def _contents(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
 
 
-def _code(path, out, *more, patch=""):
-    arguments = ["assess", "run", str(path), "--out", str(out), *more]
-    return f"{patch}\nimport sys\nfrom assess.cli import main\nsys.argv = {arguments!r}\nmain()"
+def _code(*arguments, patch=""):
+    words = ["assess", *map(str, arguments)]
+    return f"{patch}\nimport sys\nfrom assess.cli import main\nsys.argv = {words!r}\nmain()"
 
 
-def _run(path, out, *more, limit=None, patch=""):
-    code = _code(path, out, *more, patch=patch)
+def _assess(*arguments, limit=None, patch=""):
+    """The command in a process of its own; no file it writes may grow beyond `limit` bytes."""
+    code = _code(*arguments, patch=patch)
     preexec = (lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))) if limit else None
     return subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, preexec_fn=preexec, check=False
     )
+
+
+def _run(path, out, *more, limit=None, patch=""):
+    return _assess("run", path, "--out", out, *more, limit=limit, patch=patch)
 
 
 def test_all_formats_are_written(tmp_path):
@@ -80,13 +85,9 @@ def test_a_disk_that_fills_leaves_the_old_report_whole(tmp_path, limit, formats)
 @pytest.mark.parametrize("limit", [100, 4_000, 20_000])
 def test_a_disk_that_fills_leaves_the_old_workbook_whole(tmp_path, limit):
     """At 100 and 4,000 bytes a part of the workbook fails, at 20,000 the whole."""
-    path, argv = tmp_path / "office.xlsx", ["assess", "new", str(tmp_path / "office.xlsx"), "--force"]
-    code = f"import sys\nfrom assess.cli import main\nsys.argv = {argv!r}\nmain()"
+    path = tmp_path / "office.xlsx"
     path.write_bytes(b"mine")
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
-    )  # fmt: skip
+    done = _assess("new", path, "--force", limit=limit)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr.split() == f"error {path} could not be written: File too large.".split()
     assert [each.name for each in tmp_path.iterdir()] == ["office.xlsx"]
@@ -104,7 +105,7 @@ def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
     for moment in range(12):
         assert _run(old, out, "--formats", formats).returncode == 0
         before = _contents(out)
-        code = _code(new, out, "--formats", formats)
+        code = _code("run", new, "--out", out, "--formats", formats)
         process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         size = wanted["results.json"] * moment // 12
         while process.poll() is None:
@@ -138,9 +139,7 @@ def test_without_the_native_libraries_all_else_is_written(tmp_path):
 def test_an_interrupt_leaves_nothing_behind(tmp_path):
     items = [{"item": f"i{at}", "floor": "1", "breadth": 30, "height": 180} for at in range(2000)]
     new, out = write(tmp_path / "new.xlsx", items), tmp_path / "out"
-    code = (
-        f"from assess.cli import main\nimport sys\nsys.argv=['assess','run',{str(new)!r},'--out',{str(out)!r}]\nmain()"
-    )
+    code = _code("run", new, "--out", out)
     process = subprocess.Popen(
         [sys.executable, "-c", code],
         stderr=subprocess.PIPE,
