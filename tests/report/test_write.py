@@ -24,11 +24,14 @@ def _code(*arguments, patch=""):
 
 
 def _assess(*arguments, limit=None, patch=""):
-    """The command in a process of its own; no file it writes may grow beyond `limit` bytes."""
+    """The command in a process of its own; no file it writes may grow beyond `limit` bytes.
+
+    -B: under a limit, Python would leave cut-off bytecode behind for whoever imports the module next.
+    """
     code = _code(*arguments, patch=patch)
     preexec = (lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))) if limit else None
     return subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, preexec_fn=preexec, check=False
+        [sys.executable, "-B", "-c", code], capture_output=True, text=True, timeout=120, preexec_fn=preexec, check=False
     )
 
 
