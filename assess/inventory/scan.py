@@ -1,7 +1,8 @@
 """A sheet's raw bytes, read once before openpyxl: what its quick reader does not tell, or would pass over in silence.
 
 It leaves out rows that stand out of order, cells beyond what it takes for the last column, and does not tell a blank
-cell from a formula without a saved result. All patterns are possessive, so that no bytes can make them slow.
+cell from a formula without a saved result. Every repeat is possessive and of one set of characters, so that no bytes
+can make it slow; no group is possessive: Python before 3.11.5 matches such groups wrongly (CPython issue 106052).
 """
 
 import re
@@ -20,13 +21,13 @@ MAX_UNCACHED = 500_000
 LAST_ROW = 1_048_576
 
 _CHUNK = 2**20
-_TAG = rb"<(?:\w++:)?+"
-_END = rb"</(?:\w++:)?+"
+_TAG = rb"<(?:\w++:)?"
+_END = rb"</(?:\w++:)?"
 _ROW = re.compile(_TAG + rb"row\b([^<>]*+)>")
-_CELL = re.compile(_TAG + rb"c(?=[\s/>])([^<>]*+)>(?:\s*+" + _TAG + rb"(f|v|is)\b)?+")
+_CELL = re.compile(_TAG + rb"c(?=[\s/>])([^<>]*+)>(?:\s*+" + _TAG + rb"(f|v|is)\b)?")
 _FORMULA = re.compile(
-    _TAG + rb"c(?=[\s/>])([^<>]*+)>\s*+" + _TAG + rb"f\b[^<>]*+>(?:[^<]*+" + _END + rb"f\s*+>)?+\s*+"
-    rb"(" + _TAG + rb"v\b[^<>]*+>(?:\s*+" + _END + rb"v\s*+>)?+)?+\s*+" + _END + rb"c\s*+>"
+    _TAG + rb"c(?=[\s/>])([^<>]*+)>\s*+" + _TAG + rb"f\b[^<>]*+>(?:[^<]*+" + _END + rb"f\s*+>)?\s*+"
+    rb"(" + _TAG + rb"v\b[^<>]*+>(?:\s*+" + _END + rb"v\s*+>)?)?\s*+" + _END + rb"c\s*+>"
 )  # fmt: skip
 _MERGED = re.compile(_TAG + rb"mergeCell\b([^<>]*+)>")
 _R = re.compile(rb"""(?:^|\s)r\s*+=\s*+["']([^"']*+)["']""")
