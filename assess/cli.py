@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.errors import InputError, OutputError, Problem, WorkbookError
+from assess.settings import SCENARIOS, match_choice
 from assess.version import __version__
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def run(
     verify: Annotated[str, typer.Option(help="Which pieces to verify by direct integration: none.")] = "none",
     scenario: Annotated[
         str | None,
-        typer.Option(help="Source of the floor motion: as filled, recorded or given.", show_default="the workbook's"),
+        typer.Option(help=f"Source of the floor motion: {', '.join(SCENARIOS)}.", show_default="the workbook's"),
     ] = None,
     formats: Annotated[str, typer.Option(help="Files to write, split by commas.")] = "pdf,xlsx,html,json,csv",
 ) -> None:
@@ -145,13 +146,14 @@ def doctor() -> None:
 def _assess(path: Path, verify: str = "none", scenario: str | None = None) -> "Assessment":
     from assess.assessment import run as run_assessment
     from assess.inventory.workbook import read_inventory
-    from assess.settings import SCENARIOS, VERIFY, Settings
+    from assess.settings import VERIFY, Settings
 
     if verify not in VERIFY:
         raise typer.BadParameter(f"{verify!r} is not one of: {', '.join(VERIFY)}.", param_hint="--verify")
-    if scenario is not None and scenario.lower() not in SCENARIOS:
+    kind = None if scenario is None else match_choice(scenario, SCENARIOS)
+    if scenario is not None and kind is None:
         raise typer.BadParameter(f"{scenario!r} is not one of: {', '.join(SCENARIOS)}.", param_hint="--scenario")
-    settings = Settings(verify=verify, scenario=scenario and scenario.lower())  # type: ignore[arg-type]
+    settings = Settings(verify=verify, scenario=kind)  # type: ignore[arg-type]
     return run_assessment(read_inventory(path), settings)
 
 

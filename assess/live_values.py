@@ -28,7 +28,7 @@ def stored_live(assessment: Assessment) -> list[list[float | str]]:
 
 def _live_row(one: ItemResult) -> list[float | str]:
     breadth_to_height = one.item.breadth / one.item.height
-    if any(case.demand.source == "record" for case in one.cases):
+    if any(case.demand.source != "given" for case in one.cases):
         return [breadth_to_height, *[RUN_ASSESS] * 4]
     methods = one.governing.methods
     risks = [methods[key].value for key in (FORMULA, "kaneko_hayashi")]

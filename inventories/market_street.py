@@ -1,8 +1,13 @@
 """Build `market-street.xlsx`: 575 Market Street, San Francisco, in the Loma Prieta earthquake.
 
 The floor motions are those recorded in the building (`records/575-market/README.md`). The floor plan and the furniture
-are an example: nobody counted what stood there. What the headers of the records do not say (height, storeys, period,
-elevations) stays blank. Run it with ``python inventories/market_street.py``.
+are an example: nobody counted what stood there. Run it with ``python inventories/market_street.py``.
+
+The records serve every floor; what a code's profile needs beside them stands in the workbook, too, so that it runs with
+``--scenario "ASCE 7-22"`` as well. Height is 175 m (573 ft), as commonly given for the tower; it is described at
+https://buildingsdb.com/CA/san-francisco/575-market-street-tower. The elevations of the floors are an example
+assumption: floors evenly spread by their number, the ground floor as the first and the roof as the 43rd. Storeys (40
+are commonly given, the records number levels up to 42) and the period stay blank.
 
 The plan is a plate of 32 x 24 m with a core in the middle, a corridor around it and rooms along the windows. X runs
 along the longer side. Every piece stands with its back to a wall, or in a row parallel to one.
@@ -34,17 +39,29 @@ def _records(channels: str) -> str:
     return "; ".join(f"records/575-market/891018_1.cra-1.0210{channel}.smc" for channel in channels)
 
 
-FLOORS: tuple[dict[str, str], ...] = (  # X: channels that point to 45 or 225 deg; Y: to 135 or 315 deg
-    {"floor": "42", "name": "42nd floor", "record_x": _records("ab"), "record_y": _records("c")},
-    {"floor": "34", "name": "34th floor", "record_x": _records("de")},
-    {"floor": "25", "name": "25th floor", "record_x": _records("gh"), "record_y": _records("i")},
-    {"floor": "G", "name": "Ground floor", "record_y": _records("k")},
-)
+HEIGHT, ROOF = 175, 43
+"""Height of the roof above the ground [m], and the number that it would have as a floor."""
+
+
+def _elevation(number: int) -> float:
+    """Height of a floor above the ground [m], floors evenly spread."""
+    return round(HEIGHT * (number - 1) / (ROOF - 1), 1)
+
+
+FLOORS: tuple[dict[str, str | float], ...] = (  # X: channels that point to 45 or 225 deg; Y: to 135 or 315 deg
+    {"floor": "42", "name": "42nd floor", "elevation": _elevation(42),
+     "record_x": _records("ab"), "record_y": _records("c")},
+    {"floor": "34", "name": "34th floor", "elevation": _elevation(34), "record_x": _records("de")},
+    {"floor": "25", "name": "25th floor", "elevation": _elevation(25),
+     "record_x": _records("gh"), "record_y": _records("i")},
+    {"floor": "G", "name": "Ground floor", "elevation": _elevation(1), "record_y": _records("k")},
+)  # fmt: skip
 
 BUILDING = {
+    "height": HEIGHT, "ground_pga": 0.139,  # the ground floor channel's printed peak, 136.6 cm/s2
     "building": "575 Market Street", "address": "575 Market Street, San Francisco, California", "use": "Office",
     "scenario": "Loma Prieta earthquake, 17 October 1989, as recorded in the building. "
-    "The furniture is an example; the records are real.", "azimuth_deg": 45,
+    "The furniture is an example; the records are real. Floors are assumed to be evenly spread.", "azimuth_deg": 45,
 }  # fmt: skip
 
 _OFFICE: Mapping[str, Box] = {

@@ -22,7 +22,7 @@ LAYERS = {
     "methods": 4,
     "inventory": 5,
     "demand": 6,
-    "results": 7, "assessment": 7, "live_values": 7,
+    "remarks": 7, "results": 7, "assessment": 7, "live_values": 7,
     "report": 8, "start": 8,
     "__init__": 9, "__main__": 9, "cli": 9, "doctor": 9,
 }  # fmt: skip

@@ -72,7 +72,7 @@ def test_bad_input_writes_nothing(tmp_path):
     ("arguments", "message"),
     [
         (["--verify", "all"], "'all' is not one of: none"),
-        (["--scenario", "ASCE 7-22"], "'ASCE 7-22' is not one of: as filled, recorded, given"),
+        (["--scenario", "ASCE 7-10"], "'ASCE 7-10' is not one of: as filled, recorded, given, ASCE 7-22, ASCE 7-16"),
         (["--formats", "docx"], "'docx' is not a list of: pdf, xlsx, html, json, csv"),
         (["--formats", ""], "is not a list of"),
     ],
@@ -88,8 +88,25 @@ def test_a_scenario_that_a_floor_cannot_serve_names_the_floor(tmp_path):
     path = write(tmp_path / "w.xlsx")
     done = run(app, ["run", str(path), "--out", str(tmp_path / "out"), "--scenario", "recorded"])
     assert done.exit_code == 2
-    assert "Floors!A2: floor '1' has no record, which the scenario 'recorded' asks for." in done.stderr
-    assert "Floors!A3" in done.stderr
+    assert "Floors!H2: floor '1' has no record, which the scenario 'recorded' asks for" in done.stderr
+    assert "Floors!H3" in done.stderr
+
+
+@pytest.mark.parametrize("spelt", ["ASCE 7-22", "asce7-22", "Asce_7_22"])
+def test_a_scenario_may_be_spelt_loosely(tmp_path, spelt):
+    path = write(tmp_path / "w.xlsx", floors=[{"floor": at, "elevation": at} for at in (1, 2)], ground_pga=0.2)
+    done = run(app, ["run", str(path), "--out", str(tmp_path / "out"), "--formats", "json", "--scenario", spelt])
+    assert done.exit_code == 0, done.stderr
+    found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    assert found["assess"]["settings"]["scenario"] == "ASCE 7-22"
+
+
+def test_a_profile_without_ground_motion_names_the_cell_and_every_floor_without_elevation(tmp_path):
+    done = run(app, ["run", str(write(tmp_path / "w.xlsx")), "--out", str(tmp_path / "out"), "--scenario", "NTC 2018"])
+    assert done.exit_code == 2
+    assert "Building!B13: Ground PGA and SDS are blank; the scenario 'NTC 2018' starts from one" in done.stderr
+    for cell in ("C2", "C3"):
+        assert re.search(rf"Floors!{cell}: floor '\d' has no Elevation, which the scenario 'NTC 2018'", done.stderr)
 
 
 def test_the_default_folder_is_named_after_the_workbook(tmp_path, monkeypatch):

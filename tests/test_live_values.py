@@ -53,3 +53,11 @@ def test_given_motion_hides_the_record(tmp_path):
     write_workbook(path, CONTENT)
     values = stored_live(run(read_inventory(path), Settings(scenario="given")))
     assert all(row[1] == pytest.approx(0.4) for row in values[:3])
+
+
+def test_what_no_formula_knows_asks_for_a_run(tmp_path):
+    floors = [{"floor": "1", "elevation": 0, "pfa_x": 0.4}, {"floor": "2", "elevation": 4}]
+    content = Content({"Floors": floors, "Items": ITEMS, "Building": [{"ground_pga": 0.2}]})
+    assert [row[1] for row in with_live(content).live] == [pytest.approx(0.4)] * 3 + [RUN_ASSESS]
+    by_code = replace(content, rows={**content.rows, "Building": [{"ground_pga": 0.2, "scenario_kind": "NTC 2018"}]})
+    assert [row[1:] for row in with_live(by_code).live] == [[RUN_ASSESS] * 4] * 4

@@ -2,22 +2,33 @@
 
 import importlib.util
 import itertools
+import json
+import re
 import shutil
 import sys
 from collections import Counter
+from dataclasses import replace
+from html import unescape
 from math import hypot
 from pathlib import Path
 
 import openpyxl
+import pypdfium2
 import pytest
 
 from assess.assessment import run
+from assess.inventory.blank import write_workbook
 from assess.inventory.columns import ITEMS, LIVE
 from assess.inventory.lists import RUN_ASSESS
 from assess.inventory.model import Inventory, Item
 from assess.inventory.workbook import read_inventory
 from assess.live_values import stored_live
+from assess.report import write_reports
+from assess.report.motions import ENVELOPES
+from assess.settings import Settings
 from assess.units import GRAVITY
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 FOLDER = Path(__file__).parents[1] / "inventories"
 WORKBOOK = FOLDER / "market-street.xlsx"
@@ -90,8 +101,13 @@ def test_the_building_says_what_is_real_and_invents_nothing(inventory):
     building = inventory.building
     assert "The furniture is an example; the records are real." in building.scenario
     assert building.azimuth_deg == 45
-    assert building.storeys is building.height is building.period is None
-    assert all(floor.elevation is None for floor in inventory.floors)
+    assert building.storeys is building.period is None
+    assert (building.height, building.ground_pga) == (175, pytest.approx(0.139 * GRAVITY))
+
+
+def test_floors_are_evenly_spread_by_their_number(inventory):
+    """42 storey heights of 175/42 = 4.1667 m: the 42nd floor stands on 41 of them."""
+    assert [floor.elevation for floor in inventory.floors] == [170.8, 137.5, 100, 0]
 
 
 def test_about_120_pieces_with_something_of_everything(inventory):
@@ -193,3 +209,82 @@ def test_a_spreadsheet_engine_computes_the_same(assessment):
         computed = [book.get_value("Items", row, FIRST + at) for at in range(len(LIVE))]
         assert computed[0] == pytest.approx(values[0], abs=1e-9, rel=0)
         assert computed[1:] == values[1:]
+
+
+# ------------------------------------------------------------------ as a scenario without sensors
+
+RATIOS = {"42": 170.8 / 175, "34": 137.5 / 175, "25": 100 / 175, "G": 0}
+
+
+def _demands(written):
+    found = json.loads(written["json"].read_text(encoding="utf-8"))
+    return {(floor["floor"], one["axis"]): one for floor in found["floors"] for one in floor["demands"]}
+
+
+def _texts(written):
+    """What the HTML, the PDF and the Excel report say, spaces made alike."""
+    html = re.sub(
+        r"<[^>]+>", " ", re.sub(r"<style>.*?</style>", "", written["html"].read_text(encoding="utf-8"), flags=re.S)
+    )
+    document = pypdfium2.PdfDocument(written["pdf"])
+    pdf = " ".join(page.get_textpage().get_text_range() for page in document)
+    document.close()
+    book = openpyxl.load_workbook(written["xlsx"])
+    xlsx = " ".join(str(cell.value) for page in book for row in page.iter_rows() for cell in row if cell.value)
+    return [" ".join(text.split()) for text in (unescape(html), pdf, xlsx)]
+
+
+def test_without_its_records_it_runs_by_the_default_profile(tmp_path, script):
+    content = script.content()
+    floors = [{name: row[name] for name in ("floor", "name", "elevation")} for row in content.rows["Floors"]]
+    write_workbook(tmp_path / "no-records.xlsx", replace(content, rows={**content.rows, "Floors": floors}))
+    written = write_reports(run(read_inventory(tmp_path / "no-records.xlsx")), tmp_path / "out")
+    demands = _demands(written)
+    for (floor, _), one in demands.items():
+        amplification = 1 + 2.5 * RATIOS[floor]
+        assert (one["source"], one["profile"]) == ("profile", "ASCE 7-22")
+        assert (one["height_ratio"], one["amplification"]) == pytest.approx((RATIOS[floor], amplification))
+        assert one["pfa_g"] == pytest.approx(0.139 * amplification)
+    for text in _texts(written):
+        assert "Floors 42, 34, 25, G: the motion is that of ASCE 7-22." in text
+        assert ENVELOPES in text
+        for factors in ("z/h 0.976, amplification 3.440", "z/h 0.786, amplification 2.964", "z/h 0.571"):
+            assert factors in text
+        assert "the default, as nothing is known of them" in text
+
+
+def test_as_a_scenario_of_a_code_it_sets_its_records_aside(inventory):
+    found = run(inventory, Settings(scenario="ASCE 7-22"))
+    assert {one.source for ones in found.demands.values() for one in ones} == {"profile"}
+    aside = [str(one) for one in found.problems if "Record" in one.message]
+    assert len(aside) == 6
+    assert {one.severity for one in found.problems} == {"note"}, "every profile value is above the recorded one"
+
+
+def test_recorded_it_says_which_record_serves(tmp_path, inventory, assessment):
+    found = run(inventory, Settings(scenario="recorded"))
+    assert [one.governing.demand.pfa for one in found] == [one.governing.demand.pfa for one in assessment]
+    written = write_reports(found, tmp_path / "out")
+    assert {one["source"] for one in _demands(written).values()} == {"record"}
+    for text in _texts(written):
+        assert "recorded motion" in text
+        assert "891018_1.cra-1.0210a.smc" in text
+        assert "the motion is that of" not in text
+
+
+def test_a_floor_that_lost_its_record_is_interpolated(tmp_path, script):
+    """The 34th floor lies (137.5 - 100)/(170.8 - 100) = 0.52966 of the way from the 25th to the 42nd."""
+    content = script.content()
+    floors = [row if row["floor"] != "34" else {"floor": "34", "elevation": 137.5} for row in content.rows["Floors"]]
+    shutil.copytree(FOLDER / "records", tmp_path / "records")
+    write_workbook(tmp_path / "lost.xlsx", replace(content, rows={**content.rows, "Floors": floors}))
+    for scenario in ("as filled", "recorded"):
+        found = run(read_inventory(tmp_path / "lost.xlsx"), Settings(scenario=scenario))
+        (one,) = found.demands["34", "X"]
+        assert one.between == ("25", "42")
+        assert one.pfa * 100 == pytest.approx(218.4 + 0.52966 * (218.1 - 218.4), abs=0.06)
+        (one,) = found.demands["34", "Y"]
+        assert one.pfa * 100 == pytest.approx(161.8 + 0.52966 * (133.3 - 161.8), abs=0.06)
+    for text in _texts(write_reports(found, tmp_path / "out")):
+        assert "Floor 34: nothing is known of the motion there, it is interpolated" in text
+        assert "interpolated between floors 25 and 42" in text

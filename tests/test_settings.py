@@ -3,6 +3,7 @@ import math
 import pytest
 
 import assess
+from assess.settings import SCENARIOS, match_choice
 
 
 @pytest.mark.parametrize("zeta", [0.0, -1.0, math.nan, math.inf])
@@ -15,3 +16,27 @@ def test_the_package_offers_its_names_before_they_are_loaded():
     assert {"run", "Settings", "read_inventory", "write_reports"} <= set(dir(assess))
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         assess.nonsense  # noqa: B018
+
+
+@pytest.mark.parametrize("reduction", [0.99, 0.0, -2.0, math.nan, math.inf])
+def test_a_ductility_reduction_below_one_is_refused(reduction):
+    with pytest.raises(ValueError, match=r"ductility_reduction is .*, expected at least 1, and finite"):
+        assess.Settings(ductility_reduction=reduction)
+
+
+@pytest.mark.parametrize(
+    ("text", "choice"),
+    [
+        ("ASCE 7-22", "ASCE 7-22"),
+        ("asce7-22", "ASCE 7-22"),
+        ("ASCE 7\u201322", "ASCE 7-22"),
+        ("en_1998_1", "EN 1998-1"),
+        ("ntc2018", "NTC 2018"),
+        ("As-Filled", "as filled"),
+        (" RECORDED ", "recorded"),
+        ("ASCE 7-10", None),
+        ("", None),
+    ],
+)
+def test_choices_are_matched_loosely(text, choice):
+    assert match_choice(text, SCENARIOS) == choice

@@ -147,6 +147,27 @@ def _check_sizes(archive: zipfile.ZipFile, limits: Mapping[str, tuple[int, int]]
     for part, (size, tags) in limits.items():
         if part in present and (archive.getinfo(part).file_size > size or archive.read(part).count(b"<") > tags):
             raise _bomb(name)
+        if part in present and b"<!ENTITY" in archive.read(part):  # where lxml is installed, openpyxl leaves them out
+            raise _entities(name)
+
+
+def explain(error: BaseException, name: str) -> WorkbookError:
+    """Return what to tell of an error of `DAMAGE`."""
+    if _declares_entities(error):
+        return _entities(name)
+    mend = "Open it in Excel and save it again."
+    return unreadable(f"{name} is damaged or is no Excel workbook ({type(error).__name__}).", mend)
+
+
+def _entities(name: str) -> WorkbookError:
+    return unreadable(f"{name} declares XML entities, as an attack does.", "Save it again from Excel.")
+
+
+def _declares_entities(error: BaseException | None) -> bool:
+    """Tell whether defusedxml stopped the reading; openpyxl wraps its errors."""
+    from defusedxml.common import DefusedXmlException
+
+    return error is not None and (isinstance(error, DefusedXmlException) or _declares_entities(error.__cause__))
 
 
 def sheet_paths(archive: zipfile.ZipFile) -> dict[str, str]:

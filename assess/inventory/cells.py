@@ -8,6 +8,7 @@ import unicodedata
 
 from assess.inventory.columns import Column
 from assess.inventory.labels import key
+from assess.settings import match_choice
 from assess.units import QUANTITIES
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
@@ -107,9 +108,8 @@ def read_count(column: Column, value: object) -> int:
 def read_choice(column: Column, value: object) -> str:
     """Return the choice that was meant; raises CellError if there is none such."""
     text = read_text(value)
-    for choice in column.choices:
-        if key(choice) == key(text):
-            return choice
+    if (choice := match_choice(text, column.choices)) is not None:
+        return choice
     allowed = ", ".join(column.choices)
     near = difflib.get_close_matches(key(text), [key(choice) for choice in column.choices], 1, 0.75)
     meant = next((choice for choice in column.choices if near and key(choice) == near[0]), None)

@@ -138,10 +138,14 @@ BUILDING = Sheet(
         Column(name="address", label="Address", kind="text", help="Street and town."),
         Column(name="use", label="Use", kind="text", help="Office, hospital, school ..."),
         Column(name="storeys", label="Storeys", kind="count", help="Storeys above ground.", low=1, high=300),
-        _metres("height", "Height", "Height of the roof above the ground.", 2, 1000),
+        Column(
+            name="height", label="Height", kind="number", quantity="length", unit="m", imperial="ft", low=2, high=1000,
+            help="Height of the roof above the ground, for floors whose motion follows from Ground PGA.",
+            default="the highest Elevation in Floors",
+        ),
         Column(
             name="period", label="Period T1", kind="number", quantity="time", unit="s", imperial="s",
-            help="First period of vibration. Where a floor has no PFV, PFV is estimated from it.", low=0.02, high=20,
+            help="First period of vibration: gives the PFV where a floor has none; ASCE 7-22 uses it, too.", low=0.02, high=20,
         ),
         Column(
             name="azimuth_deg", label="Azimuth of X", kind="number", quantity="angle", unit="deg", imperial="deg",
@@ -154,10 +158,14 @@ BUILDING = Sheet(
         Column(name="scenario", label="Scenario", kind="text", help="The earthquake, in words: for the cover."),
         Column(
             name="scenario_kind", label="Scenario kind", kind="choice", choices=SCENARIOS, default="as filled",
-            help="Where the floor motion comes from. as filled: each floor's record, else its PFA and PFV.",
+            help="as filled: each floor's record, else PFA, else between its neighbours, else ASCE 7-22. A code: every floor.",
         ),
-        _acceleration("ground_pga", "Ground PGA", "Peak ground acceleration of the scenario; kept for the record."),
-        _acceleration("sds", "SDS", "Design spectral acceleration at short periods; kept for the record."),
+        _acceleration(
+            "ground_pga", "Ground PGA",
+            "Peak ground acceleration (0.4 SDS in ASCE 7, α S in EN 1998-1 and NTC): gives the motion of floors without "
+            "record or PFA.",
+        ),
+        _acceleration("sds", "SDS", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank Ground PGA."),
         Column(
             name="friction", label="Default friction", kind="number", low=0.01, high=2, default="no sliding",
             help="Coefficient of friction of pieces whose own is blank. Blank: no sliding, as the paper assumes.",
@@ -177,11 +185,11 @@ FLOORS = Sheet(
     "Floors",
     "table",
     True,
-    "Every floor that has furniture, and how it shakes: a record, or a peak acceleration (PFA).",
+    "Every floor that has furniture, and how it shakes: a record, a peak acceleration (PFA), or its elevation alone.",
     (
         Column(name="floor", label="Floor", kind="text", required=True, help="Short name, used in Items.", width=9),
         Column(name="name", label="Name", kind="text", help="Longer name for the report.", width=18),
-        _metres("elevation", "Elevation", "Height of the floor above the ground.", -200, 1000),
+        _metres("elevation", "Elevation", "Height of the floor above the ground. Needed where it has no record and no PFA.", -200, 1000),
         _acceleration("pfa_x", "PFA X", "Peak floor acceleration along X."),
         _acceleration("pfa_y", "PFA Y", "Peak floor acceleration along Y. One axis alone serves both."),
         _velocity("pfv_x", "PFV X", "Peak floor velocity along X."),

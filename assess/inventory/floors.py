@@ -20,11 +20,15 @@ _AXES: tuple[Axis, Axis] = ("X", "Y")
 
 @dataclass(slots=True)
 class FloorReader:
-    """Builds the floors from their table. Each file of records is read once; `hashes` holds SHA-256 by its name."""
+    """Builds the floors from their table. Each file of records is read once; `hashes` holds SHA-256 by its name.
+
+    `has_ground` tells whether Building says anything of the ground motion, which serves floors that have none.
+    """
 
     table: Table
     folder: Path
     building: Building
+    has_ground: bool = False
     hashes: dict[str, str] = field(default_factory=dict)
     _files: dict[Path, tuple[Record, ...] | str] = field(default_factory=dict)
 
@@ -32,7 +36,9 @@ class FloorReader:
         """Return the floors; problems are reported to the table."""
         check_unique(self.table, "floor")
         check_wildcards(self.table, "floor")
-        return tuple(self._floor(row) for row in self.table.rows if row.values.get("floor") is not None)
+        rows = [row for row in self.table.rows if row.values.get("floor") is not None]
+        self._check_demands(rows)
+        return tuple(self._floor(row) for row in rows)
 
     def _floor(self, row: Row) -> Floor:
         values = row.values
@@ -41,7 +47,6 @@ class FloorReader:
             for what in ("pfa", "pfv")
         )
         records = {axis: found for axis in _AXES if (found := tuple(self._records(row, axis)))}
-        self._check_demand(row)
         self._check_velocities(row)
         return Floor(
             row=row.number,
@@ -52,24 +57,36 @@ class FloorReader:
             pfv=pfv,
             records=records,
             plan=self._plan(row),
+            cells={name: f"{letter}{row.number}" for name, letter in self.table.letters.items()},
         )
 
-    def _check_demand(self, row: Row) -> None:
-        """Report a floor that says nothing of its motion; what is wrong with what it says has been reported."""
-        names = [f"{what}_{axis.lower()}" for what in ("pfa", "record") for axis in _AXES]
-        if not any(row.values.get(name) is not None or self.table.spoilt(name, row.number) for name in names):
-            where = "pfa_x" if "pfa_x" in self.table.letters else "floor"
-            message = f"floor {shorten(row.values['floor'])} has neither a record nor a PFA."
-            self.table.report(self.table.cell(where, row.number), message, "Fill in PFA X or PFA Y, or name a record.")
+    def _check_demands(self, rows: list[Row]) -> None:
+        """Report floors that nothing can serve, whatever the scenario; what cannot be read has been reported."""
+        known = [row for row in rows if self._says(row, "pfa_x", "pfa_y", "record_x", "record_y")]
+        levels = [row.values.get("elevation") for row in known]
+        heights = [level for level in levels if level is not None]
+        is_sure = not any(self.table.spoilt("elevation", row.number) for row in known)
+        for row in rows:
+            level = row.values.get("elevation")
+            if row in known or (level is None and self.table.spoilt("elevation", row.number)):
+                continue
+            has_neighbours = level is not None and bool(heights) and min(heights) <= level <= max(heights)
+            if level is None or not (self.has_ground or has_neighbours or not is_sure):
+                message, mend = describe_unserved(shorten(row.values["floor"]), has_elevation=level is not None)
+                where = "elevation" if self.has_ground else "pfa_x"
+                where = where if where in self.table.letters else "floor"
+                self.table.report(self.table.cell(where, row.number), message, mend)
+
+    def _says(self, row: Row, *names: str) -> bool:
+        """Tell whether one of these fields is filled in, be it readable or not."""
+        return any(row.values.get(name) is not None or self.table.spoilt(name, row.number) for name in names)
 
     def _check_velocities(self, row: Row) -> None:
         """Report a PFV that nothing would use: it tells of shaking that the PFA then would not."""
         for axis in _AXES:
             name, letter = f"pfv_{axis.lower()}", axis.lower()
             others = [f"pfa_{letter}", f"record_{letter}"]
-            if row.values.get(name) is not None and not any(
-                row.values.get(other) is not None or self.table.spoilt(other, row.number) for other in others
-            ):
+            if row.values.get(name) is not None and not self._says(row, *others):
                 message = f"PFV {axis} stands without PFA {axis} and would not be used."
                 self.table.report(
                     self.table.cell(name, row.number), message, f"Fill in PFA {axis}, or clear PFV {axis}."
@@ -139,3 +156,13 @@ class FloorReader:
         if off > NEAR_AXIS:
             message = f"{shorten(text)} points to {record.azimuth_deg:g} deg, {off:.0f} deg off the {axis} axis."
             self.table.report(cell, message, "Check the axis, or Azimuth of X in Building.", "warning")
+
+
+def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[str, str]:
+    """Say of a floor, its name in quotes, that nothing tells how it shakes, and what would."""
+    if has_elevation:
+        why = "lies between no two floors that have one and an Elevation, and Building gives no Ground PGA or SDS"
+        mend = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA in Building."
+        return f"floor {floor} has neither a record nor a PFA, {why}.", mend
+    mend = "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA in Building."
+    return f"floor {floor} has neither a record nor a PFA, and no Elevation to work one out by.", mend

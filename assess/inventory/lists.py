@@ -25,7 +25,8 @@ LETTERS = {(sheet.name, column.name): xl_col_to_name(at) for sheet in SHEETS for
 """Column of the sheet in which the empty workbook has a field."""
 
 RUN_ASSESS = "run assess"
-"""What the live columns say of a floor that has a record, which no spreadsheet formula can read."""
+"""What the live columns say of a floor with a record, which no spreadsheet formula can read, of one of which nothing is
+known, and of every floor where a code's profile is chosen."""
 
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
@@ -59,9 +60,7 @@ class ListsWriter:
         self._write_floors(at + 1)
         for name in ("Floors", "Catalogue", "Places", "Routes"):
             self._name(f"list_{name.lower()}", name, "A", 2, self.last[name])
-        for name in ("period", "scenario_kind"):
-            row = BUILDING.columns.index(BUILDING.column(name)) + 1
-            self.book.define_name(name, f"=Building!$B${row}")
+        self.book.define_name("period", f"=Building!$B${_line('period')}")
 
     def _name(self, name: str, sheet: str, column: str, first: int, last: int) -> None:
         self.book.define_name(name, f"={sheet}!${column}${first}:${column}${last}")
@@ -98,6 +97,7 @@ class ListsWriter:
             self.page.write_formula(row - 1, at + 1, formula, None, factor)
             self.book.define_name(f"unit_{name.lower()}_{field}", f"=Lists!${xl_col_to_name(at + 1)}${row}")
         self._write_sizes_unit(len(_NEEDED_FACTORS) + 4, at)
+        self._write_scenario(len(_NEEDED_FACTORS) + 5, at)
         return at + 2
 
     def _write_sizes_unit(self, row: int, at: int) -> None:
@@ -107,6 +107,20 @@ class ListsWriter:
         formula = f'=IF(OR({",".join(f"ISTEXT({size})" for size in sizes)}),"unit?","")'
         self.page.write_formula(row - 1, at + 1, formula, None, "")
         self.book.define_name("sizes_unit", f"=Lists!${xl_col_to_name(at + 1)}${row}")
+
+    def _write_scenario(self, row: int, at: int) -> None:
+        """Write the kind of scenario as choices are compared, and whether floors' own values serve it."""
+        plain = f"LOWER(Building!$B${_line('scenario_kind')})"
+        for sign in (" ", "-", "_"):
+            plain = f'SUBSTITUTE({plain},"{sign}","")'
+        name = f"${xl_col_to_name(at + 1)}${row}"
+        own = ",".join(f'{name}="{kind}"' for kind in ("", "asfilled", "recorded", "given"))
+        for line, (label, formula, value) in enumerate(
+            (("scenario_kind", f"={plain}", ""), ("scenario_is_own", f"=IF(OR({own}),1,0)", 1)), row
+        ):
+            self.page.write_string(line - 1, at, label)
+            self.page.write_formula(line - 1, at + 1, formula, None, value)
+            self.book.define_name(label, f"=Lists!${xl_col_to_name(at + 1)}${line}")
 
     # ------------------------------------------------------------------ floors
 
@@ -133,7 +147,8 @@ class ListsWriter:
             pfa, record = self._floor(f"pfa_{axis}", row), self._floor(f"record_{axis}", row)
             number = f'IF(ISTEXT(unit_floors_pfa_{axis}),"unit?",{pfa}*unit_floors_pfa_{axis}/{GRAVITY!r})'
             given = f'IF(OR({pfa}="",scenario_kind="recorded"),"",{number})'
-            yield f'IF(AND(TRIM({record})<>"",scenario_kind<>"given"),"{RUN_ASSESS}",{given})'
+            aside = f'AND(TRIM({record})<>"",scenario_kind<>"given")'
+            yield f'IF(OR(scenario_is_own=0,{aside}),"{RUN_ASSESS}",{given})'
 
     def _own_pfv(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
         for axis in "xy":
@@ -144,6 +159,11 @@ class ListsWriter:
             yield f'IF(ISNUMBER({pfa}),IF({pfv}<>"",{given},{estimate}),"")'
 
 
+def _line(name: str) -> int:
+    """Row of the form Building in which the empty workbook has a field."""
+    return BUILDING.columns.index(BUILDING.column(name)) + 1
+
+
 def _bracket(cell: str) -> str:
     """Expression for the unit in a header's brackets, spelt as in the lists of units."""
     start = f'FIND("[",{cell})'
@@ -152,8 +172,11 @@ def _bracket(cell: str) -> str:
 
 def _serving(cells: Mapping[str, str]) -> list[str]:
     """Expressions for PFA and PFV on X and Y: where one axis alone is known, it serves both."""
+    x, y = cells["own_pfa_x"], cells["own_pfa_y"]
+    nothing = {"pfa": f'AND({x}="",{y}="")', "pfv": "FALSE"}
     return [
-        f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]})'
+        f'IF({nothing[what]},"{RUN_ASSESS}",'
+        f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]}))'
         for what in ("pfa", "pfv")
         for axis, other in ("xy", "yx")
     ]

@@ -18,7 +18,8 @@ Axis = Literal["X", "Y"]
 class Building:
     """The building and the earthquake; a blank text or None where the workbook says nothing.
 
-    Lengths in m, `period` in s, accelerations in m/s2, `azimuth_deg` clockwise from north.
+    Lengths in m, `period` in s, accelerations in m/s2, `azimuth_deg` clockwise from north. `cells` tells in which cell
+    of the sheet a field stands.
     """
 
     building: str = ""
@@ -38,6 +39,11 @@ class Building:
     friction: float | None = None
     restitution: float | None = None
     language: str = ""
+    cells: Mapping[str, str] = field(default_factory=dict)
+
+    def cell(self, name: str) -> str:
+        """Address of a field; "" where the sheet lacks it."""
+        return self.cells.get(name, "")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +56,10 @@ class FloorRecord:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Floor:
-    """One floor. `elevation` [m], `pfa` [m/s2] and `pfv` [m/s] by axis where given, `records` by axis."""
+    """One floor. `elevation` [m], `pfa` [m/s2] and `pfv` [m/s] by axis where given, `records` by axis.
+
+    `cells` tells in which cell of the sheet a field stands.
+    """
 
     row: int
     floor: str
@@ -60,6 +69,11 @@ class Floor:
     pfv: Mapping[Axis, float] = field(default_factory=dict)
     records: Mapping[Axis, tuple[FloorRecord, ...]] = field(default_factory=dict)
     plan: Path | None = None
+    cells: Mapping[str, str] = field(default_factory=dict)
+
+    def cell(self, name: str) -> str:
+        """Address of a field; the first column where the sheet lacks it."""
+        return self.cells.get(name, f"A{self.row}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

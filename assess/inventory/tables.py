@@ -17,7 +17,16 @@ from openpyxl.styles.stylesheet import apply_stylesheet
 from openpyxl.utils import get_column_letter, range_boundaries
 
 from assess.errors import Problem, Severity, WorkbookError
-from assess.inventory.archive import DAMAGE, MAX_COLUMNS, MAX_ROWS, check_parts, open_archive, sheet_paths, unreadable
+from assess.inventory.archive import (
+    DAMAGE,
+    MAX_COLUMNS,
+    MAX_ROWS,
+    check_parts,
+    explain,
+    open_archive,
+    sheet_paths,
+    unreadable,
+)
 from assess.inventory.cells import (
     ERRORS,
     CellError,
@@ -98,21 +107,7 @@ def read_tables(path: Path) -> tuple[dict[str, Table], list[Problem]]:
             warnings.simplefilter("ignore")  # openpyxl's remarks on drawings and the like mean nothing to a user
             return _read_sheets(path, archive, problems), problems
     except DAMAGE as error:
-        if _declares_entities(error):
-            raise unreadable(
-                f"{path.name} declares XML entities, as an attack does.", "Save it again from Excel."
-            ) from error
-        raise unreadable(
-            f"{path.name} is damaged or is no Excel workbook ({type(error).__name__}).",
-            "Open it in Excel and save it again.",
-        ) from error
-
-
-def _declares_entities(error: BaseException | None) -> bool:
-    """Tell whether defusedxml stopped the reading; openpyxl wraps its errors."""
-    from defusedxml.common import DefusedXmlException
-
-    return error is not None and (isinstance(error, DefusedXmlException) or _declares_entities(error.__cause__))
+        raise explain(error, path.name) from error
 
 
 def _read_sheets(path: Path, archive: ZipFile, problems: list[Problem]) -> dict[str, Table]:

@@ -37,7 +37,7 @@ def read_inventory(path: str | Path) -> Inventory:
     folder = path.resolve().parent
     building = _read_building(tables["Building"], folder)
     catalogue = _read_catalogue(tables["Catalogue"])
-    floors = FloorReader(tables["Floors"], folder, building)
+    floors = FloorReader(tables["Floors"], folder, building, _has_ground(tables["Building"]))
     found = floors.read()
     routes = _read_routes(tables)
     places = _read_places(tables)
@@ -59,8 +59,6 @@ def read_inventory(path: str | Path) -> Inventory:
 
 
 _KEPT = {
-    "ground_pga": "every floor has its own motion",
-    "sds": "every floor has its own motion",
     "restitution": "direct integration is not part of this version",
 }
 
@@ -77,7 +75,15 @@ def _read_building(table: Table, folder: Path) -> Building:
         if name in values:
             message = f"{table.sheet.column(name).label} is kept, not used: {why}."
             table.report(f"B{table.lines[name]}", message, severity="note")
-    return Building(**values)
+    return Building(**values, cells={name: f"B{line}" for name, line in table.lines.items()})
+
+
+def _has_ground(table: Table) -> bool:
+    """Tell whether the building's form says anything of the ground motion, be it readable or not."""
+    return any(
+        table.form.get(name) is not None or name in table.blind or f"B{table.lines.get(name)}" in table.failed
+        for name in ("ground_pga", "sds")
+    )
 
 
 def _read_catalogue(table: Table) -> tuple[CatalogueType, ...]:

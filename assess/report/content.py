@@ -12,8 +12,7 @@ from assess.errors import Problem
 from assess.inventory.columns import BUILDING, ITEMS
 from assess.inventory.model import Floor
 from assess.methods import Method
-from assess.motion.record import treatment
-from assess.report import words
+from assess.report import motions, words
 from assess.report.data import versions
 from assess.results import FLAGS as ITEM_FLAGS
 from assess.results import Assessment, ItemResult, count_pieces, fix_first
@@ -75,6 +74,7 @@ class Content:
     worst: Sequence[ItemResult]
     fix_first: Sequence[ItemResult]
     sources: Sequence[str]
+    cautions: Sequence[str]
     floors: Sequence[FloorPage]
     methods: Sequence[Method]
     flags: Mapping[str, str]
@@ -120,7 +120,8 @@ def build_content(assessment: Assessment) -> Content:
         by_floor=tuple(page.counts for page in floors),
         worst=sorted(free, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))[:WORST],
         fix_first=tuple(fix_first(iter(results))),
-        sources=_sources(assessment),
+        sources=motions.list_sources(assessment.demands),
+        cautions=motions.list_cautions(assessment.demands),
         floors=floors,
         methods=assessment.methods,
         flags=_flags(assessment),
@@ -143,10 +144,16 @@ def _building(assessment: Assessment) -> list[tuple[str, str]]:
     lines = []
     for column in BUILDING.columns:
         value = getattr(assessment.inventory.building, column.name)
+        if column.name == "scenario_kind":
+            value = _scenario_kind(value, assessment.scenario)
         if value not in (None, "") and column.kind != "file":
             shown = f"{value / column.factor:g} {column.unit}" if column.quantity else str(value)
             lines.append((column.label, words.clip(shown)))
     return lines
+
+
+def _scenario_kind(chosen: str, used: str) -> str:
+    return used if used == (chosen or "as filled") else f"{used} (the workbook: {chosen or 'as filled'})"
 
 
 def floor_title(floor: Floor) -> str:
@@ -166,38 +173,10 @@ def _floors(assessment: Assessment, results: Sequence[ItemResult]) -> tuple[Floo
     return tuple(pages)
 
 
-def _sources(assessment: Assessment) -> list[str]:
-    """Say which floors got their motion from where: mixed sources are listed, not hidden."""
-    kinds: dict[str, list[str]] = {}
-    for (floor, axis), demands in assessment.demands.items():
-        for source in dict.fromkeys(describe_source(demand) for demand in demands):
-            kinds.setdefault(source, []).append(f"{floor} {axis}")
-    return [f"{source}: {', '.join(places)}" for source, places in kinds.items()]
-
-
-def describe_source(demand: Demand) -> str:
-    """Return where a motion comes from, in words, with its flags."""
-    source = (
-        "recorded motion"
-        if demand.source == "record"
-        else "given PFA" + ("" if demand.pfv != demand.pfv or "pfv_estimated" in demand.flags else " and PFV")
-    )
-    flags = [DEMAND_FLAGS[flag].split(":")[0] for flag in demand.flags]
-    return source + (f" ({'; '.join(flags)})" if flags else "")
-
-
 def has_worse_motion(one: ItemResult, key: str) -> bool:
     """Tell whether a method gives more under another motion of the item than under the governing one."""
     governing, worst = one.governing.methods[key].value, one.worst(key)
     return worst is not None and (governing is None or worst > governing + 0.0005)
-
-
-def describe_treatment(demand: Demand) -> str:
-    """Say what was done to the record of a demand."""
-    if demand.record is None:
-        return ""
-    parts = (treatment(demand.record), *demand.record.notes)
-    return "; ".join(part.rstrip(".") for part in parts) + "."
 
 
 def _flags(assessment: Assessment) -> dict[str, str]:
@@ -219,7 +198,7 @@ def _assumptions(assessment: Assessment) -> list[tuple[str, str]]:
     """Return what was assumed, and for how many rows or where."""
     settings, items = assessment.settings, assessment.inventory.items
     counted = Counter(name for item in items for name in item.assumed)
-    lines = []
+    lines = motions.list_assumptions(assessment)
     for name, text in _ASSUMED.items():
         if counted[name]:
             label = ITEMS.column(name).label

@@ -104,7 +104,7 @@ def floor_record(assessment: Assessment, name: str) -> dict[str, Any]:
 
 
 def demand_record(demand: Demand) -> dict[str, Any]:
-    """Return the motion of a floor along an axis; what belongs to a record is None where the motion was given."""
+    """Return the motion of a floor along an axis; what belongs to another source than its own is None."""
     record = demand.record
     return {
         "axis": demand.axis,
@@ -112,6 +112,11 @@ def demand_record(demand: Demand) -> dict[str, Any]:
         "pfa_g": edge(demand.pfa, "g"),
         "pfv_cm_s": edge(demand.pfv, "cm/s"),
         "flags": list(demand.flags),
+        "between": list(demand.between),
+        "profile": demand.profile.key if demand.profile else None,
+        "clause": demand.clause or None,
+        "height_ratio": demand.height_ratio,
+        "amplification": demand.amplification,
         "record": demand.name or None,
         "pfa_file_g": edge(record.file_pfa, "g") if record else None,
         "format": record.format if record else None,
@@ -134,7 +139,7 @@ def item_record(one: ItemResult) -> dict[str, Any]:
         **_piece_record(one),
         "pfa_g": edge(case.demand.pfa, "g"),
         "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
-        "pfa_source": case.demand.name or "given",
+        "pfa_source": case.demand.label,
         "methods": {key: method_record(method) for key, method in case.methods.items()},
         "verification": None,
         "adopted": adopted_record(one),
@@ -196,7 +201,7 @@ def axis_record(case: CaseResult) -> dict[str, Any]:
     """Return one motion that the item was held against, with the value of every method."""
     return {
         "axis": case.demand.axis,
-        "source": case.demand.name or "given",
+        "source": case.demand.label,
         "pfa_g": edge(case.demand.pfa, "g"),
         "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
         "methods": {key: method.value for key, method in case.methods.items()},

@@ -180,6 +180,6 @@ def draw_all(content: Content) -> dict[str, bytes]:
         elif page.results:
             figures[f"rooms-{at}"] = draw_rooms(page)
         for which, demand in enumerate(page.demands):
-            if demand.motion is not None and "one_axis_only" not in demand.flags:
+            if demand.motion is not None and not demand.is_borrowed:
                 figures[f"motion-{at}-{which}"] = draw_motion(demand)
     return figures

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from assess import resources
+from assess.motion.scenario import PROFILES
 from assess.report import content as content_module
-from assess.report import words
+from assess.report import motions, words
 from assess.report.content import Content, build_content
 from assess.report.figures import draw_all
 from assess.results import Assessment
@@ -44,8 +45,13 @@ def _render_content(content: Content, for_print: bool) -> str:
         logo=_logo(content),
         style=_style(for_print),
         most_rows=MOST_ROWS,
-        treatment=content_module.describe_treatment,
-        source=content_module.describe_source,
+        treatment=motions.describe_treatment,
+        source=motions.describe_source,
+        origin=motions.describe_origin,
+        profiles=tuple(PROFILES.values()),
+        status=motions.profile_status,
+        clauses=motions.list_clauses,
+        envelopes=motions.ENVELOPES,
         more=content_module.has_worse_motion,
     )
 

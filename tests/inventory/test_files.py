@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from assess.errors import WorkbookError
 from assess.inventory.workbook import read_inventory
 from assess.units import GRAVITY
 from tests.inventory.books import (
+    ITEMS,
     Sheet,
     errors_of,
     read,
@@ -112,8 +114,48 @@ def test_direction_of_records(
 def test_a_floor_without_motion(tmp_path: Path) -> None:
     floors: Sheet = [["Floor", "Name", "PFA X [g]", "PFV X [cm/s]"], ["1", "Ground", None, 30]]
     assert errors_of(write(tmp_path, floors=floors)) == {
-        "Floors!C2: floor '1' has neither a record nor a PFA. Fill in PFA X or PFA Y, or name a record."
+        "Floors!C2: floor '1' has neither a record nor a PFA, and no Elevation to work one out by. "
+        "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA in Building."
     }
+
+
+UNSERVED = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA in Building."
+UNPLACED = "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA in Building."
+
+
+@pytest.mark.parametrize(
+    ("middle", "building", "error"),
+    [
+        ((4, None), [], None),
+        ((12, None), [], "C3: floor '2' has neither a record nor a PFA, lies between no two floors that have one and an "
+         f"Elevation, and Building gives no Ground PGA or SDS. {UNSERVED}"),
+        ((12, None), [["Ground PGA [g]", 0.2]], None),
+        ((12, None), [["SDS [g]", 0.5]], None),
+        ((None, None), [["SDS [g]", 0.5]],
+         f"B3: floor '2' has neither a record nor a PFA, and no Elevation to work one out by. {UNPLACED}"),
+        ((None, None), [],
+         f"C3: floor '2' has neither a record nor a PFA, and no Elevation to work one out by. {UNPLACED}"),
+    ],
+)  # fmt: skip
+def test_a_floor_without_motion_that_others_or_the_ground_serve(
+    tmp_path: Path, middle: tuple[float | None, ...], building: list[list[Any]], error: str | None
+) -> None:
+    """What nothing can serve, whatever the scenario, is told with the other faults of the workbook."""
+    floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", 0, 0.3], ["2", *middle], ["3", 8, 0.4]]
+    items = [*ITEMS, ["A2", "9", 40, 180]]
+    found = errors_of(write(tmp_path, items, floors, Building=building))
+    other = {one for one in found if one.startswith("Items!B3: Floor '9' is not in the Floors sheet.")}
+    assert len(other) == 1
+    assert found - other == ({f"Floors!{error}"} if error else set())
+
+
+def test_what_cannot_be_read_is_told_once(tmp_path: Path) -> None:
+    """A floor whose Elevation, or a building whose Ground PGA, cannot be read might be served by it."""
+    floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", 0, 0.3], ["2", "high", None], ["3", 12, None]]
+    errors = errors_of(write(tmp_path, floors=floors, Building=[["Ground PGA [g]", "strong"]]))
+    assert {one.split(":")[0] for one in errors} == {"Floors!B3", "Building!B1"}
+    floors = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", "low", 0.3], ["2", 4, None], ["3", 12, 0.4]]
+    assert {one.split(":")[0] for one in errors_of(write(tmp_path, floors=floors))} == {"Floors!B2"}
 
 
 def test_floor(tmp_path: Path) -> None:

@@ -294,14 +294,38 @@ def test_floors_with_records(
         assert shown[1] == 0.5
 
 
-@pytest.mark.parametrize(("kind", "pfa"), [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess")])
+KINDS = [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess"), ("ASCE 7-22", "run assess"),
+         (" GIVEN", 0.5), ("As_Filled", "run assess"), ("en 1998-1", "run assess")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "pfa"), KINDS)
 def test_scenario_kind(tmp_path: Path, kind: str, pfa: Any) -> None:
     floors = [{"floor": "1", "pfa_x": 0.5, "record_x": "roof.csv"}]
     assert shown_of(tmp_path, {}, floors, scenario_kind=kind)[1] == pfa
 
 
 def test_recorded_floors_without_a_record_show_no_class(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == [""] * 4
+    """They may be interpolated, which is the program's task."""
+    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["run assess"] * 4
+
+
+@pytest.mark.parametrize("kind", [None, "as filled", "given", "recorded", "NTC 2018"])
+def test_a_floor_with_nothing_of_its_own_shows_no_class(tmp_path: Path, kind: str | None) -> None:
+    shown = shown_of(tmp_path, {}, [{"floor": "1", "elevation": 4}], scenario_kind=kind, ground_pga=0.2)
+    assert shown[1:] == ["run assess"] * 4
+
+
+@pytest.mark.parametrize("axis", [None, "X", "Y"])
+@pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
+def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str, axis: str | None) -> None:
+    assert (
+        shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.5}], scenario_kind=kind)[1:] == ["run assess"] * 4
+    )
+
+
+def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -> None:
+    floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "pfa_x": 0.5, "elevation": 4}]
+    assert shown_of(tmp_path, {}, floors, ground_pga=0.2)[1] == 0.5
 
 
 UNREADABLE = [

@@ -117,10 +117,9 @@ def test_building(tmp_path: Path) -> None:
     assert (found.building, found.storeys, found.period, found.azimuth_deg) == ("Town hall", 4, 0.9, 30)
     assert (found.height, found.ground_pga, found.sds) == pytest.approx((15.24, 3, GRAVITY))
     assert (found.scenario_kind, found.restitution, found.language, found.logo) == ("given", 0.9, "", None)
+    assert (found.cell("ground_pga"), found.cell("sds"), found.cell("friction")) == ("B7", "B8", "")
     assert remarks(inventory, "note") == {
         "Building!A10: 'Architect' is not known; it is not used.",
-        "Building!B7: Ground PGA is kept, not used: every floor has its own motion.",
-        "Building!B8: SDS is kept, not used: every floor has its own motion.",
         "Building!B9: Restitution is kept, not used: direct integration is not part of this version.",
     }
 
@@ -171,7 +170,7 @@ def test_every_field_of_the_model_has_a_column() -> None:
              "Catalogue": model.CatalogueType}  # fmt: skip
     for sheet in SHEETS:
         if sheet.name != "Floors":
-            own = {one.name for one in fields(kinds[sheet.name])} - {"row", "assumed", "extra"}
+            own = {one.name for one in fields(kinds[sheet.name])} - {"row", "assumed", "extra", "cells"}
             assert {column.name for column in sheet.columns} == own
 
 

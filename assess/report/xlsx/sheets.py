@@ -9,8 +9,18 @@ from assess.inventory.model import Axis
 from assess.methods import kaneko_hayashi as kh
 from assess.methods._method import ALIKE
 from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
-from assess.report.content import Content, describe_source, describe_treatment
+from assess.motion.scenario import PROFILES
+from assess.report.content import Content
 from assess.report.data import edge
+from assess.report.motions import (
+    ENVELOPES,
+    describe_origin,
+    describe_source,
+    describe_treatment,
+    factors,
+    list_clauses,
+    profile_status,
+)
 from assess.report.xlsx.items import HEAD
 from assess.report.xlsx.pen import INPUT, Pen
 from assess.risk import LIMITS
@@ -18,7 +28,8 @@ from assess.units import GRAVITY
 
 _EDIT_HERE = (
     "Edit the PFA and PFV here: Items and Summary follow. Where several records serve an axis, the one with the "
-    "largest PFA stands here; the sheet Motions lists all."
+    "largest PFA stands here; the sheet Motions lists all. Interpolated floors and those of a code's profile hold "
+    "numbers as run: they do not follow when another floor is edited."
 )
 
 NAMES = {
@@ -46,7 +57,7 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
         "Source Y",
         "Elevation [m]",
     )
-    pen.heads(page, heads, (12, 22, 12, 14, 44, 12, 14, 44, 12))
+    pen.heads(page, heads, (12, 22, 12, 14, 60, 12, 14, 60, 12))
     for row, floor_page in enumerate(content.floors, HEAD):
         pen.put(page, row, 0, floor_page.floor.floor)
         pen.put(page, row, 1, floor_page.floor.name)
@@ -63,7 +74,7 @@ def _governing(content: Content, floor: str, axis: Axis) -> Demand:
 
 
 def _write_demand(pen: Pen, page: Any, row: int, at: int, demand: Demand, period: float | None) -> None:
-    if "one_axis_only" in demand.flags:  # what serves this axis is the other one's: it follows when that is edited
+    if demand.is_borrowed:  # what serves this axis is the other one's: it follows when that is edited
         other = _COLUMNS["Y" if demand.axis == "X" else "X"]
         values = (edge(demand.pfa, "g"), edge(demand.pfv, "cm/s"))
         for place, (value, code) in enumerate(zip(values, ("0.000", "0.0"), strict=True)):
@@ -75,7 +86,7 @@ def _write_demand(pen: Pen, page: Any, row: int, at: int, demand: Demand, period
     form = pen.format("0.000", **INPUT)
     page.write_number(row, at, edge(demand.pfa, "g"), form)
     pfv = edge(demand.pfv, "cm/s")
-    if "pfv_estimated" in demand.flags and period is not None:
+    if "pfv_estimated" in demand.flags and period is not None and not demand.between:
         cell = f"{xl_col_to_name(at)}{row + 1}"
         formula = f"={cell}*{kh.G!r}/(2*PI()*{min(1 / period, HIGHEST_FLOOR_FREQUENCY)!r})"
         page.write_formula(row, at + 1, formula, pen.format("0.0"), pfv)
@@ -89,22 +100,27 @@ _COLUMNS = {"X": 2, "Y": 5}
 
 
 def _source(demand: Demand) -> str:
+    if demand.profile:
+        return f"{describe_source(demand)}: {factors(demand)}"
     return describe_source(demand) + (f": {demand.name}" if demand.name else "")
 
 
 def write_motions(pen: Pen, page: Any, content: Content) -> None:
     """Write every motion, with what was done to it."""
     rows = [
-        (floor_page.floor.floor, demand.axis, describe_source(demand), demand.name, edge(demand.pfa, "g"),
-         edge(demand.pfv, "cm/s"), edge(demand.record.file_pfa, "g") if demand.record else None,
+        (floor_page.floor.floor, demand.axis, describe_source(demand), demand.name,
+         "" if demand.record else describe_origin(demand), demand.height_ratio, demand.amplification,
+         edge(demand.pfa, "g"), edge(demand.pfv, "cm/s"), edge(demand.record.file_pfa, "g") if demand.record else None,
          demand.record.station if demand.record else "", demand.record.event if demand.record else "",
          demand.record.azimuth_deg if demand.record else None, describe_treatment(demand))
         for floor_page in content.floors
         for demand in floor_page.demands
     ]  # fmt: skip
-    heads = ("Floor", "Axis", "Source", "Record", "PFA [g]", "PFV [cm/s]", "PFA in the file [g]", "Station",
-             "Event", "Azimuth [deg]", "Treatment")  # fmt: skip
-    pen.listing(page, heads, (9, 6, 34, 40, 10, 11, 12, 34, 34, 10, 80), rows, {4: "0.000", 5: "0.0", 6: "0.000"})
+    heads = ("Floor", "Axis", "Source", "Record", "Worked out", "z/h", "Amplification", "PFA [g]", "PFV [cm/s]",
+             "PFA in the file [g]", "Station", "Event", "Azimuth [deg]", "Treatment")  # fmt: skip
+    widths = (9, 6, 34, 40, 44, 8, 13, 10, 11, 12, 34, 34, 10, 80)
+    formats = dict.fromkeys((5, 6, 7, 9), "0.000") | {8: "0.0"}
+    pen.listing(page, heads, widths, rows, formats)
 
 
 def write_routes(pen: Pen, page: Any, content: Content) -> None:
@@ -133,6 +149,12 @@ def write_methods(pen: Pen, page: Any, content: Content) -> None:
             ("Source", (str(method.reference),)),
         )
         rows += [(method.title, what, text) for what, texts in parts for text in texts]
+    for profile in PROFILES.values():
+        rows.append((profile.title, "Clause", list_clauses(profile)))
+        rows.append((profile.title, "Equation", profile.equation))
+        rows.append((profile.title, "Status", profile_status(profile)))
+        rows.append((profile.title, "Source", profile.reference))
+    rows.append(("Floor motion by a code's profile", "Beware", ENVELOPES))
     rows += [("Marks", flag.replace("_", " "), meaning) for flag, meaning in content.flags.items()]
     rows += [("Limits", "", text) for text in content.limits]
     pen.listing(page, ("Method", "What", "Text"), (28, 26, 130), rows)

@@ -8,7 +8,7 @@ from assess.inventory.live import OUTSIDE
 from assess.report import words
 from assess.report.content import Content
 from assess.report.xlsx.items import HEAD, item_columns
-from assess.report.xlsx.pen import Pen
+from assess.report.xlsx.pen import LINE, Pen
 from assess.risk import RiskClass
 
 CHART_ROWS = 18
@@ -28,7 +28,11 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
     ]
     for row, line in enumerate(lines, 1):
         pen.put(page, row, 0, line)
-    top = len(lines) + 2
+    for row, line in enumerate(content.cautions, len(lines) + 1):
+        page.merge_range(row, 0, row, 6, "", pen.wrap)
+        page.write_string(row, 0, line, pen.wrap)
+        page.set_row(row, LINE * (1 + len(line) // 110))
+    top = len(lines) + len(content.cautions) + 2
     bottom = _write_counts(pen, page, content, top)
     _chart(pen, page, top, bottom)
     _write_worst(pen, page, content, bottom + CHART_ROWS)

@@ -1,0 +1,136 @@
+"""How each floor shakes, in the words of reports: sources, what stands behind each number, and what to beware of."""
+
+from collections.abc import Sequence
+
+from assess.demand import FLAGS, Demand, Demands, find_ground
+from assess.motion.record import treatment
+from assess.motion.scenario import PROFILES, UNVERIFIED, Profile
+from assess.remarks import list_floors
+from assess.report import words
+from assess.results import Assessment
+
+ENVELOPES = (
+    "Profiles of building codes are envelopes for design, not expected values: they bias the scenario high, so that "
+    "more pieces are called likely to fall than would be expected."
+)
+"""What must be said wherever a code's profile was used."""
+
+
+def describe_source(demand: Demand) -> str:
+    """Return where a motion comes from, in words, with its flags."""
+    source = "recorded motion"
+    if demand.profile:
+        source = f"design profile of {demand.profile.key}"
+    elif demand.between:
+        source = _between(demand)
+    elif demand.source == "given":
+        source = "given PFA" + ("" if demand.pfv != demand.pfv or "pfv_estimated" in demand.flags else " and PFV")
+    flags = [FLAGS[flag].split(":")[0] for flag in demand.flags if flag not in ("interpolated", "code_profile")]
+    return source + (f" ({'; '.join(flags)})" if flags else "")
+
+
+def _between(demand: Demand) -> str:
+    lower, upper = (words.clip(name, 40) for name in demand.between)
+    if lower == upper:
+        return f"as floor {lower}, at the same height"
+    return f"interpolated between floors {lower} and {upper}"
+
+
+def describe_origin(demand: Demand) -> str:
+    """Return what stands behind a motion: the record, or what was computed from what."""
+    if demand.profile and demand.height_ratio is not None and demand.amplification is not None:
+        clause = demand.clause + ("" if demand.profile.verified else f" ({UNVERIFIED})")
+        pga = words.in_g(demand.pfa / demand.amplification)
+        return f"{demand.profile.key}, {clause}: {factors(demand)} of ground PGA {pga} g"
+    if demand.between:
+        return f"linear over elevation, PFA and PFV each: {_between(demand)}"
+    if demand.record is None:
+        return words.DASH
+    azimuth = "" if demand.record.azimuth_deg is None else f", {demand.record.azimuth_deg:g}°"
+    return f"{words.clip(demand.name, 60)}: {words.clip(demand.record.station, 60)}{azimuth}"
+
+
+def factors(demand: Demand) -> str:
+    """Return where a floor stands in the building and what a code's profile gave it."""
+    return f"z/h {words.fixed(demand.height_ratio, 3)}, amplification {words.fixed(demand.amplification, 3)}"
+
+
+def describe_treatment(demand: Demand) -> str:
+    """Say what was done to the record of a demand."""
+    if demand.record is None:
+        return ""
+    parts = (treatment(demand.record), *demand.record.notes)
+    return "; ".join(part.rstrip(".") for part in parts) + "."
+
+
+def list_sources(demands: Demands) -> list[str]:
+    """Say which floors got their motion from where: mixed sources are listed, not hidden."""
+    kinds: dict[str, list[str]] = {}
+    for (floor, axis), ones in demands.items():
+        for source in dict.fromkeys(describe_source(demand) for demand in ones):
+            kinds.setdefault(source, []).append(f"{floor} {axis}")
+    return [f"{source}: {', '.join(places)}" for source, places in kinds.items()]
+
+
+def list_cautions(demands: Demands) -> list[str]:
+    """Return what a reader must know of the floors' motion before trusting a class."""
+    cautions = []
+    profiled, interpolated = list_floors(demands, "profile"), list_floors(demands, "interpolated")
+    if profiled:
+        keys = {demand.profile.key for ones in demands.values() for demand in ones if demand.profile}
+        cautions.append(f"{_name(profiled)}: the motion is that of {', '.join(sorted(keys))}. {ENVELOPES}")
+    if interpolated:
+        why = "nothing is known of the motion there, it is interpolated between the floors above and below"
+        cautions.append(f"{_name(interpolated)}: {why}.")
+    if len({demand.source for ones in demands.values() for demand in ones}) > 1:
+        cautions.append("The floors' motion comes from mixed sources: compare floors with care.")
+    return cautions
+
+
+def _name(floors: Sequence[str]) -> str:
+    return words.clip(f"{'Floor' if len(floors) == 1 else 'Floors'} {', '.join(floors)}", 300)
+
+
+def used_profiles(demands: Demands) -> list[Profile]:
+    """Return the codes' profiles that serve a floor."""
+    return [
+        profile
+        for profile in PROFILES.values()
+        if any(demand.profile is profile for ones in demands.values() for demand in ones)
+    ]
+
+
+def list_clauses(profile: Profile) -> str:
+    """Return every clause of a profile, and when each applies."""
+    if not profile.clause_without_period:
+        return profile.clause
+    return f"{profile.clause} (T1 known); {profile.clause_without_period} (T1 unknown)"
+
+
+def profile_status(profile: Profile) -> str:
+    """Say whether a profile was held against its source, and what was left out of it."""
+    checked = "checked" if profile.verified else UNVERIFIED
+    return f"{checked}: {profile.remark}"
+
+
+def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
+    """Return what was assumed of the floors that a code's profile serves."""
+    used = used_profiles(assessment.demands)
+    if not used:
+        return []
+    ground, building = find_ground(assessment.inventory), assessment.inventory.building
+    roof = "the highest floor, as Height is blank" if ground.is_highest_floor else "Height"
+    pga = "0.4 SDS, as Ground PGA is blank" if ground.is_from_sds else "Ground PGA"
+    floors = words.clip(", ".join(list_floors(assessment.demands, "profile")), 300)
+    chosen = "the default, as nothing is known of them" if assessment.scenario == "as filled" else "the scenario"
+    lines = [
+        (f"Motion of floors {floors}", f"design profile of {used[0].key}, {chosen}"),
+        ("Ground motion of the profile", f"{words.in_g(ground.pga)} g, {pga}; it stands for 0.4 SDS and for αS"),
+        ("Roof height h of the profile", f"{words.in_m(ground.roof)} m, {roof}"),
+    ]
+    if any(profile.reduced for profile in used):
+        period = f"{building.period:g} s" if building.period else "unknown: Eq. 13.3-5, which is never below Eq. 13.3-4"
+        reduction = assessment.settings.ductility_reduction
+        note = ": no reduction for the building's ductility" if reduction == 1 else ""
+        lines += [("Period T1 in the profile", period), ("R_μ of ASCE 7-22", f"{reduction:g}{note}")]
+    return lines

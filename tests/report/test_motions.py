@@ -1,0 +1,126 @@
+"""What the reports say of floors without a motion of their own."""
+
+import json
+
+import jsonschema
+import openpyxl
+import pytest
+
+import assess
+from assess.motion.scenario import PROFILES, UNVERIFIED
+from assess.report.data import SCHEMA
+from assess.report.motions import ENVELOPES
+from tests.report.test_html import _read
+from tests.workbooks import write
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+ITEMS = [{"item": f"i{floor}", "floor": floor, "breadth": 40, "height": 180} for floor in "1234"]
+FLOORS = [
+    {"floor": "1", "elevation": 0, "pfa_x": 0.2, "pfv_x": 20, "pfa_y": 0.1, "pfv_y": 12},
+    {"floor": "2", "elevation": 3},
+    {"floor": "3", "elevation": 12, "pfa_x": 0.4, "pfv_x": 30},
+    {"floor": "4", "elevation": 16},
+]
+WORKED_OUT = "ASCE 7-22, 13.3.1.1, Eq. 13.3-5: z/h 0.800, amplification 3.000 of ground PGA 0.250 g"
+"""Floor 4: 16/20 = 0.8, 1 + 2.5 x 0.8 = 3."""
+
+
+def _reports(folder, scenario=None, formats=("html", "xlsx", "json"), floors=FLOORS, **building):
+    inventory = assess.read_inventory(write(folder / "w.xlsx", ITEMS, floors, **building))
+    return assess.write_reports(assess.run(inventory, assess.Settings(scenario=scenario)), folder / "out", formats)
+
+
+@pytest.fixture(scope="module")
+def mixed(tmp_path_factory):
+    return _reports(tmp_path_factory.mktemp("mixed"), ground_pga=0.25, height=20)
+
+
+def _json(written):
+    found = json.loads(written["json"].read_text(encoding="utf-8"))
+    jsonschema.validate(found, json.loads(SCHEMA.read_text(encoding="utf-8")))
+    return found
+
+
+def _rows(written, sheet):
+    page = openpyxl.load_workbook(written["xlsx"])[sheet]
+    return [[cell.value for cell in row] for row in page.iter_rows()]
+
+
+def test_json_holds_what_was_used_on_each_floor_and_axis(mixed):
+    found = _json(mixed)
+    demands = {(floor["floor"], one["axis"]): one for floor in found["floors"] for one in floor["demands"]}
+    assert {place: one["source"] for place, one in demands.items()} == {
+        ("1", "X"): "given", ("1", "Y"): "given", ("2", "X"): "interpolated", ("2", "Y"): "interpolated",
+        ("3", "X"): "given", ("3", "Y"): "given", ("4", "X"): "profile", ("4", "Y"): "profile",
+    }  # fmt: skip
+    between = demands["2", "X"]  # 3 of 12 m: 0.2 + 0.25 x 0.2 = 0.25 g, 20 + 0.25 x 10 = 22.5 cm/s
+    assert (between["between"], between["profile"], between["height_ratio"]) == (["1", "3"], None, None)
+    assert (between["pfa_g"], between["pfv_cm_s"]) == pytest.approx((0.25, 22.5))
+    top = demands["4", "Y"]
+    assert (top["profile"], top["clause"], top["between"]) == ("ASCE 7-22", "13.3.1.1, Eq. 13.3-5", [])
+    assert (top["height_ratio"], top["amplification"], top["pfa_g"]) == pytest.approx((0.8, 3.0, 0.75))
+    sources = {item["item"]: item["pfa_source"] for item in found["items"]}
+    assert sources == {"i1": "given", "i2": "interpolated between 1 and 3", "i3": "given", "i4": "ASCE 7-22"}
+    assert "interpolated" in found["items"][1]["adopted"]["flags"]
+    assert "code_profile" in found["items"][3]["adopted"]["flags"]
+
+
+def test_html_says_what_was_used_and_what_to_beware_of(mixed):
+    text = _read(mixed["html"].read_text(encoding="utf-8"))
+    assert text.count(f"Floor 4: the motion is that of ASCE 7-22. {ENVELOPES}") == 2  # summary, and floors
+    assert text.count("Floor 2: nothing is known of the motion there, it is interpolated between the floors above") == 2
+    assert text.count("The floors' motion comes from mixed sources") == 2
+    assert text.count(WORKED_OUT) == 2  # one an axis
+    assert "linear over elevation, PFA and PFV each: interpolated between floors 1 and 3" in text
+    assert "interpolated between floors 1 and 3: 2 X" in text
+    assert "mixed sources: given peaks (1, 3); interpolated between floors (2); a code's design profile (4)." in text
+
+
+def test_the_methods_list_every_profile_with_clause_and_equation(mixed):
+    text, rows = _read(mixed["html"].read_text(encoding="utf-8")), _rows(mixed, "Methods")
+    for profile in PROFILES.values():
+        own = {what: words for title, what, words in rows if title == profile.title}
+        assert own["Clause"].startswith(profile.clause)
+        assert own["Equation"] == profile.equation
+        assert own["Source"] == profile.reference
+        for words in own.values():
+            assert words in text
+        assert (UNVERIFIED in own["Status"]) == (not profile.verified)
+
+
+def test_the_assumptions_tell_what_the_profile_started_from(mixed, tmp_path):
+    told = dict(row[:2] for row in _rows(mixed, "Assumptions"))
+    assert told["Motion of floors 4"] == "design profile of ASCE 7-22, the default, as nothing is known of them"
+    assert told["Ground motion of the profile"] == "0.250 g, Ground PGA; it stands for 0.4 SDS and for αS"
+    assert told["Roof height h of the profile"] == "20 m, Height"
+    assert told["R_μ of ASCE 7-22"] == "1: no reduction for the building's ductility"
+    assert told["Period T1 in the profile"].startswith("unknown: Eq. 13.3-5")
+    told = dict(row[:2] for row in _rows(_reports(tmp_path, "EN 1998-1", ("xlsx",), sds=0.5, period=1), "Assumptions"))
+    assert told["Motion of floors 1, 2, 3, 4"] == "design profile of EN 1998-1, the scenario"
+    assert told["Ground motion of the profile"].startswith("0.200 g, 0.4 SDS, as Ground PGA is blank")
+    assert told["Roof height h of the profile"] == "16 m, the highest floor, as Height is blank"
+    assert "R_μ of ASCE 7-22" not in told
+
+
+def test_excel_says_it_on_summary_floors_and_motions(mixed):
+    summary = [row[0] for row in _rows(mixed, "Summary")]
+    assert f"Floor 4: the motion is that of ASCE 7-22. {ENVELOPES}" in summary
+    floors = {row[0]: row for row in _rows(mixed, "Floors")}
+    assert floors["2"][2:5] == [0.25, 22.5, "interpolated between floors 1 and 3"]
+    assert floors["4"][4] == floors["4"][7] == "design profile of ASCE 7-22: z/h 0.800, amplification 3.000"
+    motions = [row for row in _rows(mixed, "Motions") if row[0] == "4"]
+    assert [row[4:8] for row in motions] == [[WORKED_OUT, 0.8, pytest.approx(3.0), pytest.approx(0.75)]] * 2
+
+
+def test_a_report_of_given_floors_alone_says_nothing_of_profiles_on_its_summary(tmp_path):
+    written = _reports(tmp_path, None, ("html", "xlsx"), [floor | {"pfa_x": 0.2} for floor in FLOORS])
+    text = _read(written["html"].read_text(encoding="utf-8"))
+    assert text.count(ENVELOPES) == 1  # in the methods
+    assert not any("profile" in str(row[0]) for row in _rows(written, "Assumptions"))
+
+
+def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
+    text = _read(_reports(tmp_path, "NTC 2018", ("html",), ground_pga=0.2)["html"].read_text(encoding="utf-8"))
+    assert f"NTC 2018, Circolare 21 gennaio 2019 n. 7, C7.2.3 ({UNVERIFIED}): z/h 1.000, amplification 2.000" in text
+    assert "NTC 2018 (the workbook: as filled)" in text
