@@ -67,7 +67,8 @@ class Record:
     acceleration : (n,) array
         [m/s2]
     file_pfa, header_pfa : float
-        Peak of the file's own samples, before any resampling, and the one printed in its header, if any [m/s2].
+        Peak of the file's own samples, before any resampling, and the one printed in its header, if any [m/s2]. Where
+        the samples carry the instrument's offset (K-NET, SAC, miniSEED), it is that about their mean.
     notes : tuple of str
         What reading changed, in plain words.
 

@@ -2,11 +2,12 @@
 
 import importlib
 import pkgutil
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 from assess.errors import RecordError
+from assess.motion.formats._archive import is_archive, read_archive
+from assess.motion.formats._choice import select, tell_apart
 from assess.motion.formats._format import Format
 from assess.motion.record import Record
 
@@ -18,10 +19,12 @@ HEAD = 65_536
 """Bytes by which a format is recognised."""
 
 _FOREIGN = {
-    b"PK\x03\x04": "It is a zip archive or a workbook: unpack it, or save the sheet as CSV.",
     b"\xff\xfe": "It is saved as UTF-16: save it as CSV UTF-8.",
     b"\xfe\xff": "It is saved as UTF-16: save it as CSV UTF-8.",
     b"%PDF": "It is a PDF.",
+    b"\x1f\x8b": "It is a gzip archive: unpack it.",
+    b"7z\xbc\xaf": "It is a 7z archive: unpack it.",
+    b"Rar!": "It is a RAR archive: unpack it.",
 }
 _PLAIN_CSV = (
     "Other records can be given as plain CSV, whose first row names time and each channel with its unit: "
@@ -38,7 +41,7 @@ def all_formats() -> tuple[Format, ...]:
 
 
 def read_records(path: Path) -> tuple[Record, ...]:
-    """Read every channel of a file of recorded motion, whatever its format.
+    """Read every channel of a file of recorded motion, whatever its format, or of all those in a zip archive.
 
     Raises
     ------
@@ -47,38 +50,10 @@ def read_records(path: Path) -> tuple[Record, ...]:
     """
     try:
         data = _read_bytes(path)
-        return _find_format(data[:HEAD]).read(data, path.name)
+        read = read_archive(data, path.name, _read_member) if is_archive(data) else _read(data, path.name)
+        return tell_apart(read)
     except RecordError as error:
         raise RecordError(f"{path.name or path}: {error}") from error
-
-
-def select(records: Sequence[Record], channel: str | None = None) -> Record:
-    """Return the one record that `channel` names: the part after # where a user writes ``file#channel``.
-
-    Parameters
-    ----------
-    records : sequence of Record
-        All channels of one file.
-    channel : str, optional
-        A channel's name in any letter case, or its number in the file from 1 on; None where there is only one.
-
-    Raises
-    ------
-    RecordError
-        If no channel, or more than one, is meant; the message lists them.
-    """
-    file, names = records[0].file, ", ".join(record.channel for record in records)
-    if channel is None or not channel.strip():
-        if len(records) == 1:
-            return records[0]
-        raise RecordError(f"{file} holds {len(records)} channels: {names}. Write which, as {file}#{records[0].channel}")
-    wanted = channel.strip().casefold()
-    # Names come first: a channel may be called by its azimuth, "45".
-    named = [record for record in records if record.channel.casefold() == wanted]
-    numbered = [record for number, record in enumerate(records, start=1) if str(number) == wanted]
-    if named or numbered:
-        return (named or numbered)[0]
-    raise RecordError(f"{file} has no channel {channel.strip()!r}. It holds: {names}")
 
 
 def _read_bytes(path: Path) -> bytes:
@@ -103,10 +78,22 @@ def _read_bytes(path: Path) -> bytes:
     return data
 
 
-def _find_format(head: bytes) -> Format:
-    for candidate in all_formats():
-        if candidate.recognises(head):
-            return candidate
-    why = next((reason for start, reason in _FOREIGN.items() if head.startswith(start)), _PLAIN_CSV)
-    known = ", ".join(candidate.title for candidate in all_formats())
-    raise RecordError(f"the content is of no known format (known: {known}). {why}")
+def _read(data: bytes, file: str) -> tuple[Record, ...]:
+    found = _find_format(data[:HEAD])
+    if found is None:
+        why = next((reason for start, reason in _FOREIGN.items() if data.startswith(start)), _PLAIN_CSV)
+        known = ", ".join(candidate.title for candidate in all_formats())
+        raise RecordError(f"the content is of no known format (known: {known}; also in zip archives). {why}")
+    return found.read(data, file)
+
+
+def _read_member(data: bytes, file: str) -> tuple[Record, ...]:
+    """Read a file of an archive: there may be many of no known format, and they are left out."""
+    found = _find_format(data[:HEAD])
+    if found is None:
+        raise RecordError("of no known format")
+    return found.read(data, file)
+
+
+def _find_format(head: bytes) -> Format | None:
+    return next((candidate for candidate in all_formats() if candidate.recognises(head)), None)

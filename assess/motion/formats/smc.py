@@ -16,6 +16,7 @@ import numpy as np
 
 from assess.errors import RecordError
 from assess.motion.formats._format import Format
+from assess.motion.formats._text import note_peak
 from assess.motion.record import FloatArray, Record, Series, build_series, check_samples, check_time_step, peak
 from assess.units import ACCELERATION
 
@@ -33,8 +34,6 @@ SAMPLING_RATE = 1
 
 MOST_BEYOND = 0.01
 """Share of the data that may stand beyond the count in the header [-]; those of 575 Market Street have 8 numbers."""
-HEADER_PEAK_WITHIN = 0.02
-"""Headers print two to four digits of the peak; a larger difference [-] is noted."""
 
 _KIND = re.compile(rb"[ \t]*([1-6])[ \t]+(?:UNCORRECTED|CORRECTED|VELOCITY|DISPLACEMENT|FOURIER|RESPONSE)")
 _REFUSED = {"3": "velocity", "4": "displacement", "5": "a spectrum", "6": "a spectrum"}
@@ -214,7 +213,7 @@ def _build_record(file: str, header: _Header, own: FloatArray, series: Series) -
         acceleration=series.values,
         file_pfa=peak(own),
         header_pfa=header_pfa,
-        notes=(*series.notes, *orientation_notes, *_note_peak(header_pfa, peak(own)), *_note_problem(header)),
+        notes=(*series.notes, *orientation_notes, *note_peak(header_pfa, peak(own)), *_note_problem(header)),
     )
 
 
@@ -259,12 +258,6 @@ def _orientation(component: str, header: _Header) -> tuple[bool, float | None, t
         note = f"the header gives two azimuths, {known[0]:g} and {known[1]:g} deg: the first is used"
         return False, float(known[0]), (note,)
     return False, float(known[0]) if known else None, ()
-
-
-def _note_peak(header_pfa: float | None, file_pfa: float) -> tuple[str, ...]:
-    if header_pfa is None or abs(header_pfa - file_pfa) <= HEADER_PEAK_WITHIN * file_pfa:
-        return ()
-    return (f"the header prints a peak of {header_pfa / CM_S2:.4g} cm/s2, the data have {file_pfa / CM_S2:.4g} cm/s2",)
 
 
 def _note_problem(header: _Header) -> tuple[str, ...]:

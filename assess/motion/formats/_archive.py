@@ -1,0 +1,146 @@
+"""Zip archives of records, as data centres deliver them: read without unpacking them to the disk."""
+
+import io
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from assess.errors import RecordError
+from assess.motion.record import Record
+
+MOST_UNPACKED = 256_000_000
+"""Bytes that are unpacked of one file that a user names; a set of a large building has 30 million."""
+LARGEST_MEMBER = 64_000_000
+"""Bytes of one member."""
+MOST_MEMBERS = 5_000
+"""Members, those of inner archives counted with them."""
+DEEPEST = 3
+"""Archives within archives: the CSMIP sets have two levels."""
+MOST_RATIO, RATIO_FROM = 200, 1_000_000
+"""Unpacked over packed size [-] that is believed, of members with more than so many bytes; text packs to a tenth."""
+LISTED, LONGEST_REASON = 8, 160
+"""Members that an error lists, and the characters of what it says of each."""
+
+_STARTS = (b"PK\x03\x04", b"PK\x05\x06")
+_ENTRY = b"PK\x01\x02"
+_LOCKED = 0x1
+_METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
+_OFFICE = ("[Content_Types].xml", "META-INF/manifest.xml")
+
+ReadMember = Callable[[bytes, str], tuple[Record, ...]]
+
+
+@dataclass(slots=True)
+class _Found:
+    """What has been found so far, and how much was unpacked for that [bytes]."""
+
+    records: list[Record] = field(default_factory=list)
+    reasons: list[str] = field(default_factory=list)
+    unpacked: int = 0
+    members: int = 0
+
+
+def is_archive(head: bytes) -> bool:
+    """Tell whether a file that starts with `head` is a zip archive (or a workbook, which is one, too)."""
+    return head.startswith(_STARTS)
+
+
+def read_archive(data: bytes, file: str, read: ReadMember) -> tuple[Record, ...]:
+    """Read every channel of every member that `read` can read, inner archives included.
+
+    Parameters
+    ----------
+    data : bytes
+        The archive.
+    file : str
+        Its name; that of a member's record is ``file/inner.zip/folder/member``.
+    read : callable
+        Reads the bytes of one member, given its name.
+
+    Raises
+    ------
+    RecordError
+        If nothing in it can be read, it is locked, or it unpacks to more than a set of records can have.
+    """
+    found = _Found()
+    _read_members(data, file, read, found, depth=1)
+    if found.records:
+        return tuple(found.records)
+    if not found.reasons:
+        raise RecordError("the zip archive is empty. Get it again")
+    listed = "; ".join(found.reasons[:LISTED])
+    more = f"; and {len(found.reasons) - LISTED} more" if len(found.reasons) > LISTED else ""
+    raise RecordError(f"nothing in the zip archive can be read as a record: {listed}{more}")
+
+
+class _BombError(RecordError):
+    """About an archive of which nothing further is read."""
+
+
+def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, depth: int) -> None:
+    if depth > DEEPEST:
+        raise RecordError(f"archives lie more than {DEEPEST} deep in one another: unpack it")
+    with _open(data) as archive:
+        for member in _list_members(archive, found):
+            name = member.filename.replace("\\", "/")
+            try:
+                content, place = _unpack(archive, member, found), f"{file}/{name}"
+                if is_archive(content):
+                    _read_members(content, place, read, found, depth + 1)
+                else:
+                    found.records += [replace(record, file=place) for record in read(content, name)]
+            except _BombError:
+                raise
+            except RecordError as error:
+                found.reasons.append(f"{name}: {f'{error}'[:LONGEST_REASON]}")
+
+
+def _open(data: bytes) -> zipfile.ZipFile:
+    # Counted before the directory is read: each of its entries takes a hundred times its bytes in memory.
+    if data.count(_ENTRY) > MOST_MEMBERS:
+        raise _BombError(f"the zip archive has more than {MOST_MEMBERS} members: unpack it")
+    try:
+        return zipfile.ZipFile(io.BytesIO(data))
+    except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
+        raise _damaged("the zip archive", error) from error
+
+
+def _damaged(what: str, error: Exception) -> RecordError:
+    return RecordError(f"{what} is damaged ({f'{error}'[:LONGEST_REASON] or type(error).__name__}). Get it again")
+
+
+def _list_members(archive: zipfile.ZipFile, found: _Found) -> list[zipfile.ZipInfo]:
+    members = [member for member in archive.infolist() if not member.is_dir()]
+    found.members += len(members)
+    if found.members > MOST_MEMBERS:
+        raise _BombError(f"the zip archive has more than {MOST_MEMBERS} members: unpack it")
+    if any(member.filename in _OFFICE for member in members):
+        raise RecordError("it is a workbook or another office file, not a record: save the sheet as CSV")
+    locked = next((member.filename for member in members if member.flag_bits & _LOCKED), None)
+    if locked is not None:
+        raise _BombError(f"{locked} is locked with a password: unpack the archive, and name the file of the channel")
+    return members
+
+
+def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) -> bytes:
+    """Unpack one member, whatever size the archive gives it, no further than the limits."""
+    if member.compress_type not in _METHODS:
+        raise RecordError(f"it is packed in a way that is not read (method {member.compress_type}): unpack it")
+    if member.file_size > max(RATIO_FROM, MOST_RATIO * member.compress_size):
+        raise _BombError(
+            f"{member.filename} unpacks to more than {MOST_RATIO} times its size, as no record does. Get it again"
+        )
+    room = min(LARGEST_MEMBER, MOST_UNPACKED - found.unpacked)
+    try:
+        with archive.open(member) as file:
+            # Of a member that is larger than it says, no more is unpacked than it says.
+            content = file.read(min(room, member.file_size) + 1)
+    except Exception as error:  # see above
+        raise _damaged("it", error) from error
+    found.unpacked += len(content)
+    if len(content) > room:
+        raise _BombError(
+            f"the zip archive holds more than {MOST_UNPACKED / 1e6:.0f} MB, or {LARGEST_MEMBER / 1e6:.0f} MB in one "
+            "member: unpack it, and name the file of the channel"
+        )
+    return content

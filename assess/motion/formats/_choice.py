@@ -1,0 +1,101 @@
+"""Which channel of a file is meant: the part after # where a user writes ``file#channel``."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from assess.errors import RecordError
+from assess.motion.record import Record
+
+LISTED = 12
+"""Names that an error lists."""
+
+
+def select(records: Sequence[Record], channel: str | None = None) -> Record:
+    """Return the one record that `channel` names: the part after # where a user writes ``file#channel``.
+
+    In a zip archive, channels of the same name are told apart by the member they are in:
+    ``set.zip#CHAN01.V2/1``, with as many folders and inner archives before it as it takes:
+    ``set.zip#Free Field.zip/CHAN01.V2/1``. The member alone, ``set.zip#CHAN01.V2``, is enough where it has one channel.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        All channels of one file.
+    channel : str, optional
+        A channel's name in any letter case, or its number in the file from 1 on where no channel's name is a number,
+        or there is only one; None where there is only one.
+
+    Raises
+    ------
+    RecordError
+        If no channel, or more than one, is meant; the message lists them.
+    """
+    file = records[0].file.split("/")[0]
+    if channel is None or not channel.strip():
+        if len(records) == 1:
+            return records[0]
+        names = _addresses(records)
+        raise RecordError(f"{file} holds {len(records)} channels: {_list(names)}. Write which, as {file}#{names[0]}")
+    wanted = channel.strip().casefold()
+    # The whole path of a member comes first: the same file may lie in a folder, too.
+    whole = [record for record in records if wanted in _whole(record)]
+    named = whole or [record for record in records if wanted in _spellings(record)]
+    if len(named) > 1:
+        meant = _list([name for name, record in zip(_addresses(records), records, strict=True) if record in named])
+        raise RecordError(f"{file} has {len(named)} channels {channel.strip()!r}. Write which: {meant}")
+    if named:
+        return named[0]
+    # Names come first: a channel may be called by its azimuth, "45". Where some are numbers, a number is a name.
+    numbered = [record for number, record in enumerate(records, start=1) if str(number) == wanted]
+    if numbered and (len(records) == 1 or not any(record.channel.isdecimal() for record in records)):
+        return numbered[0]
+    raise RecordError(f"{file} has no channel {channel.strip()!r}. It holds: {_list(_addresses(records))}")
+
+
+def tell_apart(records: Sequence[Record]) -> tuple[Record, ...]:
+    """Give channels of one file that have the same name different ones: "HNE", "HNE (2)"."""
+    seen: Counter[tuple[str, str]] = Counter()
+    told = []
+    for record in records:
+        own = (record.file.casefold(), record.channel.casefold())
+        seen[own] += 1
+        told.append(replace(record, channel=f"{record.channel} ({seen[own]})") if seen[own] > 1 else record)
+    return tuple(told)
+
+
+def _ways(record: Record) -> Iterator[str]:
+    """Yield how a record can be addressed, the shortest way first."""
+    yield record.channel
+    parts = record.file.split("/")[1:]
+    for first in reversed(range(len(parts))):
+        yield "/".join([*parts[first:], record.channel])
+
+
+def _spellings(record: Record) -> set[str]:
+    """Return every way, and each member without its channel."""
+    return {spelling for way in _ways(record) for spelling in _short(way, record)}
+
+
+def _whole(record: Record) -> set[str]:
+    """Return the longest way, and the same without the channel, for a record of an archive."""
+    return _short(list(_ways(record))[-1], record) if "/" in record.file else set()
+
+
+def _short(way: str, record: Record) -> set[str]:
+    spelt, channel = way.casefold(), f"/{record.channel.casefold()}"
+    return {spelt, spelt.removesuffix(channel)}
+
+
+def _addresses(records: Sequence[Record]) -> list[str]:
+    """Return for each record the shortest address that means no other."""
+    meanings = Counter(spelling for record in records for spelling in _spellings(record))
+    return [
+        next((way for way in _ways(record) if meanings[way.casefold()] == 1), list(_ways(record))[-1])
+        for record in records
+    ]
+
+
+def _list(names: Sequence[str]) -> str:
+    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return ", ".join(names[:LISTED]) + more

@@ -1,0 +1,160 @@
+"""Zip archives: what is read of them, and that no archive unpacks beyond the limits."""
+
+import tracemalloc
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from assess.errors import RecordError
+from assess.motion.formats import _archive, read_records
+from assess.motion.record import Record
+from tests.motion.writers import EAST, NORTH, THREE, at2, csmip_v1, csmip_v2, zipped
+
+RECORDS = Path(__file__).parents[2] / "samples" / "records"
+README = {"README.txt": b"Please acknowledge."}
+
+
+def read_set(folder: Path, data: bytes, name: str = "set.zip") -> tuple[Record, ...]:
+    path = folder / name
+    path.write_bytes(data)
+    return read_records(path)
+
+
+def test_members(tmp_path: Path) -> None:
+    records = read_set(tmp_path, zipped({**README, "a/CHAN1.V2": csmip_v2(*THREE), "b.at2": at2(), "empty.txt": b""}))
+    assert [(record.file, record.channel) for record in records] == [
+        ("set.zip/a/CHAN1.V2", "11"), ("set.zip/a/CHAN1.V2", "12"), ("set.zip/a/CHAN1.V2", "13"),
+        ("set.zip/b.at2", "090"),
+    ]  # fmt: skip
+    (alone,) = read_set(tmp_path, at2(), "alone.at2")
+    assert (records[3].acceleration == alone.acceleration).all()
+
+
+def test_raw_and_corrected_side_by_side(tmp_path: Path) -> None:
+    records = read_set(tmp_path, zipped({"C.V1": csmip_v1(EAST), "C.V2": csmip_v2(EAST)}))
+    assert [record.corrected for record in records] == [False, True]
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])
+def test_archives_in_archives(tmp_path: Path, method: int) -> None:
+    data = zipped({"r.V2": csmip_v2(NORTH)}, method)
+    for depth in (1, 2):
+        data = zipped({f"in{depth}.zip": data}, method)
+    (record,) = read_set(tmp_path, data)
+    assert record.file == "set.zip/in2.zip/in1.zip/r.V2"
+    with pytest.raises(RecordError, match=r"in1\.zip: archives lie more than 3 deep in one another: unpack it"):
+        read_set(tmp_path, zipped({"in3.zip": data}, method))
+
+
+def test_velocities_are_left_out(tmp_path: Path) -> None:
+    members = {name: (RECORDS / f"1103.HN2.NP.RE_{name}.smc").read_bytes() for name in ("a", "v")}
+    (record,) = read_set(tmp_path, zipped(members))
+    assert (record.file, record.format) == ("set.zip/a", "USGS SMC")
+
+
+def test_a_damaged_member_does_not_lose_the_others(tmp_path: Path) -> None:
+    data = zipped({"a.V2": csmip_v2(EAST), "b.V2": csmip_v2(NORTH)}, zipfile.ZIP_STORED)
+    at = data.index(b"POINTS OF ACCEL")
+    (record,) = read_set(tmp_path, data[:at] + b"x" + data[at + 1 :])
+    assert record.file == "set.zip/b.V2"
+
+
+def test_windows_paths(tmp_path: Path) -> None:
+    # Some programs for Windows write them against the standard.
+    (record,) = read_set(tmp_path, zipped({"a/C.V2": csmip_v2(EAST)}).replace(b"a/C.V2", b"a\\C.V2"))
+    assert record.file == "set.zip/a/C.V2"
+
+
+def test_nothing_to_read(tmp_path: Path) -> None:
+    message = (
+        r"^set\.zip: nothing in the zip archive can be read as a record: README\.txt: of no known format; "
+        r"v\.smc: it holds velocity"
+    )
+    with pytest.raises(RecordError, match=message):
+        read_set(tmp_path, zipped({**README, "v.smc": (RECORDS / "1103.HN2.NP.RE_v.smc").read_bytes()}))
+    with pytest.raises(RecordError, match=r"; and 2 more$"):
+        read_set(tmp_path, zipped({f"{number}.txt": b"text" for number in range(10)}))
+    with pytest.raises(RecordError, match=r"the zip archive is empty\. Get it again"):
+        read_set(tmp_path, zipped({}))
+
+
+@pytest.mark.parametrize("name", ["[Content_Types].xml", "META-INF/manifest.xml"])
+def test_workbooks(tmp_path: Path, name: str) -> None:
+    with pytest.raises(
+        RecordError, match=r"set\.xlsx: it is a workbook or another office file, .*: save the sheet as CSV"
+    ):
+        read_set(tmp_path, zipped({name: b"<Types/>", "xl/workbook.xml": b"<workbook/>"}), "set.xlsx")
+
+
+def test_locked(tmp_path: Path) -> None:
+    data = bytearray(zipped({"a.V2": csmip_v2(EAST)}))
+    for start, flags in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        data[data.index(start) + flags] |= 1
+    with pytest.raises(RecordError, match=r"a\.V2 is locked with a password: unpack the archive"):
+        read_set(tmp_path, bytes(data))
+
+
+def test_damaged(tmp_path: Path) -> None:
+    data = zipped({"a.V2": csmip_v2(EAST)})
+    with pytest.raises(RecordError, match=r"the zip archive is damaged \(.*\)\. Get it again"):
+        read_set(tmp_path, data[:-40])
+    with pytest.raises(RecordError, match=r"a\.V2: it is damaged \(.*\)\. Get it again"):
+        read_set(tmp_path, data[:100] + b"????" + data[104:])
+    with pytest.raises(RecordError, match=r"a\.V2: it is packed in a way that is not read \(method 14\): unpack it"):
+        read_set(tmp_path, zipped({"a.V2": csmip_v2(EAST)}, zipfile.ZIP_LZMA))
+
+
+# --- bombs ---
+
+
+def peak_memory(data: bytes, message: str) -> int:
+    tracemalloc.start()
+    try:
+        with pytest.raises(RecordError, match=message):
+            _archive.read_archive(data, "set.zip", lambda _data, _name: ())
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_member_that_unpacks_to_too_much() -> None:
+    data = zipped({"zeros": bytes(50_000_000)})
+    message = r"zeros unpacks to more than 200 times its size, as no record does\. Get it again"
+    assert peak_memory(data, message) < 5_000_000
+
+
+def test_a_bomb_in_an_inner_archive() -> None:
+    inner = zipped({"zeros": bytes(50_000_000)})
+    assert peak_memory(zipped({"in.zip": inner, **README}), r"unpacks to more than 200 times") < 5_000_000
+
+
+def test_a_member_that_lies_about_its_size() -> None:
+    data, size = zipped({"zeros": bytes(50_000_000)}), (50_000_000).to_bytes(4, "little")
+    assert data.count(size) == 2
+    lie = data.replace(size, (1000).to_bytes(4, "little"))
+    assert peak_memory(lie, r"zeros: it is damaged") < 5_000_000
+
+
+def test_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data = zipped({"a.V2": csmip_v2(EAST), "b.V2": csmip_v2(NORTH)})
+    monkeypatch.setattr(_archive, "LARGEST_MEMBER", 10_000)
+    with pytest.raises(
+        RecordError, match=r"holds more than 256 MB, or 0 MB in one member: unpack it, and name the file"
+    ):
+        read_set(tmp_path, data)
+    monkeypatch.undo()
+    monkeypatch.setattr(_archive, "MOST_UNPACKED", 20_000)
+    with pytest.raises(RecordError, match=r"the zip archive holds more than 0 MB"):
+        read_set(tmp_path, data)
+    monkeypatch.undo()
+    monkeypatch.setattr(_archive, "MOST_MEMBERS", 1)
+    with pytest.raises(RecordError, match=r"the zip archive has more than 1 members: unpack it"):
+        read_set(tmp_path, data)
+
+
+def test_members_of_inner_archives_count_with_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_archive, "MOST_MEMBERS", 3)
+    inner = zipped({"a.V2": csmip_v2(EAST), "b": b"b"})
+    with pytest.raises(RecordError, match=r"the zip archive has more than 3 members: unpack it"):
+        read_set(tmp_path, zipped({"1.zip": inner, "2.zip": inner}))

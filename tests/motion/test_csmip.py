@@ -1,0 +1,182 @@
+"""CSMIP volumes 1 and 2: what their headers say, and what is said of damaged ones."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from assess.errors import RecordError
+from assess.motion.formats import csmip_v1, csmip_v2
+from assess.motion.record import Record
+from assess.units import GRAVITY
+from tests.motion.writers import EAST, NORTH, THREE, Signal, wave
+from tests.motion.writers import csmip_v1 as write_v1
+from tests.motion.writers import csmip_v1_pairs as write_pairs
+from tests.motion.writers import csmip_v2 as write_v2
+
+DEAD = Signal(np.zeros(400), 90.0, 2)
+V1, PAIRS, V2 = write_v1(EAST), write_pairs(EAST), write_v2(EAST)
+
+
+def changed(data: bytes, old: bytes, new: bytes) -> bytes:
+    assert old in data
+    return data.replace(old, new, 1)
+
+
+def with_number(data: bytes, line: int, at: int, text: bytes) -> bytes:
+    """Replace what stands from column `at` on in a line, counted from 1, by `text` of the same width."""
+    lines = data.split(b"\r\n")
+    lines[line - 1] = lines[line - 1][:at] + text + lines[line - 1][at + len(text) :]
+    return b"\r\n".join(lines)
+
+
+def read_one(data: bytes) -> Record:
+    (record,) = csmip_v2.read(data, "made") if csmip_v2.recognises(data) else csmip_v1.read(data, "made")
+    return record
+
+
+@pytest.mark.parametrize("data", [V1, PAIRS, V2], ids=["v1", "pairs", "v2"])
+def test_text(data: bytes) -> None:
+    record = read_one(data)
+    assert (record.channel, record.location) == ("11", "ROOF: EAST WALL")
+    assert (record.station, record.event) == ("TOWN HALL (14403)", "MADE-UP EARTHQUAKE")
+    assert record.start == "01/17/94, 12:31:04.1 UTC"
+    assert (record.azimuth_deg, record.vertical, record.notes) == (90.0, False, ())
+
+
+def test_text_that_says_little() -> None:
+    bare = changed(changed(V1, b"CHAN  1:  90 DEG", b"CHANNEL"), b"TRIGGER TIME", b"            ")
+    record = read_one(changed(bare, b"STATION NO. 14403", b"STATION          "))
+    assert (record.channel, record.location, record.azimuth_deg, record.vertical) == ("1", "", None, False)
+    assert (record.station, record.start) == ("TOWN HALL", "JANUARY 17, 1994 04:31 PST")
+
+
+def test_the_recorder_s_number_where_the_building_s_is_not_given() -> None:
+    record = read_one(re.sub(rb"  \(STA CHN: 11\)", b"", V2))
+    assert (record.channel, record.location) == ("1", "ROOF: EAST WALL")
+
+
+@pytest.mark.parametrize(
+    ("direction", "azimuth", "vertical"),
+    [
+        (b"360 DEG", 360.0, False), (b"  2 DEG", 2.0, False), (b"UP", None, True), (b"V", None, True),
+        (b"EW", 90.0, False), (b"NS", 0.0, False), (b"N08W", 352.0, False), (b"S62W", 242.0, False),
+        (b"S45E", 135.0, False), (b"400 DEG", None, False), (b"RADIAL", None, False),
+    ],
+)  # fmt: skip
+def test_directions(direction: bytes, azimuth: float | None, vertical: bool) -> None:
+    record = read_one(changed(V2, b"1:  90 DEG  (STA", b"1: " + direction + b"  (STA"))
+    assert (record.azimuth_deg, record.vertical) == (azimuth, vertical)
+
+
+def test_uneven_pairs_are_resampled() -> None:
+    data = PAIRS
+    for millisecond in (50, 60, 110, 150):
+        data = changed(data, b"  0.%03d" % millisecond, b"  0.%03d" % (millisecond + 4))
+    record = read_one(data)
+    assert (record.time_step, record.acceleration.size) == (0.005, 799)
+    assert "unevenly sampled" in record.notes[0]
+    assert record.file_pfa == pytest.approx(np.abs(EAST.acceleration).max(), abs=1e-3)
+
+
+def test_columns_are_those_of_the_format_in_the_title() -> None:
+    numbers = b"\r\n".join(
+        b"".join(b"%12.5f" % (100 * value) for value in EAST.acceleration[first : first + 4])
+        for first in range(0, 400, 4)
+    )
+    head, title, rest = V2.partition(b"(UNITS: CM/SEC/SEC)")
+    record = read_one(head + b", in cm/sec2. (4f12.5)\r\n" + numbers + b"\r\n" + rest[rest.index(b"  400 POINTS") :])
+    assert title
+    assert record.acceleration == pytest.approx(EAST.acceleration, abs=1e-6)
+
+
+def test_old_and_new_line_ends() -> None:
+    unix = read_one(V2.replace(b"\r\n", b"\n"))
+    assert (unix.acceleration == read_one(V2).acceleration).all()
+    assert (read_one(V2.replace(b"\r\n", b"\r")).acceleration == unix.acceleration).all()
+
+
+def test_a_dead_channel_does_not_lose_the_others() -> None:
+    for read, write in ((csmip_v1.read, write_v1), (csmip_v2.read, write_v2)):
+        records = read(write(EAST, DEAD, NORTH), "made")
+        assert len(records) == 2
+        for record in records:
+            assert record.notes == (
+                "channel 2 of the file is left out: every sample is 0 m/s2: the channel holds no motion",
+            )
+
+
+def test_a_channel_that_is_cut_off_does_not_lose_the_others() -> None:
+    whole = write_v2(*THREE)
+    records = csmip_v2.read(whole[: whole.rindex(b"POINTS OF ACCEL") + 1000], "made")
+    assert [record.channel for record in records] == ["11", "12"]
+    assert re.search(r"channel 3 .* 400 numbers of data, there are \d+: cut short", records[0].notes[0])
+
+
+def test_nothing_is_left() -> None:
+    with pytest.raises(RecordError, match=r"^none of its 6 channels can be read: channel 1: every sample is 0 m/s2"):
+        csmip_v1.read(write_v1(*[DEAD] * 6), "made")
+    many = csmip_v1.read(write_v1(EAST, *[DEAD] * 6), "made")[0].notes
+    assert (len(many), many[-1]) == (5, "2 more channels of the file are left out")
+
+
+def test_spectra_are_refused() -> None:
+    data = b"RESPONSE AND FOURIER AMPLITUDE SPECTRA (79 PERIODS,  .04 -  6.5 SEC)   FOR\r\n" + V2
+    assert csmip_v2.recognises(data)
+    with pytest.raises(RecordError, match=r"it holds response spectra \(volume 3\), not accel.*\. Give volume 2 or 1"):
+        csmip_v2.read(data, "made")
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"hello", r'no line says "Uncorrected accelerogram data"\. Get the file again'),
+        (V1[:1000], r"the header does not say the number of points, or their unit|cut short"),
+        (V1[:4000], r"announces 400 numbers of data, there are \d+: cut short\. Get the file again"),
+        (changed(V1, b"  400 Accel", b"99999999 Accel"), r"announces 99999999 numbers of data, expected 1 to 8000000"),
+        (changed(V1, b"at 100 pts/sec", b"at 0 pts/sec"), r"line 28: the rate or the unit cannot be read"),
+        (changed(V1, b"  400 Accel", b" 7000000 Accel"), r"announces 7000000 numbers of data, there are 4\d\d: cut"),
+        (with_number(V1, 29, 9, b"   1.E308"), r"sample 2 is not a number"),
+        (changed(V1, b"in units of g", b"in units of q"), r"line 28: the rate or the unit cannot be read"),
+        (changed(V1, b"at 100 pts/sec", b"at 1 pts/sec"), r"the time step is 1 s"),
+        (with_number(V1, 29, 9, b"  0.14x54"), r"line 29: '0\.14x54' is not a number\. Get the file again"),
+        (with_number(V1, 29, 9, b"         "), r"line 29: a number is missing"),
+        (with_number(V1, 29, 9, b"      NaN"), r"sample 2 is not a number"),
+        (changed(PAIRS, b"SEC AND G/10", b"SEC AND CM/S"), r"does not say the number of points, or their unit"),
+        (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS =      0"), r"announces 0 numbers of data"),
+        (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS = 999999"), r"announces 1999998 numbers"),
+    ],
+)  # fmt: skip
+def test_v1_damage(data: bytes, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        csmip_v1.read(data, "made")
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"hello", r'no line says "Corrected accelerogram"\. Get the file again'),
+        (V2[:1500], r'no line says "points of accel data equally spaced at"\. Get the file again'),
+        (V2[:5000], r"announces 400 numbers of data, there are \d+: cut short\. Get the file again"),
+        (changed(V2, b"  400 POINTS OF ACCEL", b"  999999999 POINTS OF ACCEL"), r"announces 999999999 numbers of data"),
+        (changed(V2, b"AT 0.010 SEC.", b"AT 0.000 SEC."), r"the time step is 0 s, expected"),
+        (changed(V2, b"AT 0.010 SEC.", b"AT 0.0.0 SEC."), r"line 46: the time step or the unit cannot be read"),
+        (changed(V2, b"UNITS: CM/SEC/SEC", b"UNITS: FURLONGS!!"), r"line 46: the time step or the unit cannot be read"),
+        (with_number(V2, 47, 10, b"**********"), r"line 47: '\*+' is not a number\. Get the file again"),
+    ],
+)  # fmt: skip
+def test_v2_damage(data: bytes, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        csmip_v2.read(data, "made")
+
+
+def test_a_peak_that_is_not_the_header_s_is_noted() -> None:
+    record = read_one(changed(V2, b"PEAK ACCELERATION =   138", b"PEAK ACCELERATION =   238"))
+    assert record.notes == ("the header prints a peak of 238.2 cm/s2, the data have 138.2 cm/s2",)
+    assert read_one(changed(V1, b"Max", b"Mix")).header_pfa is None
+
+
+def test_units() -> None:
+    large = replace(EAST, acceleration=wave(peak=GRAVITY))
+    assert read_one(write_v1(large)).file_pfa == pytest.approx(np.abs(large.acceleration).max(), abs=1e-5)

@@ -1,0 +1,59 @@
+"""ESM: its header, what counts as corrected, and what is said of other files."""
+
+import pytest
+
+from assess.errors import RecordError
+from assess.motion.formats import esm
+from assess.motion.record import Record
+from tests.motion.writers import UP
+from tests.motion.writers import esm as write
+
+
+def read_one(data: bytes) -> Record:
+    (record,) = esm.read(data, "made")
+    return record
+
+
+def test_header() -> None:
+    record = read_one(write())
+    assert (record.channel, record.azimuth_deg, record.location) == ("HNE", 90.0, "00")
+    assert (record.station, record.event) == ("Town Hall (ARS1)", "MADE-UP 20190728")
+    assert record.start == "2019-07-28 16:09:19.870 UTC"
+    assert record.header_pfa == pytest.approx(record.file_pfa, rel=1e-6)
+    assert (read_one(write(UP)).channel, read_one(write(UP)).vertical) == ("HNZ", True)
+    assert read_one(write(STATION_NAME="")).station == "ARS1"
+
+
+@pytest.mark.parametrize(
+    ("processing", "filtered", "corrected"),
+    [
+        ("manual (Paolucci et al., 2011)", "BUTTERWORTH", True), ("automatic", "BUTTERWORTH", True),
+        ("none", "", False), ("", "", False), ("unprocessed", "", False), ("manual", "", False),
+    ],
+)  # fmt: skip
+def test_corrected_is_what_was_filtered(processing: str, filtered: str, corrected: bool) -> None:
+    assert read_one(write(PROCESSING=processing, FILTER_TYPE=filtered)).corrected == corrected
+
+
+def test_headers_that_say_little() -> None:
+    record = read_one(write(STREAM="", **{"PGA_CM__S^2": ""}))
+    assert (record.channel, record.azimuth_deg, record.header_pfa) == ("1", None, None)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (write(DATA_TYPE="VELOCITY"), r"it holds velocity, not accelerations\. Give the \.ACC\. file of the same"),
+        (write(DATA_TYPE="ACCELERATION RESPONSE SPECTRUM"), r"it holds acceleration response spectrum, not"),
+        (write(UNITS="furlong"), r"'furlong' is no known unit of acceleration\. Get the file again"),
+        (write(NDATA=""), r"the header does not say NDATA and SAMPLING_INTERVAL_S\. Get the file again"),
+        (write(NDATA="2000000000"), r"announces 2000000000 numbers of data, expected 1 to 8000000"),
+        (write(NDATA="1e300"), r"announces 1e\+300 numbers of data"),
+        (write(SAMPLING_INTERVAL_S="0"), r"the time step is 0 s"),
+        (b"EVENT_NAME: A\n" * 300, r"there are no data below the header\. Get the file again"),
+        (write()[:1500], r"cut short"),
+    ],
+)
+def test_damage(data: bytes, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        read_one(data)

@@ -1,0 +1,75 @@
+"""K-NET and KiK-net: the offset, the directions, and what is said of damaged files."""
+
+import numpy as np
+import pytest
+
+from assess.errors import RecordError
+from assess.motion.formats import knet
+from assess.motion.record import Record, treat
+from tests.motion.writers import EAST, SCALE
+from tests.motion.writers import knet as write
+
+
+def read_one(data: bytes) -> Record:
+    (record,) = knet.read(data, "made")
+    return record
+
+
+def test_header() -> None:
+    record = read_one(write())
+    assert (record.station, record.event) == ("AOM001", "2018/01/24 19:51:00 M6.2")
+    assert record.start == "2018-01-24 19:51:28 JST"
+    assert (record.corrected, record.notes) == (False, ())
+
+
+def test_the_peak_is_about_the_mean() -> None:
+    record = read_one(write(offset=-12085))
+    assert record.acceleration.mean() == pytest.approx(-12085 * SCALE + EAST.acceleration.mean(), abs=1e-5)
+    assert record.header_pfa == pytest.approx(record.file_pfa, abs=1e-5)
+    own = record.acceleration - record.acceleration.mean()
+    assert record.file_pfa == np.abs(own).max()
+    assert treat(record, "none").pfa == pytest.approx(record.file_pfa)
+
+
+@pytest.mark.parametrize(
+    ("direction", "channel", "location", "azimuth"),
+    [
+        ("N-S", "NS", "", 0.0), ("E-W", "EW", "", 90.0), ("U-D", "UD", "", None),
+        ("1", "NS1", "borehole", 0.0), ("2", "EW1", "borehole", 90.0), ("3", "UD1", "borehole", None),
+        ("4", "NS2", "surface", 0.0), ("5", "EW2", "surface", 90.0), ("6", "UD2", "surface", None),
+    ],
+)  # fmt: skip
+def test_directions(direction: str, channel: str, location: str, azimuth: float | None) -> None:
+    record = read_one(write(direction=direction))
+    assert (record.channel, record.location) == (channel, location)
+    assert (record.azimuth_deg, record.vertical) == (azimuth, azimuth is None)
+
+
+def test_headers_that_say_little() -> None:
+    record = read_one(write(direction="", **{"Max._Acc._(gal)": "", "Record_Time": "yesterday"}))
+    assert (record.channel, record.azimuth_deg, record.vertical) == ("1", None, False)
+    assert (record.header_pfa, record.start) == (None, "yesterday")
+    assert read_one(write(Record_Time="0001/01/01 00:00:00")).start == "0001/01/01 00:00:00"
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"hello", r"the header has no number for Sampling Freq\(Hz\), but ''\. Get the file again"),
+        (write(**{"Sampling_Freq(Hz)": "0Hz"}), r"no number for Sampling Freq\(Hz\), but '0Hz'"),
+        (write(**{"Duration_Time(s)": "long"}), r"no number for Duration Time\(s\), but 'long'"),
+        (
+            write(**{"Duration_Time(s)": "99999999"}),
+            r"announces 9999999900 numbers of data, expected 1 to 8000000",
+        ),
+        (write(**{"Sampling_Freq(Hz)": "99999999Hz"}), r"announces \d+ numbers of data"),
+        (write(**{"Sampling_Freq(Hz)": "9" * 155, "Duration_Time(s)": "9" * 155}), r"announces inf numbers of data"),
+        (write(Scale_Factor="3920/6182761"), r"the scale factor is '3920/6182761', expected such as"),
+        (write(Scale_Factor="3920(gal)/0"), r"the scale factor is '3920\(gal\)/0'"),
+        (write()[:2000], r"cut short\. Get the file again"),
+        (write().replace(b"-12085", b"-12x85", 1), r"number 1 of the data: '-12x85' is not a number"),
+    ],
+)
+def test_damage(data: bytes, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        read_one(data)

@@ -1,0 +1,69 @@
+"""PEER AT2: both kinds of header, and what is said of other files."""
+
+import pytest
+
+from assess.errors import RecordError
+from assess.motion.formats import peer_at2
+from assess.motion.record import Record
+from tests.motion.writers import EAST, UP, Signal, at2, wave
+
+DATA = at2()
+
+
+def read_one(data: bytes) -> Record:
+    (record,) = peer_at2.read(data, "made")
+    return record
+
+
+def test_both_headers() -> None:
+    new, old = read_one(DATA), read_one(at2(old=True))
+    assert (new.event, new.station, new.channel, new.azimuth_deg) == (
+        "Made-up, 10/18/1989",
+        "Town Hall, roof",
+        "090",
+        90.0,
+    )
+    assert (old.event, old.station, old.channel, old.azimuth_deg) == ("MADE-UP 5/19/40 0439", "TOWN HALL", "090", 90.0)
+    assert (new.acceleration == old.acceleration).all()
+    assert new.corrected
+    assert new.header_pfa is None
+
+
+def test_the_last_line_may_be_partial() -> None:
+    assert read_one(at2(Signal(wave(count=398)))).acceleration.size == 398
+
+
+def test_vertical_and_titles_that_say_little() -> None:
+    assert (read_one(at2(UP)).vertical, read_one(at2(UP)).channel) == (True, "UP")
+    bare = read_one(DATA.replace(b"Made-up, 10/18/1989, Town Hall, roof, 090", b""))
+    assert (bare.event, bare.station, bare.channel, bare.azimuth_deg) == ("", "", "1", None)
+
+
+def test_a_few_numbers_beyond_are_left_out() -> None:
+    assert read_one(DATA + b" 0.1").notes == ("1 number beyond the 400 that the header announces: left out",)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (at2(kind="VELOCITY", unit="CM/S"), r"it holds velocity, not accelerations\. Give the \.AT2 file of the same"),
+        (at2(kind="DISPLACEMENT", unit="CM"), r"it holds displacement, not accelerations"),
+        (at2(unit="FURLONGS"), r"'FURLONGS' is no known unit of acceleration\. Get the file again"),
+        (b"hello", r"the header does not say what the file holds\. Get the file again"),
+        (DATA.replace(b"NPTS=", b"NUTS="), r"line 4 does not say the number of points and their step"),
+        (DATA.replace(b"0.0100", b"0.0.00"), r"line 4 does not say the number of points and their step"),
+        (DATA.replace(b"0.0100", b"0.0000"), r"the time step is 0 s"),
+        (DATA.replace(b"NPTS=   400", b"NPTS=   0"), r"announces 0 numbers of data"),
+        (DATA.replace(b"NPTS=   400", b"NPTS= 999999999"), r"announces 999999999 numbers of data, expected 1 to 80"),
+        (DATA.replace(b"NPTS=   400", b"NPTS=   300"), r"announces 300 numbers of data, there are more\. Get the file"),
+        (DATA[:-10] + b"x.x", r"number 400 of the data: '\S+x\.x' is not a number\. Get the file again"),
+        (DATA[:3000], r"announces 400 numbers of data, there are \d+: cut short"),
+    ],
+)  # fmt: skip
+def test_damage(data: bytes, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        read_one(data)
+
+
+def test_signs() -> None:
+    assert read_one(DATA).acceleration == pytest.approx(EAST.acceleration, abs=1e-6)

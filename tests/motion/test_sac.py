@@ -1,0 +1,102 @@
+"""SAC: the rule of the unit, and what is said of files that do not say it."""
+
+import importlib.util
+import io
+import sys
+from dataclasses import replace
+
+import pytest
+
+from assess.errors import RecordError
+from assess.motion.formats import sac
+from assess.motion.formats._obspy import read_traces
+from assess.motion.record import Record
+from assess.units import GRAVITY
+from tests.motion.writers import EAST, UP
+from tests.motion.writers import sac as write
+
+if importlib.util.find_spec("obspy") is None:
+    pytest.skip("ObsPy is not installed", allow_module_level=True)
+
+
+def read_one(data: bytes) -> Record:
+    (record,) = sac.read(data, "made")
+    return record
+
+
+def test_header() -> None:
+    record = read_one(write(unit="m/s2"))
+    assert (record.channel, record.azimuth_deg, record.vertical) == ("HNE", 90.0, False)
+    assert (record.station, record.event, record.start) == ("CJ.TOWN", "Made-up", "2019-07-06 03:19:52 UTC")
+    assert record.notes == ("the unit is that of the header's field KUSER0: m/s2",)
+    assert read_one(write(UP, unit="m/s2")).vertical
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"),
+    [("g", 1 / GRAVITY), ("m/s2", 1.0), ("m/s**2", 1.0), ("cm/s2", 100.0), ("gal", 100.0), ("GAL", 100.0)],
+)
+def test_the_unit_of_kuser0(unit: str, factor: float) -> None:
+    record = read_one(write(unit=unit, factor=factor, meaning=8))
+    assert record.acceleration == pytest.approx(EAST.acceleration, abs=1e-6)
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_nanometres_of_either_order_of_bytes(order: str) -> None:
+    record = read_one(write(meaning=8, factor=1e9, order=order))
+    assert record.acceleration == pytest.approx(EAST.acceleration, abs=1e-6)
+    assert record.notes == ("the unit is nm/s2, what the type of the samples (IDEP) means",)
+
+
+def test_an_offset_is_not_part_of_the_peak() -> None:
+    record = read_one(write(replace(UP, acceleration=UP.acceleration + GRAVITY), unit="m/s2"))
+    assert record.file_pfa < 0.5
+
+
+MEND = r"Write the unit into the header's field KUSER0 \(g, m/s2, cm/s2; in ObsPy: .*\), or save .* as plain CSV"
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (write(), rf"the file does not say its unit\. {MEND}"),
+        (write(unit="furlong"), r"the file does not say its unit"),
+        (
+            write(meaning=8, factor=1 / GRAVITY),
+            rf"means nm/s2, but that makes the peak \S+ cm/s2: the unit is another\. {MEND}",
+        ),
+        (
+            write(meaning=7, unit="g"),
+            r"it holds velocity, not accelerations\. Give the acceleration of the same channel",
+        ),
+        (write(meaning=6), r"it holds displacement, not accelerations"),
+        (write(kind=2), r"it holds no evenly sampled time series\. Give the record itself"),
+        (write(even=0), r"it holds no evenly sampled time series"),
+        (write(count=500_000_000), r"announces 500000000 numbers of data, there are 400\. Get the file again"),
+        (write(count=-5), r"announces -5 numbers of data"),
+        (write()[:1000], r"announces 400 numbers of data, there are 92"),
+        (write(unit="g", count=399), r"ObsPy cannot read it \(.*\)\. Get the file again"),
+        (write()[:600], r"the header is none of a SAC file\. Get the file again"),
+        (write(unit="g", factor=float("nan")), r"sample 1 is not a number"),
+        (write(unit="g", factor=1e30), r"the peak is .* g, expected at most 50 g"),
+    ],
+)
+def test_damage(data: bytes, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        read_one(data)
+
+
+def test_obspy_writes_what_is_read() -> None:
+    (trace,), _ = read_traces(write(), "SAC")
+    trace.stats.sac.kuser0 = "m/s2"
+    target = io.BytesIO()
+    trace.write(target, format="SAC")
+    assert read_one(target.getvalue()).file_pfa == pytest.approx(abs(EAST.peak), rel=0.1)
+
+
+def test_without_obspy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "obspy", None)
+    data = write(unit="g")
+    assert sac.recognises(data)
+    with pytest.raises(RecordError, match=r'needs the package ObsPy: install it with: pip install "assess\[obspy\]"'):
+        read_one(data)
