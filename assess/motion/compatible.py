@@ -1,0 +1,256 @@
+"""Ensembles of motions that are compatible with a target spectrum.
+
+A realisation is white noise under the target's envelopes, passed through a filter that makes the mean spectrum of the
+ensemble that of the target. Each realisation's own spectrum scatters about it as the noise does, which keeps the
+variability from record to record. What a filter cannot do is done in two more steps: high peaks of velocity and of
+acceleration are bent, all by one rule, until their means are those of the target; then wavelets mend the ordinates of
+the mean that are still off. `tight` mends those of each realisation instead, and fixes its PFA: it hides variability.
+Nothing drifts: velocity grows from zero and fades to it.
+
+Filtering noise until its spectrum fits: Gasparini DA, Vanmarcke EH (1976). Simulated earthquake motions compatible with
+prescribed response spectra. MIT, Department of Civil Engineering, R76-4. The envelope of each octave, the bending and
+the wavelets on the mean are ours.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.motion.bending import Bend, bend_row, build_taper, lift_peaks, settle
+from assess.motion.envelope import draw_noise, filter_frequencies, filter_length
+from assess.motion.fit import Fit, measure_fit
+from assess.motion.record import CORNER, FloatArray
+from assess.motion.spectrum import response_spectrum, run_rows
+from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
+from assess.motion.wavelets import Wavelets, adjust, build_wavelets
+
+CALIBRATED = 100
+"""Realisations by whose mean everything is set; further ones pass through the same steps."""
+FILTERINGS, MENDINGS, TIGHT_MENDINGS = 12, 20, 30
+"""Rounds of filtering, and of wavelets."""
+FILTERED, MENDED = 0.8, 0.6
+"""Share of the logarithm of a ratio that is applied in one round [-]."""
+APART = 7
+"""A round of wavelets takes the ordinate that is most off among this many neighbours: two would act on one cycle."""
+WITHIN = 0.02
+"""Ordinates this close to the target [-] are not mended."""
+BEYOND = 1.2
+"""Ordinates are mended up to this ratio beyond the periods at which the match is judged [-]."""
+MOST_MENDED = 1.3
+"""Ratio up to which a round mends an ordinate [-]."""
+ROLL_OFF = 8
+"""Order with which the filter falls off below the corner of the records' own treatment."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Generator:
+    """Makes the motions of one floor along one axis; `build_generator` finds what it holds.
+
+    Parameters
+    ----------
+    target, grid, seed, axis, is_tight, threads
+        As given to `build_generator`.
+    gains : (f,) array
+        The filter [-].
+    bend : Bend
+        How peaks are bent.
+    mendings : tuple of ((m,) array, float)
+        Rounds of wavelets: ratios of the spectrum, and of PFA [-]; none where each realisation has its own.
+    scale : float
+        Factor on the whole motion [-]; other than 1 only where a generic spectrum and its PFA disagree.
+    made : (100, n) array, optional
+        The first realisations [m/s2], which were made while it was found.
+    fit : Fit, optional
+        How they meet the target.
+    """
+
+    target: Target
+    grid: Grid
+    seed: int
+    axis: str
+    is_tight: bool
+    threads: int
+    gains: FloatArray
+    bend: Bend
+    mendings: tuple[tuple[FloatArray, float], ...] = ()
+    scale: float = 1.0
+    made: FloatArray | None = None
+    fit: Fit | None = None
+
+    def realise(self, first: int = 0, count: int = CALIBRATED) -> FloatArray:
+        """Return realisations `first` to `first + count - 1`: accelerations [m/s2], (count, n).
+
+        A realisation is the same whatever else is made with it, and has the same phases on all floors of a building.
+        """
+        if self.made is not None and first + count <= len(self.made):
+            return self.made[first : first + count].copy()
+        motions = [
+            self._batch(start, min(CALIBRATED, first + count - start))
+            for start in range(first, first + count, CALIBRATED)
+        ]
+        return np.concatenate(motions)
+
+    def _noise(self, first: int, count: int) -> NDArray[np.complex128]:
+        return draw_noise(
+            self.target.envelopes, self.grid.time_step, seed=self.seed, axis=self.axis,
+            first=first, count=count, threads=self.threads,
+        )  # fmt: skip
+
+    def _batch(self, first: int, count: int) -> FloatArray:
+        motions, _ = _synthesise(self._noise(first, count), self)
+        mender = build_wavelets(self.target.periods, self.grid.time_step)
+        for ratios, lift in self.mendings:
+            _mend(motions, np.broadcast_to(ratios, (count, ratios.size)), mender, self.threads)
+            lift_peaks(motions, np.full(count, lift), self.threads)
+        if self.is_tight:
+            _tighten(motions, self)
+        return self.scale * motions
+
+
+def build_generator(
+    target: Target, grid: Grid, *, seed: int, axis: str, is_tight: bool = False, threads: int = 1
+) -> Generator:
+    """Find the filter, the bending and the wavelets that make an ensemble meet its target.
+
+    Parameters
+    ----------
+    target : Target
+        Of the floor, on the grid of its building.
+    grid : Grid
+        The building's samples.
+    seed : int
+        0 or above. Phases and durations come from (seed, axis, number of the realisation) only.
+    axis : "X" or "Y"
+        Each axis has its own phases.
+    is_tight : bool
+        Match each realisation on its own, which hides the variability from record to record.
+    threads : int
+        Work is shared out among as many; they do not change a result.
+    """
+    start = Generator(
+        target=target, grid=grid, seed=seed, axis=axis, is_tight=is_tight, threads=threads,
+        gains=_first_gains(target, grid), bend=Bend(),
+    )  # fmt: skip
+    generator, motions = _find_filter(start._noise(0, CALIBRATED), start)
+    if is_tight:
+        _tighten(motions, generator)
+    else:
+        generator = replace(generator, mendings=_find_mendings(motions, generator))
+    if target.is_generic:
+        scale = target.pfa / float(np.abs(motions).max(axis=1).mean())
+        generator, motions = replace(generator, scale=scale), scale * motions
+    return replace(generator, made=motions, fit=measure_fit(generator.target, motions, grid.time_step, threads))
+
+
+def _first_gains(target: Target, grid: Grid) -> FloatArray:
+    """Return gains in proportion to the target's pseudo-velocity, falling off below the corner of the records'."""
+    frequencies = filter_frequencies(grid.count, grid.time_step)
+    pseudo = target.capped(target.velocity_level)
+    gains = np.exp(_over_frequency(frequencies, target.periods, np.log(pseudo * target.periods)))
+    fall = 1 / np.sqrt(1 + (CORNER / np.maximum(frequencies, 1e-9)) ** ROLL_OFF)
+    return np.asarray(gains * np.where(frequencies > 0, fall, 0.0))
+
+
+def _over_frequency(frequencies: FloatArray, periods: FloatArray, values: FloatArray) -> FloatArray:
+    places = np.log(np.maximum(frequencies, 1e-9))
+    return np.interp(places, -np.log(periods[::-1]), values[::-1])
+
+
+def _find_filter(noise: NDArray[np.complex128], generator: Generator) -> tuple[Generator, FloatArray]:
+    """Return the generator with gains, bend and the spectrum to match, and the motions that it makes of `noise`."""
+    target, grid, threads = generator.target, generator.grid, generator.threads
+    frequencies = filter_frequencies(grid.count, grid.time_step)
+    level = target.velocity_level
+    for number in range(FILTERINGS + 1):
+        motions, peaks = _synthesise(noise, generator)
+        pseudo = target.capped(level)
+        if number == FILTERINGS:
+            break
+        mean = response_spectrum(motions, grid.time_step, target.periods, threads=threads).pseudo.mean(axis=0)
+        errors = np.log(pseudo / mean)
+        if number == 0:  # the level alone: only then can peaks be told from it
+            generator = replace(generator, gains=generator.gains * math.exp(float(np.median(errors))))
+            continue
+        pfa_error, pfv_error = (
+            math.log(wanted / got) if wanted > 0 else 0.0
+            for wanted, got in zip((target.pfa, target.pfv), peaks.mean(axis=0), strict=True)
+        )
+        if target.is_generic:
+            level *= math.exp(FILTERED * pfv_error)
+            pfv_error = 0.0
+        gains = generator.gains * np.exp(FILTERED * _over_frequency(frequencies, target.periods, errors))
+        generator = replace(generator, gains=gains, bend=generator.bend.turned(pfv_error, pfa_error))
+    return replace(generator, target=replace(target, pseudo=pseudo, velocity_level=level)), motions
+
+
+def _synthesise(noise: NDArray[np.complex128], generator: Generator) -> tuple[FloatArray, FloatArray]:
+    """Return filtered, bent and tapered motions [m/s2], (k, n), and their PFA [m/s2] and PFV [m/s], (k, 2)."""
+    from scipy.fft import irfft
+
+    grid, target, bend, threads = generator.grid, generator.target, generator.bend, generator.threads
+    length = filter_length(grid.count, grid.time_step)
+    frequencies = filter_frequencies(grid.count, grid.time_step)
+    filtered = noise * generator.gains
+    acceleration = irfft(filtered, length, axis=1, workers=threads)
+    integrated = filtered / (2j * np.pi * np.maximum(frequencies, 1e-9))
+    velocity = irfft(integrated, length, axis=1, workers=threads)
+    taper, slope = build_taper(grid)
+    motions, peaks = np.empty((len(noise), grid.count)), np.empty((len(noise), 2))
+    pfv = target.pfv if target.pfv > 0 else 1.0  # not bent where it is unknown
+
+    def finish(row: int) -> None:
+        bend_row(
+            acceleration[row], velocity[row], taper, slope, grid.time_step, target.pfa, pfv,
+            bend.acceleration, bend.velocity, motions[row], peaks[row],
+        )  # fmt: skip
+
+    run_rows(finish, len(noise), threads)
+    return motions, peaks
+
+
+def _find_mendings(motions: FloatArray, generator: Generator) -> tuple[tuple[FloatArray, float], ...]:
+    """Mend the mean spectrum of `motions` and their mean PFA, in place; return the rounds."""
+    target, grid = generator.target, generator.grid
+    mender = build_wavelets(target.periods, grid.time_step)
+    found = []
+    for _ in range(MENDINGS):
+        mean = response_spectrum(motions, grid.time_step, target.periods, threads=generator.threads).pseudo.mean(axis=0)
+        ratios = _worst(target.pseudo / mean, target)
+        _mend(motions, np.broadcast_to(ratios, (len(motions), mean.size)), mender, generator.threads)
+        lift = 1.0 if target.is_generic else target.pfa / float(np.abs(motions).max(axis=1).mean())
+        lift_peaks(motions, np.full(len(motions), lift), generator.threads)
+        found.append((ratios, lift))
+    return tuple(found)
+
+
+def _worst(wanted: FloatArray, target: Target) -> FloatArray:
+    """Return what a round mends of the ratios wanted, (..., m): the ordinates most off among their neighbours."""
+    from scipy.ndimage import maximum_filter1d
+
+    periods, longest = target.periods, matched_to(target.periods, target.pseudo)
+    off = np.where((periods > JUDGED_FROM / BEYOND) & (periods < longest * BEYOND), np.abs(np.log(wanted)), 0.0)
+    return np.where(
+        (off > WITHIN) & (off == maximum_filter1d(off, APART, axis=-1)),
+        np.clip(wanted**MENDED, 1 / MOST_MENDED, MOST_MENDED),
+        1.0,
+    )
+
+
+def _mend(motions: FloatArray, ratios: FloatArray, mender: Wavelets, threads: int) -> None:
+    def mend_row(row: int) -> None:
+        adjust(motions[row], ratios[row], mender.samples, mender.start, mender.peak, mender.at, mender.step)
+        settle(motions[row], motions[row].sum())
+
+    run_rows(mend_row, len(motions), threads)
+
+
+def _tighten(motions: FloatArray, generator: Generator) -> None:
+    """Mend each motion's own spectrum and PFA, in place."""
+    target, grid = generator.target, generator.grid
+    mender = build_wavelets(target.periods, grid.time_step)
+    for _ in range(TIGHT_MENDINGS):
+        own = response_spectrum(motions, grid.time_step, target.periods, threads=generator.threads).pseudo
+        _mend(motions, _worst(target.pseudo / own, target), mender, generator.threads)
+        lift_peaks(motions, target.pfa / np.abs(motions).max(axis=1), generator.threads)

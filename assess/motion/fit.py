@@ -1,0 +1,79 @@
+"""How an ensemble of motions meets its target, in figures that a report can print."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.motion.record import FloatArray
+from assess.motion.target import JUDGED_FROM, Target, matched_to
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fit:
+    """How the mean of an ensemble meets its target, and how its realisations scatter.
+
+    Parameters
+    ----------
+    count : int
+        Realisations.
+    matched_to : float
+        Longest period at which the spectrum is judged [s]; the shortest is 0.05 s.
+    mean_deviation, worst_deviation : float
+        Of the mean spectrum from the target's [-]: the mean size, and the largest, signed.
+    worst_period : float
+        Where the largest is [s].
+    pfa_ratio, pfv_ratio : float
+        Mean peaks over the target's [-]; `pfv_ratio` is NaN where no PFV is to be matched.
+    pfa_scatter, pfv_scatter, spectrum_scatter : float
+        Coefficients of variation [-]: of the peaks, and of the spectrum, averaged over its periods.
+    drift : float
+        Largest final velocity over PFV [-].
+    """
+
+    count: int
+    matched_to: float
+    mean_deviation: float
+    worst_deviation: float
+    worst_period: float
+    pfa_ratio: float
+    pfa_scatter: float
+    pfv_ratio: float
+    pfv_scatter: float
+    spectrum_scatter: float
+    drift: float
+
+
+def velocities(acceleration: FloatArray, time_step: float) -> FloatArray:
+    """Return velocity [m/s] of motions (k, n) [m/s2] that start at rest."""
+    steps = (acceleration[:, 1:] + acceleration[:, :-1]) * (time_step / 2)
+    return np.pad(np.cumsum(steps, axis=1), ((0, 0), (1, 0)))
+
+
+def measure_fit(target: Target, acceleration: FloatArray, time_step: float, threads: int = 1) -> Fit:
+    """Return how motions (k, n) [m/s2] meet their target, at twice as many periods as they were matched at."""
+    from assess.motion.spectrum import response_spectrum
+
+    wanted_to = matched_to(target.periods, target.pseudo)
+    between = np.sqrt(target.periods[1:] * target.periods[:-1])
+    periods = np.sort(np.concatenate([target.periods, between]))
+    judged = (periods >= JUDGED_FROM) & (periods <= wanted_to)
+    periods = periods[judged]
+    pseudo = response_spectrum(acceleration, time_step, periods, threads=threads).pseudo
+    deviation = pseudo.mean(axis=0) / target.ordinates(periods) - 1
+    worst = int(np.abs(deviation).argmax())
+    velocity = velocities(acceleration, time_step)
+    pfa, pfv = np.abs(acceleration).max(axis=1), np.abs(velocity).max(axis=1)
+    return Fit(
+        count=len(acceleration),
+        matched_to=wanted_to,
+        mean_deviation=float(np.abs(deviation).mean()),
+        worst_deviation=float(deviation[worst]),
+        worst_period=float(periods[worst]),
+        pfa_ratio=float(pfa.mean() / target.pfa),
+        pfa_scatter=float(pfa.std() / pfa.mean()),
+        pfv_ratio=float(pfv.mean() / target.pfv) if target.pfv > 0 else math.nan,
+        pfv_scatter=float(pfv.std() / pfv.mean()),
+        spectrum_scatter=float((pseudo.std(axis=0) / pseudo.mean(axis=0)).mean()),
+        drift=float((np.abs(velocity[:, -1]) / pfv).max()),
+    )
