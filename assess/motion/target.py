@@ -37,9 +37,9 @@ PLATEAU_TO = 1 / 1.3
 RESONANCE = 4.0
 """PSA/PFA at a resonance [-]."""
 RESONANCES = ((1 / 6.5, 1 / 4.5), (1.0, 1.0))
-"""Bands of resonance, as ratios to T1 [-]: a higher mode, and T1. The 21 recorded motions of buildings that we hold peak
-at 3 to 5, most at a higher mode: 575 Market Street (T1 of 5 to 6 s) at 0.9 to 1.0 s, Berkeley (T1 of 0.8 to 1 s) at
-0.09 to 0.2 s, Alhambra (2 s) at 0.25 s; a shear beam has its third mode at T1/5."""
+"""Bands of resonance, as ratios to T1 [-]: a higher mode, and T1. The 21 recorded motions of buildings that we hold
+peak at 3 to 5, most at a higher mode: 575 Market Street (T1 of 5 to 6 s) at 0.9 to 1.0 s, Berkeley (T1 of 0.8 to 1 s)
+at 0.09 to 0.2 s, Alhambra (2 s) at 0.25 s; a shear beam has its third mode at T1/5."""
 RAMP = 1.25
 """Ratio of periods [-] over which a resonance fades into the plateau."""
 SHORTEST_PLATEAU_END = 1.0
@@ -120,19 +120,22 @@ def matched_to(periods: FloatArray, pseudo: FloatArray) -> float:
     return float(min(max(3.0, 1.5 * longest), LONGEST))
 
 
-def build_grid(motions: Iterable[Motion], *, period: float | None = None) -> Grid:
-    """Return the grid of a building: as long as its longest record, and as the envelope of a floor without one.
+def build_grid(motions: Iterable[Motion], *, has_generic: bool = False, period: float | None = None) -> Grid:
+    """Return the grid of a building: as long as its longest record, and as the envelope of floors without one.
 
     Parameters
     ----------
     motions : iterable of Motion
         The recorded motions of all its floors.
+    has_generic : bool
+        Whether it has floors without a record; it has if there are no motions.
     period : float, optional
         T1 [s]; it lengthens the envelope of floors without a record.
     """
-    lengths = [(motion.acceleration.size - 1) * motion.time_step for motion in motions]
-    seconds = max(lengths, default=sum(hold_times(period)))
-    return Grid(TIME_STEP, math.ceil(seconds / TIME_STEP - 1e-6) + 1)
+    seconds = [(motion.acceleration.size - 1) * motion.time_step for motion in motions]
+    if has_generic or not seconds:
+        seconds.append(sum(hold_times(period)))
+    return Grid(TIME_STEP, math.ceil(max(seconds) / TIME_STEP - 1e-6) + 1)
 
 
 def put_on_grid(motion: Motion, grid: Grid) -> FloatArray:
@@ -175,7 +178,15 @@ def generic_target(
     period, height : float, optional
         T1 of the building [s]; its height [m], by which T1 is estimated where it is unknown. With neither, the spectrum
         is that of a building of a few storeys, and unsafe for a tall one.
+
+    Raises
+    ------
+    ValueError
+        If a number is not above 0.
     """
+    given = (pfa, pfv, period, height)
+    if not all(value is None or math.isnan(value) or 0 < value < math.inf for value in given) or math.isnan(pfa):
+        raise ValueError(f"pfa, pfv, period and height are {given}, expected finite numbers above 0")
     from assess.motion.spectrum import build_periods
 
     periods = build_periods(SHORTEST, LONGEST, COUNT)
