@@ -4,6 +4,7 @@ Exit status: 0 done; 1 done, but something could not be assessed or written (nam
 written. Messages go to standard error, what was asked for to standard output.
 """
 
+import json
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import Enum
@@ -115,6 +116,39 @@ def run(
         _print_problems([one for one in assessment.problems if one.severity == "warning"])
         written = write_reports(assessment, folder, wanted)
     _print_result(assessment, list(written.values()))
+
+
+@app.command()
+def record(
+    files: Annotated[list[str], typer.Argument(help="Records: FILE or FILE#channel.", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON document instead.")] = False,
+    plot: Annotated[Path | None, typer.Option(help="Draw the channels to this .png, .svg or .pdf.")] = None,
+) -> None:
+    """Tell what records hold: channels, time step, PFA, PFV, displacement and 5 % spectrum, as assess treats them."""
+    from assess.report.records import describe, list_lines, read_channels, write_figure
+
+    found, failed = [], 0
+    for name in files:
+        try:
+            found.append(read_channels(name))
+        except InputError as error:
+            typer.echo(f"error  {error}", err=True)
+            failed += 1
+    if not found:
+        raise typer.Exit(2)
+    documents = [describe(channels) for channels in found]
+    if as_json:
+        typer.echo(json.dumps(documents[0] if len(files) == 1 else documents, ensure_ascii=False, indent=1))
+    else:
+        typer.echo("\n\n".join("\n".join(list_lines(document)) for document in documents))
+    if plot is not None:
+        with _exits():
+            channels = [channel for ones in found for channel in ones]
+            drawn = write_figure(channels, plot)
+        left = f"; {len(channels) - drawn} more channels are not drawn" if drawn < len(channels) else ""
+        typer.echo(f"wrote {plot}{left}", err=True)
+    if failed:
+        raise typer.Exit(1)
 
 
 @app.command()

@@ -40,6 +40,8 @@ BEYOND = 1.2
 """Ordinates are mended up to this ratio beyond the periods at which the match is judged [-]."""
 MOST_MENDED = 1.3
 """Ratio up to which a round mends an ordinate [-]."""
+LIFTED = 0.1
+"""What all rounds together lift at most of the PFA of a generic floor [-]: its spectrum may not allow more."""
 ROLL_OFF = 8
 """Order with which the filter falls off below the corner of the records' own treatment."""
 
@@ -219,7 +221,10 @@ def _find_mendings(motions: FloatArray, generator: Generator) -> tuple[tuple[Flo
         mean = response_spectrum(motions, grid.time_step, target.periods, threads=generator.threads).pseudo.mean(axis=0)
         ratios = _worst(target.pseudo / mean, target)
         _mend(motions, np.broadcast_to(ratios, (len(motions), mean.size)), mender, generator.threads)
-        lift = 1.0 if target.is_generic else target.pfa / float(np.abs(motions).max(axis=1).mean())
+        lift = target.pfa / float(np.abs(motions).max(axis=1).mean())
+        if target.is_generic:
+            so_far = math.prod(one for _, one in found)
+            lift = min(max(lift, (1 - LIFTED) / so_far), (1 + LIFTED) / so_far)
         lift_peaks(motions, np.full(len(motions), lift), generator.threads)
         found.append((ratios, lift))
     return tuple(found)

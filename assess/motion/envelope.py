@@ -130,5 +130,5 @@ def draw_noise(
         band = irfft(white * weight, length, axis=1, workers=threads)[:, :samples]
         for row, stretch in enumerate(stretches):
             at = envelopes.half_time + (times - envelopes.half_time) / stretch
-            noise[row] += band[row] * np.interp(at, times, values, left=0.0, right=0.0)
+            noise[row] += band[row] * np.interp(at, times, values)
     return np.asarray(rfft(noise, length, axis=1, workers=threads), dtype=np.complex128)

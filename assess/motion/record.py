@@ -101,19 +101,23 @@ class Record:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """A treated motion: `acceleration` [m/s2] and `velocity` [m/s], (n,) arrays, one sample every `time_step` [s]."""
+    """A treated motion: acceleration [m/s2], velocity [m/s] and displacement [m], (n,), every `time_step` [s]."""
 
     acceleration: FloatArray
     velocity: FloatArray
+    displacement: FloatArray
     time_step: float
     pfa: float = field(init=False)
     """Peak floor acceleration [m/s2]."""
     pfv: float = field(init=False)
     """Peak floor velocity [m/s]."""
+    pfd: float = field(init=False)
+    """Peak floor displacement [m]."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "pfa", peak(self.acceleration))
         object.__setattr__(self, "pfv", peak(self.velocity))
+        object.__setattr__(self, "pfd", peak(self.displacement))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,15 +146,16 @@ def treat(record: Record, baseline: Baseline = "standard") -> Motion:
     Returns
     -------
     Motion
-        With as many samples as `record`. Velocity starts from rest: at the first sample, or, where filtered, at the
-        start of the zeros put before it, so that the pass backward in time leaves no false offset.
+        With as many samples as `record`. Velocity and displacement start from zero: at the first sample, or, where
+        filtered, at the start of the zeros put before it, so that the pass backward in time leaves no false offset.
     """
     values, step = record.acceleration, record.time_step
     if not record.corrected:
         values = values - values.mean()
         if baseline == "standard":
             return _high_pass(values, step)
-    return Motion(values, _integral(values, step), step)
+    velocity = _integral(values, step)
+    return Motion(values, velocity, _integral(velocity, step), step)
 
 
 def treatment(record: Record, baseline: Baseline = "standard") -> str:
@@ -173,9 +178,11 @@ def _high_pass(values: FloatArray, time_step: float) -> Motion:
     sections = butter(PASS_ORDER, CORNER, "highpass", fs=1 / time_step, output="sos")
     pad = math.ceil(PAD / time_step)
     filtered = sosfiltfilt(sections, np.pad(values, pad), padtype=None)
+    velocity = _integral(filtered, time_step)
     own = slice(pad, pad + values.size)
     # Copies, or each motion would keep its two minutes of pads in memory.
-    return Motion(filtered[own].copy(), _integral(filtered, time_step)[own].copy(), time_step)
+    displacement = _integral(velocity, time_step)
+    return Motion(filtered[own].copy(), velocity[own].copy(), displacement[own].copy(), time_step)
 
 
 def _integral(values: FloatArray, time_step: float) -> FloatArray:

@@ -19,10 +19,12 @@ from assess.units import ACCELERATION
 
 MOST_BARS = 40
 MOST_POINTS = 1500
+_UNDATED = {"svg": ("Date", "Creator"), "pdf": ("CreationDate", "Creator", "Producer"), "png": ("Software",)}
+"""What is left out of each kind of file, so that the same figure has the same bytes."""
 
 
-def _draw(width: float, height: float, paint: Callable[[Any], None]) -> bytes:
-    """Draw one figure [inches] and return its SVG; nothing global of matplotlib is touched."""
+def draw(width: float, height: float, paint: Callable[[Any], None], kind: str = "svg") -> bytes:
+    """Draw one figure [inches] and return it as "svg", "pdf" or "png"; nothing global of matplotlib is touched."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
@@ -32,14 +34,14 @@ def _draw(width: float, height: float, paint: Callable[[Any], None]) -> bytes:
         figure = Figure(figsize=(width, height), layout="constrained")
         paint(figure)
         file = BytesIO()
-        figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
+        figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
     return file.getvalue()
 
 
 def draw_counts(counts: Sequence[Counts], axis_label: str) -> bytes:
     """Draw the pieces of each class as one bar a floor (or room), each class with its hatch and symbol."""
     shown = [one for one in counts if one.total][:MOST_BARS]
-    return _draw(7, 1.1 + 0.3 * max(1, len(shown)), partial(_paint_counts, shown, axis_label))
+    return draw(7, 1.1 + 0.3 * max(1, len(shown)), partial(_paint_counts, shown, axis_label))
 
 
 _HATCHES = {RiskClass.LOW: "", RiskClass.MEDIUM: "..", RiskClass.HIGH: "//", RiskClass.VERY_HIGH: ""}
@@ -88,7 +90,7 @@ def draw_plan(page: FloorPage, inventory: Inventory) -> bytes:
     points = _points(page, inventory)
     width = max(x for x, _ in points) - min(x for x, _ in points) + 4
     height = max(y for _, y in points) - min(y for _, y in points) + 4
-    return _draw(7, min(8.5, max(2.5, 7 * height / width)), partial(_paint_plan, page, inventory))
+    return draw(7, min(8.5, max(2.5, 7 * height / width)), partial(_paint_plan, page, inventory))
 
 
 def _points(page: FloorPage, inventory: Inventory) -> list[tuple[float, float]]:
@@ -138,7 +140,7 @@ def _paint_piece(axes: Any, one: ItemResult) -> None:
 
 def draw_motion(demand: Demand) -> bytes:
     """Draw the treated acceleration of a recorded motion."""
-    return _draw(7, 1.6, partial(_paint_motion, demand))
+    return draw(7, 1.6, partial(_paint_motion, demand))
 
 
 def _paint_motion(demand: Demand, figure: Any) -> None:

@@ -1,0 +1,182 @@
+"""Write `motions.md` and its figures: how generated motions and generic targets compare with what was recorded.
+
+Run it with ``python docs/motions.py``. Every number on the page is from the run.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from assess.motion.compatible import Generator, build_generator
+from assess.motion.fit import velocities
+from assess.motion.formats import read_records
+from assess.motion.record import Motion, treat
+from assess.motion.spectrum import build_periods, response_spectrum
+from assess.motion.target import (
+    build_grid,
+    estimate_period,
+    generic_shape,
+    generic_target,
+    recorded_target,
+)
+
+ROOT = Path(__file__).parents[1]
+MARKET = ROOT / "inventories" / "records" / "575-market"
+SAMPLES = ROOT / "samples" / "records"
+SEED = 1
+
+RECORDS: dict[str, tuple[Path, float, float]] = {
+    **{
+        f"575 Market Street, {level}, {azimuth}°": (
+            MARKET / f"891018_1.cra-1.0210{letter}.smc", 6.0 if azimuth in (45, 225) else 5.0, 175.0,
+        )
+        for letter, level, azimuth in (
+            ("a", "42nd floor", 45), ("b", "42nd floor", 225), ("c", "42nd floor", 135),
+            ("d", "34th floor", 45), ("e", "34th floor", 225),
+            ("g", "25th floor", 45), ("h", "25th floor", 225), ("i", "25th floor", 135),
+            ("k", "ground", 315),
+        )
+    },
+    "Alhambra, 12th floor, 90°": (SAMPLES / "0165a_u.smc", 2.0, 50.0),
+    "Berkeley, roof, 171°": (SAMPLES / "1103.HN2.NP.RE_a.smc", 0.8, 50.0),
+}  # fmt: skip
+"""Records of floors: file, T1 as read off their spectra [s], and height of the building [m]: 175 for 575 Market Street,
+50 taken for the other two, whose height we do not know."""
+
+
+def main() -> None:
+    """Write the page and the figures."""
+    from assess.report.ensembles import draw_ensemble, draw_targets
+
+    figures = ROOT / "docs" / "figures"
+    motions = {name: treat(read_records(path)[0]) for name, (path, _, _) in RECORDS.items()}
+    generators = {name: build(motion) for name, motion in motions.items()}
+    first = next(iter(RECORDS))
+    (figures / "ensemble.png").write_bytes(draw_ensemble(generators[first], first, "png"))
+    periods = build_periods(0.03, 10.0, 200)
+    (figures / "targets.png").write_bytes(draw_targets(list(panels(motions, periods)), periods, "png"))
+    page = "\n".join([*lines_of_ensembles(generators), *lines_of_targets(motions)]) + "\n"
+    (ROOT / "docs" / "motions.md").write_text(page, encoding="utf-8")
+
+
+def build(motion: Motion) -> Generator:
+    """Return the generator of one record on a grid of its own."""
+    grid = build_grid([motion])
+    return build_generator(recorded_target(motion, grid), grid, seed=SEED, axis="X", threads=2)
+
+
+def lines_of_ensembles(generators: dict[str, Generator]) -> Iterator[str]:
+    """Yield the part on ensembles."""
+    yield "# Generated motions and generic targets, held against records"
+    yield ""
+    yield "Written by `python docs/motions.py`; every number is from that run (seed 1, 100 realisations, axis X)."
+    yield ""
+    yield "## Ensembles compatible with a recorded floor"
+    yield ""
+    yield "Mean 5 % spectrum of 100 realisations against the record's, from 0.05 s to the period in the third column:"
+    yield "1.5 times the longest at which pseudo-velocity is half its maximum, at least 3 s, at most 10 s. Scatter is"
+    yield "the coefficient of variation among realisations."
+    yield ""
+    yield "![Target, 100 realisations and their mean](figures/ensemble.png)"
+    yield ""
+    yield (
+        "| record | PFA [g], PFV [cm/s] | to [s] | deviation: mean | largest | at [s] | mean PFA, scatter "
+        "| mean PFV, scatter |"
+    )
+    yield "|---|---|---|---|---|---|---|---|"
+    for name, generator in generators.items():
+        yield row_of(name, generator)
+    yield ""
+
+
+def row_of(name: str, generator: Generator) -> str:
+    """Return the row of one record."""
+    target, fit = generator.target, generator.fit
+    assert fit is not None  # noqa: S101 - the generator has just been built
+    return (
+        f"| {name} | {target.pfa / 9.80665:.3f}, {target.pfv * 100:.1f} | {fit.matched_to:.1f} | "
+        f"{fit.mean_deviation:.1%} | {fit.worst_deviation:+.1%} | {fit.worst_period:.2f} | "
+        f"{fit.pfa_ratio:.2f}, {fit.pfa_scatter:.2f} | {fit.pfv_ratio:.2f}, {fit.pfv_scatter:.2f} |"
+    )
+
+
+def panels(
+    motions: dict[str, Motion], periods: np.ndarray
+) -> Iterator[tuple[str, list[np.ndarray], list[tuple[str, np.ndarray]]]]:
+    """Yield what each panel of the figure of targets shows, a building each."""
+    for building in dict.fromkeys(name.split(",")[0] for name in RECORDS):
+        own = [name for name in RECORDS if name.startswith(building)]
+        _, period, height = RECORDS[own[0]]
+        recorded = [shape_of(motions[name], periods) for name in own]
+        estimated = estimate_period(height)
+        assert estimated is not None  # noqa: S101 - the height is known
+        yield (
+            building,
+            recorded,
+            [
+                (f"T1 known: {period:g} s", generic_shape(periods, period)),
+                (f"by height: {height:g} m, {estimated:.2f} s", generic_shape(periods, estimated)),
+                ("neither known", generic_shape(periods, None)),
+            ],
+        )
+
+
+def shape_of(motion: Motion, periods: np.ndarray) -> np.ndarray:
+    """Return PSA/PFA [-] of a recorded motion."""
+    return np.asarray(response_spectrum(motion.acceleration, motion.time_step, periods).pseudo / motion.pfa)
+
+
+def lines_of_targets(motions: dict[str, Motion]) -> Iterator[str]:
+    """Yield the part on generic targets."""
+    periods = build_periods(0.05, 10.0, 200)
+    yield "## Generic targets, for floors of which only PFA is known"
+    yield ""
+    yield "Largest pseudo-velocity of the generic spectrum over that of the record, both for the record's PFA, and the"
+    yield "ratio of their ordinates at 1 s. Below 1 the generic spectrum is on the unsafe side. T1 is read off the"
+    yield "records' spectra; the heights of the buildings at Alhambra and Berkeley are not known to us, 50 m is taken."
+    yield ""
+    yield "![PSA/PFA of recorded floors and of generic targets](figures/targets.png)"
+    yield ""
+    yield "| record | T1 known: velocity, 1 s | by height | neither known |"
+    yield "|---|---|---|---|"
+    for name, (_, period, height) in RECORDS.items():
+        recorded = shape_of(motions[name], periods)
+        cells = [
+            compare(generic_shape(periods, first), recorded, periods)
+            for first in (period, estimate_period(height), None)
+        ]
+        yield f"| {name} | {' | '.join(cells)} |"
+    yield ""
+    yield from lines_of_peaks(motions)
+
+
+def compare(generic: np.ndarray, recorded: np.ndarray, periods: np.ndarray) -> str:
+    """Return the two ratios of a row."""
+    at = int(np.abs(periods - 1.0).argmin())
+    return f"{(generic * periods).max() / (recorded * periods).max():.1f}, {generic[at] / recorded[at]:.1f}"
+
+
+def lines_of_peaks(motions: dict[str, Motion]) -> Iterator[str]:
+    """Yield what the motions made from a generic spectrum come to."""
+    motion = next(iter(motions.values()))
+    yield "Where PFA and spectrum cannot both be had, PFA wins and the misfit is told. Motions for the PFA of the 42nd"
+    yield f"floor ({motion.pfa / 9.80665:.3f} g; its recorded PFV is {motion.pfv * 100:.0f} cm/s):"
+    yield ""
+    yield "| known | deviation of the mean spectrum: mean | largest | mean PFV [cm/s] |"
+    yield "|---|---|---|---|"
+    for words, known in (
+        ("PFA", {}), ("PFA, T1 0.3 s", {"period": 0.3}), ("PFA, T1 0.8 s", {"period": 0.8}),
+        ("PFA, T1 6 s", {"period": 6.0}), ("PFA, height 175 m", {"height": 175.0}), ("PFA, PFV 40 cm/s", {"pfv": 0.4}),
+        ("PFA, PFV 40 cm/s, T1 6 s", {"pfv": 0.4, "period": 6.0}),
+    ):  # fmt: skip
+        grid = build_grid([], period=known.get("period"))
+        generator = build_generator(generic_target(motion.pfa, grid, **known), grid, seed=SEED, axis="X", threads=2)
+        fit, pfv = generator.fit, np.abs(velocities(generator.realise(), grid.time_step)).max(axis=1).mean()
+        assert fit is not None  # noqa: S101 - the generator has just been built
+        worst = f"{fit.worst_deviation:+.1%} at {fit.worst_period:.2f} s"
+        yield f"| {words} | {fit.mean_deviation:.1%} | {worst} | {pfv * 100:.0f} |"
+
+
+if __name__ == "__main__":
+    main()
