@@ -4,7 +4,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: example test lint benchmark blank clean
+.PHONY: example test lint benchmark blank docs clean
 
 example: .venv/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street
@@ -23,6 +23,9 @@ benchmark: .venv/.developing
 blank: .venv/.installed
 	$(BIN)/assess new inventories/blank.xlsx --force
 	$(BIN)/python inventories/market_street.py
+
+docs: .venv/.installed
+	$(BIN)/python docs/motions.py
 
 .venv/.installed: pyproject.toml setup.sh
 	PYTHON="$(PYTHON)" sh setup.sh .

@@ -11,6 +11,7 @@ from assess.version import __version__
 _PACKAGES = (
     "numpy",
     "scipy",
+    "numba",
     "openpyxl",
     "defusedxml",
     "XlsxWriter",
@@ -35,6 +36,7 @@ def examine() -> list[Finding]:
     """Look at versions, templates, fonts and the libraries of the PDF."""
     findings = [Finding("assess", True, f"{__version__}, Python {platform.python_version()}, {platform.platform()}")]
     findings += [_package(name) for name in _PACKAGES]
+    findings.append(_obspy())
     templates = resources.templates() / "report.html.j2"
     findings.append(Finding("templates", templates.is_file(), str(templates.parent)))
     fonts = resources.fonts()
@@ -51,6 +53,15 @@ def _package(name: str) -> Finding:
         return Finding(name, True, version(name))
     except PackageNotFoundError:
         return Finding(name, False, f"pip install {name}")
+
+
+def _obspy() -> Finding:
+    try:
+        return Finding("obspy", True, version("obspy"))
+    except PackageNotFoundError:
+        return Finding(
+            "obspy", True, 'not installed, and needed for SAC and miniSEED only: pip install "assess[obspy]"'
+        )
 
 
 def _pdf() -> Finding:

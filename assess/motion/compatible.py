@@ -216,7 +216,7 @@ def _find_mendings(motions: FloatArray, generator: Generator) -> tuple[tuple[Flo
     """Mend the mean spectrum of `motions` and their mean PFA, in place; return the rounds."""
     target, grid = generator.target, generator.grid
     mender = build_wavelets(target.periods, grid.time_step)
-    found = []
+    found: list[tuple[FloatArray, float]] = []
     for _ in range(MENDINGS):
         mean = response_spectrum(motions, grid.time_step, target.periods, threads=generator.threads).pseudo.mean(axis=0)
         ratios = _worst(target.pseudo / mean, target)

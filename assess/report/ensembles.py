@@ -25,7 +25,7 @@ def _paint_ensemble(generator: Generator, title: str, figure: Any) -> None:
     left, right = figure.subfigures(1, 2, width_ratios=(1.25, 1))
     target, motions = generator.target, generator.realise()
     _paint_spectra(left.subplots(), generator, motions)
-    left.suptitle(title, x=0.02, ha="left", fontsize=9)
+    left.suptitle(title.replace("$", r"\$"), x=0.02, ha="left", fontsize=9)
     recorded = [] if target.acceleration is None else [("record", target.acceleration)]
     series = [*recorded, *((f"realisation {number + 1}", motions[number]) for number in range(3))]
     for axes, (name, values) in zip(

@@ -158,3 +158,12 @@ def test_members_of_inner_archives_count_with_the_others(tmp_path: Path, monkeyp
     inner = zipped({"a.V2": csmip_v2(EAST), "b": b"b"})
     with pytest.raises(RecordError, match=r"the zip archive has more than 3 members: unpack it"):
         read_set(tmp_path, zipped({"1.zip": inner, "2.zip": inner}))
+
+
+def test_what_is_left_out_is_said_once(tmp_path: Path) -> None:
+    cut = csmip_v2(EAST)[:4000]
+    first, *others = read_set(tmp_path, zipped({"A.V2": csmip_v2(*THREE), "B.V2": cut, **README}))
+    (note,) = first.notes
+    assert note.startswith("left out of the archive: B.V2: ")
+    assert note.endswith("README.txt: of no known format")
+    assert not any(record.notes for record in others)

@@ -29,6 +29,8 @@ LETTERS = "abcdefghijk"
 NOT_INCREASING = {"a": 6, "b": 6, "c": 2, "k": 3}
 SAMPLES = dict(zip(LETTERS, [33449, 33475, 33490, 33515, 33415, 33538, 33509, 33580, 33510, 33518, 33532], strict=True))
 
+RECORDS = Path(__file__).parents[2] / "samples" / "records"
+
 
 def make_record(acceleration: FloatArray, time_step: float = 0.01, *, corrected: bool = False) -> Record:
     return Record(
@@ -167,8 +169,15 @@ def test_without_filter_the_mean_is_still_removed() -> None:
 
 
 def test_motion_knows_its_peaks() -> None:
-    motion = Motion(np.array([0.0, -3.0, 1.0]), np.array([0.0, 0.5, -0.2]), 0.01)
-    assert (motion.pfa, motion.pfv) == (3.0, 0.5)
+    motion = Motion(np.array([0.0, -3.0, 1.0]), np.array([0.0, 0.5, -0.2]), np.array([0.0, 0.1, -0.3]), 0.01)
+    assert (motion.pfa, motion.pfv, motion.pfd) == (3.0, 0.5, 0.3)
+
+
+def test_velocity_and_displacement_are_those_of_the_provider() -> None:
+    """The files of the same channel print peaks of 2.30 cm/s and 0.182 cm."""
+    motion = treat(read_records(RECORDS / "1103.HN2.NP.RE_a.smc")[0])
+    assert motion.pfv * 100 == pytest.approx(2.2956, rel=0.002)
+    assert motion.pfd * 100 == pytest.approx(0.18171, rel=0.03)
 
 
 def test_treatment_in_words() -> None:

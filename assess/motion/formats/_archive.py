@@ -64,12 +64,15 @@ def read_archive(data: bytes, file: str, read: ReadMember) -> tuple[Record, ...]
     """
     found = _Found()
     _read_members(data, file, read, found, depth=1)
-    if found.records:
-        return tuple(found.records)
-    if not found.reasons:
-        raise RecordError("the zip archive is empty. Get it again")
     listed = "; ".join(found.reasons[:LISTED])
     more = f"; and {len(found.reasons) - LISTED} more" if len(found.reasons) > LISTED else ""
+    if found.records:
+        first, *others = found.records
+        # Once in a set, or each of its channels would repeat it in a report.
+        left = (f"left out of the archive: {listed}{more}",) if found.reasons else ()
+        return (replace(first, notes=(*first.notes, *left)), *others)
+    if not found.reasons:
+        raise RecordError("the zip archive is empty. Get it again")
     raise RecordError(f"nothing in the zip archive can be read as a record: {listed}{more}")
 
 

@@ -1,0 +1,53 @@
+"""The page on generated motions is that of this version, and its figures can be drawn."""
+
+import importlib.util
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from assess.motion.formats import read_records
+from assess.motion.record import treat
+from assess.motion.spectrum import build_periods
+from assess.motion.target import generic_shape
+from assess.report.ensembles import draw_ensemble, draw_targets
+
+ROOT = Path(__file__).parents[2]
+RECORD = "575 Market Street, 34th floor, 225°"
+
+
+@pytest.fixture(scope="module")
+def page():
+    spec = importlib.util.spec_from_file_location("motions_page", ROOT / "docs" / "motions.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def generator(page):
+    return page.build(treat(read_records(page.RECORDS[RECORD][0])[0]))
+
+
+def test_the_page_is_up_to_date(page, generator):
+    """One row is made again; rounding may differ by a digit on another kind of processor."""
+    text = (ROOT / "docs" / "motions.md").read_text(encoding="utf-8")
+    kept = next(line for line in text.splitlines() if line.startswith(f"| {RECORD} "))
+    assert _numbers(kept) == pytest.approx(_numbers(page.row_of(RECORD, generator)), abs=0.35), "run: make docs"
+    motions = {name: treat(read_records(path)[0]) for name, (path, _, _) in page.RECORDS.items()}
+    part = "\n".join(page.lines_of_targets(motions)).split("Where PFA")[0]
+    assert part in text, "run: make docs"
+
+
+def _numbers(row):
+    cells = row.replace("%", "").replace(",", " ").split("|")[2:-1]
+    return [float(number) for cell in cells for number in cell.split()]
+
+
+def test_the_figures(generator):
+    drawn = ET.fromstring(draw_ensemble(generator, "A $floor"))
+    assert sum(1 for one in drawn.iter() if str(one.get("id", "")).startswith("axes_")) == 5
+    periods = build_periods(0.03, 10, 50)
+    panel = ("Building", [np.ones(50)], [("T1 known", generic_shape(periods, 1.0))])
+    assert draw_targets([panel, panel], periods, "png").startswith(b"\x89PNG")
