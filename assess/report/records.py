@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from assess.errors import OutputError, RecordError
-from assess.motion.formats import read_records, select
+from assess.motion.formats import list_addresses, read_records, select
 from assess.motion.record import Motion, Record, treat, treatment
 from assess.units import GRAVITY
 
@@ -18,7 +18,13 @@ MOST_DRAWN = 12
 """Channels in one figure."""
 KINDS = ("png", "svg", "pdf")
 
-Channel = tuple[Record, Motion]
+
+class Channel(NamedTuple):
+    """One channel: what to write into a workbook to name it, as its file has it, and as treated."""
+
+    name: str
+    record: Record
+    motion: Motion
 
 
 def read_channels(name: str) -> list[Channel]:
@@ -31,28 +37,32 @@ def read_channels(name: str) -> list[Channel]:
     """
     path = Path(name)
     if path.exists() or "#" not in name:
-        records: Sequence[Record] = read_records(path)
-    else:
-        file, _, channel = name.partition("#")
-        records = [select(read_records(Path(file)), channel)]
-    return [(record, treat(record)) for record in records]
+        records = read_records(path)
+        texts = [""] if len(records) == 1 else [f"#{text}" for text in list_addresses(records)]
+        return [
+            Channel(f"{path.name}{text}", record, treat(record)) for text, record in zip(texts, records, strict=True)
+        ]
+    file, _, channel = name.partition("#")
+    record = select(read_records(Path(file)), channel)
+    return [Channel(f"{Path(file).name}#{channel}", record, treat(record))]
 
 
 def describe(channels: Sequence[Channel]) -> dict[str, Any]:
     """Return what the channels of one file are, as the document of `assess record --json`."""
     return {
-        "file": channels[0][0].file.split("/")[0],
-        "format": ", ".join(dict.fromkeys(record.format for record, _ in channels)),
-        "channels": [_describe(record, motion) for record, motion in channels],
+        "file": channels[0].record.file.split("/")[0],
+        "format": ", ".join(dict.fromkeys(one.record.format for one in channels)),
+        "channels": [_describe(*one) for one in channels],
     }
 
 
-def _describe(record: Record, motion: Motion) -> dict[str, Any]:
+def _describe(name: str, record: Record, motion: Motion) -> dict[str, Any]:
     from assess.motion.spectrum import response_spectrum
 
     spectrum = response_spectrum(motion.acceleration, motion.time_step, np.array(PERIODS))
     return {
         "channel": record.channel,
+        "name": name,
         "member": record.file,
         "location": record.location,
         "azimuth_deg": record.azimuth_deg,
@@ -84,7 +94,7 @@ def list_lines(document: dict[str, Any]) -> Iterator[str]:
     yield f"{document['file']}: {document['format']}, {count} channel{'' if count == 1 else 's'}"
     for one in document["channels"]:
         yield ""
-        yield f"  channel {one['channel']}{_where(one, document['file'])}"
+        yield f"  {one['name']}{_where(one)}"
         known = [part for part in (one["station"], one["event"], one["start"]) if part]
         if known:
             yield f"    {'; '.join(known)}"
@@ -100,11 +110,10 @@ def list_lines(document: dict[str, Any]) -> Iterator[str]:
         yield from (f"    note: {note}" for note in one["notes"])
 
 
-def _where(one: dict[str, Any], file: str) -> str:
+def _where(one: dict[str, Any]) -> str:
     azimuth = "vertical" if one["vertical"] else "" if one["azimuth_deg"] is None else f"{one['azimuth_deg']:g} deg"
-    member = "" if one["member"] == file else one["member"].removeprefix(f"{file}/")
-    parts = [part for part in (one["location"], azimuth, member) if part]
-    return f" ({', '.join(parts)})" if parts else ""
+    parts = [part for part in (f"channel {one['channel']}", one["location"], azimuth) if part]
+    return f" ({', '.join(parts)})"
 
 
 def write_figure(channels: Sequence[Channel], path: Path) -> int:
@@ -137,14 +146,12 @@ def write_figure(channels: Sequence[Channel], path: Path) -> int:
 def _paint(shown: Sequence[Channel], figure: Any) -> None:
     from assess.motion.spectrum import build_periods, response_spectrum
 
-    files = {record.file for record, _ in shown}
     rows = figure.subplots(len(shown), 3, squeeze=False, sharex="col", width_ratios=(2, 2, 1.3))
     periods = build_periods(0.03, 10.0, 150)
-    for (record, motion), (first, second, third) in zip(shown, rows, strict=True):
+    for (name, record, motion), (first, second, third) in zip(shown, rows, strict=True):
         times = np.arange(motion.acceleration.size) * motion.time_step
         azimuth = "vertical" if record.vertical else "" if record.azimuth_deg is None else f"{record.azimuth_deg:g}°"
-        file = record.file if len(files) > 1 else ""
-        title = ", ".join(part for part in (file, f"channel {record.channel}", record.location, azimuth) if part)
+        title = ", ".join(part for part in (name, record.location, azimuth) if part)
         first.set_title(title.replace("$", r"\$")[:90], loc="left", fontsize=8)
         for axes, values, unit in (
             (first, motion.acceleration / GRAVITY, "g"),

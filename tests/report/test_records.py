@@ -50,8 +50,8 @@ def test_several_files_are_a_list_in_one_document():
 def test_the_text_tells_a_person_the_same():
     text = run(SWEEP).stdout
     assert "made-up-sweep.csv: plain CSV, 3 channels" in text
-    assert "channel north (3rd floor, 0 deg)" in text
-    assert "channel up (3rd floor, vertical)" in text
+    assert "made-up-sweep.csv#north (channel north, 3rd floor, 0 deg)" in text
+    assert "made-up-sweep.csv#up (channel up, 3rd floor, vertical)" in text
     assert "1,201 samples, one every 0.01 s: 12.00 s" in text
     assert "PFA 0.3000 g, PFV 57.76 cm/s" in text
     assert "5 % spectrum  T [s]     0.05" in text
@@ -59,14 +59,14 @@ def test_the_text_tells_a_person_the_same():
 
 def test_one_channel_of_a_file():
     (channel,) = json.loads(run(f"{SWEEP}#east", "--json").stdout)["channels"]
-    assert channel["channel"] == "east"
+    assert (channel["channel"], channel["name"]) == ("east", "made-up-sweep.csv#east")
 
 
 def test_a_set_in_a_zip_archive(tmp_path):
     (tmp_path / "set.zip").write_bytes(zipped({"CHAN.V2": csmip_v2(*THREE), "README.txt": b"hello"}))
     done = run(tmp_path / "set.zip")
     assert "set.zip: CSMIP V2, 3 channels" in done.stdout
-    assert "CHAN.V2)" in done.stdout
+    assert "set.zip#11 (channel 11, " in done.stdout
     assert "note: left out of the archive: README.txt" in done.stdout
 
 
@@ -112,6 +112,17 @@ def test_a_name_with_a_hash_is_a_file_first(tmp_path):
 
 
 def test_channels_come_as_they_are_and_as_treated():
-    ((record, motion),) = read_channels(str(ROOF))
+    ((name, record, motion),) = read_channels(str(ROOF))
+    assert name == ROOF.name
     np.testing.assert_array_equal(motion.acceleration, treat(record).acceleration)
     np.testing.assert_array_equal(record.acceleration, read_records(ROOF)[0].acceleration)
+
+
+def test_the_names_are_what_finds_the_channels_again(tmp_path):
+    both = {"a/CHAN.V2": csmip_v2(*THREE), "b/CHAN.V2": csmip_v2(*THREE)}
+    (tmp_path / "set.zip").write_bytes(zipped(both))
+    channels = read_channels(str(tmp_path / "set.zip"))
+    assert len({one.name for one in channels}) == 6
+    for one in channels:
+        (again,) = read_channels(str(tmp_path / one.name))
+        assert (again.record.file, again.record.channel) == (one.record.file, one.record.channel)

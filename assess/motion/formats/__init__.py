@@ -7,11 +7,11 @@ from pathlib import Path
 
 from assess.errors import RecordError
 from assess.motion.formats._archive import is_archive, read_archive
-from assess.motion.formats._choice import select, tell_apart
+from assess.motion.formats._choice import list_addresses, select, tell_apart
 from assess.motion.formats._format import Format
 from assess.motion.record import Record
 
-__all__ = ["Format", "all_formats", "read_records", "select"]
+__all__ = ["Format", "all_formats", "list_addresses", "read_records", "select"]
 
 LARGEST_FILE = 64_000_000
 """Bytes; the largest records of single buildings have a few million."""

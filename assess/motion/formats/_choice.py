@@ -35,14 +35,14 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     if channel is None or not channel.strip():
         if len(records) == 1:
             return records[0]
-        names = _addresses(records)
+        names = list_addresses(records)
         raise RecordError(f"{file} holds {len(records)} channels: {_list(names)}. Write which, as {file}#{names[0]}")
     wanted = channel.strip().casefold()
     # The whole path of a member comes first: the same file may lie in a folder, too.
     whole = [record for record in records if wanted in _whole(record)]
     named = whole or [record for record in records if wanted in _spellings(record)]
     if len(named) > 1:
-        meant = _list([name for name, record in zip(_addresses(records), records, strict=True) if record in named])
+        meant = _list([name for name, record in zip(list_addresses(records), records, strict=True) if record in named])
         raise RecordError(f"{file} has {len(named)} channels {channel.strip()!r}. Write which: {meant}")
     if named:
         return named[0]
@@ -50,7 +50,7 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     numbered = [record for number, record in enumerate(records, start=1) if str(number) == wanted]
     if numbered and (len(records) == 1 or not any(record.channel.isdecimal() for record in records)):
         return numbered[0]
-    raise RecordError(f"{file} has no channel {channel.strip()!r}. It holds: {_list(_addresses(records))}")
+    raise RecordError(f"{file} has no channel {channel.strip()!r}. It holds: {_list(list_addresses(records))}")
 
 
 def tell_apart(records: Sequence[Record]) -> tuple[Record, ...]:
@@ -87,8 +87,8 @@ def _short(way: str, record: Record) -> set[str]:
     return {spelt, spelt.removesuffix(channel)}
 
 
-def _addresses(records: Sequence[Record]) -> list[str]:
-    """Return for each record the shortest address that means no other."""
+def list_addresses(records: Sequence[Record]) -> list[str]:
+    """Return for each channel of one file the shortest text after # that means no other."""
     meanings = Counter(spelling for record in records for spelling in _spellings(record))
     return [
         next((way for way in _ways(record) if meanings[way.casefold()] == 1), list(_ways(record))[-1])
