@@ -121,12 +121,18 @@ def run(
 @app.command()
 def record(
     files: Annotated[list[str], typer.Argument(help="Records: FILE or FILE#channel.", show_default=False)],
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON document instead.")] = False,
+    as_json: Annotated[
+        bool,
+        typer.Option("--json", help="Print one JSON document instead: an object for one file, a list for several."),
+    ] = False,
     plot: Annotated[Path | None, typer.Option(help="Draw the channels to this .png, .svg or .pdf.")] = None,
 ) -> None:
     """Tell what records hold: channels, time step, PFA, PFV, displacement and 5 % spectrum, as assess treats them."""
-    from assess.report.records import describe, list_lines, read_channels, write_figure
+    from assess.report.records import check_figure, describe, list_lines, read_channels, write_figure
 
+    if plot is not None:
+        with _exits():
+            check_figure(plot)
     found, failed = [], 0
     for name in files:
         try:

@@ -79,7 +79,8 @@ def response_spectrum(
     Raises
     ------
     ValueError
-        If a period, the damping or the time step is outside these limits, or a motion has fewer than two samples.
+        If a period, the damping or the time step is outside these limits, or a motion has fewer than two samples or one
+        that is not finite.
     """
     periods = np.asarray(periods, dtype=np.float64)
     acceleration = np.asarray(acceleration, dtype=np.float64)
@@ -91,6 +92,8 @@ def response_spectrum(
         raise ValueError(f"time_step is {time_step} s, expected above 0")
     if acceleration.ndim not in (1, 2) or acceleration.shape[-1] < 2:
         raise ValueError(f"acceleration has shape {acceleration.shape}, expected (n,) or (k, n) with n of 2 or more")
+    if not np.isfinite(acceleration).all():
+        raise ValueError("acceleration has samples that are not finite numbers")
     rows = np.ascontiguousarray(np.atleast_2d(acceleration))
     step = oscillator_step(periods, time_step, damping)
     peaks = np.zeros((len(rows), 2, periods.size))

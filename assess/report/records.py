@@ -36,7 +36,7 @@ def read_channels(name: str) -> list[Channel]:
         If the file cannot be read, or has no such channel.
     """
     path = Path(name)
-    if path.exists() or "#" not in name:
+    if "#" not in name or _is_there(path):
         records = read_records(path)
         texts = [""] if len(records) == 1 else [f"#{text}" for text in list_addresses(records)]
         return [
@@ -45,6 +45,13 @@ def read_channels(name: str) -> list[Channel]:
     file, _, channel = name.partition("#")
     record = select(read_records(Path(file)), channel)
     return [Channel(f"{Path(file).name}#{channel}", record, treat(record))]
+
+
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a name that is too long
+        return False
 
 
 def describe(channels: Sequence[Channel]) -> dict[str, Any]:
@@ -116,30 +123,41 @@ def _where(one: dict[str, Any]) -> str:
     return f" ({', '.join(parts)})"
 
 
+def check_figure(path: Path) -> None:
+    """Raise RecordError unless a figure can be written to `path`, as far as can be told beforehand."""
+    if path.suffix.lower().removeprefix(".") not in KINDS:
+        raise RecordError(f"the figure {path.name} is of no known kind: end its name in .png, .svg or .pdf")
+    try:
+        can_be = path.parent.is_dir() and not path.is_dir()
+    except OSError:  # a name that is too long
+        can_be = False
+    if not can_be:
+        raise RecordError(f"the figure {path} cannot be written there: name a file in a folder that exists")
+
+
 def write_figure(channels: Sequence[Channel], path: Path) -> int:
     """Draw acceleration, velocity and spectrum of the first channels; return how many were drawn.
 
     Raises
     ------
     RecordError
-        If the name does not end in .png, .svg or .pdf.
+        If the name does not end in .png, .svg or .pdf, or its folder is missing.
     OutputError
         If the file cannot be written; what was there is left as it was.
     """
     from assess.report.figures import draw
 
+    check_figure(path)
     kind = path.suffix.lower().removeprefix(".")
-    if kind not in KINDS:
-        raise RecordError(f"the figure {path.name} is of no known kind: end its name in .png, .svg or .pdf")
     shown = channels[:MOST_DRAWN]
     picture = draw(10, 0.4 + 1.9 * len(shown), partial(_paint, shown), kind)
-    stage = path.with_name(f".{path.name}.writing")
+    stage = path.with_name(f".{path.stem[:40]}.writing")
     try:
         stage.write_bytes(picture)
         stage.replace(path)
     except OSError as error:
         stage.unlink(missing_ok=True)
-        raise OutputError(f"{path} could not be written: {error.strerror}.") from None
+        raise OutputError(f"{path} could not be written: {error.strerror}. Name another file.") from None
     return len(shown)
 
 
@@ -174,6 +192,7 @@ def _paint_history(axes: Any, times: Any, values: Any, unit: str) -> None:
     axes.plot(times, values, color="#444444", linewidth=0.5)
     axes.plot(times[at], values[at], "o", color="#b03a2e", markersize=4, fillstyle="none")
     axes.annotate(f"{abs(values[at]):.3g} {unit} at {times[at]:.4g} s", (times[at], values[at]), fontsize=7,
-                  xytext=(4, 0), textcoords="offset points", va="center", color="#b03a2e")  # fmt: skip
+                  xytext=(4, 0), textcoords="offset points", va="center", color="#b03a2e",
+                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.85})  # fmt: skip
     axes.set_ylabel(f"acceleration [{unit}]" if unit == "g" else f"velocity [{unit}]")
     axes.margins(x=0)

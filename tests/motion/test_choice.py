@@ -98,3 +98,11 @@ def test_channels_of_one_name_are_told_apart() -> None:
     twice = tell_apart([SWEEP[0], replace(SWEEP[1], channel="North"), SWEEP[2]])
     assert [record.channel for record in twice] == ["north", "North (2)", "up"]
     assert select(twice, "north (2)") is twice[1]
+
+
+def test_a_number_is_no_position_in_an_archive() -> None:
+    """A damaged member would be left out, and the number mean another channel."""
+    inside = [replace(record, file="set.zip/a.csv") for record in SWEEP]
+    with pytest.raises(RecordError, match=r"set\.zip has no channel '2'\. It holds: north, east, up"):
+        select(inside, "2")
+    assert select(inside, "east").channel == "east"

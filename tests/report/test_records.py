@@ -98,11 +98,33 @@ def test_only_the_first_channels_are_drawn_and_the_rest_is_said(tmp_path):
 
 
 def test_figures_that_cannot_be_written(tmp_path):
-    done = run(SWEEP, "--plot", tmp_path / "x.gif")
-    assert done.exit_code == 2
-    assert "the figure x.gif is of no known kind: end its name in .png, .svg or .pdf" in done.stderr
-    with pytest.raises(OutputError, match=r"could not be written: No such file"):
-        write_figure(read_channels(str(SWEEP)), tmp_path / "none" / "x.png")
+    (tmp_path / "file.txt").write_bytes(b"")
+    for name, message in (
+        ("x.gif", "the figure x.gif is of no known kind: end its name in .png, .svg or .pdf"),
+        ("none/x.png", "cannot be written there: name a file in a folder that exists"),
+        ("file.txt/x.png", "cannot be written there: name a file in a folder that exists"),
+        (f"{'n' * 300}.png", "cannot be written there: name a file in a folder that exists"),
+    ):
+        done = run(SWEEP, "--plot", tmp_path / name)
+        assert (done.exit_code, done.stdout) == (2, "")
+        assert message in done.stderr
+
+
+def test_a_figure_that_is_open_elsewhere(tmp_path, monkeypatch):
+    def forbid(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "replace", forbid)
+    with pytest.raises(OutputError, match=r"x\.png could not be written: Permission denied\. Name another file"):
+        write_figure(read_channels(str(SWEEP)), tmp_path / "x.png")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["n" * 300, f"{'n' * 300}#1"])
+def test_names_that_no_file_can_have(name):
+    done = run(name)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "error  " in done.stderr
 
 
 def test_a_name_with_a_hash_is_a_file_first(tmp_path):

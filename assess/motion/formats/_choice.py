@@ -23,8 +23,8 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     records : sequence of Record
         All channels of one file.
     channel : str, optional
-        A channel's name in any letter case, or its number in the file from 1 on where no channel's name is a number,
-        or there is only one; None where there is only one.
+        A channel's name in any letter case; or its number in the file from 1 on, but not in an archive, nor where a
+        channel's name is a number, unless there is only one. None where there is only one.
 
     Raises
     ------
@@ -48,7 +48,8 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
         return named[0]
     # Names come first: a channel may be called by its azimuth, "45". Where some are numbers, a number is a name.
     numbered = [record for number, record in enumerate(records, start=1) if str(number) == wanted]
-    if numbered and (len(records) == 1 or not any(record.channel.isdecimal() for record in records)):
+    is_archive = any("/" in record.file for record in records)  # where a damaged member would shift the numbers
+    if numbered and (len(records) == 1 or not (is_archive or any(one.channel.isdecimal() for one in records))):
         return numbered[0]
     raise RecordError(f"{file} has no channel {channel.strip()!r}. It holds: {_list(list_addresses(records))}")
 
