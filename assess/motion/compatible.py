@@ -22,7 +22,7 @@ from assess.motion.bending import Bend, bend_row, build_taper, lift_peaks, settl
 from assess.motion.envelope import draw_noise, filter_frequencies, filter_length
 from assess.motion.fit import Fit, measure_fit
 from assess.motion.record import CORNER, FloatArray
-from assess.motion.spectrum import response_spectrum, run_rows
+from assess.motion.spectrum import pseudo_acceleration, run_rows
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.wavelets import Wavelets, adjust, build_wavelets
 
@@ -170,7 +170,7 @@ def _find_filter(noise: NDArray[np.complex128], generator: Generator) -> tuple[G
         pseudo = target.capped(level)
         if number == FILTERINGS:
             break
-        mean = response_spectrum(motions, grid.time_step, target.periods, threads=threads).pseudo.mean(axis=0)
+        mean = pseudo_acceleration(motions, grid.time_step, target.periods, threads=threads).mean(axis=0)
         errors = np.log(pseudo / mean)
         if number == 0:  # the level alone: only then can peaks be told from it
             generator = replace(generator, gains=generator.gains * math.exp(float(np.median(errors))))
@@ -218,7 +218,7 @@ def _find_mendings(motions: FloatArray, generator: Generator) -> tuple[tuple[Flo
     mender = build_wavelets(target.periods, grid.time_step)
     found: list[tuple[FloatArray, float]] = []
     for _ in range(MENDINGS):
-        mean = response_spectrum(motions, grid.time_step, target.periods, threads=generator.threads).pseudo.mean(axis=0)
+        mean = pseudo_acceleration(motions, grid.time_step, target.periods, threads=generator.threads).mean(axis=0)
         ratios = _worst(target.pseudo / mean, target)
         _mend(motions, np.broadcast_to(ratios, (len(motions), mean.size)), mender, generator.threads)
         lift = target.pfa / float(np.abs(motions).max(axis=1).mean())
@@ -256,6 +256,6 @@ def _tighten(motions: FloatArray, generator: Generator) -> None:
     target, grid = generator.target, generator.grid
     mender = build_wavelets(target.periods, grid.time_step)
     for _ in range(TIGHT_MENDINGS):
-        own = response_spectrum(motions, grid.time_step, target.periods, threads=generator.threads).pseudo
+        own = pseudo_acceleration(motions, grid.time_step, target.periods, threads=generator.threads)
         _mend(motions, _worst(target.pseudo / own, target), mender, generator.threads)
         lift_peaks(motions, target.pfa / np.abs(motions).max(axis=1), generator.threads)

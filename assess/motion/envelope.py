@@ -38,7 +38,10 @@ _AXES = {"X": 0, "Y": 1}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Envelopes:
-    """Amplitudes `values` (b, n) of b octaves with `centres` (b,) [Hz], and the time [s] at which half has passed."""
+    """Amplitudes `values` (b, n) of b octaves with `centres` (b,) [Hz].
+
+    Durations are stretched about `half_time` [s]: when half of a record's energy has passed, or the middle of a hold.
+    """
 
     centres: FloatArray
     values: FloatArray

@@ -52,15 +52,15 @@ def velocities(acceleration: FloatArray, time_step: float) -> FloatArray:
 
 def measure_fit(target: Target, acceleration: FloatArray, time_step: float, threads: int = 1) -> Fit:
     """Return how motions (k, n) [m/s2] meet their target, at twice as many periods as they were matched at."""
-    from assess.motion.spectrum import response_spectrum
+    from assess.motion.spectrum import pseudo_acceleration
 
     wanted_to = matched_to(target.periods, target.pseudo)
     between = np.sqrt(target.periods[1:] * target.periods[:-1])
     periods = np.sort(np.concatenate([target.periods, between]))
     judged = (periods >= JUDGED_FROM) & (periods <= wanted_to)
     periods = periods[judged]
-    pseudo = response_spectrum(acceleration, time_step, periods, threads=threads).pseudo
-    deviation = pseudo.mean(axis=0) / target.ordinates(periods) - 1
+    pseudo = pseudo_acceleration(acceleration, time_step, periods, threads=threads)
+    deviation = pseudo.mean(axis=0) / target.ordinates(periods, time_step) - 1
     worst = int(np.abs(deviation).argmax())
     velocity = velocities(acceleration, time_step)
     pfa, pfv = np.abs(acceleration).max(axis=1), np.abs(velocity).max(axis=1)

@@ -2,7 +2,7 @@
 
 A profile tells by how much a rigid piece on a floor at height z of a building of height h is shaken more than the
 ground: PFA = ground PGA x amplification. Ground PGA stands for 0.4 SDS (ASCE 7) and for alpha S (EN 1998-1, NTC 2018).
-Codes give envelopes for design, not expected values: they bias a scenario high.
+Codes give design envelopes, not expected values: they mostly lie above what is recorded and bias a scenario high.
 
 References
 ----------
@@ -17,7 +17,10 @@ PGA_OF_SDS = 0.4
 """Ground PGA over SDS: ASCE 7's horizontal acceleration of the ground is 0.4 SDS."""
 
 UNVERIFIED = "not checked against the code's own text"
-"""What is said of a profile whose clause could not be read."""
+"""What is said of a profile that nothing was held against."""
+
+VERIFIED = "agrees with public implementations; the code's own text was not read"
+"""What is said of a profile that was held against programs that others wrote."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,9 +36,9 @@ class Profile:
     reference : str
         The code.
     verified : bool
-        Whether the equation was held against its source.
+        Whether the equation agrees with public implementations. The codes' own texts were not read.
     remark : str
-        What the equation was held against, or what was left out of it.
+        How many programs it was held against, and what was left out of it, in whole sentences.
     factor : callable
         Height ratio [-], from 0 to 1, and T1 [s] or None to amplification [-].
     reduced : bool
@@ -114,8 +117,8 @@ _ALL = (
         reference="ASCE/SEI 7-22, Minimum Design Loads and Associated Criteria for Buildings and Other Structures, "
         "American Society of Civil Engineers, 2022",
         verified=True,
-        remark="three independent public implementations agree on it; T1 stands for T_a, R_μ = 1 unless told "
-        "otherwise, and the PFA is never less than the ground's",
+        remark="It was held against three of them, independent of each other. T1 stands for T_a, R_μ = 1 unless told "
+        "otherwise, and the PFA is never less than the ground's.",
         factor=_asce_7_22,
         reduced=True,
     ),
@@ -127,8 +130,8 @@ _ALL = (
         reference="ASCE/SEI 7-16, Minimum Design Loads and Associated Criteria for Buildings and Other Structures, "
         "American Society of Civil Engineers, 2017",
         verified=True,
-        remark="a public implementation agrees on it; the part of the equation that belongs to a rigid component, "
-        "a_p = 1 and R_p/I_p = 1",
+        remark="It was held against one of them. This is the part of the equation that belongs to a rigid component, "
+        "a_p = 1 and R_p/I_p = 1.",
         factor=_asce_7_16,
     ),
     Profile(
@@ -138,7 +141,7 @@ _ALL = (
         equation="S_a = αS [3 (1 + z/H)/(1 + (1 − T_a/T₁)²) − 0.5]; rigid, T_a = 0: PFA = αS (1 + 1.5 z/H)",
         reference="EN 1998-1:2004, Eurocode 8: Design of structures for earthquake resistance, Part 1, CEN, 2004",
         verified=False,
-        remark="T1 drops out for a rigid component",
+        remark="T1 drops out for a rigid component.",
         factor=_en_1998_1,
     ),
     Profile(
@@ -149,7 +152,7 @@ _ALL = (
         reference="Norme tecniche per le costruzioni, D.M. 17 gennaio 2018, with Circolare 21 gennaio 2019 n. 7 "
         "C.S.LL.PP.",
         verified=False,
-        remark="T1 drops out for a rigid component",
+        remark="T1 drops out for a rigid component.",
         factor=_ntc_2018,
     ),
 )

@@ -82,6 +82,23 @@ def response_spectrum(
         If a period, the damping or the time step is outside these limits, or a motion has fewer than two samples or one
         that is not finite.
     """
+    peaks = _respond(acceleration, time_step, periods, damping, threads, both=True)
+    squared = (2 * np.pi / np.asarray(periods)) ** 2
+    return Spectrum(np.asarray(periods, dtype=np.float64), peaks[..., 0, :] * squared, peaks[..., 1, :])
+
+
+def pseudo_acceleration(
+    acceleration: FloatArray, time_step: float, periods: FloatArray, *, threads: int = 1
+) -> FloatArray:
+    """Return the 5 % pseudo-acceleration alone [m/s2], (..., m), a third sooner than `response_spectrum`."""
+    peaks = _respond(acceleration, time_step, periods, DAMPING, threads, both=False)
+    return np.asarray(peaks[..., 0, :] * (2 * np.pi / np.asarray(periods)) ** 2)
+
+
+def _respond(
+    acceleration: FloatArray, time_step: float, periods: FloatArray, damping: float, threads: int, *, both: bool
+) -> FloatArray:
+    """Return peak displacements [m] and, where `both`, peak absolute accelerations [m/s2], (..., 2, m)."""
     periods = np.asarray(periods, dtype=np.float64)
     acceleration = np.asarray(acceleration, dtype=np.float64)
     if not (periods.ndim == 1 and periods.size and np.isfinite(periods).all() and periods.min() > 0):
@@ -97,9 +114,8 @@ def response_spectrum(
     rows = np.ascontiguousarray(np.atleast_2d(acceleration))
     step = oscillator_step(periods, time_step, damping)
     peaks = np.zeros((len(rows), 2, periods.size))
-    run_rows(lambda row: _peaks(rows[row], step, peaks[row]), len(rows), threads)
-    peaks = peaks.reshape((*acceleration.shape[:-1], 2, periods.size))
-    return Spectrum(periods, peaks[..., 0, :] * (2 * np.pi / periods) ** 2, peaks[..., 1, :])
+    run_rows(lambda row: _peaks(rows[row], step, peaks[row], both), len(rows), threads)
+    return peaks.reshape((*acceleration.shape[:-1], 2, periods.size))
 
 
 def run_rows(work: Callable[[int], object], count: int, threads: int) -> None:
@@ -137,8 +153,8 @@ def oscillator_step(periods: FloatArray, time_step: float, damping: float = DAMP
 
 
 @compiled
-def _peaks(acceleration: FloatArray, step: FloatArray, peaks: FloatArray) -> None:  # pragma: no cover
-    """Fill `peaks` (2, m) with the peak |u| and peak absolute acceleration; the inner loop runs in vector lanes."""
+def _peaks(acceleration: FloatArray, step: FloatArray, peaks: FloatArray, both: bool) -> None:  # pragma: no cover
+    """Fill `peaks` (2, m) with peak |u| and, if `both`, peak absolute acceleration; inner loops run in vector lanes."""
     count = step.shape[1]
     r0, r1, r2, r3, r4, r5, r6, r7, r8, r9 = (
         step[0], step[1], step[2], step[3], step[4], step[5], step[6], step[7], step[8], step[9],
@@ -152,4 +168,6 @@ def _peaks(acceleration: FloatArray, step: FloatArray, peaks: FloatArray) -> Non
             next_v = r2[j] * u[j] + r3[j] * v[j] + r6[j] * a + r7[j] * b
             u[j], v[j] = next_u, next_v
             displacement[j] = max(displacement[j], abs(next_u))
-            absolute[j] = max(absolute[j], abs(r8[j] * next_v + r9[j] * next_u))
+        if both:
+            for j in range(count):
+                absolute[j] = max(absolute[j], abs(r8[j] * v[j] + r9[j] * u[j]))

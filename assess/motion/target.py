@@ -40,6 +40,9 @@ RESONANCES = ((1 / 6.5, 1 / 4.5), (1.0, 1.0))
 """Bands of resonance, as ratios to T1 [-]: a higher mode, and T1. The 21 recorded motions of buildings that we hold
 peak at 3 to 5, most at a higher mode: 575 Market Street (T1 of 5 to 6 s) at 0.9 to 1.0 s, Berkeley (T1 of 0.8 to 1 s)
 at 0.09 to 0.2 s, Alhambra (2 s) at 0.25 s; a shear beam has its third mode at T1/5."""
+LONGER = 2.5
+"""How much longer than estimated by height T1 may be [-]: that of 575 Market Street is, 6 s for 2.35 s. The band of the
+higher mode is widened as much where T1 is estimated."""
 RAMP = 1.25
 """Ratio of periods [-] over which a resonance fades into the plateau."""
 SHORTEST_PLATEAU_END = 1.0
@@ -50,7 +53,7 @@ LEVEL_OF_PFV = 2.0
 
 CODE_FACTOR, CODE_POWER = 0.0488, 0.75
 """T1 [s] of a building of height h [m] is about CODE_FACTOR h**CODE_POWER: ASCE 7-22 Eq. 12.8-7, "all other structural
-systems". It is meant to be short; that of a building with a period of its own may be twice as long."""
+systems". It is meant to be short."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,13 +100,16 @@ class Target:
         """Whether it was made from peaks alone."""
         return self.acceleration is None
 
-    def ordinates(self, periods: FloatArray) -> FloatArray:
-        """Return pseudo-acceleration [m/s2] at other periods [s]: a record's own, else between those matched."""
+    def ordinates(self, periods: FloatArray, time_step: float = TIME_STEP) -> FloatArray:
+        """Return pseudo-acceleration [m/s2] at other periods [s]: a record's own, else between those matched.
+
+        `time_step` [s] is that of the grid.
+        """
         if self.acceleration is None:
             return np.exp(np.interp(np.log(periods), np.log(self.periods), np.log(self.pseudo)))
         from assess.motion.spectrum import response_spectrum
 
-        return response_spectrum(self.acceleration, TIME_STEP, periods).pseudo
+        return response_spectrum(self.acceleration, time_step, periods).pseudo
 
     def capped(self, level: float) -> FloatArray:
         """Return pseudo-acceleration to match [m/s2], (m,), with pseudo-velocity kept to `level` [m/s]."""
@@ -184,17 +190,16 @@ def generic_target(
     ValueError
         If a number is not above 0.
     """
-    given = (pfa, pfv, period, height)
-    if not all(value is None or math.isnan(value) or 0 < value < math.inf for value in given) or math.isnan(pfa):
+    given, is_capped = (pfa, pfv, period, height), not math.isnan(pfv)
+    if not all(value is None or 0 < value < math.inf for value in (pfa, pfv if is_capped else None, period, height)):
         raise ValueError(f"pfa, pfv, period and height are {given}, expected finite numbers above 0")
     from assess.motion.spectrum import build_periods
 
     periods = build_periods(SHORTEST, LONGEST, COUNT)
     first = period or estimate_period(height)
-    is_capped = not math.isnan(pfv)
     return Target(
         periods=periods,
-        pseudo=pfa * generic_shape(periods, first, falls=not is_capped),
+        pseudo=pfa * generic_shape(periods, first, is_estimated=period is None, falls=not is_capped),
         velocity_level=LEVEL_OF_PFV * pfv if is_capped else math.inf,
         pfa=pfa,
         pfv=pfv,
@@ -207,17 +212,21 @@ def estimate_period(height: float | None) -> float | None:
     return None if height is None else CODE_FACTOR * height**CODE_POWER
 
 
-def generic_shape(periods: FloatArray, period: float | None, *, falls: bool = True) -> FloatArray:
-    """Return PSA/PFA [-], (m,), of a floor of a building with T1 [s], or with T1 unknown.
+def generic_shape(
+    periods: FloatArray, period: float | None, *, is_estimated: bool = False, falls: bool = True
+) -> FloatArray:
+    """Return PSA/PFA [-], (m,), of a floor of a building with T1 [s], which may be estimated, or with T1 unknown.
 
-    Where it `falls`, pseudo-velocity is constant beyond the longer of T1 and 1 s (T1 unknown: AC156's slope beyond
-    0.77 s); else the plateau goes on, and a pseudo-velocity taken from a known PFV has to cap it.
+    Where it `falls`, the plateau ends where pseudo-velocity is that of the resonance at T1, at 1.6 T1 but not before
+    1 s, and pseudo-velocity is constant beyond (T1 unknown: AC156's slope beyond 0.77 s); else the plateau goes on, and
+    a pseudo-velocity taken from a known PFV has to cap it.
     """
     rise = math.log(PLATEAU) / math.log(PLATEAU_FROM / RIGID_BELOW)
     shape = np.clip((periods / RIGID_BELOW) ** rise, 1.0, PLATEAU)
     if period is None:
         return np.where(falls & (periods > PLATEAU_TO), PLATEAU * (periods / PLATEAU_TO) ** -SLOPE, shape)
-    for first, last in RESONANCES:
+    (mode_from, mode_to), own = RESONANCES
+    for first, last in ((mode_from, mode_to * (LONGER if is_estimated else 1.0)), own):
         away = np.maximum(np.log(periods / (last * period)), np.log(first * period / periods)) / math.log(RAMP)
         shape = shape * (1 + (RESONANCE / PLATEAU - 1) * np.clip(1 - away, 0.0, 1.0))
     level = max(RESONANCE * period, PLATEAU * max(period, SHORTEST_PLATEAU_END))

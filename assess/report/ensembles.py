@@ -45,7 +45,8 @@ def _paint_spectra(axes: Any, generator: Generator, motions: FloatArray) -> None
     spectra = response_spectrum(motions, generator.grid.time_step, periods).pseudo / GRAVITY
     axes.plot(periods, spectra.T, color=ONE, linewidth=0.4)
     axes.plot([], [], color=ONE, label=f"each of {len(motions)} realisations")
-    axes.plot(periods, generator.target.ordinates(periods) / GRAVITY, color=TARGET, linewidth=1.6, label="target")
+    target = generator.target.ordinates(periods, generator.grid.time_step) / GRAVITY
+    axes.plot(periods, target, color=TARGET, linewidth=1.6, label="target")
     axes.plot(periods, spectra.mean(axis=0), color=MEAN, linewidth=1.2, linestyle="--", label="mean")
     _dress(axes)
     axes.set_ylabel("5 % pseudo-acceleration [g]")

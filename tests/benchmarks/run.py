@@ -1,4 +1,4 @@
-"""Benchmarks: whole-process times as ratios against a rival in the same run. Run: ``make benchmark``.
+"""Benchmarks: whole processes, and motions made, as ratios against a rival in the same run. Run: ``make benchmark``.
 
 Times on a shared machine vary; each pair runs in turn, and the median of the ratios is what counts.
 """
@@ -8,10 +8,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
+
+from eqsig import sdof
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from assess.motion.compatible import build_generator
+from assess.motion.spectrum import build_periods, response_spectrum
+from assess.motion.target import Grid, recorded_target
+from tests.motion.motions import cut
 from tests.workbooks import write
 
 ROUNDS = 7
@@ -41,6 +48,9 @@ def main() -> None:
         print("\n| one run | seconds | peak memory [MB] |\n|---|---|---|")
         print(_once("20,000 items, json,csv,xlsx", [*run, str(twenty), "--formats", "json,csv,xlsx", *out]))
         print(_once("1,000 items, json,csv", [*run, str(thousand), "--formats", "json,csv", *out]))
+    print("\n| motions of 4,000 samples | seconds | rival | seconds | times as fast | aim |\n|---|---|---|---|---|---|")
+    print(_spectrum())
+    print(_ensemble())
 
 
 def _items(count: int) -> list[dict[str, object]]:
@@ -61,6 +71,45 @@ def _compare(name: str, command: list[str], rival: str, aim: int) -> str:
 def _seconds(command: list[str]) -> float:
     start = time.perf_counter()
     subprocess.run(command, check=True, capture_output=True)
+    return time.perf_counter() - start
+
+
+STEP, SAMPLES = 0.005, 4000
+PERIODS = build_periods(count=100)
+
+
+def _spectrum() -> str:
+    """Return the row of one spectrum of 575 Market Street's 42nd floor, on one thread, compiled before."""
+    motion = cut("a", 0, (SAMPLES - 1) * STEP).acceleration
+    pairs = [
+        (
+            _timed(lambda: [response_spectrum(motion, STEP, PERIODS) for _ in range(50)]) / 50,
+            _timed(lambda: sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05)),
+        )
+        for _ in range(ROUNDS + 1)
+    ][1:]
+    ours, theirs = (statistics.median(times) for times in zip(*pairs, strict=True))
+    ratio = statistics.median(other / own for own, other in pairs)
+    return f"| spectrum, 100 periods | {ours:.5f} | eqsig | {theirs:.3f} | {ratio:.0f} | at least 50 |"
+
+
+def _ensemble() -> str:
+    """Return the row of 100 realisations of the same, found, made and measured on two threads, compiled before."""
+    grid = Grid(STEP, SAMPLES)
+    target = recorded_target(cut("a", 0, grid.duration), grid)
+    generator = build_generator(target, grid, seed=1, axis="X", threads=2)
+    ours = statistics.median(
+        _timed(lambda: build_generator(target, grid, seed=1, axis="X", threads=2)) for _ in range(ROUNDS)
+    )
+    motions = generator.realise()
+    theirs = _timed(lambda: [sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05) for motion in motions])
+    name, rival = "100 realisations, two threads", "eqsig: the 100 spectra of these motions"
+    return f"| {name} | {ours:.2f} | {rival} | {theirs:.1f} | {theirs / ours:.1f} | at most 2 s |"
+
+
+def _timed(work: Callable[[], object]) -> float:
+    start = time.perf_counter()
+    work()
     return time.perf_counter() - start
 
 

@@ -1,0 +1,211 @@
+"""Envelopes, and noise that depends on nothing but seed, axis and number."""
+
+import numpy as np
+import pytest
+
+from assess.motion.envelope import (
+    STRETCH,
+    Envelopes,
+    draw_noise,
+    filter_frequencies,
+    filter_length,
+    hold_envelopes,
+    hold_times,
+    husid_envelopes,
+    octaves,
+    split,
+)
+from assess.motion.record import FloatArray
+from tests.motion.motions import read_motion
+
+STEP = 0.005
+FLAT = Envelopes(octaves(), np.ones((9, 2000)), 5.0)
+
+
+def draw(
+    envelopes: Envelopes, *, seed: int = 1, axis: str = "X", first: int = 0, count: int = 3, threads: int = 1
+) -> FloatArray:
+    samples = envelopes.values.shape[1]
+    noise = draw_noise(envelopes, STEP, seed=seed, axis=axis, first=first, count=count, threads=threads)
+    assert noise.shape == (count, filter_frequencies(samples, STEP).size)
+    return np.asarray(np.fft.irfft(noise, filter_length(samples, STEP), axis=1))
+
+
+# --- octaves ---
+
+
+def test_octaves_by_hand() -> None:
+    np.testing.assert_allclose(octaves(), [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8, 25.6])
+
+
+def test_their_weights_sum_to_one() -> None:
+    frequencies = np.concatenate([[0.0], np.geomspace(1e-6, 1000, 5001)])
+    weights = split(frequencies, octaves())
+    np.testing.assert_allclose(weights.sum(axis=0), 1.0, rtol=1e-12)
+    assert weights.min() >= 0
+
+
+def test_a_weight_is_one_at_its_centre_and_half_way_between() -> None:
+    np.testing.assert_allclose(split(octaves(), octaves()), np.eye(9), atol=1e-12)
+    np.testing.assert_allclose(split(np.array([0.8 * 2**0.5]), octaves())[3:5, 0], [0.5, 0.5])
+
+
+def test_the_first_and_last_reach_to_the_ends() -> None:
+    weights = split(np.array([0.0, 0.05, 40.0, 100.0]), octaves())
+    np.testing.assert_array_equal(weights[0], [1, 1, 0, 0])
+    np.testing.assert_array_equal(weights[-1], [0, 0, 1, 1])
+
+
+def test_a_single_octave_takes_all() -> None:
+    np.testing.assert_array_equal(split(np.array([0.0, 1.0, 100.0]), np.array([0.1])), np.ones((1, 3)))
+
+
+# --- floors without a record ---
+
+
+def test_hold_times_by_hand() -> None:
+    assert hold_times(None) == (5.0, 15.0, 10.0)
+    assert hold_times(2.0) == (5.0, 15.0, 10.0)
+    assert hold_times(6.0) == (5.0, 30.0, 10.0)
+
+
+def value_at(envelopes: Envelopes, seconds: float) -> float:
+    return float(envelopes.values[0, round(seconds / STEP)])
+
+
+def test_the_hold_and_its_corners() -> None:
+    envelopes = hold_envelopes(6001, STEP, None)
+    corners = [(0, 0.0), (2.5, 0.5), (5, 1.0), (12, 1.0), (20, 1.0), (25, 0.5), (30, 0.0)]
+    for seconds, value in corners:
+        assert value_at(envelopes, seconds) == pytest.approx(value, abs=1e-9)
+    assert envelopes.half_time == 12.5
+    assert envelopes.values.shape == (1, 6001)
+
+
+def test_a_long_first_period_lengthens_the_hold() -> None:
+    envelopes = hold_envelopes(9001, STEP, 6.0)
+    assert value_at(envelopes, 34.9) == 1.0
+    assert value_at(envelopes, 40) == pytest.approx(0.5)
+
+
+def test_a_longer_grid_ends_at_rest() -> None:
+    envelopes = hold_envelopes(9001, STEP, None)
+    assert value_at(envelopes, 25) == pytest.approx(0.5)
+    assert value_at(envelopes, 31) == 0.0
+
+
+def test_a_short_grid_cuts_the_hold() -> None:
+    envelopes = hold_envelopes(4001, STEP, 6.0)
+    for seconds, value in [(5, 1.0), (10, 1.0), (15, 0.5), (20, 0.0)]:
+        assert value_at(envelopes, seconds) == pytest.approx(value, abs=1e-9)
+    assert envelopes.half_time == 7.5
+
+
+def test_a_very_short_grid_cuts_the_decay() -> None:
+    envelopes = hold_envelopes(1601, STEP, None)
+    for seconds, value in [(2.5, 0.5), (5, 1.0), (8, 0.7)]:
+        assert value_at(envelopes, seconds) == pytest.approx(value)
+    assert envelopes.half_time == 5.0
+
+
+# --- recorded floors ---
+
+
+def bursts(*parts: tuple[float, float, float]) -> FloatArray:
+    """Return 30 s with sines of (frequency, from, to)."""
+    times = np.arange(6000) * STEP
+    values = np.zeros(6000)
+    for frequency, start, end in parts:
+        inside = (times >= start) & (times < end)
+        values[inside] += np.sin(2 * np.pi * frequency * (times[inside] - start))
+    return values
+
+
+def shares(envelope: FloatArray, *times: float) -> FloatArray:
+    """Return the envelope at these times over its maximum."""
+    return np.asarray([envelope[round(seconds / STEP)] for seconds in times] / envelope.max())
+
+
+def test_a_burst_is_followed() -> None:
+    envelopes = husid_envelopes(bursts((1.6, 10, 15)), STEP)
+    envelope = envelopes.values[4]
+    np.testing.assert_array_less(shares(envelope, 5, 20, 28), 0.01)
+    np.testing.assert_array_less(0.8, shares(envelope, 12, 13))
+    np.testing.assert_allclose(shares(envelope, 10, 15), 0.5**0.5, atol=0.12)
+    assert envelopes.half_time == pytest.approx(12.5, abs=0.02)
+
+
+def test_each_octave_has_its_own() -> None:
+    envelopes = husid_envelopes(bursts((0.4, 15, 25), (6.4, 3, 6)), STEP)
+    low, high = envelopes.values[2], envelopes.values[6]
+    np.testing.assert_array_less(shares(high, 10, 20), 0.02)
+    np.testing.assert_array_less(shares(low, 1, 3, 6), 0.25)  # it is smoothed over 5 s
+    np.testing.assert_array_less(0.9, [*shares(high, 4.5), *shares(low, 20)])
+
+
+def test_they_are_of_mean_square_one_whatever_the_level() -> None:
+    motion = read_motion("a")
+    envelopes = husid_envelopes(motion.acceleration, motion.time_step)
+    np.testing.assert_allclose((envelopes.values**2).mean(axis=1), 1.0)
+    fainter = husid_envelopes(motion.acceleration * 1e-4, motion.time_step)
+    np.testing.assert_allclose(envelopes.values, fainter.values, rtol=1e-6)
+    assert envelopes.half_time == fainter.half_time
+
+
+def test_a_silent_octave_is_no_division_by_zero() -> None:
+    assert np.isfinite(husid_envelopes(np.eye(1, 500, 250)[0], STEP).values).all()
+
+
+# --- noise ---
+
+
+@pytest.mark.parametrize(
+    ("first", "count", "threads"), [(0, 1, 1), (4, 1, 1), (2, 3, 1), (0, 8, 2), (3, 5, 2), (1, 7, 3)]
+)
+def test_a_row_is_the_same_whatever_else_is_drawn(first: int, count: int, threads: int) -> None:
+    everything = draw(FLAT, count=8)
+    np.testing.assert_array_equal(
+        draw(FLAT, first=first, count=count, threads=threads), everything[first : first + count]
+    )
+
+
+def test_axes_and_seeds_and_numbers_differ() -> None:
+    x, y, other = draw(FLAT), draw(FLAT, axis="Y"), draw(FLAT, seed=2)
+    rows = np.concatenate([x, y, other])
+    correlation = np.corrcoef(rows) - np.eye(9)
+    assert np.abs(correlation).max() < 0.1
+
+
+def test_no_axis_but_x_and_y() -> None:
+    with pytest.raises(KeyError):
+        draw(FLAT, axis="Z")
+
+
+def test_floors_share_their_phases() -> None:
+    """Octaves or one band for all: where both are flat the noise is one."""
+    one = Envelopes(np.array([0.1]), np.ones((1, 2000)), 5.0)
+    np.testing.assert_allclose(draw(one), draw(FLAT), atol=1e-9 * np.abs(draw(FLAT)).max())
+
+
+def test_an_envelope_shapes_the_noise() -> None:
+    still = hold_envelopes(2000, STEP, None)
+    noise = draw(still, count=40)[:, :2000]
+    level = np.sqrt((noise**2).mean(axis=0))
+    near = [level[round(seconds / STEP) - 40 : round(seconds / STEP) + 40].mean() for seconds in (0.3, 4.5, 9.5)]
+    assert near[0] < 0.2 * near[1]
+    assert near[2] < near[1]
+
+
+def test_durations_scatter() -> None:
+    """The edge of a burst moves with the duration drawn for each realisation, by STRETCH in logarithms."""
+    envelope = np.zeros((1, 4000))
+    envelope[0, 1000:3000] = 1.0
+    noise = draw(Envelopes(np.array([0.1]), envelope, 10.0), count=200)[:, :4000]
+    lengths = np.log((np.abs(noise) > 1e-9 * np.abs(noise).max()).sum(axis=1) / 2000)
+    assert lengths.std() == pytest.approx(STRETCH, rel=0.2)
+    assert lengths.mean() == pytest.approx(0.0, abs=0.05)
+
+
+def test_the_filter_has_room_for_what_rings_on() -> None:
+    assert filter_length(2000, STEP) >= 2000 + 20 / STEP
+    assert filter_frequencies(2000, STEP)[-1] == pytest.approx(100.0, rel=1e-3)

@@ -1,0 +1,73 @@
+"""Figures of a fit, by hand on two tiny motions."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from assess.motion.envelope import Envelopes
+from assess.motion.fit import measure_fit, velocities
+from assess.motion.spectrum import response_spectrum
+from assess.motion.target import Target
+
+STEP = 0.005
+MOTIONS = np.array([[0.0, 2.0, 0.0, -1.0, 0.0, 0.0], [0.0, -1.0, 4.0, 0.0, -3.0, 0.0]])
+PERIODS = np.array([0.04, 0.16, 0.64])
+BETWEEN = np.array([0.08, 0.16, 0.32, 0.64])
+"""Those matched and their geometric means; 0.04 s is below what is judged."""
+TARGET = Target(
+    periods=PERIODS,
+    pseudo=np.array([4.0, 1.0, 0.25]),
+    velocity_level=math.inf,
+    pfa=2.0,
+    pfv=0.01,
+    envelopes=Envelopes(np.array([0.1]), np.ones((1, 6)), 0.01),
+)
+
+
+def test_velocities_by_hand() -> None:
+    expected = np.array([[0, 1, 2, 1.5, 1, 1], [0, -0.5, 1, 3, 1.5, 0]]) * 2 * STEP / 2
+    np.testing.assert_allclose(velocities(MOTIONS, STEP), expected, atol=1e-15)
+
+
+def test_peaks_and_their_scatter() -> None:
+    fit = measure_fit(TARGET, MOTIONS, STEP)
+    assert fit.count == 2
+    assert fit.pfa_ratio == pytest.approx(1.5)  # (2 + 4)/2 over 2
+    assert fit.pfa_scatter == pytest.approx(1 / 3)  # 1 over 3
+    assert fit.pfv_ratio == pytest.approx(1.25)  # (0.010 + 0.015)/2 over 0.01
+    assert fit.pfv_scatter == pytest.approx(0.2)  # 0.0025 over 0.0125
+    assert fit.drift == pytest.approx(0.5)  # 0.005 over 0.010, and 0
+
+
+def test_the_spectrum_between_its_periods_too() -> None:
+    """A generic target is straight in logarithms: 2, 1, 0.5 and 0.25 m/s2."""
+    fit = measure_fit(TARGET, MOTIONS, STEP)
+    first, second = response_spectrum(MOTIONS, STEP, BETWEEN).pseudo
+    deviation = (first + second) / 2 / np.array([2.0, 1.0, 0.5, 0.25]) - 1
+    worst = int(np.abs(deviation).argmax())
+    assert fit.matched_to == 3.0
+    assert fit.mean_deviation == pytest.approx(np.abs(deviation).mean(), rel=1e-9)
+    assert fit.worst_deviation == pytest.approx(deviation[worst], rel=1e-9)
+    assert fit.worst_period == pytest.approx(BETWEEN[worst])
+    assert fit.spectrum_scatter == pytest.approx((np.abs(first - second) / (first + second)).mean(), rel=1e-9)
+
+
+def test_motions_that_are_their_own_target_fit() -> None:
+    motion = np.random.default_rng(1).standard_normal(800)
+    own = response_spectrum(motion, STEP, PERIODS).pseudo
+    target = replace(TARGET, pseudo=own, pfa=float(np.abs(motion).max()), acceleration=motion)
+    fit = measure_fit(target, np.array([motion, motion]), STEP)
+    assert (fit.mean_deviation, fit.worst_deviation, fit.spectrum_scatter) == (0.0, 0.0, 0.0)
+    assert (fit.pfa_ratio, fit.pfa_scatter) == (1.0, 0.0)
+
+
+def test_no_ratio_where_no_pfv_is_to_be_matched() -> None:
+    fit = measure_fit(replace(TARGET, pfv=math.nan), MOTIONS, STEP)
+    assert math.isnan(fit.pfv_ratio)
+    assert fit.pfv_scatter == pytest.approx(0.2)
+
+
+def test_threads_change_nothing() -> None:
+    assert measure_fit(TARGET, MOTIONS, STEP) == measure_fit(TARGET, MOTIONS, STEP, threads=3)
