@@ -58,7 +58,7 @@ def run(inventory: Inventory, settings: Settings | None = None) -> Assessment:
         case_demand=tuple(demand for _, demand in pairs),
         outcomes=outcomes,
         governing=_governing(case_item, outcomes[FORMULA].value, cases.pfa),
-        problems=(*inventory.problems, *remark(inventory, demands, scenario)),
+        problems=(*inventory.problems, *remark(inventory, demands, scenario, settings.ductility_reduction)),
     )
 
 

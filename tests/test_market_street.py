@@ -17,6 +17,7 @@ import pypdfium2
 import pytest
 
 from assess.assessment import run
+from assess.demand import MAY_BE_LOWER
 from assess.inventory.blank import write_workbook
 from assess.inventory.columns import ITEMS, LIVE
 from assess.inventory.lists import RUN_ASSESS
@@ -270,6 +271,15 @@ def test_recorded_it_says_which_record_serves(tmp_path, inventory, assessment):
         assert "recorded motion" in text
         assert "891018_1.cra-1.0210a.smc" in text
         assert "the motion is that of" not in text
+
+
+def test_interpolation_left_out_as_a_test_gives_less_than_was_recorded(inventory):
+    """On the 25th floor along X, from G and the 34th: 132.8 + 100/137.5 x (151.2 - 132.8) = 146.2 cm/s2 = 0.149 g."""
+    floors = tuple(replace(floor, records={}) if floor.floor == "25" else floor for floor in inventory.floors)
+    (one,) = run(replace(inventory, floors=floors)).demands["25", "X"]
+    recorded = max(demand.pfa for demand in run(inventory).demands["25", "X"])
+    assert one.between == ("G", "34")
+    assert f"it gives {one.pfa / GRAVITY:.3f} g where {recorded / GRAVITY:.3f} g was recorded" in MAY_BE_LOWER
 
 
 def test_a_floor_that_lost_its_record_is_interpolated(tmp_path, script):

@@ -4,7 +4,8 @@ FIRST_LINES = (
     "1. Building: what you know of the building and the earthquake. Every line may stay blank.",
     "2. Floors: one row a floor with furniture. Give its peak floor acceleration (PFA), or name the file of a recorded "
     "motion that lies beside this workbook. Where you know neither, give the floor's Elevation: its motion is then "
-    "worked out from the floors above and below, or from Ground PGA in Building.",
+    "interpolated between the floors above and below, which may be lower than the truth, or worked out from Ground "
+    "PGA in Building.",
     "3. Items: one row a piece, or a row for several alike. Choose a Type, and its sizes come from the Catalogue; or "
     "type the sizes. The columns at the right show the risk class at once.",
     "4. Places and Routes are for evacuation routes and may stay empty.",

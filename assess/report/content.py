@@ -121,7 +121,7 @@ def build_content(assessment: Assessment) -> Content:
         worst=sorted(free, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))[:WORST],
         fix_first=tuple(fix_first(iter(results))),
         sources=motions.list_sources(assessment.demands),
-        cautions=motions.list_cautions(assessment.demands),
+        cautions=motions.list_cautions(assessment),
         floors=floors,
         methods=assessment.methods,
         flags=_flags(assessment),

@@ -114,6 +114,7 @@ def demand_record(demand: Demand) -> dict[str, Any]:
         "flags": list(demand.flags),
         "between": list(demand.between),
         "profile": demand.profile.key if demand.profile else None,
+        "profile_verified": demand.profile.verified if demand.profile else None,
         "clause": demand.clause or None,
         "height_ratio": demand.height_ratio,
         "amplification": demand.amplification,

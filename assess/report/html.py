@@ -49,6 +49,7 @@ def _render_content(content: Content, for_print: bool) -> str:
         source=motions.describe_source,
         origin=motions.describe_origin,
         profiles=tuple(PROFILES.values()),
+        used_profiles=motions.used_profiles(content.assessment.demands),
         status=motions.profile_status,
         clauses=motions.list_clauses,
         envelopes=motions.ENVELOPES,

@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 
-from assess.demand import FLAGS, Demand, Demands, find_ground
+from assess.demand import FLAGS, MAY_BE_LOWER, Demand, Demands, find_ground
 from assess.motion.record import treatment
-from assess.motion.scenario import PROFILES, UNVERIFIED, Profile
-from assess.remarks import list_floors
+from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
+from assess.remarks import MOST, list_floors, list_too_low
 from assess.report import words
 from assess.results import Assessment
 
 ENVELOPES = (
-    "Profiles of building codes are envelopes for design, not expected values: they bias the scenario high, so that "
-    "more pieces are called likely to fall than would be expected."
+    "Profiles of building codes are design envelopes, not expected values: they mostly lie above what is recorded, and "
+    "so bias a scenario high. Not on every floor, nor for every code: as long as T1 is unknown, the profiles of EN "
+    "1998-1 and NTC 2018 for rigid pieces are the lowest of the four; a long T1 lowers that of ASCE 7-22."
 )
 """What must be said wherever a code's profile was used."""
 
@@ -25,14 +26,20 @@ def describe_source(demand: Demand) -> str:
         source = _between(demand)
     elif demand.source == "given":
         source = "given PFA" + ("" if demand.pfv != demand.pfv or "pfv_estimated" in demand.flags else " and PFV")
-    flags = [FLAGS[flag].split(":")[0] for flag in demand.flags if flag not in ("interpolated", "code_profile")]
+    told = _CARRIED if demand.between else _OWN
+    flags = [told[flag] for flag in demand.flags if flag in told]
     return source + (f" ({'; '.join(flags)})" if flags else "")
+
+
+_OWN = {"one_axis_only": FLAGS["one_axis_only"], "pfv_estimated": "PFV estimated from T1"}
+_CARRIED = _OWN | {"one_axis_only": "one axis only"}
+"""Flags beside a source, in short where they come from a neighbour."""
 
 
 def _between(demand: Demand) -> str:
     lower, upper = (words.clip(name, 40) for name in demand.between)
-    if lower == upper:
-        return f"as floor {lower}, at the same height"
+    if demand.is_level:
+        return f"the same as floor {lower}, at the same height"
     return f"interpolated between floors {lower} and {upper}"
 
 
@@ -42,6 +49,8 @@ def describe_origin(demand: Demand) -> str:
         clause = demand.clause + ("" if demand.profile.verified else f" ({UNVERIFIED})")
         pga = words.in_g(demand.pfa / demand.amplification)
         return f"{demand.profile.key}, {clause}: {factors(demand)} of ground PGA {pga} g"
+    if demand.is_level:
+        return _between(demand)
     if demand.between:
         return f"linear over elevation, PFA and PFV each: {_between(demand)}"
     if demand.record is None:
@@ -72,19 +81,46 @@ def list_sources(demands: Demands) -> list[str]:
     return [f"{source}: {', '.join(places)}" for source, places in kinds.items()]
 
 
-def list_cautions(demands: Demands) -> list[str]:
+def list_cautions(assessment: Assessment) -> list[str]:
     """Return what a reader must know of the floors' motion before trusting a class."""
+    demands = assessment.demands
     cautions = []
-    profiled, interpolated = list_floors(demands, "profile"), list_floors(demands, "interpolated")
+    profiled = list_floors(demands, "profile")
     if profiled:
-        keys = {demand.profile.key for ones in demands.values() for demand in ones if demand.profile}
-        cautions.append(f"{_name(profiled)}: the motion is that of {', '.join(sorted(keys))}. {ENVELOPES}")
-    if interpolated:
-        why = "nothing is known of the motion there, it is interpolated between the floors above and below"
-        cautions.append(f"{_name(interpolated)}: {why}.")
+        names = " and ".join(_with_status(profile) for profile in used_profiles(demands))
+        cautions.append(f"{_name(profiled)}: the motion is that of {names}. {ENVELOPES}")
+    cautions += _interpolated(demands)
+    told = list_too_low(assessment.inventory, demands, assessment.scenario, assessment.settings.ductility_reduction)
+    messages = list(dict.fromkeys(problem.message for problem in told))
+    cautions += [f"More is known than is used: {words.clip(message, 400)}" for message in messages[:MOST]]
+    if len(messages) > MOST:
+        more = words.plural(len(messages) - MOST, "warning")
+        cautions.append(f"More is known than is used: {more} of this kind beside these, see the data-quality log.")
     if len({demand.source for ones in demands.values() for demand in ones}) > 1:
         cautions.append("The floors' motion comes from mixed sources: compare floors with care.")
     return cautions
+
+
+def _interpolated(demands: Demands) -> list[str]:
+    """Say which floors are interpolated, and which have the motion of another floor at their height."""
+    found: dict[bool, dict[str, None]] = {False: {}, True: {}}
+    for (floor, _), ones in demands.items():
+        for demand in ones:
+            if demand.between:
+                found[demand.is_level][floor] = None
+    texts = {
+        False: f"it is interpolated between the floors above and below. This {MAY_BE_LOWER}",
+        True: "it is the same as that of a known floor at the same height",
+    }
+    return [
+        f"{_name(list(floors))}: nothing is known of the motion there, {texts[is_level]}."
+        for is_level, floors in found.items()
+        if floors
+    ]
+
+
+def _with_status(profile: Profile) -> str:
+    return profile.key + ("" if profile.verified else f" ({UNVERIFIED})")
 
 
 def _name(floors: Sequence[str]) -> str:
@@ -109,8 +145,8 @@ def list_clauses(profile: Profile) -> str:
 
 def profile_status(profile: Profile) -> str:
     """Say whether a profile was held against its source, and what was left out of it."""
-    checked = "checked" if profile.verified else UNVERIFIED
-    return f"{checked}: {profile.remark}"
+    status = VERIFIED if profile.verified else UNVERIFIED
+    return f"{status[0].upper()}{status[1:]}. {profile.remark}"
 
 
 def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
@@ -119,12 +155,14 @@ def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
     if not used:
         return []
     ground, building = find_ground(assessment.inventory), assessment.inventory.building
-    roof = "the highest floor, as Height is blank" if ground.is_highest_floor else "Height"
+    roof = "Height"
+    if ground.is_highest_floor:
+        roof = "the highest floor, as Height is blank" if ground.roof else "no floor above the ground, Height is blank"
     pga = "0.4 SDS, as Ground PGA is blank" if ground.is_from_sds else "Ground PGA"
     floors = words.clip(", ".join(list_floors(assessment.demands, "profile")), 300)
     chosen = "the default, as nothing is known of them" if assessment.scenario == "as filled" else "the scenario"
     lines = [
-        (f"Motion of floors {floors}", f"design profile of {used[0].key}, {chosen}"),
+        (f"Motion of floors {floors}", f"design profile of {_with_status(used[0])}, {chosen}"),
         ("Ground motion of the profile", f"{words.in_g(ground.pga)} g, {pga}; it stands for 0.4 SDS and for αS"),
         ("Roof height h of the profile", f"{words.in_m(ground.roof)} m, {roof}"),
     ]

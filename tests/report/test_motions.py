@@ -7,9 +7,10 @@ import openpyxl
 import pytest
 
 import assess
-from assess.motion.scenario import PROFILES, UNVERIFIED
+from assess.demand import FLAGS, MAY_BE_LOWER
+from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
 from assess.report.data import SCHEMA
-from assess.report.motions import ENVELOPES
+from assess.report.motions import ENVELOPES, describe_origin, describe_source, list_cautions
 from tests.report.test_html import _read
 from tests.workbooks import write
 
@@ -58,6 +59,7 @@ def test_json_holds_what_was_used_on_each_floor_and_axis(mixed):
     assert (between["between"], between["profile"], between["height_ratio"]) == (["1", "3"], None, None)
     assert (between["pfa_g"], between["pfv_cm_s"]) == pytest.approx((0.25, 22.5))
     top = demands["4", "Y"]
+    assert (between["profile_verified"], top["profile_verified"]) == (None, True)
     assert (top["profile"], top["clause"], top["between"]) == ("ASCE 7-22", "13.3.1.1, Eq. 13.3-5", [])
     assert (top["height_ratio"], top["amplification"], top["pfa_g"]) == pytest.approx((0.8, 3.0, 0.75))
     sources = {item["item"]: item["pfa_source"] for item in found["items"]}
@@ -84,9 +86,11 @@ def test_the_methods_list_every_profile_with_clause_and_equation(mixed):
         assert own["Clause"].startswith(profile.clause)
         assert own["Equation"] == profile.equation
         assert own["Source"] == profile.reference
-        for words in own.values():
-            assert words in text
-        assert (UNVERIFIED in own["Status"]) == (not profile.verified)
+        for what in ("Clause", "Equation", "Status"):
+            assert own[what] in text
+        assert (profile.reference in text) == (profile.key == "ASCE 7-22"), "references name what was used"
+        told = VERIFIED if profile.verified else UNVERIFIED
+        assert own["Status"] == f"{told[0].upper()}{told[1:]}. {profile.remark}"
 
 
 def test_the_assumptions_tell_what_the_profile_started_from(mixed, tmp_path):
@@ -97,7 +101,7 @@ def test_the_assumptions_tell_what_the_profile_started_from(mixed, tmp_path):
     assert told["R_μ of ASCE 7-22"] == "1: no reduction for the building's ductility"
     assert told["Period T1 in the profile"].startswith("unknown: Eq. 13.3-5")
     told = dict(row[:2] for row in _rows(_reports(tmp_path, "EN 1998-1", ("xlsx",), sds=0.5, period=1), "Assumptions"))
-    assert told["Motion of floors 1, 2, 3, 4"] == "design profile of EN 1998-1, the scenario"
+    assert told["Motion of floors 1, 2, 3, 4"] == f"design profile of EN 1998-1 ({UNVERIFIED}), the scenario"
     assert told["Ground motion of the profile"].startswith("0.200 g, 0.4 SDS, as Ground PGA is blank")
     assert told["Roof height h of the profile"] == "16 m, the highest floor, as Height is blank"
     assert "R_μ of ASCE 7-22" not in told
@@ -121,6 +125,70 @@ def test_a_report_of_given_floors_alone_says_nothing_of_profiles_on_its_summary(
 
 
 def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
-    text = _read(_reports(tmp_path, "NTC 2018", ("html",), ground_pga=0.2)["html"].read_text(encoding="utf-8"))
+    written = _reports(tmp_path, "NTC 2018", ground_pga=0.3)
+    text = _read(written["html"].read_text(encoding="utf-8"))
+    assert text.count(f"the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES}") == 2  # summary, and floors
+    assert {one["profile_verified"] for floor in _json(written)["floors"] for one in floor["demands"]} == {False}
     assert f"NTC 2018, Circolare 21 gennaio 2019 n. 7, C7.2.3 ({UNVERIFIED}): z/h 1.000, amplification 2.000" in text
     assert "NTC 2018 (the workbook: as filled)" in text
+
+
+def _cautions(folder, floors, **building):
+    inventory = assess.read_inventory(write(folder / "w.xlsx", ITEMS, floors, **building))
+    return list_cautions(assess.run(inventory))
+
+
+def test_interpolation_is_said_to_be_possibly_too_low(mixed):
+    text = _read(mixed["html"].read_text(encoding="utf-8"))
+    assert text.count(f"the floors above and below. This {MAY_BE_LOWER}.") == 2  # summary, and floors
+    assert MAY_BE_LOWER in FLAGS["interpolated"]
+
+
+def test_that_more_is_known_than_is_used_stands_on_summary_and_floors(tmp_path):
+    floors = [FLOORS[0] | {"pfa_x": 0.3}, *FLOORS[1:]]
+    message = "the profile would give 0.250 g on floor '1', 0.300 g is known there: floors on the profile may come"
+    written = _reports(tmp_path, floors=floors, ground_pga=0.25, height=20)
+    text = _read(written["html"].read_text(encoding="utf-8"))
+    assert text.count(f"More is known than is used: {message}") == 2
+    assert text.count(message) == 3  # and the data-quality log
+    assert any(message in str(row[0]) for row in _rows(written, "Summary"))
+
+
+def test_of_many_such_warnings_the_first_are_told_and_the_rest_counted(tmp_path):
+    floors = [{"floor": name, "elevation": 3, "pfa_x": 0.9, "pfa_y": 0.8} for name in "1234"]
+    told = _cautions(tmp_path, floors, ground_pga=0.1, scenario_kind="ASCE 7-16")
+    known = [text for text in told if text.startswith("More is known than is used: ")]
+    assert known[0].startswith("More is known than is used: PFA X 0.900 g of floor '1' is not used: the scenario")
+    assert len(known) == 6
+    assert known[5].endswith(": 3 warnings of this kind beside these, see the data-quality log.")
+
+
+def test_a_floor_at_the_height_of_a_known_one_is_said_to_be_the_same(tmp_path):
+    known = {"floor": "3", "elevation": 3, "pfa_x": 0.2}
+    floors = [known, {"floor": "1", "elevation": 3}, {"floor": "2", "elevation": 3}, {"floor": "4", "elevation": 3}]
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS, floors, period=0.5))
+    assessment = assess.run(inventory)
+    (one,) = assessment.demands["1", "X"]
+    assert (one.label, describe_origin(one)) == ("as floor 3", "the same as floor 3, at the same height")
+    assert describe_source(one) == "the same as floor 3, at the same height (PFV estimated from T1)"
+    told = "Floors 1, 2, 4: nothing is known of the motion there, it is the same as that of a known floor at the same"
+    assert list_cautions(assessment)[0] == f"{told} height."
+
+
+def test_flags_beside_a_source_are_short_where_a_neighbour_brings_them(tmp_path):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS[:3], FLOORS[:3], period=0.5))
+    demands = assess.run(inventory).demands
+    assert describe_source(demands["2", "Y"][0]) == "interpolated between floors 1 and 3 (one axis only)"
+    assert "serves both" in describe_source(demands["3", "Y"][0])
+
+
+def test_basements_alone_print_no_negative_roof(tmp_path):
+    floors = [{"floor": name, "elevation": -3 * at} for at, name in enumerate("1234", 1)]
+    told = dict(row[:2] for row in _rows(_reports(tmp_path, None, ("xlsx",), floors, ground_pga=0.2), "Assumptions"))
+    assert told["Roof height h of the profile"] == "0 m, no floor above the ground, Height is blank"
+
+
+def test_units_in_headings_do_not_break(mixed):
+    html = mixed["html"].read_text(encoding="utf-8")
+    assert '<th scope="col">PFV <span class="unit">[cm/s]</span></th>' in html
+    assert ".unit { white-space: nowrap; }" in html
