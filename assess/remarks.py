@@ -11,6 +11,7 @@ from assess.errors import Problem, Severity
 from assess.inventory.model import Axis, Floor, Inventory
 from assess.motion.record import treat
 from assess.motion.scenario import PGA_OF_SDS, Profile
+from assess.motion.target import estimate_period
 from assess.units import GRAVITY, ROUNDING, VELOCITY
 
 LOSS_TO_TELL = 0.02
@@ -194,7 +195,7 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
 
 def _odd_period(inventory: Inventory, demands: Demands, roof: float) -> Iterator[Problem]:
     building, profile = inventory.building, find_profile(demands)
-    usual = 0.0488 * roof**0.75  # ASCE 7-22, Eq. 12.8-7, for all other structural systems
+    usual = estimate_period(roof) or math.inf
     low, high = (times * usual for times in TIMES_USUAL)
     if building.period and profile and not low <= building.period <= high:
         effect = "lowers the profile" if profile.clause_without_period else "raises the PFV"

@@ -31,7 +31,7 @@ def generator(page):
 
 
 def test_the_page_is_up_to_date(page, generator):
-    """One row is made again; on another kind of processor, numbers differ a little, and the largest may stand elsewhere."""
+    """One row is made again; on another kind of processor numbers differ a little, and the largest stands elsewhere."""
     text = (ROOT / "docs" / "motions.md").read_text(encoding="utf-8")
     kept = next(line for line in text.splitlines() if line.startswith(f"| {RECORD} "))
     assert _numbers(kept) == pytest.approx(_numbers(page.row_of(RECORD, generator)), abs=0.35), "run: make docs"
