@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum, run_rows
+from assess.motion.spectrum import build_periods, compiled, oscillator_step, response_spectrum, run_rows
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
 
 PERIODS = build_periods(0.05, 10.0, 60)
@@ -282,3 +282,14 @@ def test_time_steps_that_cannot_be(time_step: float) -> None:
 def test_motions_that_cannot_be(shape: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r"acceleration has shape \(.*, expected \(n,\) or \(k, n\) with n of 2 or"):
         response_spectrum(np.ones(shape), 0.01, PERIODS)
+
+
+def test_where_nothing_can_be_kept_on_disk_it_is_compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    from numba.core import caching
+
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+
+    def double(value: float) -> float:
+        return 2 * value
+
+    assert compiled(double)(1.5) == 3.0
