@@ -15,7 +15,7 @@ ROOT = Path(assess.__file__).parents[1]
 PACKAGE = ROOT / "assess"
 
 LAYERS = {
-    "version": 0, "units": 0, "errors": 0, "risk": 0, "resources": 0,
+    "version": 0, "units": 0, "errors": 0, "risk": 0, "resources": 0, "compiled": 0,
     "settings": 1,
     "motion": 2,
     "rocking": 3,
@@ -30,6 +30,11 @@ LAYERS = {
 
 MODULES = sorted(PACKAGE.rglob("*.py"))
 LONGEST_FILE, LONGEST_FUNCTION = 300, 30
+LONG_FILES = (
+    "columns.py",  # one table, a column a line
+    "kernel.py",  # compiled functions that call each other: numba sees a change only in the file of the caller
+)
+LONG_FUNCTIONS = ("_step",)  # of the kernel: the hot loop
 
 
 def _layer(module):
@@ -100,10 +105,10 @@ def test_no_group_of_a_pattern_is_possessive(path):
 @pytest.mark.parametrize("path", MODULES, ids=_name)
 def test_files_and_functions_stay_short(path):
     text = path.read_text(encoding="utf-8")
-    if path.name != "columns.py":  # one table, a column a line
+    if path.name not in LONG_FILES:
         assert text.count("\n") <= LONGEST_FILE
     for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.FunctionDef):
+        if isinstance(node, ast.FunctionDef) and node.name not in LONG_FUNCTIONS:
             body = node.body[1:] if ast.get_docstring(node) else node.body
             length = (body[-1].end_lineno or 0) - body[0].lineno + 1 if body else 0
             assert length <= LONGEST_FUNCTION, f"{node.name} has {length} lines"

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from assess.compiled import compiled
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import compiled, run_rows
+from assess.motion.spectrum import run_rows
 from assess.motion.target import Grid
 
 BENT = 2.0

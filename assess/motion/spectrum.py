@@ -10,30 +10,14 @@ import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
 
+from assess.compiled import compiled
 from assess.motion.record import FloatArray
 
 DAMPING = 0.05
 """Share of critical damping [-]."""
-
-_Function = TypeVar("_Function", bound=Callable[..., object])
-
-
-def compiled(function: _Function) -> _Function:
-    """Compile `function` when it is first called, and keep that on disk for the next process."""
-    options: dict[str, Any] = {
-        "nogil": True,  # rows run in threads
-        "error_model": "numpy",
-        "fastmath": {"nnan", "nsz", "contract", "arcp"},  # what a maximum needs to run in vector lanes
-    }
-    try:
-        return cast("_Function", njit(cache=True, **options)(function))
-    except RuntimeError:  # there is no folder to keep it in
-        return cast("_Function", njit(**options)(function))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.compiled import compiled
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import compiled, oscillator_step
+from assess.motion.spectrum import oscillator_step
 
 CYCLES = 1.2
 """Width of the taper in periods [-]: the wavelet is cos(w t) exp(-(t/CYCLES T)**2)."""

@@ -8,8 +8,9 @@ from eqsig import sdof
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from assess.compiled import compiled
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import build_periods, compiled, oscillator_step, response_spectrum, run_rows
+from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum, run_rows
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
 
 PERIODS = build_periods(0.05, 10.0, 60)

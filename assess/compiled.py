@@ -1,0 +1,43 @@
+"""Compiles functions to machine code when they are first called. Importing this imports numba: a third of a second."""
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+from numba import config, njit
+
+_Function = TypeVar("_Function", bound=Callable[..., object])
+
+
+def compiled(function: _Function) -> _Function:
+    """Compile `function` when it is first called, and keep that for the next process in the user's cache folder.
+
+    A folder that NUMBA_CACHE_DIR names is used instead; where nothing can be kept, each process compiles anew.
+    """
+    options: dict[str, Any] = {
+        "nogil": True,  # threads run side by side
+        "error_model": "numpy",
+        "fastmath": {"nnan", "nsz", "contract", "arcp"},  # what vector lanes need; sums keep their order
+    }
+    settings = cast("Any", config)
+    chosen = settings.CACHE_DIR
+    try:
+        # numba has no argument for this folder, and takes it at this moment; so only this function is kept there.
+        settings.CACHE_DIR = chosen or str(cache_folder())
+        return cast("_Function", njit(cache=True, **options)(function))
+    except (RuntimeError, OSError):
+        return cast("_Function", njit(**options)(function))
+    finally:
+        settings.CACHE_DIR = chosen
+
+
+def cache_folder() -> Path:
+    """Return the user's folder for what can be made again, as each system has it."""
+    home = Path.home()
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "assess" / "cache"
+    if sys.platform == "darwin":
+        return home / "Library" / "Caches" / "assess"
+    return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "assess"

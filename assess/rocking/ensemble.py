@@ -1,0 +1,190 @@
+"""Many blocks under many motions: which of them overturn, and how far the others turn.
+
+Importing this imports numba: do so where blocks are to be rocked.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from assess.motion.record import FloatArray
+from assess.rocking import block, kernel
+from assess.units import GRAVITY
+
+LONGEST_STEP = 0.1
+"""Largest p dt of a step [-]; a motion with longer steps is divided for that block, on the straight lines between its
+samples. Furniture under a motion of 200 samples a second stays below; `docs/rocking.md` shows what is left out."""
+TILE = 10_000
+"""Pairs of block and motion that one thread takes up at once, a few tenths of a second at most."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rocking:
+    """What m blocks did under k motions.
+
+    Parameters
+    ----------
+    overturned : (m, k) boolean array
+        Whether a block turned by pi/2.
+    rotation : (m, k) array
+        Largest |theta| over the critical angle [-]; (pi/2) / alpha where it overturned.
+    fall_time : (m, k) array
+        When it had overturned, from the first sample [s]; NaN where it did not.
+    impacts : (m, k) integer array
+        Impacts until it was decided.
+    """
+
+    overturned: NDArray[np.bool_]
+    rotation: FloatArray
+    fall_time: FloatArray
+    impacts: NDArray[np.int64]
+
+
+def rock_blocks(
+    breadth: ArrayLike,
+    height: ArrayLike,
+    motions: FloatArray,
+    time_step: float,
+    *,
+    restitution: ArrayLike = math.nan,
+    threads: int = 1,
+    tell: Callable[[int], None] | None = None,
+) -> Rocking:
+    """Integrate every block under every motion (eq. 3 of the paper, with impacts).
+
+    A motion is linear between its samples and followed by rest; a block that is still rocking at its end is followed
+    until it can no longer fall. A block at rest starts again where the motion exceeds its threshold g B/H.
+
+    Parameters
+    ----------
+    breadth, height : (m,) arrays
+        Sizes of the blocks [m]; breadth is the side parallel to the motion. Equal blocks are integrated once.
+    motions : (k, n) array
+        Base accelerations [m/s2].
+    time_step : float
+        [s]
+    restitution : (m,) array or float
+        Angular velocity after an impact over that before it [-], 0 to 1; NaN is Housner's 1 - 1.5 sin2(alpha).
+    threads : int
+        Tiles are shared out among as many; they do not change a result, nor do the order of blocks or of motions.
+    tell : callable, optional
+        Called with the number of pairs that were decided, tile by tile; what it raises ends the work.
+
+    Raises
+    ------
+    ValueError
+        If a size is not above 0, a block is too stocky to rock (B/H of 1.41 or more), a restitution is outside 0 to 1,
+        or the motions or their time step are not finite numbers of that shape.
+    """
+    b, h, eta = _check_blocks(breadth, height, restitution)
+    motions = _check_motions(motions, time_step)
+    sizes, which = np.unique(np.stack([b, h, eta]), axis=1, return_inverse=True)
+    outcome = np.zeros((sizes.shape[1], len(motions), 3))
+    outcome[..., kernel.FALL] = -1.0
+    divisions = _divisions(sizes, time_step)
+    for parts in np.unique(divisions):
+        own = np.flatnonzero(divisions == parts)
+        found = _rock_alike(sizes[:, own], _divide(motions, int(parts)), time_step / parts, threads, tell)
+        found[..., kernel.FALL] *= np.where(found[..., kernel.FALL] < 0, 1, time_step / parts)
+        outcome[own] = found
+    outcome = outcome[which.ravel()]
+    fell = outcome[..., kernel.FALL] >= 0
+    return Rocking(
+        overturned=fell,
+        rotation=outcome[..., kernel.ROTATION],
+        fall_time=np.where(fell, outcome[..., kernel.FALL], math.nan),
+        impacts=outcome[..., kernel.STRUCK].astype(np.int64),
+    )
+
+
+def _check_blocks(breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike) -> tuple[FloatArray, ...]:
+    given = np.broadcast_arrays(*np.atleast_1d(breadth, height, restitution))
+    b, h, eta = (np.array(values, dtype=np.float64) for values in given)
+    if not (b.ndim == 1 and np.isfinite(b).all() and np.isfinite(h).all() and (b > 0).all() and (h > 0).all()):
+        raise ValueError("breadth and height must be lists of finite numbers above 0 m")
+    if (b / h >= block.STOCKY).any():
+        raise ValueError(f"a block with B/H of {(b / h).max():.3g} does not rock: expected below {block.STOCKY}")
+    eta = np.where(np.isnan(eta), block.restitution(b, h), eta)
+    if not ((eta >= 0) & (eta <= 1)).all():
+        raise ValueError("restitution must be 0 to 1")
+    return b, h, eta
+
+
+def _check_motions(motions: FloatArray, time_step: float) -> FloatArray:
+    motions = np.asarray(motions, dtype=np.float64)
+    if motions.ndim != 2 or not len(motions) or motions.shape[1] < 2 or not np.isfinite(motions).all():
+        raise ValueError(f"motions have shape {motions.shape}, expected (k, n) finite samples with n of 2 or more")
+    if not 0 < time_step < math.inf:
+        raise ValueError(f"time_step is {time_step} s, expected above 0")
+    return motions
+
+
+def _divisions(sizes: FloatArray, time_step: float) -> NDArray[np.int64]:
+    """Return into how many parts the steps are divided for each block of `sizes` (3, m)."""
+    p = block.frequency_parameter(sizes[0], sizes[1])
+    return np.ceil(p * time_step / LONGEST_STEP).astype(np.int64)
+
+
+def _divide(motions: FloatArray, parts: int) -> FloatArray:
+    """Return motions [g] with `parts` steps for each of theirs, followed by two zeros, as the kernel takes them."""
+    count = motions.shape[1]
+    at = np.arange((count - 1) * parts + 1) / parts
+    padded = np.zeros((len(motions), at.size + 2))
+    for row, motion in zip(padded, motions, strict=True):
+        row[: at.size] = motion if parts == 1 else np.interp(at, np.arange(count), motion)
+    padded /= GRAVITY
+    return padded
+
+
+def _rock_alike(
+    sizes: FloatArray, motions: FloatArray, time_step: float, threads: int, tell: Callable[[int], None] | None
+) -> FloatArray:
+    """Integrate blocks of `sizes` (3, m) under padded motions (k, n) [g]; returns the kernel's outcome (m, k, 3)."""
+    b, h, eta = sizes
+    alpha = block.critical_angle(b, h)
+    blocks = np.stack([alpha, (block.frequency_parameter(b, h) * time_step) ** 2, eta, b / h], axis=1)
+    outcome = np.zeros((b.size, len(motions), 3))
+    outcome[..., kernel.FALL] = -1.0
+    nothing = np.zeros((0, 3))
+
+    def run(tile: tuple[slice, range]) -> int:
+        own, rows = tile
+        kernel.rock(blocks[own], motions, rows.start, rows.stop, outcome[own], nothing)
+        return len(blocks[own]) * len(rows)
+
+    _run_tiles(run, list(_tiles(b.size, len(motions))), threads, tell or (lambda _: None))
+    return outcome
+
+
+def _tiles(blocks: int, motions: int) -> Iterator[tuple[slice, range]]:
+    """Cut blocks x motions into tiles that depend on nothing else: many blocks under few motions."""
+    high = min(blocks, TILE)
+    wide = max(1, TILE // high)
+    for first, start in product(range(0, motions, wide), range(0, blocks, high)):
+        yield slice(start, min(start + high, blocks)), range(first, min(first + wide, motions))
+
+
+def _run_tiles(
+    run: Callable[[tuple[slice, range]], int],
+    tiles: list[tuple[slice, range]],
+    threads: int,
+    tell: Callable[[int], None],
+) -> None:
+    if threads == 1 or len(tiles) == 1:
+        for tile in tiles:
+            tell(run(tile))
+        return
+    pool = ThreadPoolExecutor(threads)
+    try:
+        left: set[Future[int]] = {pool.submit(run, tile) for tile in tiles}
+        while left:
+            done, left = wait(left, return_when=FIRST_COMPLETED)
+            for one in done:
+                tell(one.result())
+    finally:
+        pool.shutdown(cancel_futures=True)  # after Ctrl-C no tile is begun
