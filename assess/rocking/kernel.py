@@ -278,7 +278,7 @@ def _find_turn(s: FloatArray, lane: int) -> float:  # pragma: no cover
         change, u = abs(better - u), better
         if change < 1e-12:
             break
-    return u
+    return float(u)
 
 
 @compiled
@@ -310,7 +310,7 @@ def _find_impact(s: FloatArray, lane: int) -> float:  # pragma: no cover
         change, u = abs(better - u), better
         if change < 1e-13:
             break
-    return u
+    return float(u)
 
 
 @compiled
