@@ -1,23 +1,35 @@
 """The main job: an inventory in, an assessment out."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
+from assess.adoption import VERIFICATION, adopt, choose_items, find_governing
 from assess.demand import AXES, Demand, build_demands
 from assess.inventory.model import Axis, Inventory, Item
 from assess.methods import Cases, all_methods
-from assess.methods._method import ALIKE
+from assess.motion.suite import Suite
 from assess.remarks import remark
-from assess.results import FORMULA, Assessment
+from assess.results import Assessment
 from assess.settings import SCENARIOS, Settings
-from assess.units import GRAVITY
+from assess.verification import Progress, choose_motions, verify
 
 
-def run(inventory: Inventory, settings: Settings | None = None) -> Assessment:
+def run(
+    inventory: Inventory,
+    settings: Settings | None = None,
+    *,
+    suite: Suite | None = None,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> Assessment:
     """Assess every piece of an inventory.
 
-    Each piece is paired with every motion of the axis it topples along (of both axes where that is not known); every
-    method evaluates all pairs at once; the pair with the larger adopted probability governs, then the larger PFA,
-    then axis X.
+    Each piece is paired with every motion of the axis it topples along (of both axes where that is not known). The
+    formulas evaluate all pairs at once; then the rocking of the pieces that `settings.verify` asks for is integrated
+    under many motions of their floors. The pair of the highest adopted class governs, then the larger probability, then
+    the larger PFA, then axis X.
 
     Parameters
     ----------
@@ -25,6 +37,13 @@ def run(inventory: Inventory, settings: Settings | None = None) -> Assessment:
         From `assess.read_inventory`.
     settings : Settings, optional
         Defaults to `Settings()`.
+    suite : Suite, optional
+        The user's own motions, from `assess.motion.suite.read_suite`, in place of generated ones; `settings.runs` is
+        their number then.
+    jobs : int, optional
+        Threads; as many as there are processors by default. They do not change a result.
+    progress : callable, optional
+        Told how far the verification is.
 
     Returns
     -------
@@ -36,6 +55,7 @@ def run(inventory: Inventory, settings: Settings | None = None) -> Assessment:
         If nothing that the scenario asks for serves a floor.
     """
     settings = settings or Settings()
+    settings = settings if suite is None else replace(settings, runs=len(suite))
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction)
     pairs = [
@@ -44,20 +64,27 @@ def run(inventory: Inventory, settings: Settings | None = None) -> Assessment:
         for axis in _axes(item)
         for demand in demands[item.floor, axis]
     ]
-    cases = _cases(inventory.items, pairs)
-    outcomes = {method.key: method.evaluate(cases, settings) for method in all_methods()}
     case_item = np.array([index for index, _ in pairs], dtype=np.intp)
+    case_demand = tuple(demand for _, demand in pairs)
+    cases = _cases(inventory, pairs)
+    outcomes = {one.key: one.evaluate(cases, settings) for one in all_methods() if one.tier == "screening"}
+    chosen = choose_items(settings.verify, outcomes, case_item, _has_route(inventory))
+    cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
+    outcomes[VERIFICATION] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
+    adoption = adopt(outcomes, cases)
     return Assessment(
         inventory=inventory,
         settings=settings,
         scenario=scenario,
+        suite=suite,
         demands=demands,
         methods=all_methods(),
         cases=cases,
         case_item=case_item,
-        case_demand=tuple(demand for _, demand in pairs),
+        case_demand=case_demand,
         outcomes=outcomes,
-        governing=_governing(case_item, outcomes[FORMULA].value, cases.pfa),
+        adoption=adoption,
+        governing=find_governing(adoption, case_item, cases.pfa),
         problems=(*inventory.problems, *remark(inventory, demands, scenario, settings.ductility_reduction)),
     )
 
@@ -66,7 +93,13 @@ def _axes(item: Item) -> tuple[Axis, ...]:
     return (item.axis,) if item.axis else AXES
 
 
-def _cases(items: tuple[Item, ...], pairs: list[tuple[int, Demand]]) -> Cases:
+def _has_route(inventory: Inventory) -> np.ndarray:
+    return np.array([bool(item.route) for item in inventory.items], dtype=np.bool_)
+
+
+def _cases(inventory: Inventory, pairs: list[tuple[int, Demand]]) -> Cases:
+    items, restitution = inventory.items, inventory.building.restitution
+
     def column(values: list[float | None]) -> np.ndarray:
         return np.array(values, dtype=np.float64)
 
@@ -77,11 +110,6 @@ def _cases(items: tuple[Item, ...], pairs: list[tuple[int, Demand]]) -> Cases:
         pfv=column([demand.pfv for _, demand in pairs]),
         friction=column([items[index].friction for index, _ in pairs]),
         pfv_estimated=np.array(["pfv_estimated" in demand.flags for _, demand in pairs], dtype=np.bool_),
+        restitution=np.full(len(pairs), math.nan if restitution is None else restitution),
+        ensemble=np.full(len(pairs), -1, dtype=np.intp),
     )
-
-
-def _governing(case_item: np.ndarray, probability: np.ndarray, pfa: np.ndarray) -> np.ndarray:
-    """Index of the case that governs each item: larger probability, then larger PFA, then the first, which is X."""
-    order = np.lexsort((-np.round(pfa / GRAVITY, ALIKE), -np.round(probability, ALIKE), case_item))
-    first = np.searchsorted(case_item[order], np.arange(case_item[-1] + 1 if len(case_item) else 0))
-    return order[first]

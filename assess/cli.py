@@ -5,23 +5,19 @@ written. Messages go to standard error, what was asked for to standard output.
 """
 
 import json
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.errors import InputError, OutputError, Problem, WorkbookError
-from assess.settings import SCENARIOS, match_choice
+from assess.console import exits, print_problems, print_result
+from assess.errors import InputError
+from assess.settings import AUTO, MOST_RUNS, SCENARIOS, VERIFY, Settings, match_choice
 from assess.version import __version__
 
 if TYPE_CHECKING:
     from assess.results import Assessment
-
-MOST_PRINTED = 200
-"""Problems printed in one run; the rest are counted."""
 
 app = typer.Typer(
     help="Which furniture falls in an earthquake, and what to fix first.",
@@ -72,7 +68,7 @@ def new(
     """Write an empty workbook to fill in: drop-downs, units, help, and classes that show as one types."""
     from assess.start import start_workbook
 
-    with _exits():
+    with exits():
         start_workbook(path, units.value, example=example, replace=force)
     typer.echo(f"Wrote {path}. Fill it in, then: assess check {path}", err=True)
 
@@ -80,9 +76,9 @@ def new(
 @app.command()
 def check(path: Workbook) -> None:
     """Read and check a workbook; name every problem by sheet and cell; write nothing."""
-    with _exits():
-        assessment = _assess(path)
-    _print_problems(assessment.problems)
+    with exits():
+        assessment = _assess(path, Settings(verify="none"))
+    print_problems(assessment.problems)
     inventory = assessment.inventory
     typer.echo(
         f"{path.name}: no errors. {len(inventory.items):,} rows of furniture on {len(inventory.floors):,} floors, "
@@ -94,28 +90,43 @@ def check(path: Workbook) -> None:
 def run(
     path: Workbook,
     out: Annotated[Path | None, typer.Option(help="Folder of the reports.", show_default="NAME-report")] = None,
-    verify: Annotated[str, typer.Option(help="Which pieces to verify by direct integration: none.")] = "none",
+    verify: Annotated[
+        str,
+        typer.Option(help="Pieces to verify by direct integration: none, high (high risk, doubtful, on routes), all."),
+    ] = "high",
+    runs: Annotated[str, typer.Option(help="Motions of each floor and axis; auto: until each class is sure.")] = "200",
+    seed: Annotated[int, typer.Option(min=0, help="Of the generated motions.")] = 1,
+    motions: Annotated[
+        Path | None,
+        typer.Option(help="Folder of your own floor records, in place of generated ones.", show_default=False),
+    ] = None,
+    scale_motions: Annotated[bool, typer.Option("--scale-motions", help="Scale them to each floor's PFA.")] = False,
     scenario: Annotated[
         str | None,
         typer.Option(help=f"Source of the floor motion: {', '.join(SCENARIOS)}.", show_default="the workbook's"),
     ] = None,
-    formats: Annotated[str, typer.Option(help="Files to write, split by commas.")] = "pdf,xlsx,html,json,csv",
+    formats: Annotated[
+        str, typer.Option(help="Files to write, split by commas; also npz, the outcome of every motion.")
+    ] = "pdf,xlsx,html,json,csv",
+    jobs: Annotated[int | None, typer.Option(min=1, help="Threads.", show_default="one a processor")] = None,
 ) -> None:
     """Assess a workbook and write the reports."""
-    from assess.report import FORMATS, write_reports
+    from assess.report import write_reports
 
-    wanted = [name.strip().lower() for name in formats.split(",") if name.strip()]
-    unknown = [name for name in wanted if name not in FORMATS]
-    if unknown or not wanted:
-        raise typer.BadParameter(f"{formats!r} is not a list of: {', '.join(FORMATS)}.", param_hint="--formats")
+    wanted = _read_formats(formats, verify)
     folder = out or Path(f"{path.stem}-report")
     if folder.exists() and not folder.is_dir():
         raise typer.BadParameter(f"{folder} is a file; name a folder.", param_hint="--out")
-    with _exits():
-        assessment = _assess(path, verify, scenario)
-        _print_problems([one for one in assessment.problems if one.severity == "warning"])
+    if scale_motions and motions is None:
+        raise typer.BadParameter(
+            "there are no motions to scale: name their folder by --motions.", param_hint="--scale-motions"
+        )
+    settings = _settings(verify, runs, seed, scale_motions, scenario)
+    with exits():
+        assessment = _assess(path, settings, motions, jobs)
+        print_problems([one for one in assessment.problems if one.severity == "warning"])
         written = write_reports(assessment, folder, wanted)
-    _print_result(assessment, list(written.values()))
+    print_result(assessment, list(written.values()))
 
 
 @app.command()
@@ -131,7 +142,7 @@ def record(
     from assess.report.records import check_figure, describe, list_lines, read_channels, write_figure
 
     if plot is not None:
-        with _exits():
+        with exits():
             check_figure(plot)
     found, failed = [], 0
     for name in files:
@@ -148,13 +159,51 @@ def record(
     else:
         typer.echo("\n\n".join("\n".join(list_lines(document)) for document in documents))
     if plot is not None:
-        with _exits():
+        with exits():
             channels = [channel for ones in found for channel in ones]
             drawn = write_figure(channels, plot)
         left = f"; {len(channels) - drawn} more channels are not drawn" if drawn < len(channels) else ""
         typer.echo(f"wrote {plot}{left}", err=True)
     if failed:
         raise typer.Exit(1)
+
+
+@app.command()
+def rock(
+    breadth: Annotated[float, typer.Option(help="Side parallel to the motion [cm].", show_default=False)],
+    height: Annotated[float, typer.Option(help="[cm]", show_default=False)],
+    record: Annotated[str, typer.Option(help="The motion: FILE or FILE#channel.", show_default=False)],
+    pfa: Annotated[float | None, typer.Option(help="Scale it to this peak [g].", show_default="not scaled")] = None,
+    restitution: Annotated[
+        float | None, typer.Option(help="Angular velocity after an impact over before.", show_default="Housner's")
+    ] = None,
+    baseline: Annotated[str, typer.Option(help="Treatment of an uncorrected record: standard, none.")] = "standard",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON document instead.")] = False,
+    plot: Annotated[Path | None, typer.Option(help="Draw motion and rotation to this .png, .svg or .pdf.")] = None,
+) -> None:
+    """Rock one block under one record: whether it overturns, by direct integration of Housner's equation."""
+    from assess.report.records import check_figure
+    from assess.report.rocking import describe, list_lines, read_case, write_figure
+
+    with exits():
+        if plot is not None:
+            check_figure(plot)
+        case = read_case(breadth, height, record, pfa, restitution, baseline)
+        from assess.rocking.response import follow_block
+
+        try:
+            response = follow_block(
+                case.breadth, case.height, case.motion.acceleration, case.motion.time_step, restitution=case.restitution
+            )
+        except ValueError as error:  # how stocky a block may be, only the integration knows
+            raise InputError(f"--breadth and --height: {error}") from None
+        if as_json:
+            typer.echo(json.dumps(describe(case, response), indent=1))
+        else:
+            typer.echo("\n".join(list_lines(case, response)))
+        if plot is not None:
+            write_figure(case, response, plot)
+            typer.echo(f"wrote {plot}", err=True)
 
 
 @app.command()
@@ -183,54 +232,38 @@ def doctor() -> None:
         raise typer.Exit(1)
 
 
-def _assess(path: Path, verify: str = "none", scenario: str | None = None) -> "Assessment":
-    from assess.assessment import run as run_assessment
-    from assess.inventory.workbook import read_inventory
-    from assess.settings import VERIFY, Settings
+def _read_formats(formats: str, verify: str) -> list[str]:
+    from assess.report import FILES
 
+    wanted = [name.strip().lower() for name in formats.split(",") if name.strip()]
+    if not wanted or any(name not in FILES for name in wanted):
+        raise typer.BadParameter(f"{formats!r} is not a list of: {', '.join(FILES)}.", param_hint="--formats")
+    if "npz" in wanted and verify == "none":
+        raise typer.BadParameter("npz holds what verification finds: leave out --verify none.", param_hint="--formats")
+    return wanted
+
+
+def _settings(verify: str, runs: str, seed: int, scale_motions: bool, scenario: str | None) -> Settings:
     if verify not in VERIFY:
         raise typer.BadParameter(f"{verify!r} is not one of: {', '.join(VERIFY)}.", param_hint="--verify")
+    if runs != AUTO and not (runs.isascii() and runs.isdigit() and 1 <= int(runs) <= MOST_RUNS):
+        raise typer.BadParameter(f"{runs!r} is not a number from 1 to {MOST_RUNS:,}, nor {AUTO}.", param_hint="--runs")
     kind = None if scenario is None else match_choice(scenario, SCENARIOS)
     if scenario is not None and kind is None:
         raise typer.BadParameter(f"{scenario!r} is not one of: {', '.join(SCENARIOS)}.", param_hint="--scenario")
-    settings = Settings(verify=verify, scenario=kind)  # type: ignore[arg-type]
-    return run_assessment(read_inventory(path), settings)
+    count = AUTO if runs == AUTO else int(runs)
+    return Settings(verify=verify, runs=count, seed=seed, scale_motions=scale_motions, scenario=kind)  # type: ignore[arg-type]
 
 
-@contextmanager
-def _exits() -> Iterator[None]:
-    """Turn what is raised on purpose into a message and an exit status."""
-    try:
-        yield
-    except WorkbookError as error:
-        _print_problems(error.problems)
-        errors = sum(problem.severity == "error" for problem in error.problems)
-        typer.echo(f"{errors} error{'s' if errors != 1 else ''}; nothing was written.", err=True)
-        raise typer.Exit(2) from None
-    except InputError as error:
-        typer.echo(f"error  {error}", err=True)
-        raise typer.Exit(2) from None
-    except OutputError as error:
-        typer.echo(f"error  {error}", err=True)
-        raise typer.Exit(1) from None
+def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: int | None = None) -> "Assessment":
+    from assess.assessment import run as run_assessment
+    from assess.inventory.workbook import read_inventory
+    from assess.progress import Progress
 
+    inventory = read_inventory(path)
+    suite = None
+    if motions is not None:
+        from assess.motion.suite import read_suite
 
-def _print_problems(problems: Sequence[Problem]) -> None:
-    for problem in problems[:MOST_PRINTED]:
-        typer.echo(f"{problem.severity:<7}  {problem}", err=True)
-    if len(problems) > MOST_PRINTED:
-        typer.echo(f"... and {len(problems) - MOST_PRINTED:,} more.", err=True)
-
-
-def _print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
-    from assess.results import count_pieces
-    from assess.risk import RiskClass
-
-    counts, anchored = count_pieces(assessment)
-    for risk in reversed(RiskClass):
-        typer.echo(f"{risk.label:<13} {counts[risk]:>6,} {'piece' if counts[risk] == 1 else 'pieces'}")
-    if anchored:
-        typer.echo(f"{'  anchored':<13} {anchored:>6,}, only as safe as the anchors")
-    typer.echo("Chance of overturning in this scenario, not per year. Not verified.")
-    for file in files:
-        typer.echo(f"wrote {file}", err=True)
+        suite = read_suite(motions)
+    return run_assessment(inventory, settings, suite=suite, jobs=jobs, progress=Progress)

@@ -8,12 +8,13 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+from assess.adoption import FORMULA
 from assess.assessment import run
 from assess.inventory.blank import Content, Units, write_workbook
 from assess.inventory.lists import RUN_ASSESS
 from assess.inventory.live import OUTSIDE
 from assess.inventory.workbook import read_inventory
-from assess.results import FORMULA, Assessment, ItemResult
+from assess.results import Assessment, ItemResult
 from assess.units import GRAVITY
 
 

@@ -1,62 +1,30 @@
 """What an assessment found: arrays for computing, one view per item for reading."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.adoption import FORMULA, VERIFICATION, Adoption
+from assess.cases import Adopted, CaseReader, CaseResult
 from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.model import Axis, Inventory, Item
 from assess.methods import Cases, Method, Outcome
+from assess.methods._method import ALIKE, Joint
+from assess.motion.suite import Suite
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
+from assess.units import GRAVITY
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Detail = float | str | bool | None
-
 MOST_KEPT = 2000
 """Items up to which results are kept once they have been read; a larger inventory's would fill the memory."""
-
-
-@dataclass(frozen=True, slots=True)
-class MethodResult:
-    """What one method says of one case; `value` is None where it was not evaluated."""
-
-    value: float | None
-    detail: Mapping[str, Detail]
-    flags: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class CaseResult:
-    """One piece under one motion: the demand and every method's result by key."""
-
-    demand: Demand
-    methods: Mapping[str, MethodResult]
-
-
-@dataclass(frozen=True, slots=True)
-class Adopted:
-    """The risk that the report goes by.
-
-    `low` and `high` bound the interval of a verified risk, `lowered_from` is the class by formula where verification
-    lowered it; all three are None while no verification has run. `upper` is the class by the upper bound.
-    """
-
-    method: str
-    probability: float
-    low: float | None
-    high: float | None
-    risk: RiskClass
-    upper: RiskClass
-    lowered_from: RiskClass | None
-    flags: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +35,16 @@ class ItemResult:
     governing: CaseResult
     adopted: Adopted
     cases: tuple[CaseResult, ...]
+
+    @property
+    def by_formula(self) -> CaseResult:
+        """The case that the formula alone would have govern: its larger value, then the larger PFA, then X."""
+        return min(self.cases, key=_formula_first)
+
+    @property
+    def is_verified(self) -> bool:
+        """Whether its rocking was integrated under the governing motion."""
+        return self.governing.verification is not None
 
     @property
     def is_anchored(self) -> bool:
@@ -99,6 +77,8 @@ class Assessment:
         What was assessed, and how.
     scenario : str
         Where the floor motion came from, one of `assess.settings.SCENARIOS`.
+    suite : Suite, optional
+        The user's own motions, where they stood in for generated ones.
     demands : mapping of (floor, axis) to demands
         How every floor shakes.
     methods : tuple of Method
@@ -109,6 +89,8 @@ class Assessment:
         Which item (its index in the inventory) and which demand each case has.
     outcomes : mapping of method key to Outcome
         What each method says of all cases.
+    adoption : Adoption
+        The risk that is adopted for each case.
     governing : (items,) array
         Index of each item's governing case.
     problems : tuple of Problem
@@ -118,12 +100,14 @@ class Assessment:
     inventory: Inventory
     settings: Settings
     scenario: str
+    suite: Suite | None
     demands: Mapping[tuple[str, Axis], tuple[Demand, ...]]
     methods: tuple[Method, ...]
     cases: Cases
     case_item: NDArray[np.intp]
     case_demand: tuple[Demand, ...]
     outcomes: Mapping[str, Outcome]
+    adoption: Adoption
     governing: NDArray[np.intp]
     problems: tuple[Problem, ...]
 
@@ -145,12 +129,10 @@ class Assessment:
         """Return the result of the item at `index` in the inventory; raises IndexError beyond it."""
         index = range(len(self))[index]
         own = range(self._first[index], self._first[index + 1])
-        cases = {case: self._case(case) for case in own}
+        cases = {case: self._read(case) for case in own}
         governing = cases[int(self.governing[index])]
-        return ItemResult(self.inventory.items[index], governing, _adopt(governing), tuple(cases.values()))
-
-    def _case(self, case: int) -> CaseResult:
-        return CaseResult(self.case_demand[case], {key: result(case) for key, result in self._readers.items()})
+        adopted = _mark_lowered(governing.adopted, cases.values())
+        return ItemResult(self.inventory.items[index], governing, adopted, tuple(cases.values()))
 
     @cached_property
     def _first(self) -> list[int]:
@@ -158,8 +140,14 @@ class Assessment:
         return [int(at) for at in np.searchsorted(self.case_item, np.arange(len(self) + 1))]
 
     @cached_property
-    def _readers(self) -> Mapping[str, "_Reader"]:
-        return {method.key: _Reader(self.outcomes[method.key]) for method in self.methods}
+    def _read(self) -> CaseReader:
+        return CaseReader(self.case_demand, self.methods, self.outcomes, self.adoption)
+
+    @cached_property
+    def joints(self) -> Mapping[Demand, Joint]:
+        """What the pieces on a floor motion did, motion by motion, where they were integrated."""
+        joints = self.outcomes[VERIFICATION].joints
+        return {self.case_demand[int(joint.cases[0])]: joint for joint in joints}
 
     def frame(self) -> "pd.DataFrame":
         """Return one row an item: its fields in SI units, the adopted risk and every method's value."""
@@ -174,6 +162,8 @@ class Assessment:
                 **{key: method.value for key, method in one.governing.methods.items()},
                 "proposed_or_raw": one.governing.methods[FORMULA].detail["raw"],
                 "probability": one.adopted.probability,
+                "low": one.adopted.low,
+                "high": one.adopted.high,
                 "risk_class": one.adopted.risk.word,
                 "risk_class_upper": one.adopted.upper.word,
                 "is_anchored": one.is_anchored,
@@ -184,73 +174,13 @@ class Assessment:
         return pd.DataFrame(rows).set_index("item", drop=False)
 
 
-class _Reader:
-    """Reads one method's outcome case by case, from lists: indexing arrays one by one is slow."""
-
-    def __init__(self, outcome: Outcome) -> None:
-        self.values = _known(outcome.value)
-        self.detail = {name: _known(array) for name, array in outcome.detail.items()}
-        self.flags = {flag: array.tolist() for flag, array in outcome.flags.items() if array.any()}
-
-    def __call__(self, case: int) -> MethodResult:
-        return MethodResult(
-            self.values[case],
-            {name: values[case] for name, values in self.detail.items()},
-            tuple([flag for flag, raised in self.flags.items() if raised[case]]),
-        )
+def _mark_lowered(adopted: Adopted, cases: Iterable[CaseResult]) -> Adopted:
+    """Mark a class that is lower than the highest that the formula gives under any motion of the piece."""
+    by_formula = [classify(value) for case in cases if (value := case.methods[FORMULA].value) is not None]
+    formula = max((risk for risk in by_formula if risk is not None), default=RiskClass.LOW)
+    return replace(adopted, lowered_from=formula) if adopted.risk < formula else adopted
 
 
-def _known(array: NDArray[Any]) -> list[Any]:
-    """Return an array as a list, None in place of NaN; words pass through."""
-    return [None if value != value else value for value in array.tolist()]
-
-
-FORMULA = "proposed_or"
-"""The method whose value is adopted while no verification has run."""
-
-FLAGS: Mapping[str, str] = {
-    "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",
-    "slides": "friction is below B/H: it slides before it rocks, which no method here counts",
-}
-"""Meanings of the flags that belong to a piece rather than to one method."""
-
-
-def _adopt(case: CaseResult) -> Adopted:
-    formula = case.methods[FORMULA]
-    probability = formula.value
-    if probability is None:
-        raise ValueError("the proposed OR formula gave no value")
-    risk = classify(probability)
-    if risk is None:
-        raise ValueError("the proposed OR formula gave no class")
-    piece = [flag for flag in FLAGS if any(flag in method.flags for method in case.methods.values())]
-    flags = dict.fromkeys((*formula.flags, *case.demand.flags, *piece))
-    return Adopted(FORMULA, probability, None, None, risk, risk, None, tuple(flags))
-
-
-def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
-    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which have no class."""
-    by_class, anchored = dict.fromkeys(RiskClass, 0), 0
-    for one in results:
-        if one.is_anchored:
-            anchored += one.item.quantity
-        else:
-            by_class[one.adopted.risk] += one.item.quantity
-    return by_class, anchored
-
-
-def fix_first(results: Iterator[ItemResult]) -> list[ItemResult]:
-    """Return the free-standing pieces of at least medium class, what to fix first at the top.
-
-    Life safety or on a route first; then the upper class; then probability times quantity; then name.
-    """
-    chosen = [one for one in results if not one.is_anchored and one.adopted.upper >= RiskClass.MEDIUM]
-    return sorted(
-        chosen,
-        key=lambda one: (
-            not one.is_urgent,
-            -one.adopted.upper,
-            -one.adopted.probability * one.item.quantity,
-            one.item.item.casefold(),
-        ),
-    )
+def _formula_first(case: CaseResult) -> tuple[float, float]:
+    value = case.methods[FORMULA].value
+    return -round(value if value is not None else 0.0, ALIKE), -round(case.demand.pfa / GRAVITY, ALIKE)

@@ -7,6 +7,9 @@ which class a limit itself belongs; here it belongs to the higher one.
 import math
 from enum import IntEnum
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 
 class RiskClass(IntEnum):
     """Classes of the chance of overturning, in rising order. Each has a word and a symbol, never a colour alone."""
@@ -59,3 +62,28 @@ def classify(probability: float) -> RiskClass | None:
     if not 0.0 <= probability <= 1.0:
         raise ValueError(f"probability is {probability}, expected 0 to 1")
     return RiskClass(sum(probability >= limit for limit in LIMITS))
+
+
+def classify_all(probability: ArrayLike) -> NDArray[np.int64]:
+    """Return the classes, as integers, of probabilities in [0, 1]; -1 for NaN."""
+    values = np.asarray(probability, dtype=np.float64)
+    return np.where(np.isnan(values), -1, np.searchsorted(LIMITS, values, side="right")).astype(np.int64)
+
+
+NORMAL_95 = 1.959963984540054
+"""Half width of the central 95 % of the standard normal distribution [-]."""
+
+
+def wilson_interval(count: ArrayLike, runs: ArrayLike, z: float = NORMAL_95) -> tuple[NDArray[np.float64], ...]:
+    """Return the ends of the interval of a probability of which `count` of `runs` independent trials are known.
+
+    Source: Wilson EB (1927). Probable inference, the law of succession, and statistical inference. Journal of the
+    American Statistical Association 22(158):209-212. doi:10.1080/01621459.1927.10502953
+    """
+    k, n = np.asarray(count, dtype=np.float64), np.asarray(runs, dtype=np.float64)
+    share, widening = k / n, z * z / n
+    centre = share + widening / 2
+    half = z * np.sqrt(share * (1 - share) / n + widening / (4 * n))
+    # The ends are exact where none or all have fallen; rounding would leave a hair.
+    low = np.where(k == 0, 0.0, (centre - half) / (1 + widening))
+    return low, np.where(k == n, 1.0, (centre + half) / (1 + widening))

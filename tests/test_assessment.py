@@ -3,7 +3,7 @@ import shutil
 import pytest
 
 import assess
-from assess.results import fix_first
+from assess.ranking import fix_first
 from assess.risk import RiskClass
 from tests.workbooks import FLOORS, RECORDS, assessed, write
 

@@ -58,11 +58,6 @@ def read_inventory(path: str | Path) -> Inventory:
     )
 
 
-_KEPT = {
-    "restitution": "direct integration is not part of this version",
-}
-
-
 def _read_building(table: Table, folder: Path) -> Building:
     values = {name: value for name, value in table.form.items() if value is not None}
     if "logo" in values:
@@ -71,10 +66,6 @@ def _read_building(table: Table, folder: Path) -> Building:
         except CellError as error:
             table.report(f"B{table.lines['logo']}", error.message, error.mend)
             values["logo"] = None
-    for name, why in _KEPT.items():
-        if name in values:
-            message = f"{table.sheet.column(name).label} is kept, not used: {why}."
-            table.report(f"B{table.lines[name]}", message, severity="note")
     return Building(**values, cells={name: f"B{line}" for name, line in table.lines.items()})
 
 

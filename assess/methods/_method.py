@@ -1,13 +1,14 @@
 """What a method is: one published way to tell whether a piece of furniture overturns."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Self
+from typing import Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from assess.motion.fit import Fit
 from assess.settings import Settings
 from assess.units import ROUNDING
 
@@ -16,6 +17,37 @@ BoolArray = NDArray[np.bool_]
 
 ALIKE = 9
 """Decimals to which two PFA [g] or two probabilities are held against each other when one of them has to govern."""
+
+
+class Ensemble(Protocol):
+    """The motions of one floor along one axis, for methods that integrate; they are made when asked for."""
+
+    @property
+    def is_generic(self) -> bool:
+        """Whether its spectrum is a generic one, of a floor of which only peaks are known."""
+        ...
+
+    @property
+    def record(self) -> tuple[FloatArray, float] | None:
+        """The recorded motion (n,) [m/s2] and its time step [s], where one is known."""
+        ...
+
+    def open(self, threads: int) -> "Motions":
+        """Prepare the motions; what that takes is given back when the result is dropped."""
+        ...
+
+
+class Motions(Protocol):
+    """What an `Ensemble` opens."""
+
+    @property
+    def fit(self) -> Fit | None:
+        """How they meet the spectrum that they were made for; None for motions that were given."""
+        ...
+
+    def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
+        """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,6 +64,12 @@ class Cases:
         Coefficient of friction [-]; NaN where no sliding is assumed.
     pfv_estimated : (n,) boolean array
         Where `pfv` was estimated from PFA and the building's period.
+    restitution : (n,) array
+        Angular velocity after an impact over that before it [-]; NaN is Housner's.
+    ensemble : (n,) integer array
+        Which of `ensembles` is the case's motion; -1 where it is not to be integrated.
+    ensembles : sequence of Ensemble
+        Motions of floors.
     """
 
     breadth: FloatArray
@@ -40,6 +78,9 @@ class Cases:
     pfv: FloatArray
     friction: FloatArray
     pfv_estimated: BoolArray
+    restitution: FloatArray
+    ensemble: NDArray[np.intp]
+    ensembles: Sequence[Ensemble] = ()
 
     @classmethod
     def of(
@@ -51,12 +92,17 @@ class Cases:
         pfv: ArrayLike = math.nan,
         friction: ArrayLike = math.nan,
         pfv_estimated: ArrayLike = False,
+        restitution: ArrayLike = math.nan,
+        ensemble: ArrayLike = -1,
+        ensembles: Sequence[Ensemble] = (),
     ) -> Self:
         """Build a batch from numbers and arrays, brought to one length; what is left out is unknown."""
-        given = np.broadcast_arrays(*np.atleast_1d(breadth, height, pfa, pfv, friction, pfv_estimated))
-        b, h, a, v, mu = (np.array(values, dtype=np.float64) for values in given[:-1])
-        estimated = np.array(given[-1], dtype=np.bool_)
-        return cls(breadth=b, height=h, pfa=a, pfv=v, friction=mu, pfv_estimated=estimated)
+        given = np.broadcast_arrays(
+            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, pfv_estimated, ensemble)
+        )
+        b, h, a, v, mu, eta = (np.array(values, dtype=np.float64) for values in given[:6])
+        estimated, which = np.array(given[6], dtype=np.bool_), np.array(given[7], dtype=np.intp)
+        return cls(b, h, a, v, mu, estimated, eta, which, ensembles)
 
     @property
     def breadth_to_height(self) -> FloatArray:
@@ -93,6 +139,37 @@ class Reference:
         return f"{lead}{self.title}. {self.source}." + (f" doi:{self.doi}" if self.doi else "")
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Joint:
+    """What m cases did motion by motion under one ensemble: motion k is one earthquake for the whole building.
+
+    Parameters
+    ----------
+    ensemble : int
+        Its place in `Cases.ensembles`.
+    cases : (m,) integer array
+        Places in the batch.
+    runs : (m,) integer array
+        Motions that each case was integrated under, the first ones.
+    fell : (m, k) boolean array
+        Whether it overturned; False beyond its runs.
+    rotation : (m, k) array
+        Largest |theta| over the critical angle [-]; 0 beyond its runs.
+    examples : sequence of ((n,) array, float)
+        The first three motions [m/s2] and their time steps [s].
+    fit : Fit, optional
+        How the motions meet their target.
+    """
+
+    ensemble: int
+    cases: NDArray[np.intp]
+    runs: NDArray[np.int64]
+    fell: BoolArray
+    rotation: NDArray[np.float32]
+    examples: Sequence[tuple[NDArray[np.float32], float]]
+    fit: Fit | None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Outcome:
     """What a method says of a batch of n cases.
@@ -105,11 +182,14 @@ class Outcome:
         What stands beside the value, ``raw`` or a median, under the name it has in results.json.
     flags : mapping of flag to (n,) boolean array
         Where a caution holds; the flag's meaning stands in `Method.flags`.
+    joints : sequence of Joint
+        What a method that integrates found, motion by motion.
     """
 
     value: FloatArray
     detail: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
     flags: Mapping[str, BoolArray] = field(default_factory=dict)
+    joints: Sequence[Joint] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +218,8 @@ class Method:
         Every flag it can raise, and what that means.
     words : pair of str
         A criterion's outcome in words: met, not met.
+    tier : "screening" or "verification"
+        Whether it tells at once for every case, or integrates those that have an ensemble.
     evaluate : callable
         ``evaluate(cases, settings) -> Outcome``; inputs are left untouched.
     """
@@ -156,6 +238,7 @@ class Method:
     departures: tuple[str, ...] = ()
     flags: Mapping[str, str] = field(default_factory=dict)
     words: tuple[str, str] = ("", "")
+    tier: Literal["screening", "verification"] = "screening"
 
 
 _erfc = np.frompyfunc(math.erfc, 1, 1)

@@ -20,10 +20,12 @@ FILES: Mapping[str, str] = {
     "html": "report.html",
     "json": "results.json",
     "csv": "items.csv",
+    "npz": "outcomes.npz",
 }
 """The formats, and the file that each is written to."""
 
-FORMATS = tuple(FILES)
+FORMATS = tuple(name for name in FILES if name != "npz")
+"""The formats that are written where none are asked for; the outcomes of every motion are for other programs."""
 _STAGE = ".assess-writing-"
 _STALE = 24 * 3600.0
 
@@ -40,7 +42,7 @@ def write_reports(
     folder : str or Path
         Where to; made where it is missing. Other files in it are left alone.
     formats : str or sequence of str
-        Of "pdf", "xlsx", "html", "json", "csv"; all by default.
+        Of "pdf", "xlsx", "html", "json", "csv", "npz"; all but the last by default.
 
     Returns
     -------
@@ -59,7 +61,7 @@ def write_reports(
     formats = (formats,) if isinstance(formats, str) else formats
     unknown = [name for name in formats if name not in FILES]
     if unknown:
-        raise ValueError(f"format is {unknown[0]!r}, expected some of: {', '.join(FORMATS)}")
+        raise ValueError(f"format is {unknown[0]!r}, expected some of: {', '.join(FILES)}")
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -107,10 +109,18 @@ def _write_staged(assessment: Assessment, folder: Path, stage: Path, formats: Se
 
 def _writer(name: str) -> Callable[[Assessment, Path], None]:
     """Return the function that writes a format; each is imported only when it is wanted."""
-    if name in ("json", "csv"):
-        from assess.report import data
+    if name == "json":
+        from assess.report.data import write_json
 
-        return data.write_json if name == "json" else data.write_csv
+        return write_json
+    if name == "csv":
+        from assess.report.table import write_csv
+
+        return write_csv
+    if name == "npz":
+        from assess.report.outcomes import write_npz
+
+        return write_npz
     if name == "xlsx":
         from assess.report.xlsx import write_xlsx
 

@@ -6,16 +6,17 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from assess.cases import FLAGS as ITEM_FLAGS
 from assess.demand import FLAGS as DEMAND_FLAGS
 from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.columns import BUILDING, ITEMS
 from assess.inventory.model import Floor
 from assess.methods import Method
+from assess.ranking import count_pieces, fix_first
 from assess.report import motions, words
 from assess.report.data import versions
-from assess.results import FLAGS as ITEM_FLAGS
-from assess.results import Assessment, ItemResult, count_pieces, fix_first
+from assess.results import Assessment, ItemResult
 from assess.risk import LIMITS, RiskClass
 from assess.version import __version__
 

@@ -1,10 +1,10 @@
-"""results.json and items.csv: the same numbers for other programs.
+"""results.json: the numbers for other programs; `table.py` writes the same as items.csv.
 
-Both are written item by item, so that 20,000 items take no more memory than one. Units stand in the names.
+It is written item by item, so that 20,000 items take no more memory than one. Units stand in the names.
 """
 
-import csv
 import json
+import math
 import platform
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
@@ -12,15 +12,17 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TextIO
 
+from assess.cases import CaseResult, MethodResult, VerificationResult
 from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.columns import BUILDING
-from assess.results import Assessment, CaseResult, ItemResult, MethodResult
+from assess.motion.fit import Fit
+from assess.results import Assessment, ItemResult
 from assess.risk import RiskClass
 from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
 from assess.version import __version__
 
-SCHEMA_VERSION = "1.0"
+SCHEMA_VERSION = "1.1"
 SCHEMA = Path(__file__).with_name("results.schema.json")
 """JSON Schema of results.json."""
 
@@ -56,10 +58,15 @@ def describe_run(assessment: Assessment) -> dict[str, Any]:
         "schema": SCHEMA_VERSION,
         "assess": {
             "version": __version__,
-            "seed": None,
+            "seed": assessment.settings.seed,
             "settings": asdict(assessment.settings) | {"scenario": assessment.scenario},
             "platform": versions(),
-            "inputs": {"workbook": inventory.source.name, "sha256": inventory.sha256, "records": dict(inventory.files)},
+            "inputs": {
+                "workbook": inventory.source.name,
+                "sha256": inventory.sha256,
+                "records": dict(inventory.files),
+                "motions": dict(assessment.suite.files) if assessment.suite else {},
+            },
         },
         "building": building_record(assessment),
         "floors": [floor_record(assessment, floor.floor) for floor in inventory.floors],
@@ -99,7 +106,11 @@ def floor_record(assessment: Assessment, name: str) -> dict[str, Any]:
         "floor": floor.floor,
         "name": floor.name,
         "elevation_m": floor.elevation,
-        "demands": [demand_record(demand) for axis in ("X", "Y") for demand in assessment.demands[name, axis]],
+        "demands": [
+            demand_record(demand) | {"ensemble": ensemble_record(assessment, demand)}
+            for axis in ("X", "Y")
+            for demand in assessment.demands[name, axis]
+        ],
     }
 
 
@@ -133,6 +144,33 @@ def demand_record(demand: Demand) -> dict[str, Any]:
     }
 
 
+def ensemble_record(assessment: Assessment, demand: Demand) -> dict[str, Any] | None:
+    """Return the motions that pieces were integrated under on a floor; None where none were."""
+    joint = assessment.joints.get(demand)
+    if joint is None:
+        return None
+    return {
+        "motions": int(joint.runs.max()),
+        "generic_spectrum": assessment.cases.ensembles[joint.ensemble].is_generic,
+        "fit": None if joint.fit is None else fit_record(joint.fit),
+    }
+
+
+def fit_record(fit: Fit) -> dict[str, float | None]:
+    """Return how generated motions meet their target."""
+    return {
+        "matched_to_s": fit.matched_to,
+        "mean_deviation": fit.mean_deviation,
+        "worst_deviation": fit.worst_deviation,
+        "worst_period_s": fit.worst_period,
+        "pfa_ratio": fit.pfa_ratio,
+        "pfa_scatter": fit.pfa_scatter,
+        "pfv_ratio": None if math.isnan(fit.pfv_ratio) else fit.pfv_ratio,
+        "pfv_scatter": fit.pfv_scatter,
+        "spectrum_scatter": fit.spectrum_scatter,
+    }
+
+
 def item_record(one: ItemResult) -> dict[str, Any]:
     """Return one item as it stands in results.json."""
     item, case = one.item, one.governing
@@ -142,7 +180,7 @@ def item_record(one: ItemResult) -> dict[str, Any]:
         "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
         "pfa_source": case.demand.label,
         "methods": {key: method_record(method) for key, method in case.methods.items()},
-        "verification": None,
+        "verification": verification_record(case.verification),
         "adopted": adopted_record(one),
         "axes": [axis_record(other) for other in one.cases],
         "anchored": item.anchored,
@@ -183,6 +221,21 @@ def method_record(method: MethodResult) -> dict[str, Any]:
     return {"value": method.value, **method.detail, "flags": list(method.flags)}
 
 
+def verification_record(one: VerificationResult | None) -> dict[str, Any] | None:
+    """Return what direct integration found under the governing motion; None where it did not run."""
+    if one is None:
+        return None
+    record = {"overturned": one.record_overturned, "max_rotation_ratio": one.record_rotation}
+    return {
+        "runs": one.runs,
+        "overturned": one.overturned,
+        "probability": one.probability,
+        "low": one.low,
+        "high": one.high,
+        "record": None if one.record_overturned is None else record,
+    }
+
+
 def adopted_record(one: ItemResult) -> dict[str, Any]:
     """Return the adopted risk."""
     adopted = one.adopted
@@ -206,6 +259,7 @@ def axis_record(case: CaseResult) -> dict[str, Any]:
         "pfa_g": edge(case.demand.pfa, "g"),
         "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
         "methods": {key: method.value for key, method in case.methods.items()},
+        "verification": verification_record(case.verification),
     }
 
 
@@ -241,60 +295,3 @@ _FACTORS = {**LENGTH, **ACCELERATION, **VELOCITY}
 
 def _word(risk: RiskClass | None) -> str | None:
     return None if risk is None else risk.word
-
-
-def write_csv(assessment: Assessment, path: Path) -> None:
-    """Write items.csv: one row an item, UTF-8 with a byte order mark, by which Excel knows it.
-
-    A text that a spreadsheet would take for a formula is written behind an apostrophe; numbers stay numbers.
-    """
-    with path.open("w", encoding="utf-8-sig", newline="") as file:
-        writer = csv.writer(file)
-        heads: list[str] = []
-        for one in assessment:
-            record = item_record(one)
-            if not heads:
-                heads = list(flatten(record))
-                writer.writerow(heads)
-            writer.writerow([_safe(value) for value in _flat_values(record)])
-        if not heads:
-            writer.writerow(["item"])  # a table without rows still has a heading
-
-
-def flatten(record: Mapping[str, Any]) -> dict[str, Any]:
-    """Return an item's record as one flat row: nested names joined by ``_``."""
-    return dict(zip(_flat_names(record), _flat_values(record), strict=True))
-
-
-def _flat_names(record: Mapping[str, Any]) -> Iterator[str]:
-    for name, value in record.items():
-        if name == "methods":
-            for key, method in value.items():
-                yield from (key if part == "value" else f"{key}_{part}" for part in method)
-        elif isinstance(value, Mapping):
-            yield from (f"{name}_{part}" for part in value)
-        else:
-            yield name
-
-
-def _flat_values(record: Mapping[str, Any]) -> Iterator[Any]:
-    for name, value in record.items():
-        if name == "methods":
-            for method in value.values():
-                yield from method.values()
-        elif name == "axes":
-            yield [f"{axis['axis']}: {axis['source']} {axis['pfa_g']} g" for axis in value]
-        elif isinstance(value, dict):
-            yield from value.values()
-        else:
-            yield value
-
-
-def _safe(value: object) -> object:
-    if value is None or isinstance(value, (float, int)):
-        return value
-    if isinstance(value, list):
-        value = "; ".join(map(str, value))
-    if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r", "\n"):
-        return "'" + value
-    return value

@@ -11,9 +11,10 @@ import numpy as np
 
 from assess.demand import Demand
 from assess.inventory.model import Inventory
+from assess.ranking import count_pieces
 from assess.report import words
 from assess.report.content import Content, Counts, FloorPage
-from assess.results import ItemResult, count_pieces
+from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.units import ACCELERATION
 
@@ -150,7 +151,7 @@ def _paint_motion(demand: Demand, figure: Any) -> None:
     axes = figure.subplots()
     values = motion.acceleration / ACCELERATION["g"]
     times = np.arange(values.size) * motion.time_step
-    times, values = _envelope(times, values)
+    times, values = thin_out(times, values)
     axes.plot(times, values, lw=0.5, color="#1f3a4d")
     peak = int(np.abs(values).argmax())
     axes.plot([times[peak]], [values[peak]], "o", ms=4, mfc="none", color="#8c1d3f")
@@ -162,14 +163,15 @@ def _paint_motion(demand: Demand, figure: Any) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _envelope(times: Any, values: Any) -> tuple[Any, Any]:
-    """Thin a long record out to the lowest and highest sample of each stretch, so that no peak is lost."""
-    stretch = math.ceil(values.size / (MOST_POINTS / 2))
+def thin_out(times: Any, values: Any, most: int = MOST_POINTS) -> tuple[Any, Any]:
+    """Thin a long curve out to the lowest and highest point of each stretch, so that no peak is lost, and its end."""
+    stretch = math.ceil(values.size / (most / 2))
     if stretch <= 2:
         return times, values
-    whole = values[: values.size // stretch * stretch].reshape(-1, stretch)
+    whole = np.pad(values, (0, -values.size % stretch), mode="edge").reshape(-1, stretch)
     starts = np.arange(len(whole)) * stretch
-    kept = np.sort(np.concatenate([starts + whole.argmin(axis=1), starts + whole.argmax(axis=1)]))
+    extremes = np.concatenate([starts + whole.argmin(axis=1), starts + whole.argmax(axis=1), [values.size - 1]])
+    kept = np.unique(np.minimum(extremes, values.size - 1))
     return times[kept], values[kept]
 
 

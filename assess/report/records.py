@@ -9,7 +9,7 @@ import numpy as np
 
 from assess.errors import OutputError, RecordError
 from assess.motion.formats import list_addresses, read_records, select
-from assess.motion.record import Motion, Record, treat, treatment
+from assess.motion.record import Baseline, Motion, Record, treat, treatment
 from assess.units import GRAVITY
 
 PERIODS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
@@ -35,16 +35,33 @@ def read_channels(name: str) -> list[Channel]:
     RecordError
         If the file cannot be read, or has no such channel.
     """
-    path = Path(name)
-    if "#" not in name or _is_there(path):
-        records = read_records(path)
-        texts = [""] if len(records) == 1 else [f"#{text}" for text in list_addresses(records)]
-        return [
-            Channel(f"{path.name}{text}", record, treat(record)) for text, record in zip(texts, records, strict=True)
-        ]
+    path, channel = _split(name)
+    if channel is not None:
+        return [read_channel(name)]
+    records = read_records(path)
+    texts = [""] if len(records) == 1 else [f"#{text}" for text in list_addresses(records)]
+    return [Channel(f"{path.name}{text}", record, treat(record)) for text, record in zip(texts, records, strict=True)]
+
+
+def read_channel(name: str, baseline: Baseline = "standard") -> Channel:
+    """Return the channel of ``FILE#channel``, or the only one of ``FILE``.
+
+    Raises
+    ------
+    RecordError
+        If the file cannot be read, has no such channel, or has several and none is named; the message lists them.
+    """
+    path, channel = _split(name)
+    record = select(read_records(path), channel)
+    return Channel(path.name if channel is None else f"{path.name}#{channel}", record, treat(record, baseline))
+
+
+def _split(name: str) -> tuple[Path, str | None]:
+    """Return the file and the channel that a name means: a file may have a # in its own name."""
+    if "#" not in name or _is_there(Path(name)):
+        return Path(name), None
     file, _, channel = name.partition("#")
-    record = select(read_records(Path(file)), channel)
-    return [Channel(f"{Path(file).name}#{channel}", record, treat(record))]
+    return Path(file), channel
 
 
 def _is_there(path: Path) -> bool:
@@ -150,7 +167,12 @@ def write_figure(channels: Sequence[Channel], path: Path) -> int:
     check_figure(path)
     kind = path.suffix.lower().removeprefix(".")
     shown = channels[:MOST_DRAWN]
-    picture = draw(10, 0.4 + 1.9 * len(shown), partial(_paint, shown), kind)
+    save_figure(draw(10, 0.4 + 1.9 * len(shown), partial(_paint, shown), kind), path)
+    return len(shown)
+
+
+def save_figure(picture: bytes, path: Path) -> None:
+    """Write a figure whole or not at all; OutputError if it cannot be written."""
     stage = path.with_name(f".{path.stem[:40]}.writing")
     try:
         stage.write_bytes(picture)
@@ -158,7 +180,6 @@ def write_figure(channels: Sequence[Channel], path: Path) -> int:
     except OSError as error:
         stage.unlink(missing_ok=True)
         raise OutputError(f"{path} could not be written: {error.strerror}. Name another file.") from None
-    return len(shown)
 
 
 def _paint(shown: Sequence[Channel], figure: Any) -> None:

@@ -81,15 +81,15 @@ def rock_blocks(
         If a size is not above 0, a block is too stocky to rock (B/H of 1.41 or more), a restitution is outside 0 to 1,
         or the motions or their time step are not finite numbers of that shape.
     """
-    b, h, eta = _check_blocks(breadth, height, restitution)
-    motions = _check_motions(motions, time_step)
+    b, h, eta = check_blocks(breadth, height, restitution)
+    motions = check_motions(motions, time_step)
     sizes, which = np.unique(np.stack([b, h, eta]), axis=1, return_inverse=True)
     outcome = np.zeros((sizes.shape[1], len(motions), 3))
     outcome[..., kernel.FALL] = -1.0
-    divisions = _divisions(sizes, time_step)
+    divisions = count_parts(sizes, time_step)
     for parts in np.unique(divisions):
         own = np.flatnonzero(divisions == parts)
-        found = _rock_alike(sizes[:, own], _divide(motions, int(parts)), time_step / parts, threads, tell)
+        found = _rock_alike(sizes[:, own], divide(motions, int(parts)), time_step / parts, threads, tell)
         found[..., kernel.FALL] *= np.where(found[..., kernel.FALL] < 0, 1, time_step / parts)
         outcome[own] = found
     outcome = outcome[which.ravel()]
@@ -102,7 +102,8 @@ def rock_blocks(
     )
 
 
-def _check_blocks(breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike) -> tuple[FloatArray, ...]:
+def check_blocks(breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike) -> tuple[FloatArray, ...]:
+    """Return breadth, height [m] and restitution of blocks as (m,) arrays; ValueError as of `rock_blocks`."""
     given = np.broadcast_arrays(*np.atleast_1d(breadth, height, restitution))
     b, h, eta = (np.array(values, dtype=np.float64) for values in given)
     if not (b.ndim == 1 and np.isfinite(b).all() and np.isfinite(h).all() and (b > 0).all() and (h > 0).all()):
@@ -115,7 +116,8 @@ def _check_blocks(breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike)
     return b, h, eta
 
 
-def _check_motions(motions: FloatArray, time_step: float) -> FloatArray:
+def check_motions(motions: FloatArray, time_step: float) -> FloatArray:
+    """Return motions (k, n); ValueError as of `rock_blocks`."""
     motions = np.asarray(motions, dtype=np.float64)
     if motions.ndim != 2 or not len(motions) or motions.shape[1] < 2 or not np.isfinite(motions).all():
         raise ValueError(f"motions have shape {motions.shape}, expected (k, n) finite samples with n of 2 or more")
@@ -124,13 +126,13 @@ def _check_motions(motions: FloatArray, time_step: float) -> FloatArray:
     return motions
 
 
-def _divisions(sizes: FloatArray, time_step: float) -> NDArray[np.int64]:
+def count_parts(sizes: FloatArray, time_step: float) -> NDArray[np.int64]:
     """Return into how many parts the steps are divided for each block of `sizes` (3, m)."""
     p = block.frequency_parameter(sizes[0], sizes[1])
     return np.ceil(p * time_step / LONGEST_STEP).astype(np.int64)
 
 
-def _divide(motions: FloatArray, parts: int) -> FloatArray:
+def divide(motions: FloatArray, parts: int) -> FloatArray:
     """Return motions [g] with `parts` steps for each of theirs, followed by two zeros, as the kernel takes them."""
     count = motions.shape[1]
     at = np.arange((count - 1) * parts + 1) / parts
@@ -141,14 +143,19 @@ def _divide(motions: FloatArray, parts: int) -> FloatArray:
     return padded
 
 
+def build_blocks(sizes: FloatArray, time_step: float) -> FloatArray:
+    """Return blocks of `sizes` (3, m) as the kernel takes them, (m, 4)."""
+    b, h, eta = sizes
+    p = block.frequency_parameter(b, h)
+    return np.stack([block.critical_angle(b, h), (p * time_step) ** 2, eta, b / h], axis=1)
+
+
 def _rock_alike(
     sizes: FloatArray, motions: FloatArray, time_step: float, threads: int, tell: Callable[[int], None] | None
 ) -> FloatArray:
     """Integrate blocks of `sizes` (3, m) under padded motions (k, n) [g]; returns the kernel's outcome (m, k, 3)."""
-    b, h, eta = sizes
-    alpha = block.critical_angle(b, h)
-    blocks = np.stack([alpha, (block.frequency_parameter(b, h) * time_step) ** 2, eta, b / h], axis=1)
-    outcome = np.zeros((b.size, len(motions), 3))
+    blocks = build_blocks(sizes, time_step)
+    outcome = np.zeros((len(blocks), len(motions), 3))
     outcome[..., kernel.FALL] = -1.0
     nothing = np.zeros((0, 3))
 
@@ -157,7 +164,7 @@ def _rock_alike(
         kernel.rock(blocks[own], motions, rows.start, rows.stop, outcome[own], nothing)
         return len(blocks[own]) * len(rows)
 
-    _run_tiles(run, list(_tiles(b.size, len(motions))), threads, tell or (lambda _: None))
+    _run_tiles(run, list(_tiles(len(blocks), len(motions))), threads, tell or (lambda _: None))
     return outcome
 
 

@@ -245,7 +245,8 @@ def _attend(
     """See to what is rare in a lane's last step; True once its pair is decided."""
     if s[D1 + lane] > 0.0 and s[START + lane] + s[D1 + lane] > s[PEAK + lane]:
         s[PEAK + lane] = max(s[PEAK + lane], _find_peak(s, lane))
-    if s[START + lane] == s[D1 + lane] == 0.0 and s[PHI + lane] < 0.0:  # it has not left the ground
+    lifts = s[D1 + lane] > 0.0 or s[D2 + lane] > 0.0
+    if s[START + lane] == 0.0 and not lifts and s[PHI + lane] < 0.0:  # it has not left the ground
         return not _start(s, count, lane, motions, crests)
     place = _find_impact(s, lane)
     if place >= 0.0:
@@ -355,4 +356,5 @@ def _put(s: FloatArray, count: IntArray, lane: int, width: int, outcome: FloatAr
     if s[PHI + lane] >= OVERTURNED:
         passed = (OVERTURNED - s[START + lane]) / (s[PHI + lane] - s[START + lane])
         one[ROTATION] = OVERTURNED / s[ALPHA + lane]
-        one[FALL] = count[AT + lane] + count[AFTER + lane] - motion * width - s[SPAN + lane] * (1.0 - passed)
+        step = count[AT + lane] + count[AFTER + lane] + 1 - count[STRIDE + lane]  # the end of the last one
+        one[FALL] = step - motion * width - s[SPAN + lane] * (1.0 - passed)

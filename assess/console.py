@@ -1,0 +1,70 @@
+"""What the command line says, and the exit status it ends with."""
+
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from assess.errors import InputError, OutputError, Problem, WorkbookError
+
+if TYPE_CHECKING:
+    from assess.results import Assessment
+
+MOST_PRINTED = 200
+"""Problems printed in one run; the rest are counted."""
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as shells have it."""
+
+
+@contextmanager
+def exits() -> Iterator[None]:
+    """Turn what is raised on purpose into a message and an exit status; Ctrl-C ends the process at once.
+
+    Reports are written beside the old ones and moved into place at the end, so that nothing is half written.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo("\nInterrupted; no report was written.", err=True)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(INTERRUPTED)  # threads that integrate would be waited for
+    except WorkbookError as error:
+        print_problems(error.problems)
+        errors = sum(problem.severity == "error" for problem in error.problems)
+        typer.echo(f"{errors} error{'s' if errors != 1 else ''}; nothing was written.", err=True)
+        raise typer.Exit(2) from None
+    except InputError as error:
+        typer.echo(f"error  {error}", err=True)
+        raise typer.Exit(2) from None
+    except OutputError as error:
+        typer.echo(f"error  {error}", err=True)
+        raise typer.Exit(1) from None
+
+
+def print_problems(problems: Sequence[Problem]) -> None:
+    """Print problems to standard error, the first `MOST_PRINTED` of them."""
+    for problem in problems[:MOST_PRINTED]:
+        typer.echo(f"{problem.severity:<7}  {problem}", err=True)
+    if len(problems) > MOST_PRINTED:
+        typer.echo(f"... and {len(problems) - MOST_PRINTED:,} more.", err=True)
+
+
+def print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
+    """Print the pieces of each class, and name the files."""
+    from assess.ranking import count_pieces
+    from assess.report.verified import describe_verification
+    from assess.risk import RiskClass
+
+    counts, anchored = count_pieces(assessment)
+    for risk in reversed(RiskClass):
+        typer.echo(f"{risk.label:<13} {counts[risk]:>6,} {'piece' if counts[risk] == 1 else 'pieces'}")
+    if anchored:
+        typer.echo(f"{'  anchored':<13} {anchored:>6,}, only as safe as the anchors")
+    typer.echo(f"Chance of overturning in this scenario, not per year. {describe_verification(assessment)}")
+    for file in files:
+        typer.echo(f"wrote {file}", err=True)

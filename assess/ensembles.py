@@ -1,0 +1,115 @@
+"""The motions of every floor and axis: generated for its record or for a generic spectrum, or the user's own."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from assess.demand import Demand, Demands
+from assess.inventory.model import Building
+from assess.motion.fit import Fit
+from assess.motion.record import FloatArray
+from assess.motion.suite import Suite
+from assess.motion.target import Grid, Target, build_grid, estimate_period, generic_target, recorded_target
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenMotions:
+    """Motions that have been made ready: `make` returns those from a number on, and a count of them."""
+
+    make: Callable[[int, int], list[tuple[FloatArray, float]]]
+    fit: Fit | None = None
+
+    def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
+        """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
+        return self.make(first, count)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GeneratedEnsemble:
+    """Motions made for the spectrum of one demand.
+
+    Parameters
+    ----------
+    demand : Demand
+        The floor motion that they stand for.
+    grid : Grid
+        The samples that all floors of the building share, so that motion k is one earthquake.
+    seed : int
+        Of the phases.
+    period, height : float, optional
+        T1 [s] and height [m] of the building, by which a generic spectrum is shaped.
+    """
+
+    demand: Demand
+    grid: Grid
+    seed: int
+    period: float | None = None
+    height: float | None = None
+
+    @property
+    def is_generic(self) -> bool:
+        """Whether its spectrum is a generic one, since no record is known."""
+        return self.demand.motion is None
+
+    @property
+    def record(self) -> tuple[FloatArray, float] | None:
+        """The recorded motion as treated [m/s2], and its time step [s]."""
+        return _record(self.demand)
+
+    def build_target(self) -> Target:
+        """Return what the motions are to match."""
+        demand = self.demand
+        if demand.motion is not None:
+            return recorded_target(demand.motion, self.grid)
+        pfv = math.nan if "pfv_estimated" in demand.flags else demand.pfv
+        return generic_target(demand.pfa, self.grid, pfv=pfv, period=self.period, height=self.height)
+
+    def open(self, threads: int) -> OpenMotions:
+        """Find the filter and the mendings that meet the target."""
+        from assess.motion.compatible import build_generator
+
+        generator = build_generator(
+            self.build_target(), self.grid, seed=self.seed, axis=self.demand.axis, threads=threads
+        )
+        step = self.grid.time_step
+        return OpenMotions(lambda first, count: [(generator.realise(first, count), step)], generator.fit)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SuiteEnsemble:
+    """The user's own motions on one floor along one axis, scaled to its PFA where that is wanted."""
+
+    demand: Demand
+    suite: Suite
+    is_scaled: bool
+    is_generic: bool = False
+
+    @property
+    def record(self) -> tuple[FloatArray, float] | None:
+        """The recorded motion as treated [m/s2], and its time step [s]."""
+        return _record(self.demand)
+
+    def open(self, threads: int) -> OpenMotions:
+        """Take them as they are."""
+        pfa = self.demand.pfa if self.is_scaled else None
+        return OpenMotions(lambda first, count: self.suite.realise(first, count, pfa))
+
+
+FloorEnsemble = GeneratedEnsemble | SuiteEnsemble
+
+
+def _record(demand: Demand) -> tuple[FloatArray, float] | None:
+    return None if demand.motion is None else (demand.motion.acceleration, demand.motion.time_step)
+
+
+def build_ensembles(
+    chosen: Sequence[Demand], demands: Demands, building: Building, *, seed: int
+) -> tuple[GeneratedEnsemble, ...]:
+    """Return one ensemble a demand of `chosen`, on the grid that all `demands` of the building share."""
+    every = {id(one): one for parallel in demands.values() for one in parallel}.values()
+    grid = build_grid(
+        [one.motion for one in every if one.motion is not None],
+        has_generic=any(one.motion is None for one in every),
+        period=building.period or estimate_period(building.height),
+    )
+    return tuple(GeneratedEnsemble(one, grid, seed, building.period, building.height) for one in chosen)

@@ -1,0 +1,95 @@
+"""A suite: a folder of the user's own floor records, which stand in for generated motions."""
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+
+import numpy as np
+
+from assess.errors import RecordError
+from assess.motion.formats import read_records
+from assess.motion.record import FloatArray, Motion, Record, treat
+
+TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst"})
+"""Endings of what stands beside records and is passed over."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Suite:
+    """Motions of the user's own, as treated; motion k is one earthquake, the same on every floor and axis.
+
+    Parameters
+    ----------
+    folder : str
+        Name of the folder.
+    motions : tuple of (str, Motion)
+        Every horizontal channel, by file and channel, in the order of their time steps and then of their names.
+    files : mapping of str to str
+        Hashes (SHA-256) of the files.
+    notes : tuple of str
+        What was left out, and why.
+    """
+
+    folder: str
+    motions: tuple[tuple[str, Motion], ...]
+    files: Mapping[str, str]
+    notes: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.motions)
+
+    def realise(self, first: int, count: int, pfa: float | None = None) -> list[tuple[FloatArray, float]]:
+        """Return motions `first` to `first + count - 1` in batches of one time step: (k, n) [m/s2], step [s].
+
+        Shorter ones are followed by rest. Where a `pfa` [m/s2] is given each is scaled to it.
+        """
+        chosen = [motion for _, motion in self.motions[first : first + count]]
+        return [
+            (_stack([_scaled(motion, pfa) for motion in alike]), step)
+            for step, alike in groupby(chosen, key=lambda motion: motion.time_step)
+        ]
+
+
+def _scaled(motion: Motion, pfa: float | None) -> FloatArray:
+    return motion.acceleration if pfa is None else motion.acceleration * (pfa / motion.pfa)
+
+
+def _stack(rows: list[FloatArray]) -> FloatArray:
+    stacked = np.zeros((len(rows), max(row.size for row in rows)))
+    for at, row in enumerate(rows):
+        stacked[at, : row.size] = row
+    return stacked
+
+
+def read_suite(folder: Path) -> Suite:
+    """Read every record of a folder, but not of folders within it.
+
+    Raises
+    ------
+    RecordError
+        If there is no such folder, no horizontal channel in it, or a file cannot be read as a record: the message names
+        it. Texts (.md, .html, .pdf, .rst) and hidden files are passed over.
+    """
+    if not folder.is_dir():
+        raise RecordError(f"{folder}: there is no such folder. Name a folder of floor records")
+    paths = [path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")]
+    paths = [path for path in paths if path.suffix.lower() not in TEXTS]
+    found = {path: read_records(path) for path in paths}
+    motions = [one for path, records in found.items() for one in _horizontal(path, records)]
+    if not motions:
+        raise RecordError(f"{folder}: it holds no horizontal channel. Put floor records into it")
+    vertical = [f"{path.name}#{one.channel}" for path, records in found.items() for one in records if one.vertical]
+    return Suite(
+        folder=folder.name,
+        motions=tuple(sorted(motions, key=lambda one: (one[1].time_step, one[0]))),
+        files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found},
+        notes=(f"vertical channels are left out: {', '.join(vertical)}",) if vertical else (),
+    )
+
+
+def _horizontal(path: Path, records: tuple[Record, ...]) -> Iterator[tuple[str, Motion]]:
+    for record in records:
+        if not record.vertical:
+            yield (f"{path.name}#{record.channel}" if len(records) > 1 else path.name), treat(record)

@@ -1,0 +1,138 @@
+"""How one block moves under one motion, step by step: what `assess rock` draws.
+
+Importing this imports numba: do so where a block is to be rocked.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.motion.record import FloatArray
+from assess.rocking import block, kernel
+from assess.rocking.ensemble import build_blocks, check_blocks, check_motions, count_parts, divide
+
+MOST_TRACED = 10_000_000
+"""Steps of which the path is kept, 240 MB; the outcome is that of all."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Response:
+    """What one block did under one motion.
+
+    Parameters
+    ----------
+    critical_angle, frequency_parameter, restitution : float
+        The block's alpha [rad], p [rad/s] and eta [-].
+    overturned, rotation, fall_time, impacts
+        As of `assess.rocking.ensemble.Rocking`, for one pair.
+    times, theta : (t,) arrays
+        Path of the rotation [s, rad], whose points are unevenly spaced: the ends of steps, impacts, and both ends of
+        each rest. It ends where the block has overturned, at pi/2; else with the motion, or, where the block is still
+        rocking then, up to a step before it is known that it can no longer fall. Peaks lie between points, so that the
+        largest of `theta` may be below `rotation`.
+    impact_times : (impacts,) array
+        [s]; an impact after which the block rests is put at the next sample.
+    """
+
+    critical_angle: float
+    frequency_parameter: float
+    restitution: float
+    overturned: bool
+    rotation: float
+    fall_time: float
+    impacts: int
+    times: FloatArray
+    theta: FloatArray
+    impact_times: FloatArray
+
+
+def follow_block(
+    breadth: float, height: float, acceleration: FloatArray, time_step: float, *, restitution: float = math.nan
+) -> Response:
+    """Integrate one block under one motion, as `assess.rocking.ensemble.rock_blocks` does, and keep its path.
+
+    Parameters
+    ----------
+    breadth, height : float
+        Sizes of the block [m]; breadth is the side parallel to the motion.
+    acceleration : (n,) array
+        Base acceleration [m/s2].
+    time_step : float
+        [s]
+    restitution : float
+        Angular velocity after an impact over that before it [-], 0 to 1; NaN is Housner's 1 - 1.5 sin2(alpha).
+
+    Raises
+    ------
+    ValueError
+        As `rock_blocks`.
+    """
+    sizes = np.stack(check_blocks(breadth, height, restitution))
+    motions = check_motions(np.asarray(acceleration)[np.newaxis], time_step)
+    parts = int(count_parts(sizes, time_step)[0])
+    motions, step = divide(motions, parts), time_step / parts
+    blocks, outcome = build_blocks(sizes, step), np.array([[[0.0, -1.0, 0.0]]])
+    # The first pass counts the steps, the second keeps them, but for the last: together they take milliseconds.
+    taken = kernel.rock(blocks, motions, 0, 1, outcome, np.zeros((0, 3))) // kernel.LANES
+    trace = np.zeros((min(max(taken - 1, 0), MOST_TRACED), 3))
+    kernel.rock(blocks, motions, 0, 1, outcome, trace)
+    rotation, fall, struck = (float(value) for value in outcome[0, 0])
+    start, last = _find_start(motions[0, :-2], blocks[0, 3]), motions.shape[1] - 3.0
+    times, theta, impact_times = _fill_rests(start, trace, last)
+    if start == start and taken - 1 <= MOST_TRACED:
+        times, theta, impact_times = _end(times, theta, impact_times, last, fall, int(struck))
+    return Response(
+        critical_angle=float(blocks[0, 0]),
+        frequency_parameter=float(block.frequency_parameter(sizes[0], sizes[1])[0]),
+        restitution=float(sizes[2, 0]),
+        overturned=fall >= 0,
+        rotation=rotation,
+        fall_time=fall * step if fall >= 0 else math.nan,
+        impacts=int(struck),
+        times=times * step,
+        theta=theta,
+        impact_times=impact_times * step,
+    )
+
+
+def _find_start(motion: FloatArray, threshold: float) -> float:
+    """Return when a motion first exceeds a threshold [samples]; NaN if it never does."""
+    at = int((np.abs(motion) > threshold).argmax())
+    if abs(motion[at]) <= threshold:
+        return math.nan
+    if at == 0:
+        return 0.0
+    before = motion[at - 1]
+    return float(at - 1 + (math.copysign(threshold, motion[at]) - before) / (motion[at] - before))
+
+
+def _fill_rests(start: float, trace: FloatArray, last: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return times, theta and times of impacts [samples] of a trace, with zeros from rest to rest."""
+    if start != start:
+        return np.array([0.0, last]), np.zeros(2), np.zeros(0)
+    times, theta = np.append(start, trace[:, 0]), np.append(0.0, trace[:, 1])
+    ends = np.floor(times) + 1  # of the steps from each point; where the next is later, the block has been at rest
+    struck = np.diff(trace[:, 2], prepend=0.0) > 0
+    impact_times = np.minimum(times[1:], ends[:-1])[struck]
+    rests = np.flatnonzero(times[1:] > ends[:-1])
+    times, theta = np.insert(times, rests + 1, ends[rests]), np.insert(theta, rests + 1, 0.0)
+    before = np.zeros(1 if start > 0 else 0)
+    return np.append(before, times), np.append(before, theta), impact_times
+
+
+def _end(
+    times: FloatArray, theta: FloatArray, impact_times: FloatArray, last: float, fall: float, struck: int
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Add what the last step brought, which is not in the trace: the fall, or the impact after which the block rests.
+
+    From the end of the motion on, one sample after its last, the last step tells that the block can no longer fall, and
+    the path ends before it.
+    """
+    if fall >= 0:
+        return np.append(times, fall), np.append(theta, math.copysign(math.pi / 2, theta[-1])), impact_times
+    end = math.floor(times[-1]) + 1.0
+    strikes = struck > impact_times.size
+    rest = ([end] if strikes or end <= last else []) + ([last] if end < last else [])
+    impact_times = np.append(impact_times, end) if strikes else impact_times
+    return np.append(times, rest), np.append(theta, np.zeros(len(rest))), impact_times
