@@ -135,7 +135,7 @@ def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
         ({"restitution": "nan"}, "--restitution is nan, expected 0 to 1"),
         ({"baseline": "strict"}, "--baseline is 'strict', expected one of: standard, none"),
         ({"breadth": "40cm"}, "Invalid value for '--breadth'"),
-        ({"record": f"{SWEEP}#up"}, "made-up-sweep.csv#up is a vertical channel, which topples no furniture. Name a hor"),
+        ({"record": f"{SWEEP}#up"}, "made-up-sweep.csv#up is a vertical channel, which topples no furniture. Name"),
         ({"record": SAMPLES / "1103.HNZ.NP.BE_a.smc"}, "1103.HNZ.NP.BE_a.smc is a vertical channel, which topples no"),
         ({"record": SWEEP}, "made-up-sweep.csv holds 3 channels: north, east, up. Write which, as made-up-sweep.csv#n"),
         ({"record": f"{SWEEP}#west"}, "made-up-sweep.csv has no channel 'west'. It holds: north, east, up"),
@@ -198,3 +198,10 @@ def test_help_names_the_units():
     text = CliRunner().invoke(app, ["rock", "--help"]).output
     for words in ("--breadth", "[cm]", "--pfa", "[g]", "--restitution", "--baseline", "--json", "--plot"):
         assert words in text
+
+
+def test_the_example_of_the_readme_is_what_is_printed(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    found = re.search(r"^\$ assess (rock .*)\n((?:.+\n)+?)```", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE)
+    assert found
+    assert CliRunner().invoke(app, found[1].split()).stdout == found[2]

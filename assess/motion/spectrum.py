@@ -107,7 +107,10 @@ def _respond(
     rows = np.ascontiguousarray(np.atleast_2d(acceleration))
     step = oscillator_step(periods, time_step, damping)
     peaks = np.zeros((len(rows), 2, periods.size))
-    run_rows(lambda row: _peaks(rows[row], step, peaks[row], both), len(rows), threads)
+    if both:
+        run_rows(lambda row: _peaks(rows[row], step, peaks[row]), len(rows), threads)
+    else:
+        run_rows(lambda row: _displacements(rows[row], step, peaks[row, 0]), len(rows), threads)
     return peaks.reshape((*acceleration.shape[:-1], 2, periods.size))
 
 
@@ -146,8 +149,8 @@ def oscillator_step(periods: FloatArray, time_step: float, damping: float = DAMP
 
 
 @compiled
-def _peaks(acceleration: FloatArray, step: FloatArray, peaks: FloatArray, both: bool) -> None:  # pragma: no cover
-    """Fill `peaks` (2, m) with peak |u| and, if `both`, peak absolute acceleration; inner loops run in vector lanes."""
+def _peaks(acceleration: FloatArray, step: FloatArray, peaks: FloatArray) -> None:  # pragma: no cover
+    """Fill `peaks` (2, m) with peak |u| and peak absolute acceleration; inner loops run in vector lanes."""
     count = step.shape[1]
     r0, r1, r2, r3, r4, r5, r6, r7, r8, r9 = (
         step[0], step[1], step[2], step[3], step[4], step[5], step[6], step[7], step[8], step[9],
@@ -161,6 +164,23 @@ def _peaks(acceleration: FloatArray, step: FloatArray, peaks: FloatArray, both: 
             next_v = r2[j] * u[j] + r3[j] * v[j] + r6[j] * a + r7[j] * b
             u[j], v[j] = next_u, next_v
             displacement[j] = max(displacement[j], abs(next_u))
-        if both:
-            for j in range(count):
-                absolute[j] = max(absolute[j], abs(r8[j] * v[j] + r9[j] * u[j]))
+        for j in range(count):
+            absolute[j] = max(absolute[j], abs(r8[j] * v[j] + r9[j] * u[j]))
+
+
+@compiled
+def _displacements(acceleration: FloatArray, step: FloatArray, peak: FloatArray) -> None:  # pragma: no cover
+    """Fill `peak` (m,) with peak |u|; two steps a turn, which halves what is read and written."""
+    count, last = step.shape[1], acceleration.size - 1
+    r0, r1, r2, r3, r4, r5, r6, r7 = step[0], step[1], step[2], step[3], step[4], step[5], step[6], step[7]
+    u, v = np.zeros(count), np.zeros(count)
+    for i in range(0, last, 2):
+        a, b, c = acceleration[i], acceleration[i + 1], acceleration[min(i + 2, last)]
+        counts = 1.0 if i + 2 <= last else 0.0  # an odd number of steps ends after the first of a turn
+        for j in range(count):
+            u1 = r0[j] * u[j] + r1[j] * v[j] + r4[j] * a + r5[j] * b
+            v1 = r2[j] * u[j] + r3[j] * v[j] + r6[j] * a + r7[j] * b
+            u2 = r0[j] * u1 + r1[j] * v1 + r4[j] * b + r5[j] * c
+            v2 = r2[j] * u1 + r3[j] * v1 + r6[j] * b + r7[j] * c
+            u[j], v[j] = u2, v2
+            peak[j] = max(peak[j], abs(u1), counts * abs(u2))

@@ -25,9 +25,12 @@ COUNT, WINDOW, SEED = 2116, 25.0, 20261121
 ROBUST = (0.98, 0.99, 0.995, 1.0, 1.005, 1.01, 1.02)
 HEADS = ("record", "breadth_m", "height_m", "times_threshold", "overturned", "max_rotation_ratio", "impacts", "robust")
 
+Pair = tuple[str, float, float, float]
+"""Record, breadth and height [m], and peak over the threshold."""
+
 
 @cache
-def ground(name):
+def ground(name: str) -> tuple[np.ndarray, float]:
     """Return the strongest 25 s of a record [g], 5 s of which are before its peak, and the time step [s]."""
     motion = treat(read_records(ROOT / name)[0])
     values, step = motion.acceleration / GRAVITY, motion.time_step
@@ -35,7 +38,7 @@ def ground(name):
     return values[first : first + round(WINDOW / step)], step
 
 
-def record_names():
+def record_names() -> list[str]:
     found = [
         path
         for folder in FOLDERS
@@ -45,7 +48,7 @@ def record_names():
     return [name for name in names if not read_records(ROOT / name)[0].vertical]
 
 
-def draw_pairs():
+def draw_pairs() -> list[Pair]:
     """Return the pairs: every record as often, sizes of furniture, 0.5 to 4 times the rocking threshold."""
     rng, names = np.random.default_rng(SEED), record_names()
     pairs = []
@@ -57,7 +60,7 @@ def draw_pairs():
     return pairs
 
 
-def find(pair):
+def find(pair: Pair) -> tuple[str, float, float, float, int, str, int, int]:
     """Return the reference's row of a pair."""
     name, breadth, height, times = pair
     values, step = ground(name)
@@ -70,12 +73,12 @@ def find(pair):
     return (*pair, int(one.overturned), f"{one.rotation:.9g}", one.impacts, int(robust))
 
 
-def read_table():
+def read_table() -> list[dict[str, str]]:
     with TABLE.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
-def main():
+def main() -> None:
     with ProcessPoolExecutor(int(sys.argv[1]) if len(sys.argv) > 1 else 1) as pool:
         rows = list(pool.map(find, draw_pairs(), chunksize=4))
     with TABLE.open("w", encoding="utf-8", newline="") as file:

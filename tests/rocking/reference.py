@@ -56,12 +56,12 @@ class Block:
         return self.p**2 * ((self.alpha - phi) ** 2 / 2 if self.linear else 1 - math.cos(self.alpha - phi))
 
 
-def of_sizes(breadth, height):
+def of_sizes(breadth: float, height: float) -> Block:
     alpha = math.atan(breadth / height)
     return Block(alpha, math.sqrt(3 * GRAVITY / (2 * math.hypot(breadth, height))), 1 - 1.5 * math.sin(alpha) ** 2)
 
 
-def integrate(block, ground, time_step):
+def integrate(block: Block, ground: np.ndarray, time_step: float) -> Found:
     """Integrate a block under accelerations [g], one every `time_step` [s]."""
     values = [*(float(one) for one in ground), 0.0, 0.0]
     at = -1
@@ -151,6 +151,6 @@ def _is_safe(block):
     return True
 
 
-def scaled(ground, block, times):
+def scaled(ground: np.ndarray, block: Block, times: float) -> np.ndarray:
     """Return accelerations [g] whose peak is so many times the rocking threshold."""
-    return np.asarray(ground) * (times * block.threshold / np.abs(ground).max())
+    return np.asarray(ground * (times * block.threshold / np.abs(ground).max()))
