@@ -26,6 +26,8 @@ blank: .venv/.installed
 
 docs: .venv/.installed
 	$(BIN)/python docs/motions.py
+	$(BIN)/python docs/rocking.py
+	$(BIN)/python docs/verification.py
 
 .venv/.installed: pyproject.toml setup.sh
 	PYTHON="$(PYTHON)" sh setup.sh .
