@@ -4,10 +4,11 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.adoption import VERIFICATION, adopt, choose_items, find_governing
-from assess.demand import AXES, Demand, build_demands
-from assess.inventory.model import Axis, Inventory, Item
+from assess.demand import AXES, Demand, Demands, build_demands
+from assess.inventory.model import Inventory
 from assess.methods import Cases, all_methods
 from assess.motion.suite import Suite
 from assess.remarks import remark
@@ -58,15 +59,8 @@ def run(
     settings = settings if suite is None else replace(settings, runs=len(suite))
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction)
-    pairs = [
-        (index, demand)
-        for index, item in enumerate(inventory.items)
-        for axis in _axes(item)
-        for demand in demands[item.floor, axis]
-    ]
-    case_item = np.array([index for index, _ in pairs], dtype=np.intp)
-    case_demand = tuple(demand for _, demand in pairs)
-    cases = _cases(inventory, pairs)
+    case_item, case_demand = _pair(inventory, demands)
+    cases = _cases(inventory, case_item, case_demand)
     outcomes = {one.key: one.evaluate(cases, settings) for one in all_methods() if one.tier == "screening"}
     chosen = choose_items(settings.verify, outcomes, case_item, _has_route(inventory))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
@@ -89,27 +83,34 @@ def run(
     )
 
 
-def _axes(item: Item) -> tuple[Axis, ...]:
-    return (item.axis,) if item.axis else AXES
+def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tuple[Demand, ...]]:
+    """Pair each item (its index) with every motion of its axis, or of both; those of an item stand together."""
+    pairs = [
+        (index, demand)
+        for index, item in enumerate(inventory.items)
+        for axis in ((item.axis,) if item.axis else AXES)
+        for demand in demands[item.floor, axis]
+    ]
+    return np.array([index for index, _ in pairs], dtype=np.intp), tuple(demand for _, demand in pairs)
 
 
-def _has_route(inventory: Inventory) -> np.ndarray:
+def _has_route(inventory: Inventory) -> NDArray[np.bool_]:
     return np.array([bool(item.route) for item in inventory.items], dtype=np.bool_)
 
 
-def _cases(inventory: Inventory, pairs: list[tuple[int, Demand]]) -> Cases:
-    items, restitution = inventory.items, inventory.building.restitution
-
-    def column(values: list[float | None]) -> np.ndarray:
+def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]) -> Cases:
+    def column(values: list[float | None]) -> NDArray[np.float64]:
         return np.array(values, dtype=np.float64)
 
+    items = [inventory.items[index] for index in case_item]
+    restitution = inventory.building.restitution
     return Cases(
-        breadth=column([items[index].breadth for index, _ in pairs]),
-        height=column([items[index].height for index, _ in pairs]),
-        pfa=column([demand.pfa for _, demand in pairs]),
-        pfv=column([demand.pfv for _, demand in pairs]),
-        friction=column([items[index].friction for index, _ in pairs]),
-        pfv_estimated=np.array(["pfv_estimated" in demand.flags for _, demand in pairs], dtype=np.bool_),
-        restitution=np.full(len(pairs), math.nan if restitution is None else restitution),
-        ensemble=np.full(len(pairs), -1, dtype=np.intp),
+        breadth=column([item.breadth for item in items]),
+        height=column([item.height for item in items]),
+        pfa=column([demand.pfa for demand in case_demand]),
+        pfv=column([demand.pfv for demand in case_demand]),
+        friction=column([item.friction for item in items]),
+        pfv_estimated=np.array(["pfv_estimated" in demand.flags for demand in case_demand], dtype=np.bool_),
+        restitution=np.full(len(items), math.nan if restitution is None else restitution),
+        ensemble=np.full(len(items), -1, dtype=np.intp),
     )

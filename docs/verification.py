@@ -125,8 +125,7 @@ def describe(pairs: list[Pair]) -> Iterator[str]:
         yield conclude([pair for pair in pairs if pair.is_along == is_along], directions)
     yield ""
     yield "The agreement that the paper reports is thus not general: two directions of a floor shake differently, and"
-    yield "differ by any method. Which axis a piece topples along matters, and `assess` takes the worse one where it is not"
-    yield "known."
+    yield "differ by any method. Which axis a piece topples along matters; where unknown, `assess` takes the worse."
 
 
 def describe_pair(pair: Pair) -> str:

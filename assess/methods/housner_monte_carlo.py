@@ -69,22 +69,29 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, tell: Tell |
     for joint, record in _side_by_side(work, owns, side_by_side):
         found.take(joint, record, cases.ensembles[joint.ensemble].is_generic)
         joints.append(joint)
-    low, high = (np.full(known.size, np.nan) for _ in range(2))
-    done = found.runs > 0
-    low[done], high[done] = wilson_interval(found.overturned[done], found.runs[done], interval_width(settings))
-    value = np.where(done, found.overturned / np.maximum(found.runs, 1), np.nan)
+    return _summarise(found, cases, settings, joints)
+
+
+def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[Joint]) -> Outcome:
+    done, runs = found.runs > 0, np.maximum(found.runs, 1)
+    low, high = (
+        np.where(done, end, np.nan) for end in wilson_interval(found.overturned, runs, interval_width(settings))
+    )
     detail = {
-        "runs": np.where(done, found.runs, np.nan), "overturned": np.where(done, found.overturned, np.nan),
-        "low": low, "high": high,
-        "record_overturned": found.record_fell, "record_rotation": found.record_rotation,
-    }  # fmt: skip
+        "runs": np.where(done, runs, np.nan),
+        "overturned": np.where(done, found.overturned, np.nan),
+        "low": low,
+        "high": high,
+        "record_overturned": found.record_fell,
+        "record_rotation": found.record_rotation,
+    }
     flags = {
         "fell_in_record": found.record_fell == 1,
         "generic_spectrum": found.generic,
         "undecided": done & (settings.runs == AUTO) & (classify_all(low) != classify_all(high)),
         "does_not_rock": cases.breadth_to_height >= STOCKY,
     }
-    return Outcome(value, detail, flags, tuple(joints))
+    return Outcome(np.where(done, found.overturned / runs, np.nan), detail, flags, tuple(joints))
 
 
 def _side_by_side(work: Callable[..., _Result], tasks: list[Any], threads: int) -> Iterator[_Result]:
