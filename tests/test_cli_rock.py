@@ -202,6 +202,6 @@ def test_help_names_the_units():
 
 def test_the_example_of_the_readme_is_what_is_printed(monkeypatch):
     monkeypatch.chdir(ROOT)
-    found = re.search(r"^\$ assess (rock .*)\n((?:.+\n)+?)```", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE)
+    found = re.search(r"^assess (rock .*)\n\n((?:.+\n)+?)```", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE)
     assert found
     assert CliRunner().invoke(app, found[1].split()).stdout == found[2]

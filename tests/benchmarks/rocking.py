@@ -131,7 +131,10 @@ def slow(alpha: float, p: float, eta: float, motion: Array, step: float) -> bool
             later = np.flatnonzero((np.abs(values) > math.tan(alpha)) & (times > now))
             if not later.size:
                 return False
-            now, edge, state = times[later[0]], -np.sign(values[later[0]]), [1e-12, 0.0]
+            at = int(later[0])
+            before, edge = values[at - 1] if at else 0.0, -np.sign(values[at])
+            share = (-edge * math.tan(alpha) - before) / (values[at] - before)
+            now, state = max(now, times[at] - step * (1 - max(0.0, share))), [1e-12, 0.0]
         found = solve_ivp(rates, (now, end), state, events=(impact, fall), max_step=step, rtol=1e-5, atol=1e-7)
         if found.t_events[1].size:
             return True
@@ -168,7 +171,7 @@ def plain(alpha: float, p: float, eta: float, motion: Array, step: float) -> boo
             speed += dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
             if phi < 0:
                 phi, speed, edge = 0.0, -eta * speed, -edge
-                rests = speed < 1e-3 * p * alpha
+                rests = speed < pp * alpha * dt
             elif phi >= math.pi / 2:
                 return True
         if sample >= motion.size:

@@ -1,6 +1,7 @@
-"""Benchmarks: whole processes, and motions made, as ratios against a rival in the same run. Run: ``make benchmark``.
+"""Benchmarks: whole processes, motions made and blocks rocked, as ratios against a rival in the same run.
 
-Times on a shared machine vary; each pair runs in turn, and the median of the ratios is what counts.
+Run: ``make benchmark``. Times on a shared machine vary; each pair runs in turn, and the median of the ratios is what
+counts.
 """
 
 import statistics
@@ -18,6 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.motion.compatible import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
+from tests.benchmarks import rocking
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -51,6 +53,9 @@ def main() -> None:
     print("\n| motions of 4,000 samples | seconds | rival | seconds | times as fast | aim |\n|---|---|---|---|---|---|")
     print(_spectrum())
     print(_ensemble())
+    print()
+    for row in rocking.rows():
+        print(row)
 
 
 def _items(count: int) -> list[dict[str, object]]:
