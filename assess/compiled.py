@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -11,26 +11,39 @@ from numba import config, njit
 _Function = TypeVar("_Function", bound=Callable[..., object])
 
 
+OPTIONS: Mapping[str, Any] = {
+    "nogil": True,  # threads run side by side
+    "error_model": "numpy",
+    "fastmath": {"nnan", "nsz", "contract", "arcp"},  # what vector lanes need; sums keep their order
+}
+
+
 def compiled(function: _Function) -> _Function:
     """Compile `function` when it is first called, and keep that for the next process in the user's cache folder.
 
     A folder that NUMBA_CACHE_DIR names is used instead; where nothing can be kept, each process compiles anew.
     """
-    options: dict[str, Any] = {
-        "nogil": True,  # threads run side by side
-        "error_model": "numpy",
-        "fastmath": {"nnan", "nsz", "contract", "arcp"},  # what vector lanes need; sums keep their order
-    }
     settings = cast("Any", config)
     chosen = settings.CACHE_DIR
     try:
         # numba has no argument for this folder, and takes it at this moment; so only this function is kept there.
         settings.CACHE_DIR = chosen or str(cache_folder())
-        return cast("_Function", njit(cache=True, **options)(function))
+        return cast("_Function", njit(cache=True, **OPTIONS)(function))
     except (RuntimeError, OSError):
-        return cast("_Function", njit(**options)(function))
+        return cast("_Function", njit(**OPTIONS)(function))
     finally:
         settings.CACHE_DIR = chosen
+
+
+def compiled_into(function: _Function) -> _Function:
+    """Compile `function` as a part of the compiled functions that call it, often; it may make no arrays.
+
+    numba does not count references to arrays in it, which would cost more than the work of a small function.
+    """
+    try:
+        return cast("_Function", cast("Any", njit)(_nrt=False, **OPTIONS)(function))
+    except (KeyError, TypeError):  # numba does not promise to keep this option
+        return cast("_Function", njit(**OPTIONS)(function))
 
 
 def cache_folder() -> Path:

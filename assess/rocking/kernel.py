@@ -26,12 +26,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.compiled import compiled
+from assess.compiled import compiled, compiled_into
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-LANES = 16
+LANES = 32
 OVERTURNED = math.pi / 2
 """Rotation at which a block has fallen [rad]."""
 SHORTEST = 1e-10
@@ -70,11 +70,11 @@ C0, C1, C2, C3, C4, C5, C6, C7 = (
 # Rows of the lanes' state, one after the other in one array, by which the compiler sees that they do not overlap.
 PHI, VELOCITY, DONE, EDGE, PEAK, LEFT, MARK = (row * LANES for row in range(7))
 """Where a block is: angle, velocity, share of the sample that is done, edge, largest angle, samples left, a mark."""
-ALPHA, PP, ETA, TAN = (row * LANES for row in range(7, 11))
-"""The block: critical angle, (p dt)2, restitution, threshold B/H."""
-A0, A1, START, SPAN, D1, D2, D3, D4, D5, D6 = (row * LANES for row in range(11, 21))
+ALPHA, PP, ETA, TAN, COS = (row * LANES for row in range(7, 12))
+"""The block: critical angle, (p dt)2, restitution, threshold B/H, cosine of the angle."""
+A0, A1, START, SPAN, D1, D2, D3, D4, D5, D6 = (row * LANES for row in range(12, 22))
 """Its last step: accelerations at the two samples, angle at its start, its length, and k times the k-th Taylor term."""
-ROWS = 21
+ROWS = 22
 AT, STRIDE, BLOCK, MOTION, IMPACTS, AFTER = (row * LANES for row in range(6))
 """Counters: sample, samples a step (0 after the end of the motion), which block (-1: none) and motion, impacts, steps
 after the end of the motion."""
@@ -112,13 +112,15 @@ def rock(
     pair, end, steps, traced = first * len(blocks), last * len(blocks), 0, 0
     for lane in range(LANES):
         pair = _take(state, count, lane, pair, end, blocks, motions, crests)
-    while count[BLOCK : BLOCK + LANES].max() >= 0:
+    live = (count[BLOCK : BLOCK + LANES] >= 0).sum()
+    while live > 0:
         steps += LANES
         marked = _step(state, count, samples)
         for lane in range(LANES if marked else 0):
             if state[MARK + lane] > 0.0 and _attend(state, count, lane, motions, crests):
                 _put(state, count, lane, motions.shape[1], outcome)
                 pair = _take(state, count, lane, pair, end, blocks, motions, crests)
+                live -= count[BLOCK + lane] < 0
         if traced < len(trace) and count[BLOCK] >= 0:
             trace[traced, 0] = count[AT] + count[AFTER] + state[DONE] - first * motions.shape[1]
             trace[traced, 1], trace[traced, 2] = state[EDGE] * state[PHI], count[IMPACTS]
@@ -138,7 +140,7 @@ def _find_crests(motions: FloatArray, first: int, last: int) -> FloatArray:  # p
     return crests
 
 
-@compiled
+@compiled_into
 def _step(s: FloatArray, count: IntArray, samples: FloatArray) -> int:  # pragma: no cover
     """Take one step in every lane; mark those to be seen to, and count them. Long, since it is the hot loop."""
     for lane in range(LANES):
@@ -182,7 +184,7 @@ def _step(s: FloatArray, count: IntArray, samples: FloatArray) -> int:  # pragma
     return marked
 
 
-@compiled
+@compiled_into
 def _take(
     s: FloatArray,
     count: IntArray,
@@ -198,6 +200,7 @@ def _take(
     while pair < end:
         motion, block = pair // len(blocks), pair % len(blocks)
         s[ALPHA + lane], s[PP + lane], s[ETA + lane], s[TAN + lane] = blocks[block]
+        s[COS + lane] = math.cos(s[ALPHA + lane])
         s[DONE + lane], s[PEAK + lane], s[LEFT + lane] = 0.0, 0.0, width - 2.0
         count[AT + lane], count[STRIDE + lane] = motion * width, 1
         count[BLOCK + lane], count[MOTION + lane] = block, motion
@@ -212,7 +215,7 @@ def _take(
     return pair
 
 
-@compiled
+@compiled_into
 def _start(
     s: FloatArray, count: IntArray, lane: int, motions: FloatArray, crests: FloatArray
 ) -> bool:  # pragma: no cover
@@ -238,7 +241,7 @@ def _start(
     return False
 
 
-@compiled
+@compiled_into
 def _attend(
     s: FloatArray, count: IntArray, lane: int, motions: FloatArray, crests: FloatArray
 ) -> bool:  # pragma: no cover
@@ -257,7 +260,7 @@ def _attend(
     return s[LEFT + lane] <= 0.0 and _settle(s, count, lane)
 
 
-@compiled
+@compiled_into
 def _follow(s: FloatArray, lane: int, u: float) -> tuple[float, float, float]:  # pragma: no cover
     """Return angle, velocity and acceleration at the share `u` of a lane's last step, per length of the step."""
     d1, d2, d3, d4, d5, d6 = s[D1 + lane], s[D2 + lane], s[D3 + lane], s[D4 + lane], s[D5 + lane], s[D6 + lane]
@@ -266,7 +269,7 @@ def _follow(s: FloatArray, lane: int, u: float) -> tuple[float, float, float]:  
     return angle, velocity, d2 + u * (2 * d3 + u * (3 * d4 + u * (4 * d5 + u * 5 * d6)))
 
 
-@compiled
+@compiled_into
 def _find_turn(s: FloatArray, lane: int) -> float:  # pragma: no cover
     """Return the share of a lane's last step at which its velocity, of opposite sign at its ends, is zero."""
     first, last = s[D1 + lane], s[VELOCITY + lane] * s[SPAN + lane]
@@ -282,14 +285,14 @@ def _find_turn(s: FloatArray, lane: int) -> float:  # pragma: no cover
     return float(u)
 
 
-@compiled
+@compiled_into
 def _find_peak(s: FloatArray, lane: int) -> float:  # pragma: no cover
     """Return the largest angle within a lane's last step, in which it turns back; 0 if it does not."""
     turns = s[VELOCITY + lane] <= 0.0 < s[D1 + lane]
     return float(_follow(s, lane, _find_turn(s, lane))[0]) if turns else 0.0
 
 
-@compiled
+@compiled_into
 def _find_impact(s: FloatArray, lane: int) -> float:  # pragma: no cover
     """Return the share of a lane's last step at which the angle comes back to zero; -1 if it does not."""
     start, d1, high = s[START + lane], s[D1 + lane], 1.0
@@ -299,9 +302,11 @@ def _find_impact(s: FloatArray, lane: int) -> float:  # pragma: no cover
         high = _find_turn(s, lane)
         if _follow(s, lane, high)[0] >= 0.0:
             return -1.0
-    low, u = 0.0, high * 0.999
-    if start > 0.0 and high == 1.0:
-        u = start / (start - s[PHI + lane])
+    # From the parabola that leaves with the step's velocity and acceleration; then by Newton's rule.
+    d2 = s[D2 + lane]
+    low, root = 0.0, math.sqrt(max(0.0, d1 * d1 - 2.0 * start * d2))
+    u = -2.0 * d1 / d2 if start == 0.0 else 2.0 * start / (root - d1)
+    u = u if 0.0 < u < high else 0.999 * high
     for _ in range(ROUNDS):
         angle, velocity, _ = _follow(s, lane, u)
         low, high = (u, high) if angle > 0.0 else (low, u)
@@ -309,12 +314,12 @@ def _find_impact(s: FloatArray, lane: int) -> float:  # pragma: no cover
         better = u - (angle / velocity if start > 0.0 else angle * u / (velocity * u - angle))
         better = better if low <= better <= high else (low + high) / 2
         change, u = abs(better - u), better
-        if change < 1e-13:
+        if change < 1e-7 * u:
             break
     return float(u)
 
 
-@compiled
+@compiled_into
 def _strike(s: FloatArray, count: IntArray, lane: int, place: float) -> bool:  # pragma: no cover
     """Have a block strike its other edge at a share of the lane's last step; True if it rests then."""
     span, tan, alpha = s[SPAN + lane], s[TAN + lane], s[ALPHA + lane]
@@ -328,11 +333,11 @@ def _strike(s: FloatArray, count: IntArray, lane: int, place: float) -> bool:  #
         count[AT + lane] -= count[STRIDE + lane]
     # As long as its weight brings it back, the next hop is v2 / 2 f high.
     here = s[EDGE + lane] * (s[A0 + lane] + done * (s[A1 + lane] - s[A0 + lane]))
-    back = s[PP + lane] * math.cos(alpha) * (tan + here)
+    back = s[PP + lane] * s[COS + lane] * (tan + here)
     return bool(velocity * velocity < 2.0 * back * REST * alpha)
 
 
-@compiled
+@compiled_into
 def _settle(s: FloatArray, count: IntArray, lane: int) -> bool:  # pragma: no cover
     """After the end of a motion: True if a block can no longer fall; its next peak counts. Else it is carried on."""
     phi, velocity, alpha, pp = s[PHI + lane], s[VELOCITY + lane], s[ALPHA + lane], s[PP + lane]
@@ -347,7 +352,7 @@ def _settle(s: FloatArray, count: IntArray, lane: int) -> bool:  # pragma: no co
     return bool(count[AFTER + lane] > MOST_AFTER)
 
 
-@compiled
+@compiled_into
 def _put(s: FloatArray, count: IntArray, lane: int, width: int, outcome: FloatArray) -> None:  # pragma: no cover
     """Write down a lane's decided pair."""
     motion = count[MOTION + lane]

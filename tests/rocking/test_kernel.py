@@ -37,6 +37,7 @@ class Free:
             kernel._take(self.state, self.count, lane, 0, 0, self.blocks, self.ground, self.crests)
         s, c = self.state, self.count
         s[[kernel.ALPHA, kernel.PP, kernel.ETA, kernel.TAN]] = self.blocks[0]
+        s[kernel.COS] = np.cos(s[kernel.ALPHA])
         s[[kernel.PHI, kernel.VELOCITY, kernel.DONE, kernel.EDGE, kernel.PEAK]] = angle, 0, 0, 1, angle
         s[kernel.LEFT], c[kernel.STRIDE], c[kernel.BLOCK] = STILL, 1, 0
         self.pp, self.alpha, self.over = p_dt**2, alpha, False
