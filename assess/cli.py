@@ -246,7 +246,7 @@ def _read_formats(formats: str, verify: str) -> list[str]:
 def _settings(verify: str, runs: str, seed: int, scale_motions: bool, scenario: str | None) -> Settings:
     if verify not in VERIFY:
         raise typer.BadParameter(f"{verify!r} is not one of: {', '.join(VERIFY)}.", param_hint="--verify")
-    if runs != AUTO and not (runs.isascii() and runs.isdigit() and 1 <= int(runs) <= MOST_RUNS):
+    if runs != AUTO and not (runs.isascii() and runs.isdigit() and len(runs) < 10 and 1 <= int(runs) <= MOST_RUNS):
         raise typer.BadParameter(f"{runs!r} is not a number from 1 to {MOST_RUNS:,}, nor {AUTO}.", param_hint="--runs")
     kind = None if scenario is None else match_choice(scenario, SCENARIOS)
     if scenario is not None and kind is None:

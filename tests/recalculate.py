@@ -1,14 +1,19 @@
-"""Recalculates a workbook in LibreOffice, where it is installed.
+"""Recalculates a workbook, in formualizer and where it is installed in LibreOffice, to hold its stored results against.
 
 LibreOffice keeps the results that a file stores unless its profile says otherwise, so that a comparison would compare
 a file with itself; the profile written here says: always recalculate.
 """
 
+import re
 import shutil
 import subprocess
 import tempfile
+import zipfile
 from pathlib import Path
+from typing import Any
 
+import formualizer
+import openpyxl
 import pytest
 
 _SOFFICE = shutil.which("soffice") or shutil.which("libreoffice")
@@ -36,3 +41,44 @@ def libreoffice(path: Path, out: Path) -> Path:
         subprocess.run(command, check=True, capture_output=True, timeout=180)
         shutil.copy(Path(box) / "out" / f"{path.stem}.xlsx", out)
     return out
+
+
+def stored_cells(path: Path) -> dict[tuple[str, str], Any]:
+    """Return what a file stores, results of formulas included, by sheet and cell."""
+    book = openpyxl.load_workbook(path, data_only=True)
+    return {(sheet.title, cell.coordinate): cell.value for sheet in book for row in sheet.iter_rows() for cell in row
+            if cell.value is not None}  # fmt: skip
+
+
+def poison(path: Path) -> None:
+    """Replace every stored result by nonsense, so that agreement can only come from recalculation."""
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in parts.items():
+            if name.startswith("xl/worksheets/sheet"):
+                plain = re.sub(rb' t="str"(?=[^>]*><f>)', b"", data)
+                archive.writestr(name, re.sub(rb"(</f>)<v>[^<]*</v>", rb"\1<v>0.123</v>", plain))
+            else:
+                archive.writestr(name, data)
+
+
+def compare_formulas(path: Path) -> int:
+    """Hold every stored result of a formula against what formualizer computes; return how many there are."""
+    stored = stored_cells(path)
+    poison(path)
+    book = formualizer.load_workbook(str(path))
+    book.evaluate_all()
+    formulas = [(sheet.title, cell) for sheet in openpyxl.load_workbook(path) for row in sheet.iter_rows()
+                for cell in row if cell.data_type == "f"]  # fmt: skip
+    for title, cell in formulas:
+        found = book.get_value(title, cell.row, cell.column)
+        assert same(found, stored.get((title, cell.coordinate), "")), (title, cell.coordinate)
+    return len(formulas)
+
+
+def same(first: Any, second: Any) -> bool:
+    """Tell whether two values of cells are the same, numbers to 1e-9."""
+    if isinstance(first, int | float) and isinstance(second, int | float):
+        return abs(first - second) <= 1e-9
+    return bool(first == second)

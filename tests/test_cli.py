@@ -10,6 +10,7 @@ from assess.methods import all_methods
 from tests.workbooks import write
 
 run = CliRunner().invoke
+RUN = ("run", "--verify", "none")
 
 
 def test_help_names_every_command():
@@ -36,7 +37,7 @@ def test_the_example_runs(tmp_path, units):
     path = tmp_path / "w.xlsx"
     assert run(app, ["new", str(path), "--example", "--units", units]).exit_code == 0
     assert run(app, ["check", str(path)]).exit_code == 0
-    done = run(app, ["run", str(path), "--out", str(tmp_path / "out"), "--formats", "json"])
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--formats", "json"])
     assert done.exit_code == 0
     assert "not per year. Not verified." in done.stdout
     assert json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["items"]
@@ -62,7 +63,7 @@ def test_new_wants_xlsx_and_a_folder_that_is_there(tmp_path):
 
 def test_bad_input_writes_nothing(tmp_path):
     path = write(tmp_path / "w.xlsx", [{"item": "a", "floor": "9", "breadth": 30, "height": 180}])
-    done = run(app, ["run", str(path), "--out", str(tmp_path / "out")])
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out")])
     assert done.exit_code == 2
     assert "Items!B2: Floor '9' is not in the Floors sheet." in done.stderr
     assert not (tmp_path / "out").exists()
@@ -71,7 +72,18 @@ def test_bad_input_writes_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--verify", "all"], "'all' is not one of: none"),
+        (["--verify", "maybe"], "Invalid value for --verify: 'maybe' is not one of: none, high, all."),
+        (["--runs", "0"], "Invalid value for --runs: '0' is not a number from 1 to 100,000, nor auto."),
+        (["--runs", "x"], "Invalid value for --runs: 'x' is not a number from 1 to 100,000, nor auto."),
+        (["--runs", "100001"], "Invalid value for --runs: '100001' is not a number from 1 to 100,000, nor auto."),
+        (["--runs", "9" * 5000], "Invalid value for --runs: '999"),
+        (["--seed", "-1"], "Invalid value for '--seed': "),
+        (["--jobs", "0"], "Invalid value for '--jobs': "),
+        (["--scale-motions"], "Invalid value for --scale-motions: there are no motions to scale: name their folder by"),
+        (
+            ["--formats", "npz", "--verify", "none"],
+            "Invalid value for --formats: npz holds what verification finds: leave out --verify none.",
+        ),
         (["--scenario", "ASCE 7-10"], "'ASCE 7-10' is not one of: as filled, recorded, given, ASCE 7-22, ASCE 7-16"),
         (["--formats", "docx"], "'docx' is not a list of: pdf, xlsx, html, json, csv"),
         (["--formats", ""], "is not a list of"),
@@ -86,7 +98,7 @@ def test_wrong_usage_exits_with_2(tmp_path, arguments, message):
 
 def test_a_scenario_that_a_floor_cannot_serve_names_the_floor(tmp_path):
     path = write(tmp_path / "w.xlsx")
-    done = run(app, ["run", str(path), "--out", str(tmp_path / "out"), "--scenario", "recorded"])
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--scenario", "recorded"])
     assert done.exit_code == 2
     assert "Floors!H2: floor '1' has no record, which the scenario 'recorded' asks for" in done.stderr
     assert "Floors!H3" in done.stderr
@@ -95,14 +107,14 @@ def test_a_scenario_that_a_floor_cannot_serve_names_the_floor(tmp_path):
 @pytest.mark.parametrize("spelt", ["ASCE 7-22", "asce7-22", "Asce_7_22"])
 def test_a_scenario_may_be_spelt_loosely(tmp_path, spelt):
     path = write(tmp_path / "w.xlsx", floors=[{"floor": at, "elevation": at} for at in (1, 2)], ground_pga=0.2)
-    done = run(app, ["run", str(path), "--out", str(tmp_path / "out"), "--formats", "json", "--scenario", spelt])
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--formats", "json", "--scenario", spelt])
     assert done.exit_code == 0, done.stderr
     found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     assert found["assess"]["settings"]["scenario"] == "ASCE 7-22"
 
 
 def test_a_profile_without_ground_motion_names_the_cell_and_every_floor_without_elevation(tmp_path):
-    done = run(app, ["run", str(write(tmp_path / "w.xlsx")), "--out", str(tmp_path / "out"), "--scenario", "NTC 2018"])
+    done = run(app, [*RUN, str(write(tmp_path / "w.xlsx")), "--out", str(tmp_path / "out"), "--scenario", "NTC 2018"])
     assert done.exit_code == 2
     assert "Building!B13: Ground PGA and SDS are blank; the scenario 'NTC 2018' starts from one" in done.stderr
     for cell in ("C2", "C3"):
@@ -112,7 +124,7 @@ def test_a_profile_without_ground_motion_names_the_cell_and_every_floor_without_
 def test_the_default_folder_is_named_after_the_workbook(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write(tmp_path / "tower.xlsx")
-    assert run(app, ["run", "tower.xlsx", "--formats", "csv"]).exit_code == 0
+    assert run(app, [*RUN, "tower.xlsx", "--formats", "csv"]).exit_code == 0
     assert (tmp_path / "tower-report" / "items.csv").is_file()
 
 

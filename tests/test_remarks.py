@@ -14,7 +14,7 @@ SMC = "0165a_u.smc"
 def _remarks(tmp_path, floors, scenario=None, **building):
     shutil.copy(RECORDS / SMC, tmp_path / SMC)
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx", PIECE, floors, **building))
-    assessment = assess.run(inventory, assess.Settings(scenario=scenario))
+    assessment = assess.run(inventory, assess.Settings(scenario=scenario, verify="none"))
     return {str(one): one.severity for one in assessment.problems if one not in inventory.problems}
 
 
@@ -97,7 +97,7 @@ def test_the_reduction_of_the_profile_counts_when_it_is_held_against_a_known_flo
     floors = [{"floor": "1", "elevation": 4, "pfa_x": 0.4}, {"floor": "2", "elevation": 8}]
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx", PIECE, floors, ground_pga=0.2))
     for reduction, count in ((1, 0), (1.5, 1)):
-        found = assess.run(inventory, assess.Settings(ductility_reduction=reduction)).problems
+        found = assess.run(inventory, assess.Settings(ductility_reduction=reduction, verify="none")).problems
         assert sum("would give 0.300 g on floor '1', 0.400 g is known" in one.message for one in found) == count
 
 

@@ -6,8 +6,12 @@ from typing import Any
 import assess
 from assess.inventory.blank import Content, Units, write_workbook
 from assess.results import Assessment
+from assess.settings import Settings
 
 RECORDS = Path(__file__).parents[1] / "samples" / "records"
+
+UNVERIFIED = Settings(verify="none")
+"""By the formulas alone: what a test takes that is not about the verification, which needs a second a floor."""
 
 FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0}, {"floor": "2", "pfa_x": 0.5}]
 ITEMS = [
@@ -32,6 +36,6 @@ def write(
     return path
 
 
-def assessed(path: Path, *args: Any, **named: Any) -> Assessment:
-    """Write such a workbook and assess it."""
-    return assess.run(assess.read_inventory(write(path, *args, **named)))
+def assessed(path: Path, *args: Any, settings: Settings = UNVERIFIED, **named: Any) -> Assessment:
+    """Write such a workbook and assess it, by the formulas alone where no settings are given."""
+    return assess.run(assess.read_inventory(write(path, *args, **named)), settings)

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from assess.adoption import FORMULA
 from assess.cases import FLAGS as ITEM_FLAGS
 from assess.demand import FLAGS as DEMAND_FLAGS
 from assess.demand import Demand
@@ -14,8 +15,10 @@ from assess.inventory.columns import BUILDING, ITEMS
 from assess.inventory.model import Floor
 from assess.methods import Method
 from assess.ranking import count_pieces, fix_first
-from assess.report import motions, words
+from assess.report import motions, trials, words
 from assess.report.data import versions
+from assess.report.trials import Trials
+from assess.report.verified import WILSON, Verified, build_verified
 from assess.results import Assessment, ItemResult
 from assess.risk import LIMITS, RiskClass
 from assess.version import __version__
@@ -26,11 +29,16 @@ WORST = 10
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Pieces (not rows) of a floor, or of the building, by class; anchored ones stand outside the classes."""
+    """Pieces (not rows) of a floor, or of the building, by class; anchored ones stand outside the classes.
+
+    `lowered` of those with a class were lowered by verification, and `may_be` may be of a higher one.
+    """
 
     label: str
     by_class: Mapping[RiskClass, int]
     anchored: int
+    lowered: int = 0
+    may_be: int = 0
 
     @property
     def total(self) -> int:
@@ -82,14 +90,36 @@ class Content:
     assumptions: Sequence[tuple[str, str]]
     limits: Sequence[str]
     problems: Sequence[Problem]
+    verified: Verified
+    trials: Trials
     notes: Sequence[ItemResult] = field(default_factory=tuple)
 
     @property
-    def cannot_rock(self) -> tuple[int, int]:
-        """Pieces of high and very high class, and those of them that the static criterion says cannot start to rock."""
-        risky = [one for one in self.results if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH]
+    def cannot_rock(self) -> tuple[int, int, int]:
+        """Pieces of high and very high class by formula; those that the static criterion says cannot start to rock.
+
+        Of these last ones, third, those that direct integration gave a lower class, which was not adopted.
+        """
+        risky = [
+            one
+            for one in self.results
+            if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.method == FORMULA
+        ]
         still = [one for one in risky if one.governing.methods["static"].value == 0]
-        return sum(one.item.quantity for one in risky), sum(one.item.quantity for one in still)
+        kept = [one for one in still if one.is_verified]
+        all_risky, all_still, all_kept = (sum(one.item.quantity for one in ones) for ones in (risky, still, kept))
+        return all_risky, all_still, all_kept
+
+    @property
+    def may_be_risky(self) -> int:
+        """Pieces of a lower class than high of which the interval reaches into high or very high."""
+        free = [one for one in self.results if not one.is_anchored]
+        return sum(one.item.quantity for one in free if one.adopted.risk < RiskClass.HIGH <= one.adopted.upper)
+
+    @property
+    def references(self) -> Sequence[str]:
+        """What the methods and the interval were taken from."""
+        return list(dict.fromkeys([*(str(method.reference) for method in self.methods), str(WILSON)]))
 
     @property
     def class_limits(self) -> Sequence[tuple[RiskClass, str]]:
@@ -107,7 +137,7 @@ class Content:
 def build_content(assessment: Assessment) -> Content:
     """Gather the content of a report."""
     results = tuple(assessment)
-    floors = _floors(assessment, results)
+    floors, verified = _floors(assessment, results), build_verified(assessment, results)
     free = [one for one in results if not one.is_anchored]
     return Content(
         assessment=assessment,
@@ -117,7 +147,7 @@ def build_content(assessment: Assessment) -> Content:
         platform=versions(),
         building=_building(assessment),
         results=results,
-        total=Counts("All floors", *count_pieces(results)),
+        total=count("All floors", results),
         by_floor=tuple(page.counts for page in floors),
         worst=sorted(free, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))[:WORST],
         fix_first=tuple(fix_first(iter(results))),
@@ -126,9 +156,11 @@ def build_content(assessment: Assessment) -> Content:
         floors=floors,
         methods=assessment.methods,
         flags=_flags(assessment),
-        assumptions=_assumptions(assessment),
-        limits=LIMITS_OF_THE_METHOD,
+        assumptions=[*_assumptions(assessment), *trials.list_assumptions(assessment, verified)],
+        limits=(*LIMITS_OF_THE_METHOD, *(LIMITS_OF_VERIFICATION if verified.done else ())),
         problems=assessment.problems,
+        verified=verified,
+        trials=trials.build_trials(assessment, verified),
         notes=tuple(one for one in results if one.item.notes),
     )
 
@@ -162,6 +194,14 @@ def floor_title(floor: Floor) -> str:
     return words.clip(f"{floor.floor} – {floor.name}" if floor.name else f"Floor {floor.floor}", 60)
 
 
+def count(label: str, results: Sequence[ItemResult]) -> Counts:
+    """Count pieces by class, and of those that have one how many were lowered, or may be of a higher one."""
+    free = [one for one in results if not one.is_anchored]
+    lowered = sum(one.item.quantity for one in free if one.adopted.lowered_from is not None)
+    may_be = sum(one.item.quantity for one in free if one.adopted.upper != one.adopted.risk)
+    return Counts(label, *count_pieces(results), lowered=lowered, may_be=may_be)
+
+
 def _floors(assessment: Assessment, results: Sequence[ItemResult]) -> tuple[FloorPage, ...]:
     by_floor: dict[str, list[ItemResult]] = {floor.floor: [] for floor in assessment.inventory.floors}
     for one in results:
@@ -170,7 +210,7 @@ def _floors(assessment: Assessment, results: Sequence[ItemResult]) -> tuple[Floo
     for floor in assessment.inventory.floors:
         demands = [demand for axis in ("X", "Y") for demand in assessment.demands[floor.floor, axis]]
         own = by_floor[floor.floor]
-        pages.append(FloorPage(floor, floor_title(floor), demands, Counts(floor_title(floor), *count_pieces(own)), own))
+        pages.append(FloorPage(floor, floor_title(floor), demands, count(floor_title(floor), own), own))
     return tuple(pages)
 
 
@@ -245,4 +285,11 @@ LIMITS_OF_THE_METHOD = (
     "The proposed OR formula calls pieces high below the acceleration at which they can start to rock; the comparison "
     "shows the static criterion beside it.",
     "A piece marked as anchored is only as safe as its anchor; its free-standing risk is shown, never zero.",
+)
+
+LIMITS_OF_VERIFICATION = (
+    "A verified chance is that of the rigid block under motions that meet the floor's spectrum and peak. Its interval "
+    "covers the number of motions only.",
+    "Rocking depends on details of a motion that a response spectrum does not hold, such as long pulses. What a piece "
+    "does under the recorded motion itself therefore stands beside its chance.",
 )

@@ -65,16 +65,16 @@ def _paint_counts(shown: Sequence[Counts], axis_label: str, figure: Any) -> None
         axes.barh(
             range(len(shown)), anchored, left=left, color="#d0d0d0", label="anchored", edgecolor="#444444", lw=0.5
         )
-    axes.set_yticks(range(len(shown)), [_label(one.label) for one in shown])
+    axes.set_yticks(range(len(shown)), [label(one.label) for one in shown])
     axes.invert_yaxis()
     axes.set_xlabel(axis_label)
     axes.spines[["top", "right"]].set_visible(False)
     axes.legend(ncols=5, loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, fontsize=7)
 
 
-def _label(text: str) -> str:
+def label(text: str, longest: int = 28) -> str:
     """Return a text of the workbook for a figure: short, and not taken for mathematics."""
-    return words.clip(text, 28).split("… (")[0].replace("$", r"\$")
+    return words.clip(text, longest).split("… (")[0].replace("$", r"\$")
 
 
 def draw_rooms(page: FloorPage) -> bytes:
@@ -114,9 +114,10 @@ def _paint_plan(page: FloorPage, inventory: Inventory, figure: Any) -> None:
             _paint_piece(axes, one)
     for name, (x, y) in places.items():
         axes.plot([x], [y], "o", color="#2f6f4f", ms=4, zorder=4)
-        axes.annotate(_label(name), (x, y), xytext=(3, 3), textcoords="offset points", fontsize=6, color="#1d4a34")
+        axes.annotate(label(name), (x, y), xytext=(3, 3), textcoords="offset points", fontsize=6, color="#1d4a34")
     axes.set_aspect("equal")
-    axes.margins(0.06)
+    for limit, values in zip((axes.set_xlim, axes.set_ylim), zip(*_points(page, inventory), strict=True), strict=True):
+        limit(min(values) - 2, max(values) + 2)
     axes.set_xlabel("X [m]")
     axes.set_ylabel("Y [m]")
     axes.grid(color="#e4e4e4", lw=0.5)
@@ -137,6 +138,18 @@ def _paint_piece(axes: Any, one: ItemResult) -> None:
     axes.add_patch(Rectangle(corner, along, across, angle=angle, facecolor=fill, edgecolor="#222222", lw=0.6, zorder=3))
     if not one.is_anchored:
         axes.text(x, y, risk.symbol, ha="center", va="center", fontsize=5, color=risk.ink, zorder=5)
+        _mark(axes, one, x, y, (along, across) if abs(math.cos(turn)) > abs(math.sin(turn)) else (across, along))
+
+
+def _mark(axes: Any, one: ItemResult, x: float, y: float, size: tuple[float, float]) -> None:
+    """Write the marks of a class beside its piece, on the longer side, as pieces stand in rows."""
+    marks, is_above = words.class_marks(one), size[0] > size[1]
+    place, offset = ((x, y + size[1] / 2), (0, 0.8)) if is_above else ((x + size[0] / 2, y), (1, 0))
+    if marks:
+        sides = ("center", "bottom") if is_above else ("left", "center")
+        mark = axes.annotate(marks, place, xytext=offset, textcoords="offset points", fontsize=5.5, ha=sides[0],
+                             va=sides[1], zorder=6)  # fmt: skip
+        mark.set_gid("class-marks")
 
 
 def draw_motion(demand: Demand) -> bytes:

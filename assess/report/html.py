@@ -8,9 +8,10 @@ from typing import Any
 from assess import resources
 from assess.motion.scenario import PROFILES
 from assess.report import content as content_module
-from assess.report import motions, words
+from assess.report import motions, trials, verified, words
 from assess.report.content import Content, build_content
 from assess.report.figures import draw_all
+from assess.report.rocked import choose_traced, draw_traced
 from assess.results import Assessment
 
 MOST_ROWS = 1000
@@ -38,22 +39,19 @@ def _render_content(content: Content, for_print: bool) -> str:
         lstrip_blocks=True,
     )
     environment.filters |= _FILTERS
-    figures = {name: _data_uri(svg, "image/svg+xml") for name, svg in draw_all(content).items()}
+    traced = choose_traced(content)
+    drawn = draw_all(content) | draw_traced(content, traced)
+    figures = {name: _data_uri(svg, "image/svg+xml") for name, svg in drawn.items()}
     return environment.get_template("report.html.j2").render(
         content=content,
         figures=_Figures(figures),
         logo=_logo(content),
         style=_style(for_print),
         most_rows=MOST_ROWS,
-        treatment=motions.describe_treatment,
-        source=motions.describe_source,
-        origin=motions.describe_origin,
-        profiles=tuple(PROFILES.values()),
         used_profiles=motions.used_profiles(content.assessment.demands),
-        status=motions.profile_status,
-        clauses=motions.list_clauses,
-        envelopes=motions.ENVELOPES,
-        more=content_module.has_worse_motion,
+        traced=traced,
+        summary_lines=verified.list_summary(content.verified),
+        **_NAMES,
     )
 
 
@@ -64,6 +62,19 @@ class _Figures(dict[str, str]):
         return ""
 
 
+_NAMES: Mapping[str, Any] = {
+    "treatment": motions.describe_treatment,
+    "source": motions.describe_source,
+    "origin": motions.describe_origin,
+    "profiles": tuple(PROFILES.values()),
+    "status": motions.profile_status,
+    "clauses": motions.list_clauses,
+    "envelopes": motions.ENVELOPES,
+    "more": content_module.has_worse_motion,
+    "marks": words.MARKS,
+    "listed": trials.LISTED,
+    "formula_class": verified.formula_class,
+}
 _FILTERS: Mapping[str, Any] = {
     "clip": words.clip,
     "percent": words.percent,
@@ -73,6 +84,10 @@ _FILTERS: Mapping[str, Any] = {
     "fixed": words.fixed,
     "size": words.size,
     "risk_words": words.risk_words,
+    "risk_notes": words.risk_notes,
+    "class_marks": words.class_marks,
+    "chance": words.chance,
+    "under_record": words.under_record,
     "class_name": words.class_name,
     "plural": words.plural,
 }

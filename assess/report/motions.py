@@ -17,6 +17,12 @@ ENVELOPES = (
 """What must be said wherever a code's profile was used."""
 
 
+UNLIKE = 0.10
+"""Difference between the mean PFA of the user's own motions and that of a floor above which it is told [-]."""
+MOST_PLACES = 8
+"""Floors and axes that such a sentence names."""
+
+
 def describe_source(demand: Demand) -> str:
     """Return where a motion comes from, in words, with its flags."""
     source = "recorded motion"
@@ -98,7 +104,50 @@ def list_cautions(assessment: Assessment) -> list[str]:
         cautions.append(f"More is known than is used: {more} of this kind beside these, see the data-quality log.")
     if len({demand.source for ones in demands.values() for demand in ones}) > 1:
         cautions.append("The floors' motion comes from mixed sources: compare floors with care.")
-    return cautions
+    return cautions + _verification(assessment)
+
+
+def _verification(assessment: Assessment) -> list[str]:
+    """Say under which motions pieces were verified where these are not made for the floor's own record."""
+    joints, ensembles = assessment.joints, assessment.cases.ensembles
+    if assessment.suite is not None:
+        return [f"Verification uses {describe_suite(assessment)}.", *_unlike(assessment)] if joints else []
+    generic = [demand.floor.floor for demand, joint in joints.items() if ensembles[joint.ensemble].is_generic]
+    if not generic:
+        return []
+    floors = _name(list(dict.fromkeys(generic)))
+    return [f"{floors}: motions follow a generic spectrum; verification may raise a class there, never lower it."]
+
+
+def describe_suite(assessment: Assessment) -> str:
+    """Return the user's own motions in words: their number, folder and names, and whether they are scaled."""
+    if assessment.suite is None:
+        return "no motions of the user's own"
+    names = ", ".join(words.clip(name, 60) for name, _ in assessment.suite.motions)
+    scaled = "scaled to each floor's PFA" if assessment.settings.scale_motions else "as they are, not scaled"
+    count, folder = words.plural(len(assessment.suite), "motion"), words.clip(assessment.suite.folder, 60)
+    return f"{count} of the folder {folder}, {scaled}: {words.clip(names, 400)}"
+
+
+def _unlike(assessment: Assessment) -> list[str]:
+    """Say where the user's own motions, not scaled, have another PFA than the floor."""
+    if assessment.suite is None or assessment.settings.scale_motions:
+        return []
+    mean = sum(motion.pfa for _, motion in assessment.suite.motions) / len(assessment.suite)
+    off = {demand: mean / demand.pfa - 1 for demand in assessment.joints if demand.pfa > 0}
+    places = [
+        f"floor {words.clip(demand.floor.floor, 20)} {demand.axis} ({words.in_g(demand.pfa)} g), "
+        f"{100 * abs(ratio):.0f} % {'above' if ratio > 0 else 'below'}"
+        for demand, ratio in off.items()
+        if abs(ratio) > UNLIKE
+    ]
+    if not places:
+        return []
+    more = f" and {len(places) - MOST_PLACES:,} more" if len(places) > MOST_PLACES else ""
+    return [
+        f"The mean PFA of these motions, {words.in_g(mean)} g, is not that of {'; '.join(places[:MOST_PLACES])}{more}. "
+        "Where it is below, chances come out too low."
+    ]
 
 
 def _interpolated(demands: Demands) -> list[str]:

@@ -1,13 +1,14 @@
 """Numbers and sentences as reports show them."""
 
 from assess.results import ItemResult
-from assess.risk import RiskClass
+from assess.risk import RiskClass, classify
 from assess.units import ACCELERATION, LENGTH, VELOCITY
 
 LONGEST = 160
 """Characters of a text from the workbook that a table shows; the Excel report and results.json hold all of it."""
 
 DASH = "–"
+NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
 def clip(text: str, longest: int = LONGEST) -> str:
@@ -58,17 +59,61 @@ def plural(count: int, one: str, many: str = "") -> str:
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
+def chance(one: ItemResult) -> str:
+    """Return the adopted chance, with its interval where it is verified: ``3.0 % (1.0 to 8.5 %)``."""
+    adopted = one.adopted
+    if adopted.low is None or adopted.high is None:
+        return percent(adopted.probability)
+    interval = f"({100 * adopted.low:.1f} to {percent(adopted.high)})"
+    return f"{percent(adopted.probability)} {interval.replace(' ', NO_BREAK)}"
+
+
+def fell_in_record(one: ItemResult) -> bool:
+    """Tell whether it overturns under a recorded motion itself."""
+    return any(case.verification is not None and bool(case.verification.record_overturned) for case in one.cases)
+
+
+def under_record(one: ItemResult) -> str:
+    """Return what it does under the recorded motion itself, the worst where there are several."""
+    found = [case.verification for case in one.cases if case.verification is not None]
+    turned = [verified.record_rotation for verified in found if verified.record_rotation is not None]
+    if fell_in_record(one):
+        return "overturns"
+    if not turned:
+        return DASH
+    most = max(turned)
+    if most == 0:
+        return "stays at rest"
+    return f"{most:.2f} of critical" if most >= 0.005 else "< 0.01 of critical"
+
+
 def risk_words(one: ItemResult) -> str:
     """Return the class in words, with what must be said beside it."""
-    adopted = one.adopted
-    words = adopted.risk.word
+    words = ", ".join([one.adopted.risk.word, *risk_notes(one)])
+    return f"depends on its anchor (free-standing: {words})" if one.is_anchored else words
+
+
+def risk_notes(one: ItemResult) -> list[str]:
+    """Return what must be said beside the class: that it may be higher, was lowered, or is not that of the chance."""
+    adopted, notes = one.adopted, []
+    if classify(adopted.probability) != adopted.risk:
+        notes.append("as it overturns under the record itself")
     if adopted.upper != adopted.risk:
-        words += f", may be {adopted.upper.word}"
+        notes.append(f"may be {adopted.upper.word}")
     if adopted.lowered_from is not None:
-        words += f", lowered by verification (formula: {adopted.lowered_from.word})"
-    if one.is_anchored:
-        words = f"depends on its anchor (free-standing: {words})"
-    return words
+        notes.append(f"lowered by verification (formula: {adopted.lowered_from.word})")
+    return notes
+
+
+MAY_BE, LOWERED = "?", "↓"
+"""Marks beside the symbol of a class where there is no room for words."""
+MARKS = f"{MAY_BE}: may be of a higher class; {LOWERED}: lowered by verification"
+
+
+def class_marks(one: ItemResult) -> str:
+    """Return the marks that stand beside the symbol of a class."""
+    may_be = MAY_BE if one.adopted.upper != one.adopted.risk else ""
+    return may_be + (LOWERED if one.adopted.lowered_from is not None else "")
 
 
 def class_name(risk: RiskClass) -> str:

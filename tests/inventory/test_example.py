@@ -11,6 +11,7 @@ from assess.inventory.columns import ITEMS, LIVE, SHEETS
 from assess.inventory.example import SCENARIO, example_content
 from assess.inventory.workbook import read_inventory
 from assess.live_values import stored_live, with_live
+from tests.workbooks import UNVERIFIED
 
 FIRST = len(ITEMS.columns) + 1
 """Column of the first live value, counted from 1."""
@@ -30,7 +31,7 @@ def path(tmp_path_factory, units):
 
 @pytest.fixture(scope="module")
 def assessment(path):
-    return run(read_inventory(path))
+    return run(read_inventory(path), UNVERIFIED)
 
 
 def same(one: Any, other: Any) -> bool:

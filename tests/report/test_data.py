@@ -5,7 +5,8 @@ import math
 import jsonschema
 import pytest
 
-from assess.report.data import SCHEMA, flatten, item_record, write_csv, write_json
+from assess.report.data import SCHEMA, item_record, write_json
+from assess.report.table import flatten, write_csv
 from tests.workbooks import ITEMS, assessed
 
 

@@ -5,8 +5,8 @@ import openpyxl
 import pytest
 
 from assess.report.xlsx import write_xlsx
-from tests.recalculate import libreoffice, needs_libreoffice
-from tests.workbooks import ITEMS, assessed
+from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells
+from tests.workbooks import ITEMS, UNVERIFIED, assessed
 
 FLOORS = [
     {"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0},
@@ -25,30 +25,8 @@ def _items():
     ]
 
 
-def _cells(path):
-    book = openpyxl.load_workbook(path, data_only=True)
-    return {(sheet.title, cell.coordinate): cell.value for sheet in book for row in sheet.iter_rows() for cell in row
-            if cell.value is not None}  # fmt: skip
-
-
 def _column(sheet, label):
     return next(cell.column for cell in sheet[1] if cell.value == label)
-
-
-def _poison(path):
-    """Replace every stored result by nonsense, so that agreement can only come from recalculation."""
-    import re
-    import zipfile
-
-    with zipfile.ZipFile(path) as archive:
-        parts = {name: archive.read(name) for name in archive.namelist()}
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in parts.items():
-            if name.startswith("xl/worksheets/sheet"):
-                plain = re.sub(rb' t="str"(?=[^>]*><f>)', b"", data)
-                archive.writestr(name, re.sub(rb"(</f>)<v>[^<]*</v>", rb"\1<v>0.123</v>", plain))
-            else:
-                archive.writestr(name, data)
 
 
 @pytest.fixture
@@ -58,29 +36,10 @@ def report(tmp_path):
     return assessment, tmp_path / "report.xlsx"
 
 
-def _same(first, second):
-    if isinstance(first, int | float) and isinstance(second, int | float):
-        return abs(first - second) <= 1e-9
-    return first == second
-
-
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_stored_results_are_what_an_engine_computes(report):
     _, path = report
-    stored = _cells(path)
-    _poison(path)
-    book = formualizer.load_workbook(str(path))
-    book.evaluate_all()
-    formulas = openpyxl.load_workbook(path)
-    checked = 0
-    for sheet in formulas:
-        for row in sheet.iter_rows():
-            for cell in row:
-                if cell.data_type == "f":
-                    found = book.get_value(sheet.title, cell.row, cell.column)
-                    assert _same(found, stored.get((sheet.title, cell.coordinate), "")), (sheet.title, cell.coordinate)
-                    checked += 1
-    assert checked > 8 * len(_items())
+    assert compare_formulas(path) > 8 * len(_items())
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -88,10 +47,10 @@ def test_stored_results_are_what_an_engine_computes(report):
 @needs_libreoffice
 def test_libreoffice_agrees(report, tmp_path):
     _, path = report
-    stored = _cells(path)
-    _poison(path)
-    found = _cells(libreoffice(path, tmp_path / "recalculated.xlsx"))
-    differing = [place for place, value in stored.items() if not _same(value, found.get(place))]
+    stored = stored_cells(path)
+    poison(path)
+    found = stored_cells(libreoffice(path, tmp_path / "recalculated.xlsx"))
+    differing = [place for place, value in stored.items() if not same(value, found.get(place))]
     assert not differing
 
 
@@ -174,7 +133,7 @@ def test_unknown_columns_come_back(tmp_path):
     book.save(path)
     import assess
 
-    assessment = assess.run(assess.read_inventory(path))
+    assessment = assess.run(assess.read_inventory(path), UNVERIFIED)
     write_xlsx(assessment, tmp_path / "r.xlsx")
     items = openpyxl.load_workbook(tmp_path / "r.xlsx")["Items"]
     assert items.cell(2, _column(items, "Inventory tag")).value == "T-17"
@@ -220,10 +179,23 @@ def test_a_size_that_is_cleared_shows_check_and_leaves_the_counts_alive(report):
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_an_anchored_piece_is_marked_and_not_coloured(tmp_path):
-    from assess.report.xlsx.items import ANCHORED
+    from assess.report.xlsx.formulas import ANCHORED
 
     write_xlsx(assessed(tmp_path / "w.xlsx", ITEMS), tmp_path / "r.xlsx")
     sheet = openpyxl.load_workbook(tmp_path / "r.xlsx", data_only=True)["Items"]
     shown = {row[0].value: row[_column(sheet, "Class (formula)") - 1].value for row in sheet.iter_rows(min_row=2)}
     assert shown["A4"].startswith(ANCHORED)
     assert not shown["A3"].startswith(ANCHORED)
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_without_verification_the_class_is_that_of_the_formula(report):
+    _, path = report
+    book = openpyxl.load_workbook(path, data_only=True)
+    sheet = book["Items"]
+    by_formula, verified, shown = (_column(sheet, label) for label in ("Class (formula)", "Class (verified)", "Class"))
+    for row in sheet.iter_rows(min_row=2, values_only=True):
+        assert row[verified - 1] == "not verified"
+        assert row[shown - 1] == row[by_formula - 1]
+    assert "Verification" not in book.sheetnames
+    assert any(str(row[0]).startswith("Not verified") for row in book["Summary"].iter_rows(values_only=True))

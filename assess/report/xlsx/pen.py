@@ -30,6 +30,7 @@ class Pen:
         self.wrap = self.format(text_wrap=True, valign="top")
         self.top = self.format(valign="top")
         self.input = self.format(**INPUT)
+        self.void = self.format(font_color="#a03000", italic=True)
 
     def format(self, num_format: str = "General", **more: Any) -> Any:
         """Return a format, the same one for the same look."""
@@ -51,7 +52,7 @@ class Pen:
 
     def heads(self, page: Any, heads: Sequence[str], widths: Sequence[int]) -> None:
         """Write the heading row of a table, and set its columns' widths."""
-        page.set_row(0, LINE * max(_lines(label, width) for label, width in zip(heads, widths, strict=True)))
+        page.set_row(0, LINE * max(count_lines(label, width) for label, width in zip(heads, widths, strict=True)))
         for at, (label, width) in enumerate(zip(heads, widths, strict=True)):
             page.set_column(at, at, width)
             page.write_string(0, at, label, self.head)
@@ -71,7 +72,9 @@ class Pen:
         self.heads(page, heads, widths)
         shown = {at: self.format(code, valign="top") for at, code in (formats or {}).items()}
         for number, row in enumerate(rows, 1):
-            page.set_row(number, LINE * max(_lines(value, width) for value, width in zip(row, widths, strict=True)))
+            page.set_row(
+                number, LINE * max(count_lines(value, width) for value, width in zip(row, widths, strict=True))
+            )
             for at, value in enumerate(row):
                 self.put(page, number, at, value, self.wrap if isinstance(value, str) else shown.get(at, self.top))
         page.freeze_panes(1, 0)
@@ -93,6 +96,6 @@ class Pen:
             page.conditional_format(area, rule)
 
 
-def _lines(value: Any, width: int) -> int:
-    """Lines that a text takes in a column of a width [characters], 20 at most."""
+def count_lines(value: Any, width: int) -> int:
+    """Return the lines that a text takes in a column of a width [characters], 20 at most."""
     return min(20, max(1, math.ceil(len(value) * 1.1 / width))) if isinstance(value, str) else 1

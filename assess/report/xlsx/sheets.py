@@ -1,14 +1,7 @@
-"""The sheets Floors, Motions, Routes, Methods, Assumptions and Notes."""
+"""The sheets Motions, Routes, Methods, Assumptions and Notes."""
 
 from typing import Any
 
-from xlsxwriter.utility import xl_col_to_name
-
-from assess.demand import Demand
-from assess.inventory.model import Axis
-from assess.methods import kaneko_hayashi as kh
-from assess.methods._method import ALIKE
-from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
 from assess.motion.scenario import PROFILES
 from assess.report.content import Content
 from assess.report.data import edge
@@ -17,20 +10,11 @@ from assess.report.motions import (
     describe_origin,
     describe_source,
     describe_treatment,
-    factors,
     list_clauses,
     profile_status,
 )
-from assess.report.xlsx.items import HEAD
-from assess.report.xlsx.pen import INPUT, Pen
+from assess.report.xlsx.pen import Pen
 from assess.risk import LIMITS
-from assess.units import GRAVITY
-
-_EDIT_HERE = (
-    "Edit the PFA and PFV here: Items and Summary follow. Where several records serve an axis, the one with the "
-    "largest PFA stands here; the sheet Motions lists all. Interpolated floors and those of a code's profile hold "
-    "numbers as run: they do not follow when another floor is edited."
-)
 
 NAMES = {
     "limit_medium": "Lower limit of medium",
@@ -41,68 +25,6 @@ NAMES = {
     "slide_alpha": "Kaneko-Hayashi slide coefficient α",
 }
 """Cells that formulas refer to by name, in the order of the sheet Assumptions."""
-
-
-def write_floors(pen: Pen, page: Any, content: Content) -> None:
-    """Write the motion that serves each floor and axis, to be edited: Items and Summary follow."""
-    period = content.assessment.inventory.building.period
-    heads = (
-        "Floor",
-        "Name",
-        "PFA X [g]",
-        "PFV X [cm/s]",
-        "Source X",
-        "PFA Y [g]",
-        "PFV Y [cm/s]",
-        "Source Y",
-        "Elevation [m]",
-    )
-    pen.heads(page, heads, (12, 22, 12, 14, 60, 12, 14, 60, 12))
-    for row, floor_page in enumerate(content.floors, HEAD):
-        pen.put(page, row, 0, floor_page.floor.floor)
-        pen.put(page, row, 1, floor_page.floor.name)
-        _write_demand(pen, page, row, _COLUMNS["X"], _governing(content, floor_page.floor.floor, "X"), period)
-        _write_demand(pen, page, row, _COLUMNS["Y"], _governing(content, floor_page.floor.floor, "Y"), period)
-        pen.put(page, row, 8, floor_page.floor.elevation)
-    page.freeze_panes(1, 1)
-    page.repeat_rows(0)
-    page.write_comment("C1", _EDIT_HERE, {"x_scale": 2})
-
-
-def _governing(content: Content, floor: str, axis: Axis) -> Demand:
-    return max(content.assessment.demands[floor, axis], key=lambda demand: round(demand.pfa / GRAVITY, ALIKE))
-
-
-def _write_demand(pen: Pen, page: Any, row: int, at: int, demand: Demand, period: float | None) -> None:
-    if demand.is_borrowed:  # what serves this axis is the other one's: it follows when that is edited
-        other = _COLUMNS["Y" if demand.axis == "X" else "X"]
-        values = (edge(demand.pfa, "g"), edge(demand.pfv, "cm/s"))
-        for place, (value, code) in enumerate(zip(values, ("0.000", "0.0"), strict=True)):
-            cell = f"{xl_col_to_name(other + place)}{row + 1}"
-            formula = f'=IF({cell}="","",{cell})'
-            page.write_formula(row, at + place, formula, pen.format(code), "" if value is None else value)
-        pen.put(page, row, at + 2, _source(demand))
-        return
-    form = pen.format("0.000", **INPUT)
-    page.write_number(row, at, edge(demand.pfa, "g"), form)
-    pfv = edge(demand.pfv, "cm/s")
-    if "pfv_estimated" in demand.flags and period is not None and not demand.between:
-        cell = f"{xl_col_to_name(at)}{row + 1}"
-        formula = f"={cell}*{kh.G!r}/(2*PI()*{min(1 / period, HIGHEST_FLOOR_FREQUENCY)!r})"
-        page.write_formula(row, at + 1, formula, pen.format("0.0"), pfv)
-    else:
-        pen.put(page, row, at + 1, pfv, pen.format("0.0", **INPUT))
-    pen.put(page, row, at + 2, _source(demand))
-
-
-_COLUMNS = {"X": 2, "Y": 5}
-"""Where PFA, PFV and source of an axis begin in the sheet Floors."""
-
-
-def _source(demand: Demand) -> str:
-    if demand.profile:
-        return f"{describe_source(demand)}: {factors(demand)}"
-    return describe_source(demand) + (f": {demand.name}" if demand.name else "")
 
 
 def write_motions(pen: Pen, page: Any, content: Content) -> None:
@@ -138,7 +60,7 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
 
 
 def write_methods(pen: Pen, page: Any, content: Content) -> None:
-    """Write what the methods are, assume and change, what the marks mean, and the limits."""
+    """Write what the methods are, assume and change, what was verified how, what the marks mean, and the limits."""
     rows = []
     for method in content.methods:
         parts = (
@@ -155,6 +77,8 @@ def write_methods(pen: Pen, page: Any, content: Content) -> None:
         rows.append((profile.title, "Status", profile_status(profile)))
         rows.append((profile.title, "Source", profile.reference))
     rows.append(("Floor motion by a code's profile", "Beware", ENVELOPES))
+    rows += [("Verification", "What was done", text) for text in content.trials.paragraphs]
+    rows += [("Verification", "Beware", text) for text in content.trials.misfits]
     rows += [("Marks", flag.replace("_", " "), meaning) for flag, meaning in content.flags.items()]
     rows += [("Limits", "", text) for text in content.limits]
     pen.listing(page, ("Method", "What", "Text"), (28, 26, 130), rows)

@@ -1,0 +1,68 @@
+"""What a row of the sheet Items holds of its verification."""
+
+from assess.adoption import FORMULA, VERIFICATION
+from assess.cases import CaseResult
+from assess.report.xlsx.formulas import LOWERED, MAY_BE, NOT_VERIFIED
+from assess.results import ItemResult
+
+LEAST = 0.01
+"""Least share of the critical angle that is told [-]."""
+
+
+def adopted_chance(one: ItemResult) -> float | None:
+    """Return the adopted chance where it is that of the verification."""
+    return one.adopted.probability if one.adopted.method == VERIFICATION else None
+
+
+def count_runs(one: ItemResult) -> int | None:
+    """Return under how many motions it was integrated."""
+    return one.governing.verification.runs if one.governing.verification else None
+
+
+def chance_behind(one: ItemResult) -> float | None:
+    """Return the chance by which it is classed, whatever the limits: None where it was not verified.
+
+    Its largest under any of its motions. Where the verification may not lower a class, a chance of the formula's counts
+    that is larger, so that it does not do so by other limits either.
+    """
+    return max(map(_chance, one.cases)) if one.is_verified else None
+
+
+def _chance(case: CaseResult) -> float:
+    formula, verified = case.methods[FORMULA].value or 0.0, case.methods[VERIFICATION].value or 0.0
+    is_doubtful = "generic_spectrum" in case.methods[VERIFICATION].flags or "pfv_estimated" in case.demand.flags
+    return max(formula, verified) if is_doubtful else verified
+
+
+def upper_end(one: ItemResult) -> float | None:
+    """Return the upper end of its interval, whether or not the chance is adopted."""
+    return one.governing.verification.high if one.governing.verification else None
+
+
+def under_record(one: ItemResult) -> str:
+    """Say what it does under the recorded motion itself, the worst of several; nothing where no record is known."""
+    known = [case for case in one.cases if case.verification and case.verification.record_overturned is not None]
+    if not known:
+        return ""
+    worst = max(known, key=_severity)
+    fell, rotation = _severity(worst)
+    share = f"{rotation:.2f}" if rotation >= LEAST else f"below {LEAST}"
+    moves = f"rotates to {share} of critical" if rotation > 0 else "stays still"
+    elsewhere = "" if worst.demand.axis == one.governing.demand.axis else f" (along {worst.demand.axis})"
+    return ("overturns" if fell else moves) + elsewhere
+
+
+def _severity(case: CaseResult) -> tuple[bool, float]:
+    found = case.verification
+    return (bool(found and found.record_overturned), (found and found.record_rotation) or 0.0)
+
+
+def class_verified(one: ItemResult) -> str:
+    """Return its class by the verification, with what must be said beside it."""
+    if not one.is_verified:
+        return NOT_VERIFIED
+    adopted = one.adopted
+    text = adopted.risk.label
+    if adopted.upper > adopted.risk:
+        text += f"{MAY_BE}{adopted.upper.label}"
+    return text if adopted.lowered_from is None else f"{text}{LOWERED}{adopted.lowered_from.label})"

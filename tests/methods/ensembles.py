@@ -1,0 +1,46 @@
+"""Motions for the tests of methods that integrate: made up, in memory, the same however they are asked for."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from assess.methods._method import FloatArray
+from assess.motion.fit import Fit
+
+STEP = 0.01
+SAMPLES = 300
+
+
+def make_motion(seed: int, number: int, peak: float = 6.0) -> FloatArray:
+    """Return motion `number` of an ensemble [m/s2]: a pulse of a random period and phase that fades away."""
+    random = np.random.default_rng((seed, number))
+    time = np.arange(SAMPLES) * STEP
+    wave = np.sin(2 * np.pi * (time / random.uniform(0.4, 1.6) + random.random()))
+    return np.asarray(peak * random.random() * wave * np.exp(-time / 1.5))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MadeUp:
+    """An ensemble, which is its own open motions as well; `asked` lists what was asked for: (first, count)."""
+
+    seed: int
+    is_generic: bool = False
+    has_record: bool = False
+    fit: Fit | None = None
+    asked: list[tuple[int, int]] = field(default_factory=list)
+    opened: list[int] = field(default_factory=list)
+
+    @property
+    def record(self) -> tuple[FloatArray, float] | None:
+        """The recorded motion, and its time step."""
+        return (make_motion(self.seed, 10**6), STEP) if self.has_record else None
+
+    def open(self, threads: int) -> "MadeUp":
+        """Note with how many threads."""
+        self.opened.append(threads)
+        return self
+
+    def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
+        """Return motions in one batch."""
+        self.asked.append((first, count))
+        return [(np.stack([make_motion(self.seed, number) for number in range(first, first + count)]), STEP)]

@@ -1,0 +1,242 @@
+"""Which risk is adopted, from arrays by hand: nothing may come out lower than it should without a word."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from assess.adoption import FORMULA, VERIFICATION, Adoption, adopt, choose_items, find_governing
+from assess.methods import Cases, Outcome
+from assess.risk import RiskClass, classify, wilson_interval
+from assess.units import GRAVITY
+
+LOW, MEDIUM, HIGH, VERY_HIGH = RiskClass
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case: what the formula gives, how many of its motions overturned it, and what is in doubt."""
+
+    formula: float
+    overturned: int = 0
+    runs: int = 0
+    is_generic: bool = False
+    is_estimated: bool = False
+    fell: bool = False
+
+    @property
+    def share(self) -> float:
+        return self.overturned / self.runs if self.runs else math.nan
+
+    @property
+    def is_doubtful(self) -> bool:
+        return self.is_generic or self.is_estimated
+
+
+def adopted(*given: Case) -> Adoption:
+    ends = [wilson_interval(one.overturned, one.runs) if one.runs else (math.nan, math.nan) for one in given]
+    low, high = (np.array([float(pair[at]) for pair in ends]) for at in (0, 1))
+    flags = {
+        "generic_spectrum": np.array([one.is_generic for one in given], dtype=np.bool_),
+        "fell_in_record": np.array([one.fell for one in given], dtype=np.bool_),
+    }
+    outcomes = {
+        FORMULA: Outcome(np.array([one.formula for one in given])),
+        VERIFICATION: Outcome(np.array([one.share for one in given]), {"low": low, "high": high}, flags),
+    }
+    cases = Cases.of(breadth=np.full(len(given), 0.4), height=1.8, pfv_estimated=[one.is_estimated for one in given])
+    return adopt(outcomes, cases)
+
+
+def one(case: Case) -> tuple[float, RiskClass, RiskClass, bool, bool]:
+    """Return probability, class, upper class, whether it is the verification's, and whether that was not lowered."""
+    found = adopted(case)
+    return (
+        float(found.probability[0]), RiskClass(found.risk[0]), RiskClass(found.upper[0]),
+        bool(found.verified[0]), bool(found.not_lowered[0]),
+    )  # fmt: skip
+
+
+def test_what_was_not_verified_keeps_the_formula():
+    assert one(Case(0.5)) == (0.5, HIGH, HIGH, False, False)
+    found = adopted(Case(0.5))
+    assert np.isnan([found.low[0], found.high[0]]).all()
+
+
+@pytest.mark.parametrize(("overturned", "risk"), [(0, LOW), (20, MEDIUM), (100, HIGH), (160, VERY_HIGH)])
+def test_verification_lowers_and_raises(overturned, risk):
+    case = Case(0.5, overturned, 200)
+    assert one(case)[:2] == (overturned / 200, risk)
+    found = adopted(case)
+    assert found.verified[0]
+    low, high = wilson_interval(overturned, 200)
+    assert (found.low[0], found.high[0]) == (low, high)
+
+
+@pytest.mark.parametrize("doubt", ["is_generic", "is_estimated"])
+def test_in_doubt_a_class_is_raised_but_not_lowered(doubt):
+    assert one(Case(0.5, 20, 200, **{doubt: True})) == (0.5, HIGH, HIGH, False, True)
+    assert one(Case(0.5, 160, 200, **{doubt: True}))[:2] == (0.8, VERY_HIGH)
+    assert one(Case(0.5, 70, 200, **{doubt: True}))[:2] == (0.35, HIGH), "a lower number of the same class is taken"
+    found = adopted(Case(0.5, 20, 200, **{doubt: True}))
+    assert np.isnan([found.low[0], found.high[0]]).all(), "the interval is of a risk that was not adopted"
+
+
+def test_a_piece_that_falls_in_the_record_is_at_least_high():
+    assert one(Case(0.1, 2, 200, fell=True))[:3] == (0.01, HIGH, HIGH)
+    assert one(Case(0.1, 150, 200, fell=True))[:2] == (0.75, VERY_HIGH)
+    assert one(Case(0.01, 0, 200, fell=True, is_estimated=True))[1] is HIGH
+
+
+def test_the_upper_class_is_that_of_the_intervals_end():
+    assert one(Case(0.5, 0, 100))[1:3] == (LOW, MEDIUM)
+    assert one(Case(0.5, 0, 200))[1:3] == (LOW, LOW)
+    assert one(Case(0.5, 55, 200))[1:3] == (MEDIUM, HIGH)
+
+
+def test_where_the_formula_stands_the_interval_may_still_raise_the_upper_class():
+    """The formula's medium stands; 5 of 20 may be as many as half."""
+    assert one(Case(0.299, 0, 20, is_generic=True))[1:] == (MEDIUM, MEDIUM, False, True)
+    assert one(Case(0.31, 5, 20, is_generic=True))[1:] == (HIGH, HIGH, False, True)
+    assert one(Case(0.1, 5, 20, is_generic=True))[1:3] == (MEDIUM, HIGH)
+
+
+probabilities = st.one_of(st.floats(0, 1), st.sampled_from([0.03, 0.3, 0.7]))
+
+
+@st.composite
+def any_case(draw):
+    runs = draw(st.one_of(st.just(0), st.integers(1, 300)))
+    overturned = draw(st.integers(0, runs))
+    doubts = {name: draw(st.booleans()) for name in ("is_generic", "is_estimated")}
+    return Case(draw(probabilities), overturned, runs, fell=bool(runs) and draw(st.booleans()), **doubts)
+
+
+@given(st.lists(any_case(), min_size=1, max_size=20))
+def test_nothing_comes_out_lower_than_it_should(given):
+    found = adopted(*given)
+    for at, case in enumerate(given):
+        by_formula, risk, upper = classify(case.formula), found.risk[at], found.upper[at]
+        assert upper >= risk >= classify(float(found.probability[at]))
+        assert found.probability[at] == (case.share if found.verified[at] else case.formula)
+        if not case.runs:
+            assert (risk, found.verified[at], found.not_lowered[at]) == (by_formula, False, False)
+            continue
+        assert found.verified[at] != found.not_lowered[at]
+        assert upper >= classify(float(wilson_interval(case.overturned, case.runs)[1]))
+        if case.is_doubtful:
+            assert risk >= by_formula
+            assert risk >= classify(case.share), "in doubt the higher class of both"
+        else:
+            assert found.verified[at]
+        if case.fell:
+            assert risk >= HIGH
+
+
+@given(st.lists(any_case(), min_size=1, max_size=8))
+def test_cases_do_not_touch_each_other(given):
+    together = adopted(*given)
+    for at, case in enumerate(given):
+        alone = adopted(case)
+        for name in ("probability", "low", "high", "risk", "upper", "verified", "not_lowered"):
+            np.testing.assert_array_equal(getattr(alone, name)[0], getattr(together, name)[at])
+
+
+# --- which case governs ---
+
+
+def governing(*rows, items=None, pfa=None):
+    """Return which governs of `rows`: class, upper class, probability."""
+    risk, upper, probability = (np.array(column) for column in zip(*rows, strict=True))
+    nothing, no = np.full(len(rows), np.nan), np.zeros(len(rows), dtype=np.bool_)
+    adoption = Adoption(probability.astype(np.float64), nothing, nothing, risk, upper, no, no)
+    item = np.zeros(len(rows), dtype=np.intp) if items is None else np.array(items)
+    peaks = np.ones(len(rows)) if pfa is None else np.array(pfa)
+    return find_governing(adoption, item, peaks * GRAVITY).tolist()
+
+
+def test_first_the_higher_class_governs():
+    """A piece that falls in the record is high, though its share is the smaller."""
+    assert governing((MEDIUM, HIGH, 0.29), (HIGH, HIGH, 0.01)) == [1]
+    assert governing((HIGH, HIGH, 0.01), (MEDIUM, VERY_HIGH, 0.29)) == [0]
+
+
+def test_then_the_higher_upper_class():
+    assert governing((MEDIUM, MEDIUM, 0.25), (MEDIUM, HIGH, 0.2)) == [1]
+
+
+def test_then_the_larger_probability():
+    assert governing((MEDIUM, MEDIUM, 0.2), (MEDIUM, MEDIUM, 0.25), pfa=[2, 1]) == [1]
+
+
+def test_then_the_larger_pfa_then_the_first():
+    assert governing((MEDIUM, MEDIUM, 0.2), (MEDIUM, MEDIUM, 0.2), pfa=[1, 2]) == [1]
+    assert governing((MEDIUM, MEDIUM, 0.2), (MEDIUM, MEDIUM, 0.2), pfa=[1, 1]) == [0]
+
+
+def test_rounding_does_not_decide():
+    assert governing((HIGH, HIGH, 0.5), (HIGH, HIGH, 0.5 + 1e-13), pfa=[1, 1]) == [0]
+    assert governing((HIGH, HIGH, 0.5), (HIGH, HIGH, 0.5), pfa=[1, 1 + 1e-13]) == [0]
+
+
+def test_each_item_has_its_own():
+    rows = [(LOW, LOW, 0.0), (HIGH, HIGH, 0.4), (LOW, LOW, 0.01), (VERY_HIGH, VERY_HIGH, 0.9), (LOW, LOW, 0.0)]
+    assert governing(*rows, items=[0, 0, 1, 2, 2]) == [1, 2, 3]
+
+
+# --- which pieces are verified ---
+
+
+def chosen(verify, formula, kaneko_hayashi=None, extrapolated=None, items=None, routes=None):
+    count = len(formula)
+    kaneko_hayashi = [0.0] * count if kaneko_hayashi is None else kaneko_hayashi
+    flags = {"extrapolated": np.array(extrapolated or [False] * count)}
+    outcomes = {
+        FORMULA: Outcome(np.array(formula), flags=flags),
+        "kaneko_hayashi": Outcome(np.array(kaneko_hayashi)),
+    }
+    item = np.arange(count) if items is None else np.array(items)
+    return choose_items(verify, outcomes, item, np.array(routes or [False] * (item[-1] + 1))).tolist()
+
+
+def test_none_and_all():
+    assert chosen("none", [0.9, 0.1], routes=[True, False]) == [False, False]
+    assert chosen("all", [0.9, 0.1]) == [True, True]
+
+
+def test_high_and_very_high_by_either_formula():
+    assert chosen("high", [0.0, 0.2999, 0.3, 0.7]) == [False, False, True, True]
+    assert chosen("high", [0.0] * 4, [0.0, 0.2999, 0.3, 0.7]) == [False, False, True, True]
+    assert chosen("high", [0.5, 0.0], [np.nan, np.nan]) == [True, False], "unknown is no class"
+
+
+def test_outside_the_checked_range_and_on_routes():
+    assert chosen("high", [0.0, 0.0], extrapolated=[False, True]) == [False, True]
+    assert chosen("high", [0.0, 0.0], routes=[True, False]) == [True, False]
+
+
+def test_under_any_motion_of_the_piece():
+    assert chosen("high", [0.0, 0.5, 0.0, 0.0], items=[0, 0, 1, 1]) == [True, False]
+    assert chosen("high", [0.0] * 4, [0.0, 0.0, 0.0, 0.5], items=[0, 0, 1, 1]) == [False, True]
+    assert chosen("high", [0.0] * 4, extrapolated=[True, False, False, False], items=[0, 0, 1, 1]) == [True, False]
+
+
+def test_no_items():
+    assert choose_items("high", _nothing(), np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.bool_)).tolist() == []
+    assert governing_of_nothing() == []
+
+
+def _nothing():
+    empty = np.zeros(0)
+    return {
+        FORMULA: Outcome(empty, flags={"extrapolated": empty.astype(np.bool_)}),
+        "kaneko_hayashi": Outcome(empty),
+    }
+
+
+def governing_of_nothing():
+    empty, none, no = np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
+    return find_governing(Adoption(empty, empty, empty, none, none, no, no), none.astype(np.intp), empty).tolist()
