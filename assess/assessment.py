@@ -8,11 +8,13 @@ from numpy.typing import NDArray
 
 from assess.adoption import VERIFICATION, adopt, choose_items, find_governing
 from assess.demand import AXES, Demand, Demands, build_demands
+from assess.errors import Problem
 from assess.inventory.model import Inventory
 from assess.methods import Cases, all_methods
 from assess.motion.suite import Suite
 from assess.remarks import remark
 from assess.results import Assessment
+from assess.rocking.block import STOCKY
 from assess.settings import SCENARIOS, Settings
 from assess.verification import Progress, choose_motions, verify
 
@@ -63,9 +65,11 @@ def run(
     cases = _cases(inventory, case_item, case_demand)
     outcomes = {one.key: one.evaluate(cases, settings) for one in all_methods() if one.tier == "screening"}
     chosen = choose_items(settings.verify, outcomes, case_item, _has_route(inventory))
-    cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
+    rocks = chosen[case_item] & (cases.breadth_to_height < STOCKY)
+    cases = choose_motions(cases, rocks, case_demand, demands, inventory.building, settings, suite)
     outcomes[VERIFICATION] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
     adoption = adopt(outcomes, cases)
+    remarks = remark(inventory, demands, scenario, settings.ductility_reduction)
     return Assessment(
         inventory=inventory,
         settings=settings,
@@ -79,8 +83,13 @@ def run(
         outcomes=outcomes,
         adoption=adoption,
         governing=find_governing(adoption, case_item, cases.pfa),
-        problems=(*inventory.problems, *remark(inventory, demands, scenario, settings.ductility_reduction)),
+        problems=(*inventory.problems, *remarks, *_remark_suite(suite)),
     )
+
+
+def _remark_suite(suite: Suite | None) -> list[Problem]:
+    notes = suite.notes if suite else ()
+    return [Problem("note", "", "", f"Motions of the user's own: {note}.") for note in notes]
 
 
 def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tuple[Demand, ...]]:

@@ -95,9 +95,11 @@ def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[J
 
 
 def _side_by_side(work: Callable[..., _Result], tasks: list[Any], threads: int) -> Iterator[_Result]:
-    """Yield the results of `work` in the order of `tasks`, several of which are worked on at once."""
-    if threads <= 1:
-        yield from (work(*task) for task in tasks)
+    """Yield the results of `work` in the order of `tasks`, several of which are worked on at once.
+
+    Never in the thread that called: a Ctrl-C that meets a compilation there would be lost.
+    """
+    if not tasks:
         return
     pool = ThreadPoolExecutor(threads)
     try:
@@ -138,23 +140,24 @@ def _integrate(
     tell("motions", number, 0.0)
     motions = ensemble.open(threads)
     looks = LOOKS if settings.runs == AUTO else (int(settings.runs),)
-    fell, rotation = np.zeros((own.size, looks[-1]), np.bool_), np.zeros((own.size, looks[-1]), np.float32)
+    fell, rotation = np.zeros((own.size, 0), np.bool_), np.zeros((own.size, 0), np.float32)
     runs, going = np.zeros(own.size, dtype=np.int64), np.arange(own.size)
     for first, last in zip((0, *looks), looks, strict=False):
+        wider = ((0, 0), (0, last - first))
+        fell, rotation = np.pad(fell, wider), np.pad(rotation, wider)
         for at, batch, time_step in _batches(motions, first, last):
             tell("rocking", number, at / looks[-1])
             one = _rock(cases, own[going], batch, time_step, threads)
             fell[going, at : at + len(batch)], rotation[going, at : at + len(batch)] = one
             tell("motions", number, (at + len(batch)) / looks[-1])
         runs[going] = last
-        going = going[_is_open(fell[going, :last], settings)]
+        going = going[_is_open(fell[going], settings)]
         if not going.size:
             break
     tell("done", number, 1.0)
-    most = int(runs.max())
     return Joint(
-        ensemble=number, cases=own, runs=runs, fell=fell[:, :most].copy(), rotation=rotation[:, :most].copy(),
-        examples=_examples(motions, most), fit=motions.fit,
+        ensemble=number, cases=own, runs=runs, fell=fell, rotation=rotation,
+        examples=_examples(motions, fell.shape[1]), fit=motions.fit,
     )  # fmt: skip
 
 

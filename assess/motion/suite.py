@@ -76,7 +76,7 @@ def read_suite(folder: Path) -> Suite:
         raise RecordError(f"{folder}: there is no such folder. Name a folder of floor records")
     paths = [path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")]
     paths = [path for path in paths if path.suffix.lower() not in TEXTS]
-    found = {path: read_records(path) for path in paths}
+    found = {path: _read(path) for path in paths}
     motions = [one for path, records in found.items() for one in _horizontal(path, records)]
     if not motions:
         raise RecordError(f"{folder}: it holds no horizontal channel. Put floor records into it")
@@ -87,6 +87,13 @@ def read_suite(folder: Path) -> Suite:
         files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found},
         notes=(f"vertical channels are left out: {', '.join(vertical)}",) if vertical else (),
     )
+
+
+def _read(path: Path) -> tuple[Record, ...]:
+    try:
+        return read_records(path)
+    except RecordError as error:
+        raise RecordError(f"{error}. Mend it, or take it out of the folder") from None
 
 
 def _horizontal(path: Path, records: tuple[Record, ...]) -> Iterator[tuple[str, Motion]]:

@@ -16,7 +16,7 @@ from assess.inventory.model import Floor
 from assess.methods import Method
 from assess.ranking import count_pieces, fix_first
 from assess.report import motions, trials, words
-from assess.report.data import versions
+from assess.report.provenance import versions
 from assess.report.trials import Trials
 from assess.report.verified import WILSON, Verified, build_verified
 from assess.results import Assessment, ItemResult
@@ -144,7 +144,7 @@ def build_content(assessment: Assessment) -> Content:
         title=assessment.inventory.building.building or assessment.inventory.source.stem,
         date=report_date(),
         version=__version__,
-        platform=versions(),
+        platform=versions(has_rocked=bool(assessment.joints)),
         building=_building(assessment),
         results=results,
         total=count("All floors", results),

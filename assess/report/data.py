@@ -5,10 +5,8 @@ It is written item by item, so that 20,000 items take no more memory than one. U
 
 import json
 import math
-import platform
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
-from functools import cache
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -17,6 +15,7 @@ from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.columns import BUILDING
 from assess.motion.fit import Fit
+from assess.report.provenance import versions
 from assess.results import Assessment, ItemResult
 from assess.risk import RiskClass
 from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
@@ -60,7 +59,7 @@ def describe_run(assessment: Assessment) -> dict[str, Any]:
             "version": __version__,
             "seed": assessment.settings.seed,
             "settings": asdict(assessment.settings) | {"scenario": assessment.scenario},
-            "platform": versions(),
+            "platform": versions(has_rocked=bool(assessment.joints)),
             "inputs": {
                 "workbook": inventory.source.name,
                 "sha256": inventory.sha256,
@@ -70,19 +69,6 @@ def describe_run(assessment: Assessment) -> dict[str, Any]:
         },
         "building": building_record(assessment),
         "floors": [floor_record(assessment, floor.floor) for floor in inventory.floors],
-    }
-
-
-@cache
-def versions() -> Mapping[str, str]:
-    """Return what the numbers were computed with."""
-    import numpy as np
-
-    return {
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "system": platform.system(),
-        "machine": platform.machine(),
     }
 
 

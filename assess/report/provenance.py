@@ -1,0 +1,26 @@
+"""What the numbers of a report were computed with."""
+
+import platform
+from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import version
+
+
+@cache
+def versions(*, has_rocked: bool = False) -> Mapping[str, str]:
+    """Return what the numbers were computed with; the verification also depends on the kind of processor."""
+    import numpy as np
+
+    found = {
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "system": platform.system(),
+        "machine": platform.machine(),
+    }
+    if has_rocked:
+        from llvmlite.binding import get_host_cpu_name
+        from numba import config
+
+        processor = getattr(config, "CPU_NAME", None) or get_host_cpu_name()
+        found |= {"scipy": version("scipy"), "numba": version("numba"), "processor": processor}
+    return found
