@@ -12,6 +12,7 @@ from html import unescape
 from math import hypot
 from pathlib import Path
 
+import jsonschema
 import openpyxl
 import pypdfium2
 import pytest
@@ -25,7 +26,9 @@ from assess.inventory.model import Inventory, Item
 from assess.inventory.workbook import read_inventory
 from assess.live_values import stored_live
 from assess.report import write_reports
+from assess.report.data import SCHEMA
 from assess.report.motions import ENVELOPES
+from assess.risk import RiskClass
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.workbooks import UNVERIFIED
@@ -299,3 +302,24 @@ def test_a_floor_that_lost_its_record_is_interpolated(tmp_path, script):
     for text in _texts(write_reports(found, tmp_path / "out")):
         assert "Floor 34: nothing is known of the motion there, it is interpolated" in text
         assert "interpolated between floors 25 and 42" in text
+
+
+# ------------------------------------------------------------------ verified
+
+
+@pytest.mark.slow
+def test_verified_under_its_records_classes_are_lowered_and_say_so(tmp_path, inventory, assessment):
+    """As it comes, but for 20 motions: weak long shaking, which overturns far less than the formula says."""
+    found = run(inventory, Settings(runs=20))
+    assert found.settings.verify == "high"
+    for one, plain in zip(found, assessment, strict=True):
+        by_formula = plain.adopted.risk
+        wanted = one.item.route or by_formula >= RiskClass.HIGH or "extrapolated" in plain.adopted.flags
+        assert one.is_verified or not wanted or one.does_not_rock, one.item.item
+        if not one.is_verified:
+            assert one.adopted == plain.adopted
+        assert one.adopted.lowered_from == (by_formula if one.adopted.risk < by_formula else None)
+        assert "generic_spectrum" not in one.adopted.flags
+    assert sum(one.adopted.lowered_from is not None for one in found) > 20
+    written = write_reports(found, tmp_path / "out", ("json", "npz"))
+    jsonschema.validate(json.loads(written["json"].read_text(encoding="utf-8")), json.loads(SCHEMA.read_text("utf-8")))

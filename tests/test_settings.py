@@ -40,3 +40,24 @@ def test_a_ductility_reduction_below_one_is_refused(reduction):
 )
 def test_choices_are_matched_loosely(text, choice):
     assert match_choice(text, SCENARIOS) == choice
+
+
+def test_by_default_what_is_high_or_doubtful_is_verified_under_200_motions():
+    usual = assess.Settings()
+    assert (usual.verify, usual.runs, usual.seed, usual.scale_motions) == ("high", 200, 1, False)
+
+
+@pytest.mark.parametrize("runs", [0, -1, 100_001, 2.5, "x", "Auto", None])
+def test_a_number_of_runs_that_cannot_be_is_refused(runs):
+    with pytest.raises(ValueError, match=r"runs is .*, expected 1 to 100,000, or auto"):
+        assess.Settings(runs=runs)
+
+
+@pytest.mark.parametrize("runs", [1, 100_000, "auto"])
+def test_runs_that_can_be(runs):
+    assert assess.Settings(runs=runs).runs == runs
+
+
+def test_a_seed_below_zero_is_refused():
+    with pytest.raises(ValueError, match="seed is -1, expected 0 or above"):
+        assess.Settings(seed=-1)

@@ -174,7 +174,7 @@ def test_every_lowered_class_is_marked_in_all_outputs(done, assessment):
     assert {"parallel", "usual", "twin", "stands"} <= set(lowered)
     assert not {"falls", "thin", "broad", "stocky"} & set(lowered)
     for one in assessment:
-        highest = max(classify(case.methods["proposed_or"].value) for case in one.cases)
+        highest = RiskClass(max(int(classify(case.methods["proposed_or"].value)) for case in one.cases))
         assert one.adopted.lowered_from == (highest if one.adopted.risk < highest else None)
     assert lowered == {
         name: item["adopted"]["lowered_from"] for name, item in done.items.items() if item["adopted"]["lowered_from"]

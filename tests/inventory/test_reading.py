@@ -120,7 +120,6 @@ def test_building(tmp_path: Path) -> None:
     assert (found.cell("ground_pga"), found.cell("sds"), found.cell("friction")) == ("B7", "B8", "")
     assert remarks(inventory, "note") == {
         "Building!A10: 'Architect' is not known; it is not used.",
-        "Building!B9: Restitution is kept, not used: direct integration is not part of this version.",
     }
 
 

@@ -8,7 +8,6 @@ from eqsig import sdof
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.compiled import compiled
 from assess.motion.record import FloatArray
 from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum, run_rows
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
@@ -283,14 +282,3 @@ def test_time_steps_that_cannot_be(time_step: float) -> None:
 def test_motions_that_cannot_be(shape: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r"acceleration has shape \(.*, expected \(n,\) or \(k, n\) with n of 2 or"):
         response_spectrum(np.ones(shape), 0.01, PERIODS)
-
-
-def test_where_nothing_can_be_kept_on_disk_it_is_compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    from numba.core import caching
-
-    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
-
-    def double(value: float) -> float:
-        return 2 * value
-
-    assert compiled(double)(1.5) == 3.0

@@ -45,6 +45,13 @@ def test_results_hold_what_was_assessed(results):
     assert {axis["axis"] for axis in first["axes"]} == {"X", "Y"}
     assert first["adopted"]["probability"] == first["methods"]["proposed_or"]["value"]
     assert first["verification"] is None
+    assert first["methods"]["housner_monte_carlo"]["value"] is None
+    assert {demand["ensemble"] for floor in found["floors"] for demand in floor["demands"]} == {None}
+    settings = found["assess"]["settings"]
+    assert found["schema"] == "1.1"
+    assert found["assess"]["seed"] == settings["seed"] == 1
+    assert (settings["verify"], settings["runs"], settings["scale_motions"]) == ("none", 200, False)
+    assert found["assess"]["inputs"]["motions"] == {}
     assert found["assess"]["inputs"]["sha256"] == assessment.inventory.sha256
 
 
@@ -78,6 +85,7 @@ def test_csv_is_the_same_table(results, tmp_path):
         assert float(row["proposed_or"]) == item["methods"]["proposed_or"]["value"]
         assert float(row["proposed_or_raw"]) == item["methods"]["proposed_or"]["raw"]
         assert row["adopted_class"] == item["adopted"]["class"]
+        assert {value for name, value in row.items() if name.startswith("verification_")} == {""}
         assert math.isclose(float(row["breadth_to_height"]), item["breadth_to_height"], abs_tol=0)
 
 

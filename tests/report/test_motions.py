@@ -12,7 +12,8 @@ from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
 from assess.report.data import SCHEMA
 from assess.report.motions import ENVELOPES, describe_origin, describe_source, list_cautions
 from tests.report.test_html import _read
-from tests.workbooks import UNVERIFIED, write
+from tests.workbooks import UNVERIFIED as BY_FORMULA
+from tests.workbooks import write
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -137,7 +138,7 @@ def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
 
 def _cautions(folder, floors, **building):
     inventory = assess.read_inventory(write(folder / "w.xlsx", ITEMS, floors, **building))
-    return list_cautions(assess.run(inventory, UNVERIFIED))
+    return list_cautions(assess.run(inventory, BY_FORMULA))
 
 
 def test_interpolation_is_said_to_be_possibly_too_low(mixed):
@@ -169,7 +170,7 @@ def test_a_floor_at_the_height_of_a_known_one_is_said_to_be_the_same(tmp_path):
     known = {"floor": "3", "elevation": 3, "pfa_x": 0.2}
     floors = [known, {"floor": "1", "elevation": 3}, {"floor": "2", "elevation": 3}, {"floor": "4", "elevation": 3}]
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS, floors, period=0.5))
-    assessment = assess.run(inventory, UNVERIFIED)
+    assessment = assess.run(inventory, BY_FORMULA)
     (one,) = assessment.demands["1", "X"]
     assert (one.label, describe_origin(one)) == ("as floor 3", "the same as floor 3, at the same height")
     assert describe_source(one) == "the same as floor 3, at the same height (PFV estimated from T1)"
@@ -179,7 +180,7 @@ def test_a_floor_at_the_height_of_a_known_one_is_said_to_be_the_same(tmp_path):
 
 def test_flags_beside_a_source_are_short_where_a_neighbour_brings_them(tmp_path):
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS[:3], FLOORS[:3], period=0.5))
-    demands = assess.run(inventory, UNVERIFIED).demands
+    demands = assess.run(inventory, BY_FORMULA).demands
     assert describe_source(demands["2", "Y"][0]) == "interpolated between floors 1 and 3 (one axis only)"
     assert "serves both" in describe_source(demands["3", "Y"][0])
 

@@ -1,0 +1,128 @@
+"""Compiled code is kept in the user's cache folder, or where NUMBA_CACHE_DIR says; results hardly depend on it."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import assess
+from assess.compiled import cache_folder, compiled
+from tests.shaking import write_records
+from tests.workbooks import write
+
+PACKAGE = Path(assess.__file__).parent
+FIRST_USE = "import numpy as np\nfrom assess.motion.bending import settle\nsettle(np.ones(10), 1.0)\n"
+
+
+def _child(code, **changes):
+    """Run `code` in a process of its own; a variable that is None is left out of its environment."""
+    given = {"NUMBA_CACHE_DIR": None, "XDG_CACHE_HOME": None} | changes
+    where = {name: value for name, value in os.environ.items() if name not in given}
+    where |= {name: str(value) for name, value in given.items() if value is not None}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=where, capture_output=True, text=True, timeout=600, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def _kept(folder):
+    return sorted(path.name for path in folder.rglob("*.nbi"))
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other systems have other folders")
+def test_it_is_kept_in_the_users_folder(tmp_path):
+    before = _kept(PACKAGE)
+    _child(FIRST_USE, XDG_CACHE_HOME=tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["assess"]
+    assert [name for name in _kept(tmp_path / "assess") if name.startswith("settle-") or ".settle-" in name]
+    assert _kept(PACKAGE) == before, "nothing beside the code, which may be read-only or shared"
+
+
+def test_another_folder_may_be_named(tmp_path):
+    _child(FIRST_USE, XDG_CACHE_HOME=tmp_path / "mine", NUMBA_CACHE_DIR=tmp_path / "named")
+    assert _kept(tmp_path / "named")
+    assert not (tmp_path / "mine").exists()
+
+
+def test_importing_leaves_the_folder_of_others_as_it_was(tmp_path):
+    """Only this package's functions are kept there, not those that a notebook compiles afterwards."""
+    _child(
+        "from numba import config\nbefore = config.CACHE_DIR\nimport assess.motion.bending\n"
+        "assert config.CACHE_DIR == before",
+        XDG_CACHE_HOME=tmp_path,
+    )
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other systems have other folders")
+def test_a_folder_that_cannot_be_written_is_done_without(tmp_path):
+    (tmp_path / "assess").write_text("a file where the folder should be", encoding="utf-8")
+    _child(FIRST_USE, XDG_CACHE_HOME=tmp_path)
+    assert (tmp_path / "assess").is_file()
+
+
+def test_where_nothing_can_be_kept_on_disk_it_is_compiled_anew(monkeypatch):
+    from numba.core import caching
+
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+
+    def double(value: float) -> float:
+        return 2 * value
+
+    assert compiled(double)(1.5) == 3.0
+
+
+@pytest.mark.parametrize(
+    ("system", "variables", "folder"),
+    [
+        ("linux", {"XDG_CACHE_HOME": "/caches"}, "/caches/assess"),
+        ("linux", {"XDG_CACHE_HOME": ""}, "{home}/.cache/assess"),
+        ("darwin", {"XDG_CACHE_HOME": "/caches"}, "{home}/Library/Caches/assess"),
+        ("win32", {"LOCALAPPDATA": "/local"}, "/local/assess/cache"),
+        ("win32", {"LOCALAPPDATA": ""}, "{home}/AppData/Local/assess/cache"),
+    ],
+)
+def test_each_system_has_its_folder(monkeypatch, system, variables, folder):
+    monkeypatch.setattr(sys, "platform", system)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    assert cache_folder() == Path(folder.format(home=Path.home()))
+
+
+# --- another processor ---
+
+ITEMS = [
+    {"item": f"{floor} {breadth}", "floor": floor, "axis": "X", "breadth": breadth, "height": 180}
+    for floor in ("1", "2")
+    for breadth in range(24, 64, 4)
+]
+FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.3, "pfv_x": 30.0}]
+MOST_APART = 0.02
+"""Largest difference of a risk on another kind of processor [-]: verdicts on the edge may turn over."""
+
+
+@pytest.mark.slow
+def test_a_processor_without_wide_vectors_gives_the_same_risks(tmp_path):
+    """All is compiled anew for it, and summed in another order."""
+    write_records(tmp_path, "slow")
+    path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
+    risks = []
+    for name, changes in (("native", {}), ("generic", {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""})):
+        out = tmp_path / name
+        words = ["assess", "run", str(path), "--verify", "all", "--formats", "json", "--out", str(out)]
+        code = f"import sys\nfrom assess.cli import main\nsys.argv = {words!r}\nmain()"
+        _child(
+            code,
+            NUMBA_CACHE_DIR=tmp_path / f"cache-{name}" if changes else os.environ.get("NUMBA_CACHE_DIR"),
+            **changes,
+        )
+        found = json.loads((out / "results.json").read_text(encoding="utf-8"))
+        risks.append({one["item"]: one["verification"]["probability"] for one in found["items"]})
+    native, generic = risks
+    assert native.keys() == generic.keys()
+    assert any(0 < value < 1 for value in native.values())
+    for name, value in native.items():
+        assert abs(generic[name] - value) <= MOST_APART, name
