@@ -117,6 +117,8 @@ def run(
     folder = out or Path(f"{path.stem}-report")
     if folder.exists() and not folder.is_dir():
         raise typer.BadParameter(f"{folder} is a file; name a folder.", param_hint="--out")
+    if motions is not None and verify == "none":
+        raise typer.BadParameter("the motions are for verification: leave out --verify none.", param_hint="--motions")
     if scale_motions and motions is None:
         raise typer.BadParameter(
             "there are no motions to scale: name their folder by --motions.", param_hint="--scale-motions"

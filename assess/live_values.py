@@ -15,6 +15,7 @@ from assess.inventory.lists import RUN_ASSESS
 from assess.inventory.live import OUTSIDE
 from assess.inventory.workbook import read_inventory
 from assess.results import Assessment, ItemResult
+from assess.risk import classify
 from assess.settings import Settings
 from assess.units import GRAVITY
 
@@ -32,10 +33,12 @@ def _live_row(one: ItemResult) -> list[float | str]:
     breadth_to_height = one.item.breadth / one.item.height
     if any(case.demand.source != "given" for case in one.cases):
         return [breadth_to_height, *[RUN_ASSESS] * 4]
-    methods = one.governing.methods
+    methods = one.by_formula.methods
     risks = [methods[key].value for key in (FORMULA, "kaneko_hayashi")]
-    label = one.adopted.risk.label + (OUTSIDE if "extrapolated" in methods[FORMULA].flags else "")
-    pfa_g = one.governing.demand.pfa / GRAVITY
+    outside = OUTSIDE if "extrapolated" in methods[FORMULA].flags else ""
+    risk = None if risks[0] is None else classify(risks[0])
+    label = (risk.label if risk is not None else "") + outside
+    pfa_g = one.by_formula.demand.pfa / GRAVITY
     return [breadth_to_height, pfa_g, *("" if risk is None else risk for risk in risks), label]
 
 

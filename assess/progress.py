@@ -46,7 +46,7 @@ class Progress:
         waiting = [items for items, one in zip(self._work.items, finished, strict=True) if not one]
         pieces = self._work.pieces - len(np.unique(np.concatenate(waiting))) if waiting else self._work.pieces
         total = self._describe(self._work.pieces, len(set(self._work.floors)))
-        return f"Verifying: {pieces:,} pieces on {len(floors)} floors done of {total}{left}"
+        return f"Verifying: {self._describe(pieces, len(floors))} done of {total}{left}"
 
     @staticmethod
     def _describe(pieces: int, floors: int) -> str:

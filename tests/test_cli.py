@@ -79,6 +79,10 @@ def test_bad_input_writes_nothing(tmp_path):
         (["--runs", "9" * 5000], "Invalid value for --runs: '999"),
         (["--seed", "-1"], "Invalid value for '--seed': "),
         (["--jobs", "0"], "Invalid value for '--jobs': "),
+        (
+            ["--motions", ".", "--verify", "none"],
+            "Invalid value for --motions: the motions are for verification: leave out",
+        ),
         (["--scale-motions"], "Invalid value for --scale-motions: there are no motions to scale: name their folder by"),
         (
             ["--formats", "npz", "--verify", "none"],
