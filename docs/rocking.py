@@ -5,13 +5,11 @@ Run it with ``python docs/rocking.py``. Every number on the page is from the run
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-from numba import njit
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
@@ -21,6 +19,7 @@ from assess.rocking.ensemble import rock_blocks  # noqa: E402
 from assess.units import GRAVITY  # noqa: E402
 from tests.rocking.pairs import Pair, draw_pairs, ground, read_table  # noqa: E402 - a script, and tests are no part of the package
 from tests.rocking.reference import of_sizes, scaled  # noqa: E402
+from tests.rocking.variants import kernel_with  # noqa: E402
 
 EVERY = 7
 """Of so many pairs one is used where the table is not needed whole."""
@@ -154,17 +153,6 @@ def timed(pairs: list[Pair]) -> float:
     return time.perf_counter() - start
 
 
-def kernel_with(rest: float) -> Callable[..., int]:
-    """Return the kernel's `rock` with another `REST`, compiled anew."""
-    source = Path(kernel.__file__).read_text(encoding="utf-8")
-    usual = f"\nREST = {kernel.REST:.0e}\n".replace("e-0", "e-")
-    assert source.count(usual) == 1, usual  # noqa: S101 - else nothing would be replaced
-    own: dict[str, Any] = {"compiled": njit(error_model="numpy", fastmath={"nnan", "nsz", "contract", "arcp"})}
-    source = source.replace(usual, f"\nREST = {rest!r}\n").replace("from assess.compiled import compiled\n", "")
-    exec(compile(source, kernel.__file__, "exec"), own)  # noqa: S102 - our own file
-    return own["rock"]  # type: ignore[no-any-return]
-
-
 def lines_of_rest(pairs: list[Pair], table: list[dict[str, str]]) -> Iterator[str]:
     """Yield the part on the height of the last hop."""
     reference = of_table(table)
@@ -178,7 +166,7 @@ def lines_of_rest(pairs: list[Pair], table: list[dict[str, str]]) -> Iterator[st
     yield f"|---|{RULE}---|---|"
     seconds, cells = {}, {}
     for rest in (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9):
-        with patch.object(kernel, "rock", kernel_with(rest)):
+        with patch.object(kernel, "rock", kernel_with(REST=rest)):
             rock(pairs[:5])  # compiles it
             found = rock(pairs)
             seconds[rest] = min(timed(pairs) for _ in range(9))

@@ -15,6 +15,7 @@ from assess.rocking.ensemble import Rocking, rock_blocks
 from assess.units import GRAVITY
 from tests.motion.test_external_records import FOLDER
 from tests.rocking.reference import Found, integrate, of_sizes
+from tests.rocking.variants import kernel_with
 
 Array = np.ndarray
 NO_TRACE = np.zeros((0, 3))
@@ -681,3 +682,17 @@ def test_el_centro(monkeypatch: pytest.MonkeyPatch) -> None:
     theirs = rock_blocks(0.4, 1.8, scales * in_g * 9.81, record.time_step)
     assert theirs.overturned.tolist() == [[False, False, True]]
     assert theirs.rotation[0, :2] == pytest.approx([0.3288, 0.5170], abs=2e-4)
+
+
+def test_the_number_of_lanes_changes_nothing(monkeypatch):
+    rng = np.random.default_rng(11)
+    motions = np.cumsum(rng.normal(size=(9, 800)), axis=1)
+    motions *= 5 / np.abs(motions).max(axis=1, keepdims=True)
+    height = rng.uniform(0.5, 2.2, 25)
+    usual = rock_blocks(0.22 * height, height, motions, 0.01)
+    monkeypatch.setattr(kernel, "rock", kernel_with(LANES=kernel.LANES // 4))
+    other = rock_blocks(0.22 * height, height, motions, 0.01)
+    assert 0 < usual.overturned.mean() < 1
+    assert np.array_equal(usual.rotation, other.rotation)
+    assert np.array_equal(usual.fall_time, other.fall_time, equal_nan=True)
+    assert np.array_equal(usual.impacts, other.impacts)
