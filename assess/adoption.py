@@ -1,7 +1,8 @@
 """Which risk a report goes by: that of the formula, or that of the verification where one ran and may be believed.
 
 Nothing may come out lower than it should without a word. A class that verification lowers is marked. Where the motions
-follow a generic spectrum, or PFV is an estimate, verification may raise a class, but not lower it. A piece that
+follow a generic spectrum or are weaker than the floor's, or PFV is an estimate, verification may raise a class, but not
+lower it. A piece that
 overturns under the recorded motion itself is at least high.
 """
 
@@ -38,6 +39,8 @@ class Adoption:
         Class by the probability, and by the upper end of the interval.
     verified : (n,) boolean array
         Whether it is that of the verification.
+    doubtful : (n,) boolean array
+        Where verification may not lower a class.
     not_lowered : (n,) boolean array
         Where verification gave a lower class, which it may not.
     """
@@ -48,6 +51,7 @@ class Adoption:
     risk: IntArray
     upper: IntArray
     verified: BoolArray
+    doubtful: BoolArray
     not_lowered: BoolArray
 
 
@@ -55,7 +59,7 @@ def adopt(outcomes: Mapping[str, Outcome], cases: Cases) -> Adoption:
     """Adopt a risk for every case."""
     formula, verification = outcomes[FORMULA].value, outcomes[VERIFICATION]
     value, low, high = (verification.value, *(verification.detail[end].astype(np.float64) for end in ("low", "high")))
-    doubtful = verification.flags["generic_spectrum"] | cases.pfv_estimated
+    doubtful = verification.flags["generic_spectrum"] | verification.flags["weak_motions"] | cases.pfv_estimated
     has_run = ~np.isnan(value)
     not_lowered = has_run & doubtful & (classify_all(value) < classify_all(formula))
     verified = has_run & ~not_lowered
@@ -70,18 +74,18 @@ def adopt(outcomes: Mapping[str, Outcome], cases: Cases) -> Adoption:
         risk=risk,
         upper=upper,
         verified=verified,
+        doubtful=doubtful,
         not_lowered=not_lowered,
     )
 
 
-def find_governing(adoption: Adoption, case_item: NDArray[np.intp], pfa: FloatArray) -> NDArray[np.intp]:
+def find_governing(probability: FloatArray, case_item: NDArray[np.intp], pfa: FloatArray) -> NDArray[np.intp]:
     """Return the index of the case that governs each item.
 
-    That of the higher class, then of the higher upper class, then of the larger probability, then of the larger PFA,
-    then the first, which is X.
+    That of the larger probability, then of the larger PFA, then the first, which is X.
     """
-    by_peak, by_chance = -np.round(pfa / GRAVITY, ALIKE), -np.round(adoption.probability, ALIKE)
-    order = np.lexsort((by_peak, by_chance, -adoption.upper, -adoption.risk, case_item))
+    by_peak, by_chance = -np.round(pfa / GRAVITY, ALIKE), -np.round(probability, ALIKE)
+    order = np.lexsort((by_peak, by_chance, case_item))
     first = np.searchsorted(case_item[order], np.arange(case_item[-1] + 1 if len(case_item) else 0))
     return order[first]
 

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from assess.adoption import VERIFICATION, adopt, choose_items, find_governing
 from assess.demand import AXES, Demand, Demands, build_demands
-from assess.errors import Problem
 from assess.inventory.model import Inventory
 from assess.methods import Cases, all_methods
 from assess.motion.suite import Suite
@@ -16,7 +15,7 @@ from assess.remarks import remark
 from assess.results import Assessment
 from assess.rocking.block import STOCKY
 from assess.settings import SCENARIOS, Settings
-from assess.verification import Progress, choose_motions, verify
+from assess.verification import Progress, choose_motions, remark_suite, verify
 
 
 def run(
@@ -82,14 +81,9 @@ def run(
         case_demand=case_demand,
         outcomes=outcomes,
         adoption=adoption,
-        governing=find_governing(adoption, case_item, cases.pfa),
-        problems=(*inventory.problems, *remarks, *_remark_suite(suite)),
+        governing=find_governing(adoption.probability, case_item, cases.pfa),
+        problems=(*inventory.problems, *remarks, *remark_suite(suite, cases)),
     )
-
-
-def _remark_suite(suite: Suite | None) -> list[Problem]:
-    notes = suite.notes if suite else ()
-    return [Problem("note", "", "", f"Motions of the user's own: {note}.") for note in notes]
 
 
 def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tuple[Demand, ...]]:

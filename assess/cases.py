@@ -53,7 +53,8 @@ class Adopted:
     """The risk that the report goes by.
 
     `low` and `high` bound the interval of a verified risk, and are None where the formula's is adopted. `upper` is the
-    class by the upper bound. `lowered_from` is the class by formula where verification lowered it.
+    class by the upper bound. `lowered_from` is the class by formula where verification lowered it. Verification may not
+    lower the class of a doubtful one.
     """
 
     method: str
@@ -63,6 +64,7 @@ class Adopted:
     risk: RiskClass
     upper: RiskClass
     lowered_from: RiskClass | None
+    is_doubtful: bool
     flags: tuple[str, ...]
 
 
@@ -79,9 +81,9 @@ class CaseResult:
 FLAGS: Mapping[str, str] = {
     "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",
     "slides": "friction is below B/H: it slides before it rocks, which no method here counts",
-    **{flag: HOUSNER.flags[flag] for flag in ("fell_in_record", "generic_spectrum", "undecided")},
-    "not_lowered": "verification gave a lower class, which is not adopted: the floor's spectrum is generic, or its PFV "
-    "is an estimate",
+    **{flag: HOUSNER.flags[flag] for flag in ("fell_in_record", "generic_spectrum", "weak_motions", "undecided")},
+    "not_lowered": "verification gave a lower class, which is not adopted: the floor's spectrum is generic, its PFV an "
+    "estimate, or the motions are weaker than the floor's",
 }
 """Meanings of the flags that belong to a piece rather than to one method."""
 
@@ -160,5 +162,6 @@ def _adopt(adopted: Mapping[str, list[Any]], case: int, methods: Mapping[str, Me
         risk=RiskClass(adopted["risk"][case]),
         upper=RiskClass(adopted["upper"][case]),
         lowered_from=None,
+        is_doubtful=adopted["doubtful"][case],
         flags=tuple(dict.fromkeys((*methods[FORMULA].flags, *demand.flags, *piece))),
     )

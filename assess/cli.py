@@ -13,7 +13,7 @@ import typer
 
 from assess.console import exits, print_problems, print_result
 from assess.errors import InputError
-from assess.settings import AUTO, MOST_RUNS, SCENARIOS, VERIFY, Settings, match_choice
+from assess.settings import AUTO, MOST_RUNS, SCENARIOS, SEED, VERIFY, Settings, match_choice, read_runs
 from assess.version import __version__
 
 if TYPE_CHECKING:
@@ -94,8 +94,11 @@ def run(
         str,
         typer.Option(help="Pieces to verify by direct integration: none, high (high risk, doubtful, on routes), all."),
     ] = "high",
-    runs: Annotated[str, typer.Option(help="Motions of each floor and axis; auto: until each class is sure.")] = "200",
-    seed: Annotated[int, typer.Option(min=0, help="Of the generated motions.")] = 1,
+    runs: Annotated[
+        str | None,
+        typer.Option(help="Motions of each floor and axis; auto: until each class is sure.", show_default="200"),
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Of the generated motions.", show_default="1")] = None,
     motions: Annotated[
         Path | None,
         typer.Option(help="Folder of your own floor records, in place of generated ones.", show_default=False),
@@ -111,20 +114,22 @@ def run(
     jobs: Annotated[int | None, typer.Option(min=1, help="Threads.", show_default="one a processor")] = None,
 ) -> None:
     """Assess a workbook and write the reports."""
-    from assess.report import write_reports
+    from assess.report import check_folder, write_reports
 
     wanted = _read_formats(formats, verify)
     folder = out or Path(f"{path.stem}-report")
     if folder.exists() and not folder.is_dir():
         raise typer.BadParameter(f"{folder} is a file; name a folder.", param_hint="--out")
-    if motions is not None and verify == "none":
-        raise typer.BadParameter("the motions are for verification: leave out --verify none.", param_hint="--motions")
+    if motions is not None and (verify == "none" or runs is not None or seed is not None):
+        message = "your own motions are all taken, in a verification: leave out --verify none, --runs and --seed."
+        raise typer.BadParameter(message, param_hint="--motions")
     if scale_motions and motions is None:
         raise typer.BadParameter(
             "there are no motions to scale: name their folder by --motions.", param_hint="--scale-motions"
         )
     settings = _settings(verify, runs, seed, scale_motions, scenario)
     with exits():
+        check_folder(folder)
         assessment = _assess(path, settings, motions, jobs)
         print_problems([one for one in assessment.problems if one.severity == "warning"])
         written = write_reports(assessment, folder, wanted)
@@ -245,16 +250,22 @@ def _read_formats(formats: str, verify: str) -> list[str]:
     return wanted
 
 
-def _settings(verify: str, runs: str, seed: int, scale_motions: bool, scenario: str | None) -> Settings:
+def _settings(verify: str, runs: str | None, seed: int | None, scale_motions: bool, scenario: str | None) -> Settings:
     if verify not in VERIFY:
         raise typer.BadParameter(f"{verify!r} is not one of: {', '.join(VERIFY)}.", param_hint="--verify")
-    if runs != AUTO and not (runs.isascii() and runs.isdigit() and len(runs) < 10 and 1 <= int(runs) <= MOST_RUNS):
+    count = read_runs(runs)
+    if count is None:
         raise typer.BadParameter(f"{runs!r} is not a number from 1 to {MOST_RUNS:,}, nor {AUTO}.", param_hint="--runs")
     kind = None if scenario is None else match_choice(scenario, SCENARIOS)
     if scenario is not None and kind is None:
         raise typer.BadParameter(f"{scenario!r} is not one of: {', '.join(SCENARIOS)}.", param_hint="--scenario")
-    count = AUTO if runs == AUTO else int(runs)
-    return Settings(verify=verify, runs=count, seed=seed, scale_motions=scale_motions, scenario=kind)  # type: ignore[arg-type]
+    return Settings(
+        verify=verify,  # type: ignore[arg-type]
+        runs=count,
+        seed=SEED if seed is None else seed,
+        scale_motions=scale_motions,
+        scenario=kind,  # type: ignore[arg-type]
+    )
 
 
 def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: int | None = None) -> "Assessment":

@@ -1,6 +1,7 @@
 """The motions of every floor and axis: generated for its record or for a generic spectrum, or the user's own."""
 
 import math
+import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -10,6 +11,9 @@ from assess.motion.fit import Fit
 from assess.motion.record import FloatArray
 from assess.motion.suite import Suite
 from assess.motion.target import Grid, Target, build_grid, estimate_period, generic_target, recorded_target
+
+WEAK_PFA, WEAK_PFV = 0.9, 0.85
+"""Shares of the floor's PFA and PFV [-] below which the user's own motions may not lower a class."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +56,11 @@ class GeneratedEnsemble:
         return self.demand.motion is None
 
     @property
+    def is_weak(self) -> bool:
+        """They meet the floor's PFA by how they are made."""
+        return False
+
+    @property
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion as treated [m/s2], and its time step [s]."""
         return _record(self.demand)
@@ -83,6 +92,21 @@ class SuiteEnsemble:
     suite: Suite
     is_scaled: bool
     is_generic: bool = False
+
+    @property
+    def peaks(self) -> tuple[float, float]:
+        """Median PFA [m/s2] and PFV [m/s] of the motions on this floor."""
+        motions = [motion for _, motion in self.suite.motions]
+        scales = [self.demand.pfa / motion.pfa if self.is_scaled else 1.0 for motion in motions]
+        scaled = [(one.pfa * scale, one.pfv * scale) for one, scale in zip(motions, scales, strict=True)]
+        return statistics.median(pfa for pfa, _ in scaled), statistics.median(pfv for _, pfv in scaled)
+
+    @property
+    def is_weak(self) -> bool:
+        """Whether their median PFA is over 10 % below the floor's, or their median PFV over 15 % below a known one."""
+        pfa, pfv = self.peaks
+        is_slow = pfv < WEAK_PFV * self.demand.pfv and "pfv_estimated" not in self.demand.flags
+        return pfa < WEAK_PFA * self.demand.pfa or is_slow
 
     @property
     def record(self) -> tuple[FloatArray, float] | None:

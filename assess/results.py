@@ -131,7 +131,7 @@ class Assessment:
         own = range(self._first[index], self._first[index + 1])
         cases = {case: self._read(case) for case in own}
         governing = cases[int(self.governing[index])]
-        adopted = _mark_lowered(governing.adopted, cases.values())
+        adopted = _adopt_worst(governing, cases.values())
         return ItemResult(self.inventory.items[index], governing, adopted, tuple(cases.values()))
 
     @cached_property
@@ -161,11 +161,13 @@ class Assessment:
                 "pfv": one.governing.demand.pfv,
                 **{key: method.value for key, method in one.governing.methods.items()},
                 "proposed_or_raw": one.governing.methods[FORMULA].detail["raw"],
+                "adopted_method": one.adopted.method,
                 "probability": one.adopted.probability,
                 "low": one.adopted.low,
                 "high": one.adopted.high,
                 "risk_class": one.adopted.risk.word,
                 "risk_class_upper": one.adopted.upper.word,
+                "lowered_from": None if one.adopted.lowered_from is None else one.adopted.lowered_from.word,
                 "is_anchored": one.is_anchored,
                 "flags": ", ".join(one.adopted.flags),
             }
@@ -174,11 +176,27 @@ class Assessment:
         return pd.DataFrame(rows).set_index("item", drop=False)
 
 
-def _mark_lowered(adopted: Adopted, cases: Iterable[CaseResult]) -> Adopted:
-    """Mark a class that is lower than the highest that the formula gives under any motion of the piece."""
+CARRIED = ("fell_in_record", "undecided")
+"""Flags that count for a piece under whichever of its motions they were raised."""
+
+
+def _adopt_worst(governing: CaseResult, cases: Iterable[CaseResult]) -> Adopted:
+    """Return the risk of a piece: the governing chance, with the highest classes under any motion of the piece.
+
+    A class that is lower than the highest that the formula gives under any of them is marked.
+    """
+    cases = tuple(cases)
+    risk, upper = max(case.adopted.risk for case in cases), max(case.adopted.upper for case in cases)
     by_formula = [classify(value) for case in cases if (value := case.methods[FORMULA].value) is not None]
-    formula = max((risk for risk in by_formula if risk is not None), default=RiskClass.LOW)
-    return replace(adopted, lowered_from=formula) if adopted.risk < formula else adopted
+    formula = max((one for one in by_formula if one is not None), default=RiskClass.LOW)
+    carried = [flag for flag in CARRIED if any(flag in case.adopted.flags for case in cases)]
+    return replace(
+        governing.adopted,
+        risk=risk,
+        upper=upper,
+        lowered_from=formula if risk < formula else None,
+        flags=tuple(dict.fromkeys((*governing.adopted.flags, *carried))),
+    )
 
 
 def _formula_first(case: CaseResult) -> tuple[float, float]:

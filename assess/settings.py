@@ -13,7 +13,8 @@ VERIFY: tuple[str, ...] = get_args(Verify)
 checked range, or on a route; or all."""
 
 AUTO = "auto"
-MOST_RUNS = 100_000
+RUNS, MOST_RUNS = 200, 100_000
+SEED = 1
 
 Scenario = Literal["as filled", "recorded", "given", "ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"]
 SCENARIOS: tuple[str, ...] = get_args(Scenario)
@@ -28,6 +29,16 @@ def match_choice(text: str, choices: Iterable[str]) -> str | None:
 
 def _plain(text: str) -> str:
     return re.sub(r"[\s_\-\u2010-\u2015\u2212]", "", unicodedata.normalize("NFKC", text)).casefold()
+
+
+def read_runs(text: str | None) -> int | Literal["auto"] | None:
+    """Return the number of motions that a text means, the usual one for None, and None for a text that means none."""
+    if text is None:
+        return RUNS
+    if text.casefold() == AUTO:
+        return "auto"
+    is_number = text.isascii() and text.isdigit() and len(text) < 10
+    return int(text) if is_number and 1 <= int(text) <= MOST_RUNS else None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,8 +75,8 @@ class Settings:
 
     scenario: Scenario | None = None
     verify: Verify = "high"
-    runs: int | Literal["auto"] = 200
-    seed: int = 1
+    runs: int | Literal["auto"] = RUNS
+    seed: int = SEED
     scale_motions: bool = False
     zeta_acceleration: float = 0.20
     zeta_velocity: float = 0.5

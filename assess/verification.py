@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 
 from assess.demand import Demand, Demands
 from assess.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
+from assess.errors import InputError, Problem
 from assess.inventory.model import Building
 from assess.methods import Cases, Outcome
 from assess.methods._method import BoolArray
-from assess.methods.housner_monte_carlo import Tell, evaluate
+from assess.methods.housner_monte_carlo import LOOKS, Tell, evaluate
 from assess.motion.suite import Suite
-from assess.settings import Settings
+from assess.settings import AUTO, Settings
+from assess.units import GRAVITY
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,6 +31,9 @@ class Work:
         """Rows of furniture."""
         return len(np.unique(np.concatenate(self.items)))
 
+
+MOST_PAIRS = 400_000_000
+"""Results of one motion on one piece that are kept at most: they take five bytes each."""
 
 Progress = Callable[[Work], Tell]
 """Called once with what is to be verified; returns what is called as that goes on."""
@@ -55,6 +60,27 @@ def choose_motions(
     return replace(cases, ensemble=np.array(which, dtype=np.intp), ensembles=ensembles)
 
 
+def remark_suite(suite: Suite | None, cases: Cases) -> list[Problem]:
+    """Tell what was left out of the user's own motions, and which floors they are weaker than."""
+    if suite is None:
+        return []
+    ensembles = [one for one in cases.ensembles if isinstance(one, SuiteEnsemble) and one.is_weak]
+    told = [Problem("note", "", "", f"Motions of the folder {suite.folder}: {note}.") for note in suite.notes]
+    return told + [Problem("warning", "", "", _describe_weak(one), WEAK) for one in ensembles]
+
+
+WEAK = "Verification may raise a class there, never lower it: scale them (--scale-motions), or choose others."
+
+
+def _describe_weak(one: SuiteEnsemble) -> str:
+    pfa, pfv = one.peaks
+    peaks = [f"median PFA {pfa / GRAVITY:.3f} g for {one.demand.pfa / GRAVITY:.3f} g"]
+    if one.demand.pfv > 0:
+        peaks.append(f"median PFV {100 * pfv:.1f} cm/s for {100 * one.demand.pfv:.1f} cm/s")
+    place = f"floor '{one.demand.floor.floor}' {one.demand.axis}"
+    return f"the motions of the user's own are weaker than {place}: {', '.join(peaks)}."
+
+
 def verify(
     cases: Cases,
     case_item: NDArray[np.intp],
@@ -65,6 +91,13 @@ def verify(
     progress: Progress | None = None,
 ) -> Outcome:
     """Integrate the cases that have motions; `jobs` threads, one for each processor by default."""
+    runs = LOOKS[0] if settings.runs == AUTO else int(settings.runs)
+    pairs = int((cases.ensemble >= 0).sum()) * runs
+    if pairs > MOST_PAIRS:
+        raise InputError(
+            f"--runs: {runs:,} motions of every piece are {pairs:,} results, which the memory may not hold; expected "
+            f"at most {MOST_PAIRS:,}. Take fewer motions, or split the workbook"
+        )
     tell = None
     if progress and cases.ensembles:
         own = [np.flatnonzero(cases.ensemble == number) for number in range(len(cases.ensembles))]

@@ -25,6 +25,7 @@ class Case:
     runs: int = 0
     is_generic: bool = False
     is_estimated: bool = False
+    is_weak: bool = False
     fell: bool = False
 
     @property
@@ -33,7 +34,7 @@ class Case:
 
     @property
     def is_doubtful(self) -> bool:
-        return self.is_generic or self.is_estimated
+        return self.is_generic or self.is_estimated or self.is_weak
 
 
 def adopted(*given: Case) -> Adoption:
@@ -41,6 +42,7 @@ def adopted(*given: Case) -> Adoption:
     low, high = (np.array([float(pair[at]) for pair in ends]) for at in (0, 1))
     flags = {
         "generic_spectrum": np.array([one.is_generic for one in given], dtype=np.bool_),
+        "weak_motions": np.array([one.is_weak for one in given], dtype=np.bool_),
         "fell_in_record": np.array([one.fell for one in given], dtype=np.bool_),
     }
     outcomes = {
@@ -76,7 +78,7 @@ def test_verification_lowers_and_raises(overturned, risk):
     assert (found.low[0], found.high[0]) == (low, high)
 
 
-@pytest.mark.parametrize("doubt", ["is_generic", "is_estimated"])
+@pytest.mark.parametrize("doubt", ["is_generic", "is_estimated", "is_weak"])
 def test_in_doubt_a_class_is_raised_but_not_lowered(doubt):
     assert one(Case(0.5, 20, 200, **{doubt: True})) == (0.5, HIGH, HIGH, False, True)
     assert one(Case(0.5, 160, 200, **{doubt: True}))[:2] == (0.8, VERY_HIGH)
@@ -111,7 +113,7 @@ probabilities = st.one_of(st.floats(0, 1), st.sampled_from([0.03, 0.3, 0.7]))
 def any_case(draw):
     runs = draw(st.one_of(st.just(0), st.integers(1, 300)))
     overturned = draw(st.integers(0, runs))
-    doubts = {name: draw(st.booleans()) for name in ("is_generic", "is_estimated")}
+    doubts = {name: draw(st.booleans()) for name in ("is_generic", "is_estimated", "is_weak")}
     return Case(draw(probabilities), overturned, runs, fell=bool(runs) and draw(st.booleans()), **doubts)
 
 
@@ -148,43 +150,29 @@ def test_cases_do_not_touch_each_other(given):
 # --- which case governs ---
 
 
-def governing(*rows, items=None, pfa=None):
-    """Return which governs of `rows`: class, upper class, probability."""
-    risk, upper, probability = (np.array(column) for column in zip(*rows, strict=True))
-    nothing, no = np.full(len(rows), np.nan), np.zeros(len(rows), dtype=np.bool_)
-    adoption = Adoption(probability.astype(np.float64), nothing, nothing, risk, upper, no, no)
-    item = np.zeros(len(rows), dtype=np.intp) if items is None else np.array(items)
-    peaks = np.ones(len(rows)) if pfa is None else np.array(pfa)
-    return find_governing(adoption, item, peaks * GRAVITY).tolist()
+def governing(*probabilities, items=None, pfa=None):
+    """Return which case governs, item by item."""
+    item = np.zeros(len(probabilities), dtype=np.intp) if items is None else np.array(items)
+    peaks = np.ones(len(probabilities)) if pfa is None else np.array(pfa)
+    return find_governing(np.array(probabilities, dtype=np.float64), item, peaks * GRAVITY).tolist()
 
 
-def test_first_the_higher_class_governs():
-    """A piece that falls in the record is high, though its share is the smaller."""
-    assert governing((MEDIUM, HIGH, 0.29), (HIGH, HIGH, 0.01)) == [1]
-    assert governing((HIGH, HIGH, 0.01), (MEDIUM, VERY_HIGH, 0.29)) == [0]
-
-
-def test_then_the_higher_upper_class():
-    assert governing((MEDIUM, MEDIUM, 0.25), (MEDIUM, HIGH, 0.2)) == [1]
-
-
-def test_then_the_larger_probability():
-    assert governing((MEDIUM, MEDIUM, 0.2), (MEDIUM, MEDIUM, 0.25), pfa=[2, 1]) == [1]
+def test_the_larger_probability_governs():
+    assert governing(0.2, 0.25, pfa=[2, 1]) == [1]
 
 
 def test_then_the_larger_pfa_then_the_first():
-    assert governing((MEDIUM, MEDIUM, 0.2), (MEDIUM, MEDIUM, 0.2), pfa=[1, 2]) == [1]
-    assert governing((MEDIUM, MEDIUM, 0.2), (MEDIUM, MEDIUM, 0.2), pfa=[1, 1]) == [0]
+    assert governing(0.2, 0.2, pfa=[1, 2]) == [1]
+    assert governing(0.2, 0.2, pfa=[1, 1]) == [0]
 
 
 def test_rounding_does_not_decide():
-    assert governing((HIGH, HIGH, 0.5), (HIGH, HIGH, 0.5 + 1e-13), pfa=[1, 1]) == [0]
-    assert governing((HIGH, HIGH, 0.5), (HIGH, HIGH, 0.5), pfa=[1, 1 + 1e-13]) == [0]
+    assert governing(0.5, 0.5 + 1e-13, pfa=[1, 1]) == [0]
+    assert governing(0.5, 0.5, pfa=[1, 1 + 1e-13]) == [0]
 
 
 def test_each_item_has_its_own():
-    rows = [(LOW, LOW, 0.0), (HIGH, HIGH, 0.4), (LOW, LOW, 0.01), (VERY_HIGH, VERY_HIGH, 0.9), (LOW, LOW, 0.0)]
-    assert governing(*rows, items=[0, 0, 1, 2, 2]) == [1, 2, 3]
+    assert governing(0.0, 0.4, 0.01, 0.9, 0.0, items=[0, 0, 1, 2, 2]) == [1, 2, 3]
 
 
 # --- which pieces are verified ---
@@ -238,5 +226,4 @@ def _nothing():
 
 
 def governing_of_nothing():
-    empty, none, no = np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
-    return find_governing(Adoption(empty, empty, empty, none, none, no, no), none.astype(np.intp), empty).tolist()
+    return find_governing(np.zeros(0), np.zeros(0, dtype=np.intp), np.zeros(0)).tolist()

@@ -80,8 +80,14 @@ def test_bad_input_writes_nothing(tmp_path):
         (["--seed", "-1"], "Invalid value for '--seed': "),
         (["--jobs", "0"], "Invalid value for '--jobs': "),
         (
+            ["--motions", ".", "--runs", "50"],
+            "Invalid value for --motions: your own motions are all taken, in a verification: leave out --verify none, "
+            "--runs and --seed.",
+        ),
+        (["--motions", ".", "--seed", "2"], "Invalid value for --motions: your own motions are all taken"),
+        (
             ["--motions", ".", "--verify", "none"],
-            "Invalid value for --motions: the motions are for verification: leave out",
+            "Invalid value for --motions: your own motions are all taken",
         ),
         (["--scale-motions"], "Invalid value for --scale-motions: there are no motions to scale: name their folder by"),
         (

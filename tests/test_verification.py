@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 
 import assess
 import assess.report
+from assess import verification
 from assess.cli import app
 from assess.report.data import SCHEMA
 from assess.risk import RiskClass, classify
@@ -23,6 +24,7 @@ from tests.shaking import RECORDS, TIMES, write_record, write_records
 from tests.workbooks import assessed, write
 
 MARKET = Path(__file__).parents[1] / "inventories" / "records" / "575-market"
+SAMPLES = Path(__file__).parents[1] / "samples" / "records"
 CHANNEL = "891018_1.cra-1.0210a.smc"
 
 FLOORS = [
@@ -224,7 +226,9 @@ def test_a_real_record_lowers_classes_and_says_so(tmp_path):
     path = write(tmp_path / "w.xlsx", items, [{"floor": "42", "record_x": CHANNEL}])
     done = _run(tmp_path, path, "--runs", 20)
     assert [one["adopted"]["lowered_from"] for one in done.items.values()] == ["high"] * 3
-    assert done.stdout.splitlines()[-1].endswith("3 of 3 rows, 20 motions each; 3 classes lowered by it.")
+    assert done.stdout.splitlines()[-1].endswith(
+        "3 of 3 rows, 20 motions each; 3 classes lowered by it; 3 rows may be of a higher class."
+    )
 
 
 # --- which pieces, which motions ---
@@ -372,6 +376,8 @@ def test_motions_of_ones_own(tmp_path, suite, scaled):
     assert sorted(inputs["motions"]) == ["m0.csv", "m1.csv", "m2.csv", "m3.csv", "other.csv"]
     jsonschema.validate(done.found, json.loads(SCHEMA.read_text(encoding="utf-8")))
     ensembles = [one["ensemble"] for floor in done.found["floors"] for one in floor["demands"] if one["axis"] == "X"]
+    weak = [one.pop("weak_motions") for one in ensembles]
+    assert any(weak), "some floors shake more than these, or faster"
     assert ensembles == [{"motions": 5, "generic_spectrum": False, "fit": None}] * 5
     assert {item["verification"]["runs"] for item in done.items.values() if item["verification"]} == {5}
     still = done.items["stands"]["verification"]["overturned"]
@@ -386,3 +392,65 @@ def test_a_suite_that_cannot_be_read_ends_the_run(tmp_path, suite):
     assert done.exit_code == 2
     assert re.search(r"error .*bad\.csv", done.stderr)
     assert not (tmp_path / "out").exists()
+
+
+def _write_suite(folder, peak, period=1.0, count=6):
+    folder.mkdir()
+    for number in range(count):
+        write_record(
+            folder / f"m{number}.csv", peak * np.sin(2 * np.pi * TIMES / period) * np.exp(-(((TIMES - 4) / 2) ** 2))
+        )
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("peak", "period", "more"),
+    [(0.002, 1.0, []), (0.4, 0.05, ["--scale-motions"])],
+    ids=["of far too low a level", "scaled, but without the floor's velocity"],
+)
+def test_motions_weaker_than_the_floor_lower_no_class(tmp_path, peak, period, more):
+    folder = _write_suite(tmp_path / "mine", peak, period)
+    items = [{"item": "thin", "floor": "1", "breadth": 30, "height": 180}]
+    path = write(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.5, "pfv_x": 70}])
+    done = _run(tmp_path, path, "--motions", folder, *more)
+    (item,) = done.items.values()
+    assert item["verification"]["overturned"] == 0
+    assert item["adopted"]["method"] == "proposed_or"
+    assert item["adopted"]["lowered_from"] is None
+    assert {"weak_motions", "not_lowered"} <= set(item["adopted"]["flags"])
+    warnings = [one["message"] for one in done.found["problems"] if one["severity"] == "warning"]
+    assert any("weaker than floor '1' X: median PFA" in one for one in warnings)
+    assert "weaker than floor '1' X" in done.stderr
+    assert "1 row keeps the formula's class, which verification may not lower" in done.stdout
+
+
+def test_what_a_piece_does_along_the_other_axis_is_not_lost(tmp_path):
+    """It falls under the record along X; along Y, of which only a peak is known, more motions overturn it."""
+    shutil.copy(SAMPLES / "np01002p_4225a_a.smc", tmp_path)
+    floors = [{"floor": "R", "record_x": "np01002p_4225a_a.smc", "pfa_y": 0.5, "pfv_y": 60}]
+    path = write(tmp_path / "w.xlsx", [{"item": "thin", "floor": "R", "breadth": 20, "height": 200}], floors)
+    done = _run(tmp_path, path, "--runs", 30)
+    item = done.items["thin"]
+    assert (item["axis"], item["verification"]["record"]) == ("Y", None)
+    assert item["axes"][0]["verification"]["record"]["overturned"] is True
+    assert "fell_in_record" in item["adopted"]["flags"]
+    assert item["adopted"]["class"] in ("high", "very high")
+
+
+def test_more_results_than_memory_holds_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(verification, "MOST_PAIRS", 100)
+    path = write(tmp_path / "w.xlsx")
+    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "out"), "--runs", "101"])
+    assert done.exit_code == 2
+    assert "error  --runs: 101 motions of every piece are" in done.stderr
+    assert "expected at most 100. Take fewer motions, or split the workbook" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_the_long_work(tmp_path):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    path = write(tmp_path / "w.xlsx")
+    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "file" / "out")])
+    assert done.exit_code == 1
+    assert f"cannot be written to: {tmp_path / 'file'} is a file. Name another folder." in done.stderr
+    assert "Verifying" not in done.stderr

@@ -28,6 +28,11 @@ class Ensemble(Protocol):
         ...
 
     @property
+    def is_weak(self) -> bool:
+        """Whether its motions are known to be weaker than the floor's."""
+        ...
+
+    @property
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion (n,) [m/s2] and its time step [s], where one is known."""
         ...

@@ -39,6 +39,8 @@ LOOKS_Z = 2.64
 """Half width of the intervals of "auto" [-]: 95 % for all six looks together (Bonferroni, 0.83 % each)."""
 BATCH = 500
 """Motions made at once."""
+MOST_PAIRS = 2_000_000
+"""Pairs of case and motion that are rocked at once; they take some 70 bytes each."""
 SHOWN = 3
 """Motions kept for reports."""
 
@@ -67,7 +69,7 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, tell: Tell |
 
     joints = []
     for joint, record in _side_by_side(work, owns, side_by_side):
-        found.take(joint, record, cases.ensembles[joint.ensemble].is_generic)
+        found.take(joint, record, cases.ensembles[joint.ensemble])
         joints.append(joint)
     return _summarise(found, cases, settings, joints)
 
@@ -88,6 +90,7 @@ def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[J
     flags = {
         "fell_in_record": found.record_fell == 1,
         "generic_spectrum": found.generic,
+        "weak_motions": found.weak,
         "undecided": done & (settings.runs == AUTO) & (classify_all(low) != classify_all(high)),
         "does_not_rock": cases.breadth_to_height >= STOCKY,
     }
@@ -121,16 +124,17 @@ class _Found:
     record_fell: FloatArray
     record_rotation: FloatArray
     generic: BoolArray
+    weak: BoolArray
 
     @classmethod
     def empty(cls, count: int) -> "_Found":
-        numbers, unknown = np.zeros(count, dtype=np.int64), np.full(count, np.nan)
-        return cls(numbers, numbers.copy(), unknown, unknown.copy(), np.zeros(count, dtype=np.bool_))
+        numbers, unknown, no = np.zeros(count, dtype=np.int64), np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
+        return cls(numbers, numbers.copy(), unknown, unknown.copy(), no, no.copy())
 
-    def take(self, joint: Joint, record: tuple[FloatArray, FloatArray], is_generic: bool) -> None:
+    def take(self, joint: Joint, record: tuple[FloatArray, FloatArray], ensemble: Ensemble) -> None:
         self.runs[joint.cases], self.overturned[joint.cases] = joint.runs, joint.fell.sum(axis=1)
         self.record_fell[joint.cases], self.record_rotation[joint.cases] = record
-        self.generic[joint.cases] = is_generic
+        self.generic[joint.cases], self.weak[joint.cases] = ensemble.is_generic, ensemble.is_weak
 
 
 def _integrate(
@@ -141,11 +145,12 @@ def _integrate(
     motions = ensemble.open(threads)
     looks = LOOKS if settings.runs == AUTO else (int(settings.runs),)
     fell, rotation = np.zeros((own.size, 0), np.bool_), np.zeros((own.size, 0), np.float32)
+    size = min(BATCH, max(1, MOST_PAIRS // own.size))
     runs, going = np.zeros(own.size, dtype=np.int64), np.arange(own.size)
     for first, last in zip((0, *looks), looks, strict=False):
         wider = ((0, 0), (0, last - first))
         fell, rotation = np.pad(fell, wider), np.pad(rotation, wider)
-        for at, batch, time_step in _batches(motions, first, last):
+        for at, batch, time_step in _batches(motions, first, last, size):
             tell("rocking", number, at / looks[-1])
             one = _rock(cases, own[going], batch, time_step, threads)
             fell[going, at : at + len(batch)], rotation[going, at : at + len(batch)] = one
@@ -161,11 +166,11 @@ def _integrate(
     )  # fmt: skip
 
 
-def _batches(motions: Motions, first: int, last: int) -> Iterator[tuple[int, FloatArray, float]]:
+def _batches(motions: Motions, first: int, last: int, size: int) -> Iterator[tuple[int, FloatArray, float]]:
     """Yield motions `first` to `last` - 1: the number of the first of a batch, the batch, its time step."""
     at = first
-    for start in range(first, last, BATCH):
-        for batch, time_step in motions.realise(start, min(BATCH, last - start)):
+    for start in range(first, last, size):
+        for batch, time_step in motions.realise(start, min(size, last - start)):
             yield at, batch, time_step
             at += len(batch)
 
@@ -247,6 +252,8 @@ METHOD = Method(
         "fell_in_record": "it overturns under the recorded motion itself, so its class is at least high",
         "generic_spectrum": "the motions of this floor were made for a generic spectrum: verification may raise a "
         "class, never lower it",
+        "weak_motions": "the user's own motions are weaker than the floor's: verification may raise a class, never "
+        "lower it",
         "undecided": "after 5,000 motions its interval still reaches over more than one class",
         "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",
     },

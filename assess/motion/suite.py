@@ -12,7 +12,9 @@ from assess.errors import RecordError
 from assess.motion.formats import read_records
 from assess.motion.record import FloatArray, Motion, Record, treat
 
-TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst"})
+FEW = 30
+"""Motions below which it is told that they are few: of 30, none fallen leaves 11 % in the interval."""
+TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst", ".ini", ".db"})
 """Endings of what stands beside records and is passed over."""
 
 
@@ -70,7 +72,7 @@ def read_suite(folder: Path) -> Suite:
     ------
     RecordError
         If there is no such folder, no horizontal channel in it, or a file cannot be read as a record: the message names
-        it. Texts (.md, .html, .pdf, .rst) and hidden files are passed over.
+        it. Texts (.md, .html, .pdf, .rst), .ini and .db, and hidden files are passed over.
     """
     if not folder.is_dir():
         raise RecordError(f"{folder}: there is no such folder. Name a folder of floor records")
@@ -85,8 +87,15 @@ def read_suite(folder: Path) -> Suite:
         folder=folder.name,
         motions=tuple(sorted(motions, key=lambda one: (one[1].time_step, one[0]))),
         files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found},
-        notes=(f"vertical channels are left out: {', '.join(vertical)}",) if vertical else (),
+        notes=tuple(_notes(len(motions), vertical)),
     )
+
+
+def _notes(count: int, vertical: list[str]) -> Iterator[str]:
+    if vertical:
+        yield f"vertical channels are left out: {', '.join(vertical)}"
+    if count < FEW:
+        yield f"{count} are few: the intervals of the chances are wide"
 
 
 def _read(path: Path) -> tuple[Record, ...]:

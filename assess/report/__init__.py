@@ -75,6 +75,14 @@ def write_reports(
         shutil.rmtree(stage, ignore_errors=True)
 
 
+def check_folder(folder: Path) -> None:
+    """Raise OutputError if reports cannot be written to `folder`, which need not be there yet: before the long work."""
+    there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
+    if not (there.is_dir() and os.access(there, os.W_OK)):
+        why = "you may not write there" if there.is_dir() else f"{there} is a file"
+        raise OutputError(f"{folder} cannot be written to: {why}. Name another folder.")
+
+
 def _sweep(folder: Path) -> None:
     """Remove what a killed run left behind over a day ago; a run that is still going is younger than that."""
     for old in folder.glob(f"{_STAGE}*"):

@@ -103,7 +103,9 @@ class Content:
         risky = [
             one
             for one in self.results
-            if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.method == FORMULA
+            if not (one.is_anchored or one.does_not_rock)
+            and one.adopted.risk >= RiskClass.HIGH
+            and one.adopted.method == FORMULA
         ]
         still = [one for one in risky if one.governing.methods["static"].value == 0]
         kept = [one for one in still if one.is_verified]

@@ -138,6 +138,7 @@ def ensemble_record(assessment: Assessment, demand: Demand) -> dict[str, Any] | 
     return {
         "motions": int(joint.runs.max()),
         "generic_spectrum": assessment.cases.ensembles[joint.ensemble].is_generic,
+        "weak_motions": assessment.cases.ensembles[joint.ensemble].is_weak,
         "fit": None if joint.fit is None else fit_record(joint.fit),
     }
 

@@ -1,5 +1,6 @@
 """How each floor shakes, in the words of reports: sources, what stands behind each number, and what to beware of."""
 
+import statistics
 from collections.abc import Sequence
 
 from assess.demand import FLAGS, MAY_BE_LOWER, Demand, Demands, find_ground
@@ -133,8 +134,8 @@ def _unlike(assessment: Assessment) -> list[str]:
     """Say where the user's own motions, not scaled, have another PFA than the floor."""
     if assessment.suite is None or assessment.settings.scale_motions:
         return []
-    mean = sum(motion.pfa for _, motion in assessment.suite.motions) / len(assessment.suite)
-    off = {demand: mean / demand.pfa - 1 for demand in assessment.joints if demand.pfa > 0}
+    median = statistics.median(motion.pfa for _, motion in assessment.suite.motions)
+    off = {demand: median / demand.pfa - 1 for demand in assessment.joints if demand.pfa > 0}
     places = [
         f"floor {words.clip(demand.floor.floor, 20)} {demand.axis} ({words.in_g(demand.pfa)} g), "
         f"{100 * abs(ratio):.0f} % {'above' if ratio > 0 else 'below'}"
@@ -145,8 +146,8 @@ def _unlike(assessment: Assessment) -> list[str]:
         return []
     more = f" and {len(places) - MOST_PLACES:,} more" if len(places) > MOST_PLACES else ""
     return [
-        f"The mean PFA of these motions, {words.in_g(mean)} g, is not that of {'; '.join(places[:MOST_PLACES])}{more}. "
-        "Where it is below, chances come out too low."
+        f"The median PFA of these motions, {words.in_g(median)} g, is not that of "
+        f"{'; '.join(places[:MOST_PLACES])}{more}. Where it is below, chances come out too low; they lower no class."
     ]
 
 

@@ -62,7 +62,7 @@ def choose_traced(content: Content) -> tuple[Traced, ...]:
         item = results[index].item
         alike.setdefault((results[index].governing.demand, item.breadth, item.height), []).append(index)
     firsts = {own[0]: len(own) - 1 for own in alike.values()}
-    undecided = [index for index in firsts if results[index] in content.verified.undecided]
+    undecided = [index for index in firsts if "undecided" in results[index].adopted.flags]
     chosen = list(dict.fromkeys([*list(firsts)[:1], *undecided, *firsts]))[:MOST]
     return tuple(
         _trace(content.assessment, index, results[index], firsts[index]) for index in firsts if index in chosen

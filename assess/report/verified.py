@@ -1,8 +1,7 @@
 """What a report says of the verification: how much was verified, what it changed, what is still open."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from assess.adoption import FORMULA
 from assess.methods._method import Reference
@@ -112,14 +111,9 @@ def build_verified(assessment: Assessment, results: Sequence[ItemResult]) -> Ver
         raised=of(lambda one: one.adopted.risk > formula_class(one)),
         kept=of(lambda one: "not_lowered" in one.adopted.flags),
         may_be=of(lambda one: one.adopted.upper > one.adopted.risk),
-        undecided=of(lambda one: any("undecided" in _flags(case) for case in one.cases)),
+        undecided=of(lambda one: "undecided" in one.adopted.flags),
         fell=of(words.fell_in_record),
     )
-
-
-def _flags(case: Any) -> Iterator[str]:
-    for method in case.methods.values():
-        yield from method.flags
 
 
 def formula_class(one: ItemResult) -> RiskClass:
@@ -149,6 +143,8 @@ def describe_verification(assessment: Assessment) -> str:
     changes = [
         (verified.lowered, "{} lowered by it", "class", "classes"),
         (verified.raised, "{} raised by it", "class", "classes"),
+        (verified.may_be, "{} of a higher class", "row may be", "rows may be"),
+        (verified.kept, "{} the formula's class, which verification may not lower", "row keeps", "rows keep"),
         (verified.fell, "{} under the record itself", "row overturns", "rows overturn"),
         (verified.undecided, "{} undecided", "row still", "rows still"),
     ]
@@ -166,7 +162,8 @@ def list_summary(verified: Verified) -> list[str]:
         ("Class raised by verification", verified.raised,
          _by_class(verified.raised, "to", lambda one: one.adopted.risk)),
         ("Class of the formula kept although verification gave a lower one (see the comparison of the methods), as "
-         "the floor's motions follow a generic spectrum or its PFV is an estimate", verified.kept, ""),
+         "the motions follow a generic spectrum or are weaker than the floor's, or its PFV is an estimate",
+         verified.kept, ""),
         ("May be of a higher class, as the interval reaches into it", verified.may_be, ""),
         (f"Undecided, as the interval still reaches over more than one class after {LOOKS[-1]:,} motions",
          verified.undecided, name_some(verified.undecided)),

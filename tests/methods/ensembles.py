@@ -25,6 +25,7 @@ class MadeUp:
 
     seed: int
     is_generic: bool = False
+    is_weak: bool = False
     has_record: bool = False
     fit: Fit | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)

@@ -29,6 +29,7 @@ class Pushes:
 
     levels: tuple[float, ...]
     is_generic: bool = False
+    is_weak: bool = False
     record: tuple[FloatArray, float] | None = None
     fit: Fit | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)

@@ -687,11 +687,13 @@ def test_el_centro(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_number_of_lanes_changes_nothing(monkeypatch):
     rng = np.random.default_rng(11)
     motions = np.cumsum(rng.normal(size=(9, 800)), axis=1)
-    motions *= 5 / np.abs(motions).max(axis=1, keepdims=True)
+    motions -= motions.mean(axis=1, keepdims=True)
+    motions *= 4 / np.abs(motions).max(axis=1, keepdims=True)
     height = rng.uniform(0.5, 2.2, 25)
-    usual = rock_blocks(0.22 * height, height, motions, 0.01)
+    breadth = np.linspace(0.15, 0.6, 25) * height
+    usual = rock_blocks(breadth, height, motions, 0.01)
     monkeypatch.setattr(kernel, "rock", kernel_with(LANES=kernel.LANES // 4))
-    other = rock_blocks(0.22 * height, height, motions, 0.01)
+    other = rock_blocks(breadth, height, motions, 0.01)
     assert 0 < usual.overturned.mean() < 1
     assert np.array_equal(usual.rotation, other.rotation)
     assert np.array_equal(usual.fall_time, other.fall_time, equal_nan=True)

@@ -30,13 +30,12 @@ def chance_behind(one: ItemResult) -> float | None:
 
 def _chance(case: CaseResult) -> float:
     formula, verified = case.methods[FORMULA].value or 0.0, case.methods[VERIFICATION].value or 0.0
-    is_doubtful = "generic_spectrum" in case.methods[VERIFICATION].flags or "pfv_estimated" in case.demand.flags
-    return max(formula, verified) if is_doubtful else verified
+    return max(formula, verified) if case.adopted.is_doubtful else verified
 
 
 def upper_end(one: ItemResult) -> float | None:
-    """Return the upper end of its interval, whether or not the chance is adopted."""
-    return one.governing.verification.high if one.governing.verification else None
+    """Return the highest upper end of its intervals, whether or not the chance is adopted."""
+    return max((case.verification.high for case in one.cases if case.verification), default=None)
 
 
 def under_record(one: ItemResult) -> str:
