@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,19 +11,21 @@ from assess.adoption import VERIFICATION, adopt, choose_items, find_governing
 from assess.demand import AXES, Demand, Demands, build_demands
 from assess.inventory.model import Inventory
 from assess.methods import Cases, all_methods
-from assess.motion.suite import Suite
 from assess.remarks import remark
 from assess.results import Assessment
 from assess.rocking.block import STOCKY
 from assess.settings import SCENARIOS, Settings
 from assess.verification import Progress, choose_motions, remark_suite, verify
 
+if TYPE_CHECKING:
+    from assess.motion.suite import Suite
+
 
 def run(
     inventory: Inventory,
     settings: Settings | None = None,
     *,
-    suite: Suite | None = None,
+    suite: "Suite | None" = None,
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Assessment:

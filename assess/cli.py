@@ -17,7 +17,9 @@ from assess.settings import AUTO, MOST_RUNS, SCENARIOS, SEED, VERIFY, Settings, 
 from assess.version import __version__
 
 if TYPE_CHECKING:
+    from assess.progress import Progress
     from assess.results import Assessment
+    from assess.verification import Work
 
 app = typer.Typer(
     help="Which furniture falls in an earthquake, and what to fix first.",
@@ -271,7 +273,6 @@ def _settings(verify: str, runs: str | None, seed: int | None, scale_motions: bo
 def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: int | None = None) -> "Assessment":
     from assess.assessment import run as run_assessment
     from assess.inventory.workbook import read_inventory
-    from assess.progress import Progress
 
     inventory = read_inventory(path)
     suite = None
@@ -279,4 +280,10 @@ def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: i
         from assess.motion.suite import read_suite
 
         suite = read_suite(motions)
-    return run_assessment(inventory, settings, suite=suite, jobs=jobs, progress=Progress)
+    return run_assessment(inventory, settings, suite=suite, jobs=jobs, progress=_progress)
+
+
+def _progress(work: "Work") -> "Progress":
+    from assess.progress import Progress
+
+    return Progress(work)

@@ -57,7 +57,6 @@ def print_problems(problems: Sequence[Problem]) -> None:
 def print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
     """Print the pieces of each class, and name the files."""
     from assess.ranking import count_pieces
-    from assess.report.verified import describe_verification
     from assess.risk import RiskClass
 
     counts, anchored = count_pieces(assessment)
@@ -65,6 +64,14 @@ def print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
         typer.echo(f"{risk.label:<13} {counts[risk]:>6,} {'piece' if counts[risk] == 1 else 'pieces'}")
     if anchored:
         typer.echo(f"{'  anchored':<13} {anchored:>6,}, only as safe as the anchors")
-    typer.echo(f"Chance of overturning in this scenario, not per year. {describe_verification(assessment)}")
+    typer.echo(f"Chance of overturning in this scenario, not per year. {_describe_verification(assessment)}")
     for file in files:
         typer.echo(f"wrote {file}", err=True)
+
+
+def _describe_verification(assessment: "Assessment") -> str:
+    if not assessment.joints:
+        return "Not verified."
+    from assess.report.verified import describe_verification
+
+    return describe_verification(assessment)

@@ -1,16 +1,18 @@
 """The motions of every floor and axis: generated for its record or for a generic spectrum, or the user's own."""
 
 import math
-import statistics
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from assess.demand import Demand, Demands
 from assess.inventory.model import Building
-from assess.motion.fit import Fit
 from assess.motion.record import FloatArray
-from assess.motion.suite import Suite
-from assess.motion.target import Grid, Target, build_grid, estimate_period, generic_target, recorded_target
+
+if TYPE_CHECKING:
+    from assess.motion.fit import Fit
+    from assess.motion.suite import Suite
+    from assess.motion.target import Grid, Target
 
 WEAK_PFA, WEAK_PFV = 0.9, 0.85
 """Shares of the floor's PFA and PFV [-] below which the user's own motions may not lower a class."""
@@ -21,7 +23,7 @@ class OpenMotions:
     """Motions that have been made ready: `make` returns those from a number on, and a count of them."""
 
     make: Callable[[int, int], list[tuple[FloatArray, float]]]
-    fit: Fit | None = None
+    fit: "Fit | None" = None
 
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
@@ -45,7 +47,7 @@ class GeneratedEnsemble:
     """
 
     demand: Demand
-    grid: Grid
+    grid: "Grid"
     seed: int
     period: float | None = None
     height: float | None = None
@@ -65,8 +67,10 @@ class GeneratedEnsemble:
         """The recorded motion as treated [m/s2], and its time step [s]."""
         return _record(self.demand)
 
-    def build_target(self) -> Target:
+    def build_target(self) -> "Target":
         """Return what the motions are to match."""
+        from assess.motion.target import generic_target, recorded_target
+
         demand = self.demand
         if demand.motion is not None:
             return recorded_target(demand.motion, self.grid)
@@ -89,17 +93,19 @@ class SuiteEnsemble:
     """The user's own motions on one floor along one axis, scaled to its PFA where that is wanted."""
 
     demand: Demand
-    suite: Suite
+    suite: "Suite"
     is_scaled: bool
     is_generic: bool = False
 
     @property
     def peaks(self) -> tuple[float, float]:
         """Median PFA [m/s2] and PFV [m/s] of the motions on this floor."""
+        from statistics import median
+
         motions = [motion for _, motion in self.suite.motions]
         scales = [self.demand.pfa / motion.pfa if self.is_scaled else 1.0 for motion in motions]
         scaled = [(one.pfa * scale, one.pfv * scale) for one, scale in zip(motions, scales, strict=True)]
-        return statistics.median(pfa for pfa, _ in scaled), statistics.median(pfv for _, pfv in scaled)
+        return median(pfa for pfa, _ in scaled), median(pfv for _, pfv in scaled)
 
     @property
     def is_weak(self) -> bool:
@@ -130,6 +136,8 @@ def build_ensembles(
     chosen: Sequence[Demand], demands: Demands, building: Building, *, seed: int
 ) -> tuple[GeneratedEnsemble, ...]:
     """Return one ensemble a demand of `chosen`, on the grid that all `demands` of the building share."""
+    from assess.motion.target import build_grid, estimate_period
+
     every = {id(one): one for parallel in demands.values() for one in parallel}.values()
     grid = build_grid(
         [one.motion for one in every if one.motion is not None],

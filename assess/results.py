@@ -15,13 +15,14 @@ from assess.errors import Problem
 from assess.inventory.model import Axis, Inventory, Item
 from assess.methods import Cases, Method, Outcome
 from assess.methods._method import ALIKE, Joint
-from assess.motion.suite import Suite
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
 from assess.units import GRAVITY
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from assess.motion.suite import Suite
 
 MOST_KEPT = 2000
 """Items up to which results are kept once they have been read; a larger inventory's would fill the memory."""
@@ -100,7 +101,7 @@ class Assessment:
     inventory: Inventory
     settings: Settings
     scenario: str
-    suite: Suite | None
+    suite: "Suite | None"
     demands: Mapping[tuple[str, Axis], tuple[Demand, ...]]
     methods: tuple[Method, ...]
     cases: Cases
@@ -186,6 +187,8 @@ def _adopt_worst(governing: CaseResult, cases: Iterable[CaseResult]) -> Adopted:
     A class that is lower than the highest that the formula gives under any of them is marked.
     """
     cases = tuple(cases)
+    if all(case.verification is None for case in cases):
+        return governing.adopted  # the formula's, of which the largest governs
     risk, upper = max(case.adopted.risk for case in cases), max(case.adopted.upper for case in cases)
     by_formula = [classify(value) for case in cases if (value := case.methods[FORMULA].value) is not None]
     formula = max((one for one in by_formula if one is not None), default=RiskClass.LOW)

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,11 @@ from assess.inventory.model import Building
 from assess.methods import Cases, Outcome
 from assess.methods._method import BoolArray
 from assess.methods.housner_monte_carlo import LOOKS, Tell, evaluate
-from assess.motion.suite import Suite
 from assess.settings import AUTO, Settings
 from assess.units import GRAVITY
+
+if TYPE_CHECKING:
+    from assess.motion.suite import Suite
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +49,7 @@ def choose_motions(
     demands: Demands,
     building: Building,
     settings: Settings,
-    suite: Suite | None,
+    suite: "Suite | None",
 ) -> Cases:
     """Return the cases with the motions under which those `chosen` (n,) are to be integrated."""
     wanted = list(dict.fromkeys(demand for demand, one in zip(case_demand, chosen, strict=True) if one))
@@ -60,7 +63,7 @@ def choose_motions(
     return replace(cases, ensemble=np.array(which, dtype=np.intp), ensembles=ensembles)
 
 
-def remark_suite(suite: Suite | None, cases: Cases) -> list[Problem]:
+def remark_suite(suite: "Suite | None", cases: Cases) -> list[Problem]:
     """Tell what was left out of the user's own motions, and which floors they are weaker than."""
     if suite is None:
         return []

@@ -3,14 +3,16 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Protocol, Self
+from typing import TYPE_CHECKING, Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from assess.motion.fit import Fit
 from assess.settings import Settings
 from assess.units import ROUNDING
+
+if TYPE_CHECKING:
+    from assess.motion.fit import Fit
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -46,7 +48,7 @@ class Motions(Protocol):
     """What an `Ensemble` opens."""
 
     @property
-    def fit(self) -> Fit | None:
+    def fit(self) -> "Fit | None":
         """How they meet the spectrum that they were made for; None for motions that were given."""
         ...
 
@@ -172,7 +174,7 @@ class Joint:
     fell: BoolArray
     rotation: NDArray[np.float32]
     examples: Sequence[tuple[NDArray[np.float32], float]]
-    fit: Fit | None
+    fit: "Fit | None"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,7 +21,6 @@ six looks. What the piece does under the recorded motion itself is found too.
 """
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -104,6 +103,8 @@ def _side_by_side(work: Callable[..., _Result], tasks: list[Any], threads: int) 
     """
     if not tasks:
         return
+    from concurrent.futures import ThreadPoolExecutor
+
     pool = ThreadPoolExecutor(threads)
     try:
         yield from [future.result() for future in [pool.submit(work, *task) for task in tasks]]

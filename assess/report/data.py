@@ -8,18 +8,20 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from assess.cases import CaseResult, MethodResult, VerificationResult
 from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.columns import BUILDING
-from assess.motion.fit import Fit
 from assess.report.provenance import versions
 from assess.results import Assessment, ItemResult
 from assess.risk import RiskClass
 from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
 from assess.version import __version__
+
+if TYPE_CHECKING:
+    from assess.motion.fit import Fit
 
 SCHEMA_VERSION = "1.1"
 SCHEMA = Path(__file__).with_name("results.schema.json")
@@ -143,7 +145,7 @@ def ensemble_record(assessment: Assessment, demand: Demand) -> dict[str, Any] | 
     }
 
 
-def fit_record(fit: Fit) -> dict[str, float | None]:
+def fit_record(fit: "Fit") -> dict[str, float | None]:
     """Return how generated motions meet their target."""
     return {
         "matched_to_s": fit.matched_to,

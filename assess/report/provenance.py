@@ -3,7 +3,6 @@
 import platform
 from collections.abc import Mapping
 from functools import cache
-from importlib.metadata import version
 
 
 @cache
@@ -18,6 +17,8 @@ def versions(*, has_rocked: bool = False) -> Mapping[str, str]:
         "machine": platform.machine(),
     }
     if has_rocked:
+        from importlib.metadata import version
+
         from llvmlite.binding import get_host_cpu_name
         from numba import config
 
