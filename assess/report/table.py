@@ -17,12 +17,12 @@ def write_csv(assessment: Assessment, path: Path) -> None:
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer = csv.writer(file)
         heads: list[str] = []
-        for one in assessment:
-            record = item_record(one)
+        for result in assessment:
+            record = item_record(result)
             if not heads:
                 heads = list(flatten(record))
                 writer.writerow(heads)
-            writer.writerow([_safe(value) for value in _flat_values(record)])
+            writer.writerow([one if type(one) in _PLAIN else _safe(one) for one in _flat_values(record)])
         if not heads:
             writer.writerow(["item"])  # a table without rows still has a heading
 
@@ -66,15 +66,18 @@ _VERIFICATION = (
 
 
 def _flat_verification(value: Mapping[str, Any] | None) -> Iterator[Any]:
-    found = value or {}
-    yield from (found.get(name) for name in _VERIFICATION[:5])
-    record = found.get("record") or {}
+    if value is None:
+        yield from (None for _ in _VERIFICATION)
+        return
+    yield from (value.get(name) for name in _VERIFICATION[:5])
+    record = value.get("record") or {}
     yield from (record.get("overturned"), record.get("max_rotation_ratio"))
 
 
+_PLAIN = frozenset({float, int, bool, type(None)})
+
+
 def _safe(value: object) -> object:
-    if value is None or isinstance(value, (float, int)):
-        return value
     if isinstance(value, list):
         value = "; ".join(map(str, value))
     if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r", "\n"):
