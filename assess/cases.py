@@ -79,7 +79,7 @@ class CaseResult:
 
 
 FLAGS: Mapping[str, str] = {
-    "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",
+    "does_not_rock": HOUSNER.flags["does_not_rock"],
     "slides": "friction is below B/H: it slides before it rocks, which no method here counts",
     **{flag: HOUSNER.flags[flag] for flag in ("fell_in_record", "generic_spectrum", "weak_motions", "undecided")},
     "not_lowered": "verification gave a lower class, which is not adopted: the floor's spectrum is generic, its PFV an "

@@ -43,6 +43,11 @@ class ItemResult:
         return min(self.cases, key=_formula_first)
 
     @property
+    def formula_class(self) -> RiskClass:
+        """The highest class that the formula gives under any of its motions."""
+        return _formula_class(self.cases)
+
+    @property
     def is_verified(self) -> bool:
         """Whether its rocking was integrated under the governing motion."""
         return self.governing.verification is not None
@@ -177,6 +182,12 @@ class Assessment:
         return pd.DataFrame(rows).set_index("item", drop=False)
 
 
+def _formula_class(cases: Iterable[CaseResult]) -> RiskClass:
+    """Return the highest class that the formula gives under any of the motions of a piece."""
+    classes = [classify(value) for case in cases if (value := case.methods[FORMULA].value) is not None]
+    return max((one for one in classes if one is not None), default=RiskClass.LOW)
+
+
 CARRIED = ("fell_in_record", "undecided")
 """Flags that count for a piece under whichever of its motions they were raised."""
 
@@ -190,8 +201,7 @@ def _adopt_worst(governing: CaseResult, cases: Iterable[CaseResult]) -> Adopted:
     if all(case.verification is None for case in cases):
         return governing.adopted  # the formula's, of which the largest governs
     risk, upper = max(case.adopted.risk for case in cases), max(case.adopted.upper for case in cases)
-    by_formula = [classify(value) for case in cases if (value := case.methods[FORMULA].value) is not None]
-    formula = max((one for one in by_formula if one is not None), default=RiskClass.LOW)
+    formula = _formula_class(cases)
     carried = [flag for flag in CARRIED if any(flag in case.adopted.flags for case in cases)]
     return replace(
         governing.adopted,

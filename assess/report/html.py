@@ -73,7 +73,6 @@ _NAMES: Mapping[str, Any] = {
     "more": content_module.has_worse_motion,
     "marks": words.MARKS,
     "listed": trials.LISTED,
-    "formula_class": verified.formula_class,
 }
 _FILTERS: Mapping[str, Any] = {
     "clip": words.clip,

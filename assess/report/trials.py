@@ -7,10 +7,10 @@ import numpy as np
 
 from assess.demand import Demand
 from assess.methods._method import Joint
-from assess.methods.housner_monte_carlo import LOOKS, interval_width
+from assess.methods.housner_monte_carlo import LOOKS, LOOKS_Z, interval_width
 from assess.report import words
 from assess.report.motions import describe_suite
-from assess.report.verified import Verified, formula_class, name_some
+from assess.report.verified import Verified, name_some
 from assess.results import Assessment, ItemResult
 from assess.settings import AUTO
 
@@ -60,7 +60,7 @@ def build_trials(assessment: Assessment, verified: Verified) -> Trials:
 
 
 def _by_change(one: ItemResult) -> tuple[float, ...]:
-    return -abs(one.adopted.risk - formula_class(one)), -one.adopted.upper, -one.adopted.probability
+    return -abs(one.adopted.risk - one.formula_class), -one.adopted.upper, -one.adopted.probability
 
 
 def _describe(assessment: Assessment, verified: Verified) -> Iterator[str]:
@@ -131,7 +131,7 @@ def _stopping(verified: Verified) -> str:
     looks = ", ".join(f"{look:,}" for look in LOOKS[:-1])
     text = (
         f"Motions were added until each piece's interval lay within one class. That was looked at after {looks} and "
-        f"{LOOKS[-1]:,} motions, with an interval (z = 2.64) that holds with 95 % for all six looks together."
+        f"{LOOKS[-1]:,} motions, with an interval (z = {LOOKS_Z:g}) that holds with 95 % for all six looks together."
     )
     if not verified.undecided:
         return f"{text} No piece is left undecided."

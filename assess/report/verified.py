@@ -3,12 +3,11 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from assess.adoption import FORMULA
 from assess.methods._method import Reference
 from assess.methods.housner_monte_carlo import LOOKS
 from assess.report import words
 from assess.results import Assessment, ItemResult
-from assess.risk import RiskClass, classify
+from assess.risk import RiskClass
 from assess.settings import AUTO
 
 NAMED = 12
@@ -108,18 +107,12 @@ def build_verified(assessment: Assessment, results: Sequence[ItemResult]) -> Ver
         left=tuple(one for one in results if not one.is_verified),
         done=done,
         lowered=of(lambda one: one.adopted.lowered_from is not None),
-        raised=of(lambda one: one.adopted.risk > formula_class(one)),
+        raised=of(lambda one: one.adopted.risk > one.formula_class),
         kept=of(lambda one: "not_lowered" in one.adopted.flags),
         may_be=of(lambda one: one.adopted.upper > one.adopted.risk),
         undecided=of(lambda one: "undecided" in one.adopted.flags),
         fell=of(words.fell_in_record),
     )
-
-
-def formula_class(one: ItemResult) -> RiskClass:
-    """Return the highest class that the formula gives under any motion of the piece."""
-    value = one.by_formula.methods[FORMULA].value
-    return (classify(value) if value is not None else None) or RiskClass.LOW
 
 
 def _motions(assessment: Assessment) -> str:

@@ -10,7 +10,6 @@ from assess.inventory.live import OUTSIDE
 from assess.report import words
 from assess.report.content import Content
 from assess.report.data import edge
-from assess.report.verified import formula_class
 from assess.report.xlsx import verified
 from assess.report.xlsx.formulas import ANCHORED, VOID, item_formula
 from assess.report.xlsx.pen import Pen
@@ -110,7 +109,7 @@ def _mark(one: ItemResult) -> str:
 
 def _class_by_formula(one: ItemResult) -> str:
     outside = OUTSIDE if "extrapolated" in one.by_formula.methods["proposed_or"].flags else ""
-    return _mark(one) + formula_class(one).label + outside
+    return _mark(one) + one.formula_class.label + outside
 
 
 def _class_verified(one: ItemResult) -> str:
@@ -190,7 +189,7 @@ _WORKINGS = (
     ItemColumn(
         "Rank, formula",
         10,
-        _if_verified(lambda one: int(formula_class(one))),
+        _if_verified(lambda one: int(one.formula_class)),
         "rank_formula",
         of_verified=True,
     ),
