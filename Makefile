@@ -4,7 +4,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: example test lint benchmark blank docs clean
+.PHONY: example test lint benchmark blank docs texts clean
 
 example: .venv/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street
@@ -28,6 +28,9 @@ docs: .venv/.installed
 	$(BIN)/python docs/motions.py
 	$(BIN)/python docs/rocking.py
 	$(BIN)/python docs/verification.py
+
+texts: .venv/.installed
+	$(BIN)/python docs/texts.py
 
 .venv/.installed: pyproject.toml setup.sh
 	PYTHON="$(PYTHON)" sh setup.sh .

@@ -16,7 +16,7 @@ PACKAGE = ROOT / "assess"
 
 LAYERS = {
     "version": 0, "units": 0, "errors": 0, "risk": 0, "resources": 0, "compiled": 0,
-    "settings": 1,
+    "settings": 1, "language": 1,
     "motion": 2,
     "rocking": 3,
     "methods": 4,

@@ -1,0 +1,105 @@
+"""Collect every text of the reports and the workbook into the catalogues: ``make texts``.
+
+Texts are what stands in `_`, `gettext`, `ngettext`, `fill` and `nfill` in the code and in the templates, and what
+the methods, profiles, flags and columns say of themselves. Translations are kept; a text that is gone leaves.
+"""
+
+import datetime
+import sys
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+
+from babel.messages.catalog import Catalog
+from babel.messages.extract import extract_from_dir
+from babel.messages.pofile import read_po, write_po
+
+from assess import resources
+from assess.language import LANGUAGES
+
+ROOT = Path(__file__).parents[1]
+KEYWORDS = {"_": None, "gettext": None, "fill": None, "ngettext": (1, 2), "nfill": (1, 2)}
+DATED = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
+"""In the head of every catalogue, so that only texts make a difference."""
+HEADER = """# Texts of assess in {name}. Made by: make texts. Fill in what is empty; keep the names in {{}}.
+"""
+
+
+def collect() -> Catalog:
+    """Return every text, with where it stands."""
+    catalogue = Catalog(charset="utf-8")
+    for folder, rules in ((ROOT / "assess", [("**.py", "python")]), (ROOT / "templates", [("**.j2", "jinja2")])):
+        for name, _, message, comments, _ in extract_from_dir(
+            folder, rules, keywords=KEYWORDS, options_map={"**.j2": {"trimmed": "true", "silent": "false"}}
+        ):
+            catalogue.add(message, locations=[(f"{folder.name}/{name}", 0)], auto_comments=comments)
+    for text, where in _of_themselves():
+        catalogue.add(text, locations=[(where, 0)])
+    return catalogue
+
+
+def _of_themselves() -> Iterator[tuple[str, str]]:
+    """Yield the texts that are not inside a call, and where they stand."""
+    yield from _of_methods()
+    yield from _of_columns()
+
+
+def _of_methods() -> Iterator[tuple[str, str]]:
+    from assess.cases import FLAGS as ITEM_FLAGS
+    from assess.demand import FLAGS as DEMAND_FLAGS
+    from assess.methods import all_methods
+    from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
+    from assess.risk import RiskClass
+
+    for method in all_methods():
+        texts = (method.title, method.predicts, *method.assumptions, *method.departures, *method.flags.values())
+        for text in (*texts, *method.equations, *method.words):
+            if any(character.isalpha() for character in text):
+                yield text, f"assess/methods/{method.key}.py"
+    for flags, name in ((ITEM_FLAGS, "cases"), (DEMAND_FLAGS, "demand")):
+        for flag, text in flags.items():
+            yield flag.replace("_", " "), f"assess/{name}.py"
+            yield text, f"assess/{name}.py"
+    for profile in PROFILES.values():
+        yield from ((text, "assess/motion/scenario.py") for text in (profile.remark, profile.equation) if text)
+    yield from ((text, "assess/motion/scenario.py") for text in (VERIFIED, UNVERIFIED))
+    yield from ((risk.word, "assess/risk.py") for risk in RiskClass)
+
+
+def _of_columns() -> Iterator[tuple[str, str]]:
+    from assess.inventory.columns import LIVE, SHEETS, WORKINGS
+
+    for sheet in SHEETS:
+        yield sheet.name, "assess/inventory/columns.py"
+        for column in sheet.columns:
+            for text in (column.label, column.help, column.default, *column.choices):
+                if any(character.isalpha() for character in text):
+                    yield text, "assess/inventory/columns.py"
+    for label in (*LIVE, *WORKINGS):
+        yield label.split(" [")[0], "assess/inventory/columns.py"
+
+
+def update(code: str) -> None:
+    """Bring the catalogue of a language up to date."""
+    path = resources.templates() / "texts" / f"{code}.po"
+    old = Catalog(locale=code, charset="utf-8")
+    if path.is_file():
+        with path.open("rb") as file:
+            old = read_po(file, locale=code)
+    old.update(collect(), no_fuzzy_matching=True)
+    old.obsolete.clear()
+    if code == "en":
+        for message in old:
+            message.string = message.string if message.string and all(message.string) else message.id
+    old.header_comment = HEADER.format(name=old.locale.english_name if old.locale else code)
+    old.creation_date = old.revision_date = DATED
+    buffer = BytesIO()
+    write_po(buffer, old, sort_output=True, omit_header=False, width=120, no_location=False, include_lineno=False)
+    path.write_bytes(buffer.getvalue())
+    empty = sum(1 for one in old if one.id and not all(one.string if isinstance(one.string, tuple) else (one.string,)))
+    sys.stdout.write(f"{path.name}: {len(old)} texts, {empty} without a translation\n")
+
+
+if __name__ == "__main__":
+    for code in LANGUAGES:
+        update(code)

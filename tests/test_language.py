@@ -1,0 +1,114 @@
+"""Texts in another language: catalogues that are complete, sentences made of parts, numbers."""
+
+from pathlib import Path
+
+import pytest
+from babel.messages.pofile import read_po
+
+from assess import resources
+from assess.errors import InputError
+from assess.language import (
+    LANGUAGES,
+    fill,
+    find_language,
+    gettext,
+    load_catalogue,
+    markup,
+    nfill,
+    ngettext,
+    nmarkup,
+    number,
+    placeholders,
+    speaking,
+)
+from docs.texts import collect
+
+
+def read(code):
+    with (resources.templates() / "texts" / f"{code}.po").open("rb") as file:
+        return read_po(file, locale=code, abort_invalid=True)
+
+
+def write(folder: Path, lines: str, code="it"):
+    (folder / "texts").mkdir(exist_ok=True)
+    head = (
+        'msgid ""\nmsgstr ""\n"Content-Type: text/plain; charset=utf-8\\n"\n'
+        '"Plural-Forms: nplurals=2; plural=(n != 1);\\n"\n\n'
+    )
+    (folder / "texts" / f"{code}.po").write_text(head + lines, encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_every_text_stands_in_every_catalogue(code):
+    wanted = {message.id for message in collect() if message.id}
+    found = {message.id: message for message in read(code) if message.id}
+    assert found.keys() == wanted, "run: make texts, then fill in what is empty"
+    for message in found.values():
+        ids = message.id if isinstance(message.id, tuple) else (message.id,)
+        texts = message.string if isinstance(message.string, tuple) else (message.string,)
+        assert all(texts), f"{ids[0]!r} has no translation in {code}.po"
+        assert not message.fuzzy, ids[0]
+        for text in texts:
+            assert placeholders(text) | {"n"} == set().union(*map(placeholders, ids)) | {"n"}, ids[0]
+            assert text.count("<") == ids[0].count("<"), ids[0]
+
+
+def test_a_sentence_of_parts_is_english_and_can_be_said_otherwise(tmp_path):
+    lines = 'msgid "{what} is {size:.1f} m"\nmsgstr "{size:.1f} m: {what}"\n\nmsgid "a desk"\nmsgstr "una scrivania"\n'
+    catalogue = load_catalogue("it", write(tmp_path, lines))
+    text = fill("{what} is {size:.1f} m", what=fill("a desk"), size=1.25)
+    assert text == "a desk is 1.2 m"
+    with speaking(catalogue):
+        assert gettext(text) == "1,2 m: una scrivania"
+    assert gettext(text) == "a desk is 1.2 m"
+
+
+def test_one_and_many(tmp_path):
+    lines = 'msgid "{n:,} box"\nmsgid_plural "{n:,} boxes"\nmsgstr[0] "{n:,} scatola"\nmsgstr[1] "{n:,} scatole"\n'
+    catalogue = load_catalogue("it", write(tmp_path, lines))
+    assert [nfill("{n:,} box", "{n:,} boxes", n) for n in (0, 1, 2000)] == ["0 boxes", "1 box", "2,000 boxes"]
+    with speaking(catalogue):
+        assert [ngettext("{n:,} box", "{n:,} boxes", n) for n in (0, 1, 2000)] == [
+            "0 scatole",
+            "1 scatola",
+            "2.000 scatole",
+        ]
+        assert gettext(nfill("{n:,} box", "{n:,} boxes", 1)) == "1 scatola"
+
+
+def test_numbers_are_written_as_the_language_does():
+    with speaking(load_catalogue("it")):
+        assert number(1234.5, ",.2f") == "1.234,50"
+    assert number(1234.5, ",.2f") == "1,234.50"
+
+
+def test_values_are_escaped_and_tags_of_the_text_are_not():
+    assert str(markup("<b>{name}</b> & {n}", name="<i>", n=1)) == "<b>&lt;i&gt;</b> & 1"
+    assert str(markup('a "{name}"', name="x")) == "a &#34;x&#34;"
+    assert str(nmarkup("<b>{n}</b> box", "<b>{n}</b> boxes", 2)) == "<b>2</b> boxes"
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ('msgid "{n} of {all}"\nmsgstr "{n} di {tutti}"\n', "has to hold the same {names}; check all, tutti"),
+        ('msgid "{n} of {all}"\nmsgstr "{n di {all}"\n', "braces of its text do not match"),
+        ("msgid no quotes\n", "the texts cannot be read"),
+    ],
+)
+def test_a_spoilt_catalogue_is_told(tmp_path, lines, told):
+    with pytest.raises(InputError, match=told):
+        load_catalogue("it", write(tmp_path, lines))
+
+
+@pytest.mark.parametrize(
+    ("name", "code"), [("it", "it"), ("Italiano", "it"), ("italian", "it"), (" English ", "en"), ("Inglese", "en")]
+)
+def test_languages_have_names(name, code):
+    assert find_language(name) == code
+
+
+def test_an_unknown_language_is_told():
+    with pytest.raises(InputError, match="language 'Klingon' is unknown: expected one of en, it"):
+        find_language("Klingon")
