@@ -5,6 +5,7 @@ written. Messages go to standard error, what was asked for to standard output.
 """
 
 import json
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,7 +18,11 @@ from assess.settings import AUTO, MOST_RUNS, SCENARIOS, SEED, VERIFY, Settings, 
 from assess.version import __version__
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from assess.inventory.model import Inventory
     from assess.progress import Progress
+    from assess.report.look import Look
     from assess.results import Assessment
     from assess.verification import Work
 
@@ -114,6 +119,16 @@ def run(
         str, typer.Option(help="Files to write, split by commas; also npz, the outcome of every motion.")
     ] = "pdf,xlsx,html,json,csv",
     jobs: Annotated[int | None, typer.Option(min=1, help="Threads.", show_default="one a processor")] = None,
+    language: Annotated[
+        str | None, typer.Option(help="Language of the reports: en, it.", show_default="the workbook's")
+    ] = None,
+    template: Annotated[
+        Path | None,
+        typer.Option(help="Folder of your own templates, styles and texts: trusted code.", show_default=False),
+    ] = None,
+    accessible: Annotated[
+        bool, typer.Option("--accessible", help="PDF/UA-1 for screen readers, instead of PDF/A-3u for archives.")
+    ] = False,
 ) -> None:
     """Assess a workbook and write the reports."""
     from assess.report import check_folder, write_reports
@@ -132,9 +147,10 @@ def run(
     settings = _settings(verify, runs, seed, scale_motions, scenario)
     with exits():
         check_folder(folder)
+        look = _look(language, template, accessible)
         assessment = _assess(path, settings, motions, jobs)
         print_problems([one for one in assessment.problems if one.severity == "warning"])
-        written = write_reports(assessment, folder, wanted)
+        written = write_reports(assessment, folder, wanted, look(assessment.inventory))
     print_result(assessment, list(written.values()))
 
 
@@ -239,6 +255,15 @@ def doctor() -> None:
         typer.echo(f"{'ok     ' if finding.works else 'missing'}  {finding.what}: {finding.detail}")
     if not all(finding.works for finding in findings):
         raise typer.Exit(1)
+
+
+def _look(language: str | None, template: Path | None, accessible: bool) -> "Callable[[Inventory], Look]":
+    """Return how the reports of an inventory are to look; what is wrong with the options is told before the work."""
+    from assess.language import find_language
+    from assess.report.look import Look
+
+    look = Look(language=find_language(language or "en"), templates=template, accessible=accessible)
+    return lambda inventory: replace(look, language=find_language(language or inventory.building.language or "en"))
 
 
 def _read_formats(formats: str, verify: str) -> list[str]:

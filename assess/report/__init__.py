@@ -9,9 +9,13 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
+from typing import cast
 
 from assess.errors import OutputError, PdfUnavailableError
+from assess.language import find_language
+from assess.report.look import Look
 from assess.results import Assessment
 
 FILES: Mapping[str, str] = {
@@ -26,12 +30,22 @@ FILES: Mapping[str, str] = {
 
 FORMATS = tuple(name for name in FILES if name != "npz")
 """The formats that are written where none are asked for; the outcomes of every motion are for other programs."""
+PLAIN = ("json", "csv", "npz")
+"""Formats for programs: the same in every language."""
+_WRITERS = {
+    "pdf": ("pdf", "write_pdf"),
+    "xlsx": ("xlsx", "write_xlsx"),
+    "html": ("html", "write_html"),
+    "json": ("data", "write_json"),
+    "csv": ("table", "write_csv"),
+    "npz": ("outcomes", "write_npz"),
+}
 _STAGE = ".assess-writing-"
 _STALE = 24 * 3600.0
 
 
 def write_reports(
-    assessment: Assessment, folder: str | Path, formats: str | Sequence[str] = FORMATS
+    assessment: Assessment, folder: str | Path, formats: str | Sequence[str] = FORMATS, look: Look | None = None
 ) -> dict[str, Path]:
     """Write the reports of an assessment.
 
@@ -43,6 +57,8 @@ def write_reports(
         Where to; made where it is missing. Other files in it are left alone.
     formats : str or sequence of str
         Of "pdf", "xlsx", "html", "json", "csv", "npz"; all but the last by default.
+    look : Look, optional
+        Language, templates and kind of PDF; by default in the workbook's language, with our own templates.
 
     Returns
     -------
@@ -57,12 +73,14 @@ def write_reports(
         If the native libraries of the PDF are missing; all other formats have been written.
     OutputError
         If a file cannot be written; what was there before is left as it was.
+    InputError
+        If a template of the firm's own cannot be used.
     """
     formats = (formats,) if isinstance(formats, str) else formats
     unknown = [name for name in formats if name not in FILES]
     if unknown:
         raise ValueError(f"format is {unknown[0]!r}, expected some of: {', '.join(FILES)}")
-    folder = Path(folder)
+    folder, look = Path(folder), look or Look(language=find_language(assessment.inventory.building.language or "en"))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _sweep(folder)
@@ -70,7 +88,7 @@ def write_reports(
     except OSError as error:
         raise OutputError(f"{folder} cannot be written to: {error.strerror}.") from None
     try:
-        return _write_staged(assessment, folder, stage, formats)
+        return _write_staged(assessment, folder, stage, formats, look)
     finally:
         shutil.rmtree(stage, ignore_errors=True)
 
@@ -90,12 +108,14 @@ def _sweep(folder: Path) -> None:
             shutil.rmtree(old, ignore_errors=True)
 
 
-def _write_staged(assessment: Assessment, folder: Path, stage: Path, formats: Sequence[str]) -> dict[str, Path]:
+def _write_staged(
+    assessment: Assessment, folder: Path, stage: Path, formats: Sequence[str], look: Look
+) -> dict[str, Path]:
     missing: PdfUnavailableError | None = None
     written: dict[str, Path] = {}
     for name in dict.fromkeys(formats):
         try:
-            _writer(name)(assessment, stage / FILES[name])
+            _write(name, assessment, stage / FILES[name], look)
             _flush(stage / FILES[name])
             written[name] = folder / FILES[name]
         except PdfUnavailableError as error:
@@ -115,31 +135,20 @@ def _write_staged(assessment: Assessment, folder: Path, stage: Path, formats: Se
     return written
 
 
-def _writer(name: str) -> Callable[[Assessment, Path], None]:
+def _write(name: str, assessment: Assessment, path: Path, look: Look) -> None:
+    """Write one format; what programs read is in English, the others speak the language of the report."""
+    writer = _writer(name)
+    if name in PLAIN:
+        writer(assessment, path)
+        return
+    with look.spoken():
+        writer(assessment, path, look)
+
+
+def _writer(name: str) -> Callable[..., None]:
     """Return the function that writes a format; each is imported only when it is wanted."""
-    if name == "json":
-        from assess.report.data import write_json
-
-        return write_json
-    if name == "csv":
-        from assess.report.table import write_csv
-
-        return write_csv
-    if name == "npz":
-        from assess.report.outcomes import write_npz
-
-        return write_npz
-    if name == "xlsx":
-        from assess.report.xlsx import write_xlsx
-
-        return write_xlsx
-    if name == "html":
-        from assess.report.html import write_html
-
-        return write_html
-    from assess.report.pdf import write_pdf
-
-    return write_pdf
+    module, function = _WRITERS[name]
+    return cast(Callable[..., None], getattr(import_module(f"assess.report.{module}"), function))
 
 
 def _flush(path: Path) -> None:

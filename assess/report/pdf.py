@@ -9,12 +9,13 @@ from typing import Any
 
 from assess.errors import PdfUnavailableError
 from assess.report.html import render
+from assess.report.look import Look
 from assess.results import Assessment
 
 DEBIAN = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 
-def write_pdf(assessment: Assessment, path: Path) -> None:
+def write_pdf(assessment: Assessment, path: Path, look: Look) -> None:
     """Write report.pdf.
 
     Raises
@@ -23,7 +24,7 @@ def write_pdf(assessment: Assessment, path: Path) -> None:
         If WeasyPrint's native libraries are missing.
     """
     weasyprint = load_weasyprint()
-    html = render(assessment, for_print=True)
+    html = render(assessment, look, for_print=True)
     document = weasyprint.HTML(string=html, url_fetcher=_closed_fetcher())
     document.write_pdf(path, pdf_tags=True)
 

@@ -15,6 +15,7 @@ import xlsxwriter
 from assess.inventory.live import write_plainly
 from assess.inventory.writer import write_book
 from assess.report.content import Content, build_content
+from assess.report.look import Look
 from assess.report.xlsx import floors, items, sheets, summary, verification
 from assess.report.xlsx.pen import Pen
 from assess.results import Assessment
@@ -34,8 +35,8 @@ SHEETS: dict[str, Callable[[Pen, Any, Content], None]] = {
 """The sheets in order, and the function that writes each; Verification is left out where no piece was verified."""
 
 
-def write_xlsx(assessment: Assessment, path: Path) -> None:
-    """Write report.xlsx.
+def write_xlsx(assessment: Assessment, path: Path, look: Look | None = None) -> None:
+    """Write report.xlsx in the language in use: see `Look.spoken`.
 
     Raises
     ------

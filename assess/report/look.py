@@ -1,0 +1,69 @@
+"""How a report looks: its language, a firm's own templates, and whether it is made for everybody's eyes and ears."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from assess import resources
+from assess.errors import InputError
+from assess.language import LANGUAGES, load_catalogue, speaking
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Look:
+    """How reports look.
+
+    Parameters
+    ----------
+    language : str
+        Code of the language of the reports, one of `assess.language.LANGUAGES`. results.json and items.csv, which
+        programs read, are the same in every language.
+    templates : Path, optional
+        A folder whose files stand in for those of the same name among the templates: trusted code.
+    accessible : bool
+        Whether the PDF is PDF/UA-1, for screen readers, instead of PDF/A-3u, for archives.
+
+    Raises
+    ------
+    InputError
+        If the language is unknown, or the folder of templates is none or holds nothing that could stand in.
+    """
+
+    language: str = "en"
+    templates: Path | None = None
+    accessible: bool = False
+
+    def __post_init__(self) -> None:
+        if self.language not in LANGUAGES:
+            raise InputError(f"language {self.language!r} is unknown: expected one of {', '.join(LANGUAGES)}")
+        if self.templates is not None:
+            _check_templates(self.templates)
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Where a template is looked for, in this order."""
+        return (*((self.templates,) if self.templates else ()), resources.templates())
+
+    def read(self, name: str) -> str:
+        """Return the text of a template or style file, the firm's own first."""
+        found = next(folder / name for folder in self.folders if (folder / name).is_file())
+        return found.read_text(encoding="utf-8")
+
+    @contextmanager
+    def spoken(self) -> Iterator[None]:
+        """Have every text be in the language of the report."""
+        with speaking(load_catalogue(self.language, self.templates)):
+            yield
+
+
+def _check_templates(folder: Path) -> None:
+    """Raise InputError unless every file of a firm's folder stands in for one of ours: a slip in a name is told."""
+    if not folder.is_dir():
+        raise InputError(f"--template: there is no folder {folder}")
+    ours = {path.relative_to(resources.templates()).as_posix() for path in resources.templates().rglob("*.*")}
+    own = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    unknown = sorted(name for name in own - ours if not Path(name).name.startswith("."))
+    if unknown or not own & ours:
+        named = f"{unknown[0]} stands in for nothing" if unknown else "it holds no template"
+        raise InputError(f"--template: {folder}: {named}; expected some of: {', '.join(sorted(ours))}")
