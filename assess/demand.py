@@ -14,13 +14,14 @@ from typing import Literal
 from assess.errors import Problem, WorkbookError
 from assess.inventory.floors import describe_unserved
 from assess.inventory.model import Axis, Floor, FloorRecord, Inventory
+from assess.language import fill
 from assess.motion.estimate import estimate_pfv
 from assess.motion.record import Motion, Record, treat
 from assess.motion.scenario import DEFAULT, PGA_OF_SDS, PROFILES, Profile
 
 Source = Literal["record", "given", "interpolated", "profile"]
 
-MAY_BE_LOWER = (
+MAY_BE_LOWER = fill(
     "may be lower than the truth: on floor 25 of 575 Market Street, left out as a test, it gives 0.149 g where 0.223 g "
     "was recorded"
 )
@@ -86,10 +87,11 @@ class Demand:
     def label(self) -> str:
         """Its source in short: the record's name, "given", the profile's code, or the two floors."""
         if self.is_level:
-            return f"as floor {self.between[0]}"
+            return fill("as floor {floor}", floor=self.between[0])
         if self.between:
-            return f"interpolated between {' and '.join(self.between)}"
-        return self.profile.key if self.profile else self.name or "given"
+            below, above = self.between
+            return fill("interpolated between {below} and {above}", below=below, above=above)
+        return self.profile.key if self.profile else self.name or fill("given")
 
     @property
     def is_level(self) -> bool:
@@ -176,7 +178,7 @@ def build_demands(
             problems += _missing(floor, scenario, ground)
         demands |= {(floor.floor, axis): served[axis] for axis in served}
     if problems:
-        raise WorkbookError(problems)
+        raise WorkbookError([inventory.place(problem) for problem in problems])
     return demands
 
 

@@ -10,7 +10,7 @@ from assess.inventory.model import Building
 from assess.motion.record import FloatArray
 
 if TYPE_CHECKING:
-    from assess.motion.fit import Fit
+    from assess.motion.fit import Fit, Spectra
     from assess.motion.suite import Suite
     from assess.motion.target import Grid, Target
 
@@ -20,10 +20,14 @@ WEAK_PFA, WEAK_PFV = 0.9, 0.85
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OpenMotions:
-    """Motions that have been made ready: `make` returns those from a number on, and a count of them."""
+    """Motions that have been made ready: `make` returns those from a number on, and a count of them.
+
+    `fit` and `spectra` are those of the first 100 motions.
+    """
 
     make: Callable[[int, int], list[tuple[FloatArray, float]]]
     fit: "Fit | None" = None
+    spectra: "Spectra | None" = None
 
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
@@ -85,7 +89,9 @@ class GeneratedEnsemble:
             self.build_target(), self.grid, seed=self.seed, axis=self.demand.axis, threads=threads
         )
         step = self.grid.time_step
-        return OpenMotions(lambda first, count: [(generator.realise(first, count), step)], generator.fit)
+        return OpenMotions(
+            lambda first, count: [(generator.realise(first, count), step)], generator.fit, generator.spectra
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,7 +128,8 @@ class SuiteEnsemble:
     def open(self, threads: int) -> OpenMotions:
         """Take them as they are."""
         pfa = self.demand.pfa if self.is_scaled else None
-        return OpenMotions(lambda first, count: self.suite.realise(first, count, pfa))
+        spectra = self.suite.scaled_spectra(pfa)
+        return OpenMotions(lambda first, count: self.suite.realise(first, count, pfa), spectra=spectra)
 
 
 FloorEnsemble = GeneratedEnsemble | SuiteEnsemble

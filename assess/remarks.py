@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from assess.demand import AXES, Demands, find_ground, serve_by_profile
 from assess.errors import Problem, Severity
 from assess.inventory.model import Axis, Floor, Inventory
+from assess.language import Text, fill, join
 from assess.motion.record import treat
 from assess.motion.scenario import PGA_OF_SDS, Profile
 from assess.motion.target import estimate_period
@@ -36,10 +37,10 @@ ALIKE = 0.01
 """Share up to which Ground PGA and 0.4 SDS count as the same."""
 
 SOURCES = {
-    "record": "recorded motion",
-    "given": "given peaks",
-    "interpolated": "interpolated between floors",
-    "profile": "a code's design profile",
+    "record": fill("recorded motion"),
+    "given": fill("given peaks"),
+    "interpolated": fill("interpolated between floors"),
+    "profile": fill("a code's design profile"),
 }
 """The sources of a floor's motion in words."""
 
@@ -82,10 +83,15 @@ def _losses(demands: Demands) -> Iterator[Problem]:
     for demand in (one for ones in demands.values() for one in ones if not one.is_borrowed):
         if demand.loss > LOSS_TO_TELL:
             before = demand.pfa / (1 - demand.loss)
-            change = f"{before / GRAVITY:.3f} g to {demand.pfa / GRAVITY:.3f} g ({demand.loss:.1%})"
-            message = f"treatment lowers the PFA of {demand.name} from the file's {change}."
+            message = fill(
+                "treatment lowers the PFA of {record} from the file's {before:.3f} g to {pfa:.3f} g ({loss:.1%}).",
+                record=demand.name,
+                before=before / GRAVITY,
+                pfa=demand.pfa / GRAVITY,
+                loss=demand.loss,
+            )
             much = demand.loss > LOSS_TO_WARN
-            mend = "If the file is corrected already, say so in it (plain CSV: # corrected: yes)." if much else ""
+            mend = fill("If the file is corrected already, say so in it (plain CSV: # corrected: yes).") if much else ""
             yield Problem("warning" if much else "note", "Floors", f"A{demand.floor.row}", message, mend)
 
 
@@ -94,27 +100,39 @@ def _set_aside(floor: Floor, axis: Axis, demands: Demands, scenario: str) -> Ite
     used = demands[floor.floor, axis]
     largest = max(one.pfa for one in used)
     own = {one.source for one in used if not one.is_borrowed}
-    serves = "the record serves, with" if "record" in own else f"the scenario '{scenario}' takes"
-    of_floor = f"of floor '{floor.floor}'"
+    serves = _describe_serving("" if "record" in own else scenario, _in_g(largest))
     if floor.records.get(axis) and "record" not in own:
         recorded = max(treat(one.record).pfa for one in floor.records[axis])
-        message = f"Record {axis} {of_floor} is not used: its PFA is {_in_g(recorded)}, {serves} {_in_g(largest)}."
+        text = fill("its PFA is {pfa:.3f} g, {serves}", pfa=recorded / GRAVITY, serves=serves)
+        message = _describe_unused(fill("Record {axis}", axis=axis), floor, text)
         cell = floor.cell(f"record_{axis.lower()}")
-        yield Problem(_severity(recorded, largest), "Floors", cell, message, "Scenario 'recorded' uses it.")
+        yield Problem(_severity(recorded, largest), "Floors", cell, message, fill("Scenario 'recorded' uses it."))
     if axis in floor.pfa and "given" not in own:
-        message = f"PFA {axis} {_in_g(floor.pfa[axis])} {of_floor} is not used: {serves} {_in_g(largest)}."
+        what = fill("PFA {axis} {pfa:.3f} g", axis=axis, pfa=floor.pfa[axis] / GRAVITY)
         cell = floor.cell(f"pfa_{axis.lower()}")
+        message = _describe_unused(what, floor, serves)
         yield Problem(_severity(floor.pfa[axis], largest), "Floors", cell, message, _USES_GIVEN)
     if axis in floor.pfv and "given" not in own:
         fastest = max(one.pfv for one in used)
-        instead = "no PFV" if math.isnan(fastest) else _in_cm_s(fastest)
-        message = f"PFV {axis} {_in_cm_s(floor.pfv[axis])} {of_floor} is not used: {serves} {instead}."
-        mend = _USES_GIVEN if axis in floor.pfa else ""
+        what = fill("PFV {axis} {pfv}", axis=axis, pfv=_in_cm_s(floor.pfv[axis]))
+        serves = _describe_serving("" if "record" in own else scenario, _in_cm_s(fastest))
         cell = floor.cell(f"pfv_{axis.lower()}")
-        yield Problem(_severity(floor.pfv[axis], fastest), "Floors", cell, message, mend)
+        mend = _USES_GIVEN if axis in floor.pfa else ""
+        yield Problem(_severity(floor.pfv[axis], fastest), "Floors", cell, _describe_unused(what, floor, serves), mend)
 
 
-_USES_GIVEN = "Scenario 'given' uses it."
+def _describe_unused(what: Text, floor: Floor, why: Text) -> Text:
+    return fill("{what} of floor '{floor}' is not used: {why}.", what=what, floor=floor.floor, why=why)
+
+
+def _describe_serving(scenario: str, peak: Text) -> Text:
+    """Say that the record serves with a peak, or that a scenario takes it."""
+    if not scenario:
+        return fill("the record serves, with {peak}", peak=peak)
+    return fill("the scenario '{scenario}' takes {peak}", scenario=fill(scenario), peak=peak)
+
+
+_USES_GIVEN = fill("Scenario 'given' uses it.")
 
 
 def _severity(unused: float, used: float) -> Severity:
@@ -137,25 +155,32 @@ def _profile_below_known(inventory: Inventory, demands: Demands, ductility_reduc
         by_profile = serve_by_profile(floor, profile, ground, inventory.building.period, ductility_reduction)
         pfa = by_profile["X"][0].pfa if by_profile else math.inf
         if worst.pfa > pfa * (1 + ROUNDING):
-            message = (
-                f"the profile would give {_in_g(pfa)} on floor '{floor.floor}', {_in_g(worst.pfa)} is known there: "
-                f"floors on the profile may come out too low.{_above_weaker(floor, worst.pfa, inventory, demands)}"
-            )
-            mend = "Fill in a PFA or a record on those, or check Ground PGA in Building."
+            message = _describe_below(floor, pfa, worst.pfa, _above_weaker(floor, worst.pfa, inventory, demands))
+            mend = fill("Fill in a PFA or a record on those, or check Ground PGA in Building.")
             cell = floor.cell(f"{'pfa' if worst.source == 'given' else 'record'}_{worst.axis.lower()}")
             yield Problem("warning", "Floors", cell, message, mend)
 
 
-def _above_weaker(known: Floor, pfa: float, inventory: Inventory, demands: Demands) -> str:
-    """Name the floors on the profile above a known one that come out weaker than it, in a sentence."""
-    names = [
-        f"'{floor.floor}' ({_in_g(one.pfa)})"
+def _describe_below(floor: Floor, pfa: float, known: float, weaker: list[Text]) -> Text:
+    text = fill(
+        "the profile would give {pfa:.3f} g on floor '{floor}', {known:.3f} g is known there: floors on the profile "
+        "may come out too low.",
+        pfa=pfa / GRAVITY,
+        floor=floor.floor,
+        known=known / GRAVITY,
+    )
+    shown = [*weaker[:MOST], *(["..."] if len(weaker) > MOST else [])]
+    return fill("{warning} Above it get less: {floors}.", warning=text, floors=join(", ", shown)) if weaker else text
+
+
+def _above_weaker(known: Floor, pfa: float, inventory: Inventory, demands: Demands) -> list[Text]:
+    """Name the floors on the profile above a known one that come out weaker than it."""
+    return [
+        fill("'{floor}' ({pfa:.3f} g)", floor=floor.floor, pfa=one.pfa / GRAVITY)
         for floor in inventory.floors
         for one in demands[floor.floor, "X"][:1]
         if one.source == "profile" and (floor.elevation or 0) >= (known.elevation or 0) and one.pfa < pfa
     ]
-    shown = names[:MOST] + (["..."] if len(names) > MOST else [])
-    return f" Above it get less: {', '.join(shown)}." if names else ""
 
 
 def find_profile(demands: Demands) -> Profile | None:
@@ -169,8 +194,8 @@ def _above_roof(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
         z = floor.elevation
         is_served = demands[floor.floor, "X"][0].source == "profile"
         if is_served and z is not None and roof is not None and z > max(roof, 0.0) * (1 + ROUNDING):
-            message = f"Elevation {z:g} m is above the roof, {roof:g} m: z/h is taken as 1."
-            mend = "Check it, and Height in Building."
+            message = fill("Elevation {z:g} m is above the roof, {roof:g} m: z/h is taken as 1.", z=z, roof=roof)
+            mend = fill("Check it, and Height in Building.")
             yield Problem("warning", "Floors", floor.cell("elevation"), message, mend)
 
 
@@ -180,14 +205,23 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     if building.height and building.storeys:
         each = building.height / building.storeys
         if not STOREY[0] <= each <= STOREY[1]:
-            message = (
-                f"Height {building.height:g} m over {building.storeys} storeys is {each:.3g} m a storey, outside "
-                f"{STOREY[0]:g} to {STOREY[1]:g} m; too large a Height lowers the profile."
+            message = fill(
+                "Height {height:g} m over {storeys} storeys is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
+                "too large a Height lowers the profile.",
+                height=building.height,
+                storeys=building.storeys,
+                each=each,
+                low=STOREY[0],
+                high=STOREY[1],
             )
-            yield Problem("warning", "Building", building.cell("height"), message, "Check Height and Storeys.")
+            yield Problem("warning", "Building", building.cell("height"), message, fill("Check Height and Storeys."))
     highest = max(floor.elevation for floor in inventory.floors if floor.elevation is not None)
     if building.height and building.height > FAR_ABOVE * max(highest, 0.0):
-        message = f"z/h is taken against Height {building.height:g} m; the highest floor listed is at {highest:g} m."
+        message = fill(
+            "z/h is taken against Height {height:g} m; the highest floor listed is at {highest:g} m.",
+            height=building.height,
+            highest=highest,
+        )
         yield Problem("note", "Building", building.cell("height"), message)
     if building.period and ground.roof:
         yield from _odd_period(inventory, demands, ground.roof)
@@ -198,13 +232,19 @@ def _odd_period(inventory: Inventory, demands: Demands, roof: float) -> Iterator
     usual = estimate_period(roof) or math.inf
     low, high = (times * usual for times in TIMES_USUAL)
     if building.period and profile and not low <= building.period <= high:
-        effect = "lowers the profile" if profile.clause_without_period else "raises the PFV"
-        message = (
-            f"Period T1 {building.period:g} s is outside {low:.3g} to {high:.3g} s, {TIMES_USUAL[0]:g} to "
-            f"{TIMES_USUAL[1]:g} times 0.0488 h^0.75 (ASCE 7-22 Eq. 12.8-7) for a height h of {roof:g} m; a longer T1 "
-            f"{effect}."
+        lowers = profile.clause_without_period
+        message = fill(
+            "Period T1 {period:g} s is outside {low:.3g} to {high:.3g} s, {least:g} to {most:g} times 0.0488 h^0.75 "
+            "(ASCE 7-22 Eq. 12.8-7) for a height h of {roof:g} m; {effect}.",
+            period=building.period,
+            low=low,
+            high=high,
+            least=TIMES_USUAL[0],
+            most=TIMES_USUAL[1],
+            roof=roof,
+            effect=fill("a longer T1 lowers the profile") if lowers else fill("a longer T1 raises the PFV"),
         )
-        mend = "Check Period T1 and Height."
+        mend = fill("Check Period T1 and Height.")
         yield Problem("warning", "Building", building.cell("period"), message, mend)
 
 
@@ -215,28 +255,39 @@ def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Ite
     if not list_floors(demands, "profile"):
         for name, label in (("ground_pga", "Ground PGA"), ("sds", "SDS")):
             if given[name] is not None:
-                why = "no floor needs a profile" if scenario == "as filled" else f"scenario '{scenario}'"
-                message = f"{label} is kept, not used: {why}."
+                why = fill("no floor needs a profile")
+                if scenario != "as filled":
+                    why = fill("scenario '{scenario}'", scenario=fill(scenario))
+                message = fill("{what} is kept, not used: {why}.", what=fill(label), why=why)
                 yield Problem("note", "Building", building.cell(name), message)
     elif building.ground_pga is not None and building.sds is not None:
         by_sds = PGA_OF_SDS * building.sds
         if abs(by_sds - building.ground_pga) > ALIKE * max(building.ground_pga, by_sds):
-            message = f"SDS is not used: 0.4 SDS is {_in_g(by_sds)}, Ground PGA {_in_g(building.ground_pga)} is used."
+            message = fill(
+                "SDS is not used: 0.4 SDS is {by_sds:.3f} g, Ground PGA {used:.3f} g is used.",
+                by_sds=by_sds / GRAVITY,
+                used=building.ground_pga / GRAVITY,
+            )
             kind = _severity(by_sds, building.ground_pga)
-            yield Problem(kind, "Building", building.cell("sds"), message, "Correct one of them, or clear it.")
+            yield Problem(kind, "Building", building.cell("sds"), message, fill("Correct one of them, or clear it."))
 
 
 def _mixed(demands: Demands) -> Iterator[Problem]:
     """List the sources where a run has more than one."""
     by_source = {text: list_floors(demands, source) for source, text in SOURCES.items()}
-    used = [f"{text} ({', '.join(floors)})" for text, floors in by_source.items() if floors]
+    used = [
+        fill("{source} ({floors})", source=text, floors=", ".join(floors))
+        for text, floors in by_source.items()
+        if floors
+    ]
     if len(used) > 1:
-        yield Problem("note", "Floors", "", f"the motion of the floors comes from mixed sources: {'; '.join(used)}.")
+        message = fill("the motion of the floors comes from mixed sources: {sources}.", sources=join("; ", used))
+        yield Problem("note", "Floors", "", message)
 
 
-def _in_g(pfa: float) -> str:
-    return f"{pfa / GRAVITY:.3f} g"
+def _in_g(pfa: float) -> Text:
+    return fill("{pfa:.3f} g", pfa=pfa / GRAVITY)
 
 
-def _in_cm_s(pfv: float) -> str:
-    return f"{pfv / VELOCITY['cm/s']:.1f} cm/s"
+def _in_cm_s(pfv: float) -> Text:
+    return fill("no PFV") if math.isnan(pfv) else fill("{pfv:.1f} cm/s", pfv=pfv / VELOCITY["cm/s"])

@@ -12,6 +12,7 @@ from assess.demand import Demand, Demands
 from assess.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
 from assess.errors import InputError, Problem
 from assess.inventory.model import Building
+from assess.language import Text, fill, join
 from assess.methods import Cases, Outcome
 from assess.methods._method import BoolArray
 from assess.methods.housner_monte_carlo import LOOKS, Tell, evaluate
@@ -68,20 +69,27 @@ def remark_suite(suite: "Suite | None", cases: Cases) -> list[Problem]:
     if suite is None:
         return []
     ensembles = [one for one in cases.ensembles if isinstance(one, SuiteEnsemble) and one.is_weak]
-    told = [Problem("note", "", "", f"Motions of the folder {suite.folder}: {note}.") for note in suite.notes]
-    return told + [Problem("warning", "", "", _describe_weak(one), WEAK) for one in ensembles]
+    told = [fill("Motions of the folder {folder}: {note}.", folder=suite.folder, note=note) for note in suite.notes]
+    notes = [Problem("note", "", "", text) for text in told]
+    return notes + [Problem("warning", "", "", _describe_weak(one), WEAK) for one in ensembles]
 
 
-WEAK = "Verification may raise a class there, never lower it: scale them (--scale-motions), or choose others."
+WEAK = fill("Verification may raise a class there, never lower it: scale them (--scale-motions), or choose others.")
 
 
-def _describe_weak(one: SuiteEnsemble) -> str:
+def _describe_weak(one: SuiteEnsemble) -> Text:
     pfa, pfv = one.peaks
-    peaks = [f"median PFA {pfa / GRAVITY:.3f} g for {one.demand.pfa / GRAVITY:.3f} g"]
+    peaks = fill("median PFA {pfa:.3f} g for {wanted:.3f} g", pfa=pfa / GRAVITY, wanted=one.demand.pfa / GRAVITY)
     if one.demand.pfv > 0:
-        peaks.append(f"median PFV {100 * pfv:.1f} cm/s for {100 * one.demand.pfv:.1f} cm/s")
-    place = f"floor '{one.demand.floor.floor}' {one.demand.axis}"
-    return f"the motions of the user's own are weaker than {place}: {', '.join(peaks)}."
+        median, wanted = 100 * pfv, 100 * one.demand.pfv
+        text = fill("median PFV {pfv:.1f} cm/s for {wanted:.1f} cm/s", pfv=median, wanted=wanted)
+        peaks = join(", ", [peaks, text])
+    return fill(
+        "the motions of the user's own are weaker than floor '{floor}' {axis}: {peaks}.",
+        floor=one.demand.floor.floor,
+        axis=one.demand.axis,
+        peaks=peaks,
+    )
 
 
 def verify(

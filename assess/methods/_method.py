@@ -12,7 +12,7 @@ from assess.settings import Settings
 from assess.units import ROUNDING
 
 if TYPE_CHECKING:
-    from assess.motion.fit import Fit
+    from assess.motion.fit import Fit, Spectra
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -50,6 +50,11 @@ class Motions(Protocol):
     @property
     def fit(self) -> "Fit | None":
         """How they meet the spectrum that they were made for; None for motions that were given."""
+        ...
+
+    @property
+    def spectra(self) -> "Spectra | None":
+        """Response spectra of the first of them, and the one that they were made for; None where unknown."""
         ...
 
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
@@ -166,6 +171,8 @@ class Joint:
         The first three motions [m/s2] and their time steps [s].
     fit : Fit, optional
         How the motions meet their target.
+    spectra : Spectra, optional
+        Response spectra of the first motions, at most 100, under which a case was integrated, and of their target.
     """
 
     ensemble: int
@@ -175,6 +182,7 @@ class Joint:
     rotation: NDArray[np.float32]
     examples: Sequence[tuple[NDArray[np.float32], float]]
     fit: "Fit | None"
+    spectra: "Spectra | None" = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -164,6 +164,7 @@ def _integrate(
     return Joint(
         ensemble=number, cases=own, runs=runs, fell=fell, rotation=rotation,
         examples=_examples(motions, fell.shape[1]), fit=motions.fit,
+        spectra=motions.spectra and motions.spectra.first(fell.shape[1]),
     )  # fmt: skip
 
 
@@ -227,9 +228,11 @@ METHOD = Method(
     evaluate=evaluate,
     tier="verification",
     equations=(
-        "Rocking starts where |a_g|/g > B/H   (1)",
-        "θ″ = -p²·[sin(α·sgn θ - θ) + (a_g/g)·cos(α·sgn θ - θ)]   (2), (3)",
-        "p = √(3g/4r), r = ½·√(B² + H²), α = atan(B/H)   (4)",
+        "I₀·θ″ + m·g·r·sin(-α - θ) = -m·a_g·r·cos(-α - θ), θ < 0   (1)",
+        "I₀·θ″ + m·g·r·sin(α - θ) = -m·a_g·r·cos(α - θ), θ > 0   (2), I₀ = (4/3)·m·r², tan α = B/H, r = ½·√(B² + H²)",
+        "θ″ = -p²·[sin(α·sgn θ - θ) + (a_g/g)·cos(α·sgn θ - θ)]   (3)",
+        "p = √(3g/4r)   (4)",
+        "Rocking starts where |a_g|/g > B/H",
         "After an impact: θ′ = (1 - 1.5·sin²α) · θ′ before; overturned: |θ| ≥ π/2",
         "Risk = overturned / N; interval: (R + z²/2N ± z·√(R(1 - R)/N + z²/4N²)) / (1 + z²/N)",
     ),

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from assess.motion.bending import Bend, bend_row, build_taper, lift_peaks, settle
 from assess.motion.envelope import draw_noise, filter_frequencies, filter_length
-from assess.motion.fit import Fit, measure_fit
+from assess.motion.fit import Fit, Spectra, measure_match
 from assess.motion.record import CORNER, FloatArray
 from assess.motion.spectrum import pseudo_acceleration, run_rows
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
@@ -66,6 +66,8 @@ class Generator:
         The first realisations [m/s2], which were made while it was found.
     fit : Fit, optional
         How they meet the target.
+    spectra : Spectra, optional
+        Their spectra.
     """
 
     target: Target
@@ -80,6 +82,7 @@ class Generator:
     scale: float = 1.0
     made: FloatArray | None = None
     fit: Fit | None = None
+    spectra: Spectra | None = None
 
     def realise(self, first: int = 0, count: int = CALIBRATED) -> FloatArray:
         """Return realisations `first` to `first + count - 1`: accelerations [m/s2], (count, n).
@@ -143,7 +146,8 @@ def build_generator(
     if target.is_generic:
         scale = target.pfa / float(np.abs(motions).max(axis=1).mean())
         generator, motions = replace(generator, scale=scale), scale * motions
-    return replace(generator, made=motions, fit=measure_fit(generator.target, motions, grid.time_step, threads))
+    fit, spectra = measure_match(generator.target, motions, grid.time_step, threads)
+    return replace(generator, made=motions, fit=fit, spectra=spectra)
 
 
 def _first_gains(target: Target, grid: Grid) -> FloatArray:

@@ -1,9 +1,10 @@
-"""How an ensemble of motions meets its target, in figures that a report can print."""
+"""How an ensemble of motions meets its target, in figures that a report can print, and its spectra."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.motion.record import FloatArray
 from assess.motion.target import JUDGED_FROM, Target, matched_to
@@ -44,6 +45,29 @@ class Fit:
     drift: float
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Spectra:
+    """Response spectra of the first motions of an ensemble.
+
+    Parameters
+    ----------
+    periods : (p,) array
+        [s]
+    ordinates : (k, p) array
+        5 % pseudo-acceleration of each motion [m/s2].
+    target : (p,) array, optional
+        What their mean is to meet [m/s2]; None for motions that were given.
+    """
+
+    periods: FloatArray
+    ordinates: NDArray[np.float32]
+    target: FloatArray | None = None
+
+    def first(self, count: int) -> "Spectra":
+        """Return those of the first `count` motions, or of all where there are fewer."""
+        return replace(self, ordinates=self.ordinates[:count])
+
+
 def velocities(acceleration: FloatArray, time_step: float) -> FloatArray:
     """Return velocity [m/s] of motions (k, n) [m/s2] that start at rest."""
     steps = (acceleration[:, 1:] + acceleration[:, :-1]) * (time_step / 2)
@@ -52,6 +76,14 @@ def velocities(acceleration: FloatArray, time_step: float) -> FloatArray:
 
 def measure_fit(target: Target, acceleration: FloatArray, time_step: float, threads: int = 1) -> Fit:
     """Return how motions (k, n) [m/s2] meet their target, at twice as many periods as they were matched at."""
+    return measure_match(target, acceleration, time_step, threads)[0]
+
+
+def measure_match(target: Target, acceleration: FloatArray, time_step: float, threads: int = 1) -> tuple[Fit, Spectra]:
+    """Return how motions (k, n) [m/s2] meet their target, and the spectra by which this was measured.
+
+    The periods are those from 0.05 s to where the match is judged, twice as many as they were matched at.
+    """
     from assess.motion.spectrum import pseudo_acceleration
 
     wanted_to = matched_to(target.periods, target.pseudo)
@@ -60,11 +92,12 @@ def measure_fit(target: Target, acceleration: FloatArray, time_step: float, thre
     judged = (periods >= JUDGED_FROM) & (periods <= wanted_to)
     periods = periods[judged]
     pseudo = pseudo_acceleration(acceleration, time_step, periods, threads=threads)
-    deviation = pseudo.mean(axis=0) / target.ordinates(periods, time_step) - 1
+    wanted = target.ordinates(periods, time_step)
+    deviation = pseudo.mean(axis=0) / wanted - 1
     worst = int(np.abs(deviation).argmax())
     velocity = velocities(acceleration, time_step)
     pfa, pfv = np.abs(acceleration).max(axis=1), np.abs(velocity).max(axis=1)
-    return Fit(
+    fit = Fit(
         count=len(acceleration),
         matched_to=wanted_to,
         mean_deviation=float(np.abs(deviation).mean()),
@@ -77,3 +110,4 @@ def measure_fit(target: Target, acceleration: FloatArray, time_step: float, thre
         spectrum_scatter=float((pseudo.std(axis=0) / pseudo.mean(axis=0)).mean()),
         drift=float((np.abs(velocity[:, -1]) / pfv).max()),
     )
+    return fit, Spectra(periods=periods, ordinates=pseudo.astype(np.float32), target=wanted)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import RecordError
+from assess.language import Text, fill, nfill
 from assess.units import GRAVITY
 
 FloatArray = NDArray[np.float64]
@@ -158,16 +159,19 @@ def treat(record: Record, baseline: Baseline = "standard") -> Motion:
     return Motion(values, velocity, _integral(velocity, step), step)
 
 
-def treatment(record: Record, baseline: Baseline = "standard") -> str:
+def treatment(record: Record, baseline: Baseline = "standard") -> Text:
     """Say in one sentence what `treat` does to `record`."""
     if record.corrected:
-        return "Corrected by its provider: used as it is in the file."
+        return fill("Corrected by its provider: used as it is in the file.")
     if baseline == "none":
-        return "Uncorrected: mean removed, not filtered."
-    return (
-        f"Uncorrected: mean removed, then a Butterworth high-pass at {CORNER:g} Hz without phase shift (order "
-        f"{PASS_ORDER} forward and again backward: order {PASS_ORDER * PASSES} in effect; {PAD:g} s of zeros at each "
-        "end while filtering)."
+        return fill("Uncorrected: mean removed, not filtered.")
+    return fill(
+        "Uncorrected: mean removed, then a Butterworth high-pass at {corner:g} Hz without phase shift (order {order} "
+        "forward and again backward: order {in_effect} in effect; {pad:g} s of zeros at each end while filtering).",
+        corner=CORNER,
+        order=PASS_ORDER,
+        in_effect=PASS_ORDER * PASSES,
+        pad=PAD,
     )
 
 
@@ -228,10 +232,12 @@ def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> 
     if times[-1] - times[0] > MOST_SAMPLES * RESAMPLED_STEP:
         raise RecordError(f"the times span {times[-1] - times[0]:.6g} s: cut the record to the shaking")
     resampled = resample(times, values, RESAMPLED_STEP)
-    change = 100 * (peak(resampled) / peak(values) - 1)
-    note = (
-        f"unevenly sampled (median step {median:.3g} s): resampled linearly to {RESAMPLED_STEP:g} s, "
-        f"which changes the peak by {change:+.2f} %"
+    note = fill(
+        "unevenly sampled (median step {median:.3g} s): resampled linearly to {step:g} s, which changes the peak by "
+        "{change:+.2f} %",
+        median=median,
+        step=RESAMPLED_STEP,
+        change=100 * (peak(resampled) / peak(values) - 1),
     )
     return Series(RESAMPLED_STEP, resampled, (*notes, note, *_note_gaps(times, median)))
 
@@ -242,12 +248,12 @@ def _note_left_out(left_out: int, count: int) -> tuple[str, ...]:
             f"{left_out} of {count} samples are no later than one before them: times must increase down the file, "
             "and have enough digits for that"
         )
-    are = (
-        "sample that is no later than one before it was"
-        if left_out == 1
-        else "samples that are no later than one before them were"
+    note = nfill(
+        "{n} sample that is no later than one before it was left out",
+        "{n} samples that are no later than one before them were left out",
+        left_out,
     )
-    return (f"{left_out} {are} left out",) if left_out else ()
+    return (note,) if left_out else ()
 
 
 def _note_gaps(times: FloatArray, median: float) -> tuple[str, ...]:
@@ -256,10 +262,14 @@ def _note_gaps(times: FloatArray, median: float) -> tuple[str, ...]:
     if not gaps:
         return ()
     longest = int(steps.argmax())
-    where = f"{steps[longest]:.3g} s at {times[longest]:.5g} s"
-    if gaps == 1:
-        return (f"a gap of {where} is bridged by a straight line",)
-    return (f"{gaps} gaps, the longest of {where}, are bridged by straight lines",)
+    note = nfill(
+        "a gap of {long:.3g} s at {at:.5g} s is bridged by a straight line",
+        "{n} gaps, the longest of {long:.3g} s at {at:.5g} s, are bridged by straight lines",
+        gaps,
+        long=float(steps[longest]),
+        at=float(times[longest]),
+    )
+    return (note,)
 
 
 def check_samples(values: FloatArray) -> None:

@@ -3,22 +3,27 @@
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
 from assess.errors import RecordError
+from assess.language import fill
+from assess.motion.fit import Spectra
 from assess.motion.formats import read_records
 from assess.motion.record import FloatArray, Motion, Record, treat
 
+MOST_SPECTRA, SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT = 100, 0.05, 10.0, 120
+"""Motions whose spectra are found, and the periods [s]."""
 FEW = 30
 """Motions below which it is told that they are few: of 30, none fallen leaves 11 % in the interval."""
 TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst", ".ini", ".db"})
 """Endings of what stands beside records and is passed over."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Suite:
     """Motions of the user's own, as treated; motion k is one earthquake, the same on every floor and axis.
 
@@ -52,6 +57,22 @@ class Suite:
             (_stack([_scaled(motion, pfa) for motion in alike]), step)
             for step, alike in groupby(chosen, key=lambda motion: motion.time_step)
         ]
+
+    def scaled_spectra(self, pfa: float | None = None) -> Spectra:
+        """Return the spectra of the first 100 motions, each scaled to a `pfa` [m/s2] where one is given."""
+        periods, ordinates = self._spectra
+        if pfa is not None:
+            ordinates = ordinates * np.array([[pfa / motion.pfa] for _, motion in self.motions[:MOST_SPECTRA]])
+        return Spectra(periods=periods, ordinates=ordinates.astype(np.float32))
+
+    @cached_property
+    def _spectra(self) -> tuple[FloatArray, FloatArray]:
+        """Periods [s] and spectra [m/s2] of the motions as they are: found once, as scaling keeps their shape."""
+        from assess.motion.spectrum import build_periods, pseudo_acceleration
+
+        periods = build_periods(SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT)
+        batches = self.realise(0, MOST_SPECTRA)
+        return periods, np.concatenate([pseudo_acceleration(batch, step, periods) for batch, step in batches])
 
 
 def _scaled(motion: Motion, pfa: float | None) -> FloatArray:
@@ -93,9 +114,9 @@ def read_suite(folder: Path) -> Suite:
 
 def _notes(count: int, vertical: list[str]) -> Iterator[str]:
     if vertical:
-        yield f"vertical channels are left out: {', '.join(vertical)}"
+        yield fill("vertical channels are left out: {channels}", channels=", ".join(vertical))
     if count < FEW:
-        yield f"{count} are few: the intervals of the chances are wide"
+        yield fill("{count} are few: the intervals of the chances are wide", count=count)
 
 
 def _read(path: Path) -> tuple[Record, ...]:

@@ -9,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.demand import Demand
+from assess.language import gettext as _
+from assess.language import ngettext, number
 from assess.methods._method import Joint
 from assess.methods.housner_monte_carlo import interval_width
+from assess.motion.fit import Spectra
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import build_periods, response_spectrum
+from assess.motion.spectrum import pseudo_acceleration
 from assess.report import words
 from assess.report.content import Content
 from assess.report.figures import draw, label, thin_out
@@ -25,7 +28,9 @@ MOST = 5
 """Pieces whose motions are drawn."""
 MOST_STEPS = 300
 """Points of a curve of convergence."""
-RECORD, OWN, BAND = "#1c1c1c", ("#1b4f72", "#b9770e", "#7d7d7d"), "#c6d3dd"
+MOST_SAMPLES, MOST_ORDINATES = 800, 60
+"""Points of a curve of acceleration, and about as many of each of the thin spectra."""
+RECORD, MOTION, MEAN, BAND = "#1c1c1c", "#1b4f72", "#f0954a", "#c6d3dd"
 BINS = 10
 """Bars between rest and the critical angle."""
 
@@ -48,7 +53,12 @@ class Traced:
     @property
     def name(self) -> str:
         """Its name, and how many are like it."""
-        return words.clip(self.one.item.item, 40) + (f" (and {self.alike:,} alike)" if self.alike else "")
+        name = words.cut(self.one.item.item, 40)
+        return (
+            ngettext("{name} (and {n:,} alike)", "{name} (and {n:,} alike)", self.alike, name=name)
+            if self.alike
+            else name
+        )
 
 
 def choose_traced(content: Content) -> tuple[Traced, ...]:
@@ -90,14 +100,17 @@ def draw_traced(content: Content, traced: Sequence[Traced]) -> dict[str, bytes]:
     z, is_long = interval_width(settings), settings.runs == AUTO
     rows = 1 + len(_series(traced[0]))
     return {
-        "convergence": draw(7, 2.1, partial(_paint_panels, traced, partial(_paint_convergence, z, is_long))),
-        "motions": draw(7, 0.5 + 0.75 * rows, partial(_paint_motions, traced[0])),
-        "rotations": draw(7, 2.1, partial(_paint_panels, traced, _paint_rotations)),
+        "convergence": draw(7, 2.4, partial(_paint_convergences, traced, z, is_long)),
+        "motions": draw(7, max(2.9, 0.5 + 0.75 * rows), partial(_paint_motions, traced[0])),
+        "rotations": draw(7, 2.2, partial(_paint_all_rotations, traced)),
     }
 
 
-def _paint_panels(traced: Sequence[Traced], paint: Callable[[Any, Traced, bool], None], figure: Any) -> None:
-    """Paint one panel a piece, side by side; places that stay free keep the panels of one width."""
+def _paint_panels(traced: Sequence[Traced], paint: Callable[[Any, Traced, bool], None], figure: Any) -> Any:
+    """Paint one panel a piece, side by side; places that stay free keep the panels of one width.
+
+    Returns the last panel.
+    """
     columns = max(3, len(traced))
     panels = figure.subplots(1, columns, sharey=True, squeeze=False)[0]
     for at, axes in enumerate(panels):
@@ -106,9 +119,21 @@ def _paint_panels(traced: Sequence[Traced], paint: Callable[[Any, Traced, bool],
             continue
         paint(axes, traced[at], at == 0)
         one = traced[at].one
-        axes.set_title(f"{label(one.item.item, 20)}\nfloor {label(one.item.floor, 12)}", fontsize=7, loc="left")
+        floor = _("floor {floor}", floor=label(one.item.floor, 12))
+        axes.set_title(f"{label(one.item.item, 20)}\n{floor}", fontsize=7, loc="left")
         axes.tick_params(labelsize=6)
         axes.spines[["top", "right"]].set_visible(False)
+    return panels[min(columns, len(traced)) - 1]
+
+
+def _paint_convergences(traced: Sequence[Traced], z: float, is_long: bool, figure: Any) -> None:
+    """Paint the chance of each piece as motions are added, with the names of the classes beside the last."""
+    last = _paint_panels(traced, partial(_paint_convergence, z, is_long), figure)
+    edges = np.sqrt([0, *LIMITS, 1])
+    for risk, middle in zip(RiskClass, (edges[1:] + edges[:-1]) / 2, strict=True):
+        last.text(1.06, middle, words.risk_label(risk), transform=last.transAxes, fontsize=6, va="center").set_gid("class")
+    drawn, names = last.get_legend_handles_labels()
+    figure.legend(drawn[::-1], names[::-1], loc="outside lower center", ncols=3, fontsize=6, frameon=False)
 
 
 def _paint_convergence(z: float, is_long: bool, axes: Any, one: Traced, is_first: bool) -> None:
@@ -116,28 +141,34 @@ def _paint_convergence(z: float, is_long: bool, axes: Any, one: Traced, is_first
     counts = np.unique(spaced(1, one.fell.size, MOST_STEPS).round().astype(int))
     fallen = np.cumsum(one.fell)[counts - 1]
     low, high = wilson_interval(fallen, counts, z)
-    axes.fill_between(counts, low, high, color=BAND, linewidth=0).set_gid("interval")
-    axes.plot(counts, fallen / counts, color="#1b4f72", linewidth=1.1, clip_on=False)[0].set_gid("chance")
+    axes.fill_between(counts, low, high, color=BAND, linewidth=0, label=_("its interval")).set_gid("interval")
+    name = _("chance of overturning, by the motions so far")
+    axes.plot(counts, fallen / counts, color=MOTION, linewidth=1.1, clip_on=False, label=name)[0].set_gid("chance")
     for limit in LIMITS:
         axes.axhline(limit, color="#444444", linewidth=0.6, linestyle="--").set_gid("class-limit")
     axes.set_yscale("function", functions=(_root, np.square))
     axes.set_ylim(0, 1)
-    axes.set_yticks([0, *LIMITS, 1], [f"{100 * tick:g} %" for tick in (0, *LIMITS, 1)])
+    axes.set_yticks([0, *LIMITS, 1], [f"{number(100 * tick, 'g')} %" for tick in (0, *LIMITS, 1)])
     axes.set_xscale("log" if is_long else "linear")
     axes.set_xlim(1, max(2, one.fell.size))
-    axes.set_xlabel("motions", fontsize=6)
+    axes.set_xlabel(_("motions"), fontsize=6)
     if is_first:
-        axes.set_ylabel("chance of overturning", fontsize=7)
+        axes.set_ylabel(_("chance of overturning"), fontsize=7)
 
 
 def _root(values: Any) -> Any:
     return np.sqrt(np.maximum(values, 0))
 
 
+def _paint_all_rotations(traced: Sequence[Traced], figure: Any) -> None:
+    _paint_panels(traced, _paint_rotations, figure)
+    figure.supxlabel(_("largest rotation, over the critical angle"), fontsize=7)
+
+
 def _paint_rotations(axes: Any, one: Traced, is_first: bool) -> None:
     """Paint how many motions turned a piece how far: at rest, ten steps to the critical angle, beyond, overturned."""
     stood = one.rotation[~one.fell]
-    counts, _ = np.histogram(stood[stood > 0], bins=np.append(np.linspace(0, 1, BINS + 1), np.inf))
+    counts = np.histogram(stood[stood > 0], bins=np.append(np.linspace(0, 1, BINS + 1), np.inf))[0]
     share = 100 / one.fell.size
     axes.bar(-1, share * np.sum(stood == 0), width=0.8, color="#ffffff", edgecolor="#444444", linewidth=0.5)
     axes.bar(np.arange(BINS + 1) + 0.5, share * counts, width=0.9, color="#8fb3cc", edgecolor="#444444", linewidth=0.5)
@@ -145,57 +176,87 @@ def _paint_rotations(axes: Any, one: Traced, is_first: bool) -> None:
                       edgecolor="#ffffff", linewidth=0.5)  # fmt: skip
     fallen[0].set_gid("overturned")
     axes.axvline(BINS, color="#444444", linewidth=0.6, linestyle="--")
-    axes.set_xticks([-1, BINS / 2, BINS, BINS + 3], ["at rest", "0.5", "1", "overturned"], rotation=60, ha="right",
-                    rotation_mode="anchor")  # fmt: skip
+    names = [_("at rest"), number(0.5, "g"), "1", _("overturned")]
+    axes.set_xticks([-1, BINS / 2, BINS, BINS + 3], names, rotation=60, ha="right", rotation_mode="anchor")
     axes.set_ylim(0, 100)
     if is_first:
-        axes.set_ylabel("share of the motions [%]", fontsize=7)
+        axes.set_ylabel(_("share of the motions [%]"), fontsize=7)
 
 
-def _series(one: Traced) -> list[tuple[str, FloatArray, float]]:
-    """Return the record, where one is known, and the first motions: name, acceleration [m/s2], time step [s]."""
+def _series(one: Traced) -> list[tuple[str, str, FloatArray, float]]:
+    """Return the record, where one is known, and the first motions: id, name, acceleration [m/s2], time step [s]."""
     motion = one.demand.motion
-    record = [] if motion is None else [("record", motion.acceleration, motion.time_step)]
-    examples = [(f"motion {at}", np.asarray(values, dtype=np.float64), step)
+    record = [] if motion is None else [("record", _("record"), motion.acceleration, motion.time_step)]
+    examples = [(f"motion-{at}", _("motion {number}", number=at), np.asarray(values, dtype=np.float64), step)
                 for at, (values, step) in enumerate(one.joint.examples, 1)]  # fmt: skip
     return record + examples
 
 
 def _paint_motions(one: Traced, figure: Any) -> None:
-    left, right = figure.subfigures(1, 2, width_ratios=(1.75, 1))
+    left, right = figure.subfigures(1, 2, width_ratios=(1.2, 1))
     series = _series(one)
     panels = left.subplots(len(series), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-    for axes, (name, values, step), colour in zip(panels, series, _colours(series), strict=True):
-        times, shown = thin_out(np.arange(values.size) * step, values / GRAVITY)
-        axes.plot(times, shown, color=colour, linewidth=0.5)[0].set_gid(name.replace(" ", "-"))
-        axes.set_title(f"{name}: PFA {np.abs(values).max() / GRAVITY:.3f} g", loc="left", fontsize=7)
+    for axes, (gid, name, values, step) in zip(panels, series, strict=True):
+        times, shown = thin_out(np.arange(values.size) * step, values / GRAVITY, MOST_SAMPLES)
+        colour = RECORD if gid == "record" else MOTION
+        axes.plot(times, shown, color=colour, linewidth=0.5)[0].set_gid(gid)
+        title = _("{name}: PFA {pfa:.3f} g", name=name, pfa=float(np.abs(values).max()) / GRAVITY)
+        axes.set_title(title, loc="left", fontsize=7)
         axes.margins(x=0)
         axes.tick_params(labelsize=6)
         axes.spines[["top", "right"]].set_visible(False)
-    left.supylabel("acceleration [g]", fontsize=7)
-    panels[-1].set_xlabel("time [s]", fontsize=7)
-    _paint_spectra(right.subplots(), series)
+    left.supylabel(_("acceleration [g]"), fontsize=7)
+    panels[-1].set_xlabel(_("time [s]"), fontsize=7)
+    if one.joint.spectra is None:
+        return
+    axes = right.subplots()
+    _paint_spectra(axes, one.joint.spectra)
+    _paint_wanted(axes, one)
+    _frame_spectra(axes, one.joint.spectra.periods)
 
 
-def _colours(series: Sequence[tuple[str, FloatArray, float]]) -> list[str]:
-    own = iter(OWN)
-    return [RECORD if name == "record" else next(own) for name, _, _ in series]
+def _paint_spectra(axes: Any, spectra: Spectra) -> None:
+    """Paint every spectrum as one thin curve, what lies between the 16th and the 84th percentile, and the mean."""
+    periods, pseudo = spectra.periods, spectra.ordinates / GRAVITY
+    shown = slice(None, None, max(1, periods.size // MOST_ORDINATES))
+    ends = np.full((len(pseudo), 1), np.nan)  # lifts the pen between two spectra
+    every = np.hstack([pseudo[:, shown], ends]).ravel()
+    along = np.tile(np.append(periods[shown], np.nan), len(pseudo))
+    thin = ngettext("{n} motion", "{n} motions", len(pseudo))
+    axes.plot(along, every, color="#a9a9a9", linewidth=0.3, label=thin, zorder=1)[0].set_gid("spectra")
+    low, high = np.percentile(pseudo, (16, 84), axis=0)
+    axes.fill_between(periods, low, high, color=BAND, alpha=0.7, linewidth=0, zorder=2,
+                      label=_("16th to 84th percentile")).set_gid("band")  # fmt: skip
+    axes.plot(periods, pseudo.mean(axis=0), color=MEAN, linewidth=1.2, linestyle="--", zorder=4,
+              label=_("their mean"))[0].set_gid("mean")  # fmt: skip
 
 
-def _paint_spectra(axes: Any, series: Sequence[tuple[str, FloatArray, float]]) -> None:
-    periods, styles = build_periods(0.03, 10.0, 120), iter(("--", "-.", ":"))
-    for (name, values, step), colour in zip(series, _colours(series), strict=True):
-        pseudo = response_spectrum(values, step, periods).pseudo / GRAVITY
-        style, width = ("-", 1.6) if name == "record" else (next(styles), 1.0)
-        axes.plot(periods, pseudo, color=colour, linestyle=style, linewidth=width, label=name)
+def _paint_wanted(axes: Any, one: Traced) -> None:
+    """Paint the record's spectrum, which is the target of motions made for it, or the generic target."""
+    spectra, motion = one.joint.spectra, one.demand.motion
+    if spectra is None:
+        return
+    if spectra.target is not None:
+        pseudo, name = spectra.target, _("target (generic)") if motion is None else _("record, which is the target")
+    elif motion is None:
+        return
+    else:
+        pseudo, name = pseudo_acceleration(motion.acceleration, motion.time_step, spectra.periods), _("record")
+    axes.plot(spectra.periods, pseudo / GRAVITY, color=RECORD, linewidth=2.2,
+              linestyle=":" if motion is None else "-", zorder=3, label=name)[0].set_gid("wanted")  # fmt: skip
+
+
+def _frame_spectra(axes: Any, periods: FloatArray) -> None:
     axes.set_xscale("log")
-    ticks = (0.1, 0.3, 1, 3, 10)
-    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    ticks = [tick for tick in (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10) if periods[0] * 0.99 <= tick <= periods[-1] * 1.01]
+    axes.set_xticks(ticks, [number(tick, "g") for tick in ticks])
     axes.minorticks_off()
-    axes.set_xlim(0.03, 10)
+    axes.set_xlim(periods[0], periods[-1])
     axes.set_ylim(bottom=0)
-    axes.set_xlabel("period [s]", fontsize=7)
-    axes.set_title("5 % pseudo-acceleration [g]", loc="left", fontsize=7)
+    axes.set_xlabel(_("period [s]"), fontsize=7)
+    axes.set_title(_("5 % pseudo-acceleration [g]"), loc="left", fontsize=7)
     axes.tick_params(labelsize=6)
     axes.grid(visible=True, color="#e0e0e0", linewidth=0.5)
-    axes.legend(fontsize=6, frameon=False)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(fontsize=6, frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.14))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from assess.methods._method import FloatArray
-from assess.motion.fit import Fit
+from assess.motion.fit import Fit, Spectra
 
 STEP = 0.01
 SAMPLES = 300
@@ -28,6 +28,7 @@ class MadeUp:
     is_weak: bool = False
     has_record: bool = False
     fit: Fit | None = None
+    spectra: Spectra | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)
     opened: list[int] = field(default_factory=list)
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from assess.methods import Cases, Outcome
 from assess.methods._method import FloatArray
 from assess.methods.housner_monte_carlo import BATCH, LOOKS, LOOKS_Z, METHOD, Tell, evaluate, interval_width
-from assess.motion.fit import Fit
+from assess.motion.fit import Fit, Spectra
 from assess.risk import classify_all, wilson_interval
 from assess.rocking.ensemble import rock_blocks
 from assess.settings import Settings
@@ -32,6 +32,7 @@ class Pushes:
     is_weak: bool = False
     record: tuple[FloatArray, float] | None = None
     fit: Fit | None = None
+    spectra: Spectra | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)
 
     def open(self, threads: int) -> "Pushes":
@@ -174,6 +175,17 @@ def test_joints_hold_what_each_piece_did_under_each_motion() -> None:
 def test_of_fewer_than_three_motions_all_are_shown() -> None:
     (joint,) = evaluate(_cases(0, MadeUp(0)), Settings(runs=2)).joints
     assert len(joint.examples) == 2
+
+
+def test_the_spectra_kept_are_those_of_motions_that_were_run() -> None:
+    periods = np.array([0.5, 1.0])
+    known = Spectra(periods=periods, ordinates=np.ones((100, 2), dtype=np.float32), target=periods)
+    for runs, kept in ((2, 2), (100, 100), (120, 100)):
+        (joint,) = evaluate(_cases(0, MadeUp(0, spectra=known)), Settings(runs=runs)).joints
+        assert joint.spectra is not None
+        assert (len(joint.spectra.ordinates), joint.spectra.target is periods) == (kept, True)
+    (joint,) = evaluate(_cases(0, MadeUp(0)), Settings(runs=2)).joints
+    assert joint.spectra is None
 
 
 def test_many_motions_are_made_in_batches() -> None:

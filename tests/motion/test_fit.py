@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from assess.motion.envelope import Envelopes
-from assess.motion.fit import measure_fit, velocities
-from assess.motion.spectrum import response_spectrum
+from assess.motion.fit import measure_fit, measure_match, velocities
+from assess.motion.spectrum import pseudo_acceleration, response_spectrum
 from assess.motion.target import Target
 
 STEP = 0.005
@@ -71,3 +71,21 @@ def test_no_ratio_where_no_pfv_is_to_be_matched() -> None:
 
 def test_threads_change_nothing() -> None:
     assert measure_fit(TARGET, MOTIONS, STEP) == measure_fit(TARGET, MOTIONS, STEP, threads=3)
+
+
+def test_the_spectra_are_those_that_were_measured() -> None:
+    fit, spectra = measure_match(TARGET, MOTIONS, STEP)
+    assert fit == measure_fit(TARGET, MOTIONS, STEP)
+    np.testing.assert_allclose(spectra.periods, BETWEEN, rtol=1e-12)
+    assert spectra.ordinates.dtype == np.float32
+    for motion, ordinates in zip(MOTIONS, spectra.ordinates, strict=True):
+        np.testing.assert_allclose(ordinates, pseudo_acceleration(motion, STEP, BETWEEN), rtol=1e-6)
+    assert spectra.target is not None
+    np.testing.assert_allclose(spectra.target, [2.0, 1.0, 0.5, 0.25], rtol=1e-12)
+
+
+def test_the_spectra_of_the_first_motions() -> None:
+    spectra = measure_match(TARGET, MOTIONS, STEP)[1]
+    assert [len(spectra.first(count).ordinates) for count in (1, 2, 9)] == [1, 2, 2]
+    np.testing.assert_array_equal(spectra.first(1).ordinates, spectra.ordinates[:1])
+    assert spectra.first(1).target is spectra.target

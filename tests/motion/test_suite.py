@@ -1,5 +1,6 @@
 """A folder of one's own records in place of generated motions."""
 
+import dataclasses
 import hashlib
 import shutil
 from pathlib import Path
@@ -8,7 +9,8 @@ import numpy as np
 import pytest
 
 from assess.errors import RecordError
-from assess.motion.suite import read_suite
+from assess.motion.spectrum import pseudo_acceleration
+from assess.motion.suite import MOST_SPECTRA, read_suite
 from assess.units import GRAVITY
 from tests.motion.motions import MARKET, read_motion
 from tests.shaking import write_record
@@ -109,3 +111,25 @@ def test_each_is_scaled_to_a_pfa(tmp_path: Path) -> None:
         np.testing.assert_array_equal(motion.acceleration, one)
     ((given, _),) = suite.realise(0, 3)
     assert len(set(np.abs(given).max(axis=1))) == 3
+
+
+def test_spectra_of_motions_of_several_steps(tmp_path: Path) -> None:
+    """The second has the same samples at twice the step; a shorter one is followed by rest."""
+    for name, size, step in (("a", 400, 0.01), ("b", 400, 0.02), ("c", 300, 0.01)):
+        write_record(tmp_path / f"{name}.csv", 0.2 * WAVE[:size], step)
+    suite = read_suite(tmp_path)
+    spectra, scaled = suite.scaled_spectra(), suite.scaled_spectra(3.0)
+    assert (spectra.target, spectra.ordinates.shape) == (None, (3, spectra.periods.size))
+    batches = [(motion, step) for batch, step in suite.realise(0, 3) for motion in batch]
+    for (motion, step), own, to_peak in zip(batches, spectra.ordinates, scaled.ordinates, strict=True):
+        expected = pseudo_acceleration(motion, step, spectra.periods)
+        np.testing.assert_allclose(own, expected, rtol=1e-6)
+        np.testing.assert_allclose(to_peak, expected * 3.0 / np.abs(motion).max(), rtol=1e-6)
+
+
+def test_spectra_of_the_first_hundred_only(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_record(tmp_path / f"{name}.csv", 0.2 * WAVE)
+    suite = read_suite(tmp_path)
+    many = dataclasses.replace(suite, motions=suite.motions * 60)
+    assert len(many.scaled_spectra(1.0).ordinates) == MOST_SPECTRA == 100

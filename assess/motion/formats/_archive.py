@@ -2,10 +2,11 @@
 
 import io
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from assess.errors import RecordError
+from assess.language import Text, fill
 from assess.motion.record import Record
 
 MOST_UNPACKED = 256_000_000
@@ -69,11 +70,19 @@ def read_archive(data: bytes, file: str, read: ReadMember) -> tuple[Record, ...]
     if found.records:
         first, *others = found.records
         # Once in a set, or each of its channels would repeat it in a report.
-        left = (f"left out of the archive: {listed}{more}",) if found.reasons else ()
+        left = (_note_left(found.reasons),) if found.reasons else ()
         return (replace(first, notes=(*first.notes, *left)), *others)
     if not found.reasons:
         raise RecordError("the zip archive is empty. Get it again")
     raise RecordError(f"nothing in the zip archive can be read as a record: {listed}{more}")
+
+
+def _note_left(reasons: Sequence[str]) -> Text:
+    """Say which members are left out, and why."""
+    listed, more = "; ".join(reasons[:LISTED]), len(reasons) - LISTED
+    if more > 0:
+        return fill("left out of the archive: {members}; and {more} more", members=listed, more=more)
+    return fill("left out of the archive: {members}", members=listed)
 
 
 class _BombError(RecordError):

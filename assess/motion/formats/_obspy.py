@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from assess.errors import RecordError
+from assess.language import fill
 
 MOST_NOTES = 3
 """Warnings of ObsPy that are passed on."""
@@ -37,7 +38,7 @@ def read_traces(data: bytes, form: str) -> tuple[list[Any], tuple[str, ...]]:
     # Deprecations are for programmers.
     of_data = [warning for warning in caught if issubclass(warning.category, UserWarning)]
     said = dict.fromkeys(" ".join(f"{warning.message}".split())[:160] for warning in of_data)
-    return traces, tuple(f"ObsPy warns: {text}" for text in list(said)[:MOST_NOTES])
+    return traces, tuple(fill("ObsPy warns: {text}", text=text) for text in list(said)[:MOST_NOTES])
 
 
 @contextmanager

@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from assess.errors import RecordError
+from assess.language import Text, fill, nfill
 from assess.motion.record import MOST_SAMPLES, FloatArray, Record, Series, check_samples, check_time_step
 from assess.units import ACCELERATION, GRAVITY, read_unit
 
@@ -119,9 +120,18 @@ def read_words(section: Section, start: int, count: float) -> tuple[FloatArray, 
     if len(words) > most:
         raise RecordError(f"the header announces {count} numbers of data, there are more. Get the file again")
     beyond = len(words) - count
-    what = "1 number" if beyond == 1 else f"{beyond} numbers"
-    notes = (f"{what} beyond the {count} that the header announces: left out",) if beyond else ()
-    return _convert(words[:count], section, start, None), notes
+    return _convert(words[:count], section, start, None), note_beyond(beyond, count)
+
+
+def note_beyond(beyond: int, count: int) -> tuple[Text, ...]:
+    """Return a note where there are numbers `beyond` the `count` that the header announces."""
+    note = nfill(
+        "{n} number beyond the {count} that the header announces: left out",
+        "{n} numbers beyond the {count} that the header announces: left out",
+        beyond,
+        count=count,
+    )
+    return (note,) if beyond else ()
 
 
 def scaled(values: FloatArray, factor: float) -> FloatArray:
@@ -214,12 +224,19 @@ def note_peak(header_pfa: float | None, file_pfa: float) -> tuple[str, ...]:
     """Return a note where the peak printed in the header [m/s2] is not that of the data [m/s2]."""
     if header_pfa is None or abs(header_pfa - file_pfa) <= HEADER_PEAK_WITHIN * file_pfa:
         return ()
-    return (f"the header prints a peak of {100 * header_pfa:.4g} cm/s2, the data have {100 * file_pfa:.4g} cm/s2",)
+    note = fill(
+        "the header prints a peak of {printed:.4g} cm/s2, the data have {found:.4g} cm/s2",
+        printed=100 * header_pfa,
+        found=100 * file_pfa,
+    )
+    return (note,)
 
 
 def read_sections(sections: Iterable[Section], read: Callable[[Section], Record]) -> tuple[Record, ...]:
     """Read every channel that can be read, each from its section of the file; see `keep_readable`."""
-    return keep_readable(((f"channel {number}", section) for number, section in enumerate(sections, start=1)), read)
+    return keep_readable(
+        ((fill("channel {number}", number=number), section) for number, section in enumerate(sections, start=1)), read
+    )
 
 
 def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -> tuple[Record, ...]:
@@ -241,7 +258,10 @@ def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -
     if not records:
         listed = "; ".join(f"{name}: {reason}" for name, reason in reasons[:MOST_NOTES])
         raise RecordError(f"none of its {len(reasons)} channels can be read: {listed}")
-    notes = [f"{name} of the file is left out: {reason}" for name, reason in reasons[:MOST_NOTES]]
+    notes = [
+        fill("{part} of the file is left out: {reason}", part=name, reason=reason)
+        for name, reason in reasons[:MOST_NOTES]
+    ]
     if len(reasons) > MOST_NOTES:
-        notes.append(f"{len(reasons) - MOST_NOTES} more channels of the file are left out")
+        notes.append(fill("{count} more channels of the file are left out", count=len(reasons) - MOST_NOTES))
     return tuple(replace(record, notes=(*record.notes, *notes)) for record in records)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from assess.errors import RecordError
+from assess.language import fill
 from assess.motion.formats._format import Format
 from assess.motion.formats._obspy import read_traces, start_of
 from assess.motion.formats._text import direction_of_code, even_series, keep_readable
@@ -23,7 +24,7 @@ TITLE = "miniSEED"
 
 _START = re.compile(rb"[\d \0]{6}[DRQM][ \0]", re.ASCII)
 _FIXED_HEADER = 48
-_TAKEN = 'the file does not say its unit: taken as m/s2, which ObsPy\'s remove_response(output="ACC") leaves'
+_TAKEN = fill('the file does not say its unit: taken as m/s2, which ObsPy\'s remove_response(output="ACC") leaves')
 
 
 def recognises(head: bytes) -> bool:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from assess.errors import RecordError
+from assess.language import fill
 from assess.motion.formats._format import Format
 from assess.motion.record import FloatArray, Record, build_series, peak
 from assess.units import ACCELERATION, TIME, read_unit
@@ -259,7 +260,8 @@ def _build_record(
 
 def _note_comments(comments: Mapping[str, str]) -> tuple[str, ...]:
     unknown = ", ".join(repr(key[:40]) for key in comments if key not in KEYS)
-    return (f"comments that are not used: {unknown} (known: {', '.join(KEYS)})",) if unknown else ()
+    note = fill("comments that are not used: {names} (known: {known})", names=unknown, known=", ".join(KEYS))
+    return (note,) if unknown else ()
 
 
 FORMAT = Format(key="csv", title=TITLE, recognises=recognises, read=read)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from assess.errors import RecordError
+from assess.language import fill
 from assess.motion.formats._format import Format
 from assess.motion.formats._obspy import read_traces, start_of
 from assess.motion.formats._text import direction_of_code, even_series, read_acceleration_unit
@@ -124,7 +125,8 @@ def _read_unit(header: Any, values: FloatArray) -> tuple[float, str]:
         text = str(header.get(key, "")).strip()
         factor = read_acceleration_unit(text)
         if factor is not None:
-            return factor, f"the unit is that of the header's field {key.upper()}: {text}"
+            note = fill("the unit is that of the header's field {field}: {unit}", field=key.upper(), unit=text)
+            return factor, note
     if header.get("idep") != ACCELERATION:
         raise RecordError(f"the file does not say its unit. {_MEND}")
     as_said = NM_S2 * peak(values - values.mean())
@@ -133,7 +135,7 @@ def _read_unit(header: Any, values: FloatArray) -> tuple[float, str]:
             "the header says acceleration (IDEP), which means nm/s2, but that makes the peak "
             f"{100 * as_said:.2g} cm/s2: the unit is another. {_MEND}"
         )
-    return NM_S2, "the unit is nm/s2, what the type of the samples (IDEP) means"
+    return NM_S2, fill("the unit is nm/s2, what the type of the samples (IDEP) means")
 
 
 def _read_direction(header: Any) -> tuple[float | None, bool]:

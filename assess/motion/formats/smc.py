@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from assess.errors import RecordError
+from assess.language import fill
 from assess.motion.formats._format import Format
-from assess.motion.formats._text import note_peak
+from assess.motion.formats._text import note_beyond, note_peak
 from assess.motion.record import FloatArray, Record, Series, build_series, check_samples, check_time_step, peak
 from assess.units import ACCELERATION
 
@@ -157,9 +158,7 @@ def _read_data(lines: Sequence[str], header: _Header) -> tuple[FloatArray, tuple
     beyond = there - announced
     if beyond > MOST_BEYOND * announced:
         raise RecordError(f"the header announces {announced} numbers of data, there are {there}. Get the file again")
-    what = "1 number" if beyond == 1 else f"{beyond} numbers"
-    note = f"{what} beyond the {announced} that the header announces: left out"
-    return _convert(fields[:announced], first), (note,) if beyond else ()
+    return _convert(fields[:announced], first), note_beyond(beyond, announced)
 
 
 def _convert(fields: list[str], first: int) -> FloatArray:
@@ -255,13 +254,18 @@ def _orientation(component: str, header: _Header) -> tuple[bool, float | None, t
     text = float(component) if re.fullmatch(r"\d{1,3}(\.\d*)?", component) else None
     known = [azimuth for azimuth in (text, number) if azimuth is not None and 0 <= azimuth <= 360]
     if len(known) == 2 and (known[0] - known[1]) % 360:
-        note = f"the header gives two azimuths, {known[0]:g} and {known[1]:g} deg: the first is used"
+        note = fill(
+            "the header gives two azimuths, {first:g} and {other:g} deg: the first is used",
+            first=known[0],
+            other=known[1],
+        )
         return False, float(known[0]), (note,)
     return False, float(known[0]) if known else None, ()
 
 
 def _note_problem(header: _Header) -> tuple[str, ...]:
-    return ("the header flags a problem with the data: read its comments",) if header.integers[PROBLEM] == 1 else ()
+    note = fill("the header flags a problem with the data: read its comments")
+    return (note,) if header.integers[PROBLEM] == 1 else ()
 
 
 FORMAT = Format(key="smc", title=TITLE, recognises=recognises, read=read)

@@ -1,0 +1,120 @@
+"""What is painted on a map of risk over breadth and PFA: classes, lines of equal chance, pieces and names."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from assess.language import gettext as _
+from assess.language import number
+from assess.methods import Method
+from assess.methods._method import FloatArray
+from assess.report import words
+from assess.report.figures import HATCHES, label
+from assess.report.placing import GAP, LETTER, LINE, Box, box_around, find_clearest, find_room
+from assess.results import ItemResult
+from assess.risk import LIMITS, RiskClass
+from assess.units import LENGTH, ROUNDING
+
+LINES = (0.03, 0.1, 0.3, 0.5, 0.7, 0.9)
+"""Chances at which lines are drawn [-]."""
+MOST_NAMES = 12
+PANEL = (205.0, 190.0)
+"""About the size of a panel [points], by which texts are kept off each other."""
+MARKERS = {RiskClass.LOW: "o", RiskClass.MEDIUM: "D", RiskClass.HIGH: "^", RiskClass.VERY_HIGH: "s"}
+"""The symbols of the classes, as matplotlib names them."""
+INK, HALO, HATCHING = "#1c1c1c", "#ffffff", "#a08c78"
+_BACKING = {"boxstyle": "round,pad=0.1", "facecolor": HALO, "alpha": 0.75, "linewidth": 0}
+"""Behind a text, so that it can be read on a hatch."""
+
+Place = tuple[float, float]
+"""Breadth [cm] and PFA [g]."""
+Line = tuple[float, FloatArray]
+"""A chance [-] and the places (n, 2) that its line goes through."""
+
+
+def paint_risk(axes: Any, breadth: FloatArray, pfa: FloatArray, risk: FloatArray) -> list[Line]:
+    """Paint the classes as fields with their colour and hatch, and lines of equal chance, which are returned.
+
+    `risk` (a, b) [-] is that at `breadth` (b,) [cm] and `pfa` (a,) [g].
+    """
+    colours, hatches = [one.fill for one in RiskClass], [2 * HATCHES[one] for one in RiskClass]
+    fields = axes.contourf(breadth, pfa, risk, levels=(0, *LIMITS, 1 + ROUNDING), colors=colours, hatches=hatches)
+    fields.set_edgecolor(HATCHING)
+    fields.set_linewidth(0)
+    levels = [one for one in LINES if risk.min() < one < risk.max()]
+    if not levels:
+        return []
+    widths = [0.9 if one in LIMITS else 0.5 for one in levels]
+    inks = [INK if one < LIMITS[-1] else HALO for one in levels]
+    lines = axes.contour(breadth, pfa, risk, levels=levels, linewidths=widths, colors=inks)
+    lines.set_gid("lines")
+    return [(level, path.vertices) for level, path in zip(levels, lines.get_paths(), strict=True)]
+
+
+def paint_checked(axes: Any, method: Method, height: float) -> None:
+    """Outline where a method has been checked, in so far as it says."""
+    slender, pfa = method.valid.get("breadth_to_height"), method.valid.get("pfa")
+    if slender is None or pfa is None:
+        return
+    left, right = (end * height / LENGTH["cm"] for end in (slender.low, slender.high))
+    corners = ([left, right, right, left, left], [pfa.low, pfa.low, pfa.high, pfa.high, pfa.low])
+    axes.plot(*corners, color=HALO, linewidth=2.2)
+    axes.plot(*corners, color=INK, linewidth=1.2, linestyle=":")[0].set_gid("checked")
+
+
+def paint_pieces(axes: Any, places: Mapping[Place, Sequence[ItemResult]]) -> None:
+    """Paint a symbol for each place and class, the worst on top."""
+    shown = dict.fromkeys((place, one.adopted.risk) for place, ones in places.items() for one in ones)
+    for (x, y), risk in sorted(shown, key=lambda pair: pair[1]):
+        axes.plot([x], [y], MARKERS[risk], color=HALO, markersize=7, zorder=5)
+        axes.plot([x], [y], MARKERS[risk], markersize=5, markerfacecolor=risk.fill, markeredgecolor=INK,
+                  markeredgewidth=0.8, zorder=5)[0].set_gid("piece")  # fmt: skip
+
+
+def _in_points(axes: Any, places: Any) -> FloatArray:
+    """Return where places (n, 2) of a panel are, about, from its lower left corner [points], (n, 2)."""
+    first, last = np.array([axes.get_xlim(), axes.get_ylim()]).T
+    return np.asarray((np.reshape(np.array(list(places), dtype=np.float64), (-1, 2)) - first) / (last - first) * PANEL)
+
+
+def paint_chances(axes: Any, lines: Sequence[Line], places: Mapping[Place, object]) -> list[Box]:
+    """Write its chance on each line, where it is clearest of the symbols; return the boxes that are taken."""
+    others = _in_points(axes, places)
+    taken = [box_around(x, y, GAP, GAP) for x, y in others]
+    for level, vertices in lines:
+        along = _in_points(axes, vertices)
+        at = find_clearest(along, PANEL, others, 3 * GAP) if len(along) else None
+        if at is not None:
+            text = f"{number(100 * level, 'g')} %"
+            axes.text(*vertices[at], text, fontsize=6, ha="center", va="center", color=INK, zorder=4,
+                      bbox=_BACKING).set_gid("chance")  # fmt: skip
+            others = np.vstack([others, along[at]])
+            x, y = along[at].tolist()
+            taken.append(box_around(x, y, LETTER * len(text), LINE))
+    return taken
+
+
+def paint_names(axes: Any, places: Mapping[Place, Sequence[ItemResult]], taken: list[Box]) -> None:
+    """Name the worst piece of each place, the worst place first, as long as there is room."""
+    named = 0
+    for place, at, ones in zip(places, _in_points(axes, places), places.values(), strict=True):
+        name = label(ones[0].item.item, 14) + (f" +{len(ones) - 1}" if len(ones) > 1 else "")
+        box = find_room(tuple(at), name, PANEL, taken) if named < MOST_NAMES else None
+        if box is not None:
+            offset = ((box[0] + box[2]) / 2 - at[0], (box[1] + box[3]) / 2 - at[1])
+            axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=6, ha="center", va="center",
+                          color=INK, zorder=6, bbox=_BACKING).set_gid("name")  # fmt: skip
+            taken.append(box)
+            named += 1
+
+
+def paint_legend(figure: Any) -> None:
+    """Explain the fields, the symbols and the outline below the panels."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    fields = [Patch(facecolor=one.fill, hatch=2 * HATCHES[one], edgecolor=HATCHING, linewidth=0.5,
+                    label=words.risk_label(one)) for one in RiskClass]  # fmt: skip
+    checked = Line2D([], [], color=INK, linewidth=1.2, linestyle=":", label=_("range in which the formula is checked"))
+    figure.legend(handles=[*fields, checked], loc="outside lower center", ncols=5, fontsize=6, frameon=False)

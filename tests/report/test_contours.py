@@ -1,0 +1,223 @@
+"""The map of risk over breadth and PFA: what is chosen, what is computed, what is drawn."""
+
+import shutil
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from assess.language import Catalogue, speaking
+from assess.methods import Cases, all_methods
+from assess.report.content import build_content
+from assess.report.contours import build_grid, choose_contours, draw_contours, evaluate_grid
+from assess.report.figures import draw
+from assess.report.placing import GAP, LETTER, LINE, box_around, find_clearest, find_room
+from assess.report.risk_map import LINES, MOST_NAMES
+from assess.settings import Settings
+from assess.units import GRAVITY
+from tests.workbooks import RECORDS, assessed
+
+FLOORS = [{"floor": "1", "pfa_x": 0.5, "pfv_x": 60}, {"floor": "2", "pfa_x": 0.3}]
+TALL, LOW = {"breadth": 40, "height": 200}, {"breadth": 60, "height": 90}
+SETTINGS = Settings()
+
+
+def _items(*sizes):
+    return [{"item": f"i{at}", "floor": "1", "axis": "X", **size} for at, size in enumerate(sizes)]
+
+
+def _content(folder, items, floors=FLOORS, **building):
+    return build_content(assessed(folder / "w.xlsx", items, floors, **building))
+
+
+def _chosen(folder, *sizes, **building):
+    return choose_contours(_content(folder, _items(*sizes), **building))
+
+
+def _ids(contours, name):
+    drawn = ET.fromstring(draw_contours(contours, SETTINGS))
+    return [one for one in drawn.iter() if one.get("id", "") == name]
+
+
+@pytest.fixture(scope="module")
+def mixed(tmp_path_factory):
+    """Two high tall pieces and one nearly as tall, three stout ones, and one that is anchored."""
+    sizes = [{**TALL, "quantity": 2}, {"breadth": 50, "height": 185}, {"breadth": 120, "height": 60, "quantity": 9}]
+    items = [*_items(*sizes), {"item": "fixed", "floor": "1", **TALL, "anchored": "yes"}]
+    return choose_contours(_content(tmp_path_factory.mktemp("mixed"), items))
+
+
+# --- what is chosen ---
+
+
+def test_the_height_that_most_risky_pieces_share(mixed):
+    assert mixed.height == 2.0
+    assert [one.item.item for one in mixed.pieces] == ["i0", "i1"], "free-standing, within 10 %, the worst first"
+
+
+def test_of_heights_as_common_the_larger(tmp_path):
+    slim = {"breadth": 30, "height": 150}
+    assert _chosen(tmp_path, TALL, slim).height == 2.0
+    assert _chosen(tmp_path, TALL, slim, {**slim, "breadth": 25}).height == 1.5
+
+
+def test_without_risky_pieces_the_commonest_height(tmp_path):
+    chosen = _chosen(tmp_path, {"breadth": 300, "height": 200}, {"breadth": 300, "height": 90, "quantity": 3})
+    assert chosen.height == 0.9
+
+
+@pytest.mark.parametrize(("height", "rounded"), [(5.2, 0.05), (14, 0.14), (49.4, 0.49), (55, 0.6), (204.9, 2.0)])
+def test_every_piece_lies_on_the_map_of_its_own_height(tmp_path, height, rounded):
+    chosen = _chosen(tmp_path, {"breadth": 5, "height": height})
+    assert (chosen.height, len(chosen.pieces)) == (rounded, 1)
+
+
+def test_nothing_without_free_standing_pieces(tmp_path):
+    items = [{"item": "fixed", "floor": "1", **TALL, "anchored": "yes"}]
+    assert choose_contours(_content(tmp_path, items)) is None
+
+
+def test_what_stands_below(mixed):
+    assert mixed.ratio == pytest.approx(0.6 / (0.5 * GRAVITY))
+    text = " ".join(mixed.caption)
+    assert "pieces 200 cm high" in text
+    assert "The symbols are the 3 free-standing pieces within 10 % of this height" in text
+    assert "PFV grows with PFA, 120 cm/s for each g: the ratio of floor 1 X" in text
+    assert "200 cm" in mixed.alt
+    assert "with 3 pieces" in mixed.alt
+
+
+def test_an_estimated_and_an_unknown_pfv(tmp_path):
+    items = [{"item": "a", "floor": "2", "axis": "X", **TALL}]
+    unknown = choose_contours(_content(tmp_path, items))
+    assert unknown.ratio is None
+    assert "the largest chance that any PFV gives" in " ".join(unknown.caption)
+    assert "The symbol is the one free-standing piece" in " ".join(unknown.caption)
+    estimated = choose_contours(_content(tmp_path, items, period=2.0))
+    assert estimated.ratio == pytest.approx(2.0 / (2 * np.pi))
+    assert "the ratio estimated for floor 2 X" in " ".join(estimated.caption)
+
+
+# --- what is computed ---
+
+
+@pytest.mark.parametrize("has_pfv", [True, False])
+def test_the_map_is_that_of_the_methods(mixed, has_pfv):
+    contours = mixed if has_pfv else replace(mixed, ratio=None)
+    grid = build_grid(contours)
+    assert [method.key for method in contours.methods] == ["proposed_or", "kaneko_hayashi"]
+    for method in contours.methods:
+        risk = evaluate_grid(contours, method, grid, SETTINGS)
+        assert risk.shape == (grid.pfa.size, grid.breadth.size)
+        for row, column in ((0, 0), (3, 70), (60, 20), (120, 120)):
+            pfa = grid.pfa[row]
+            pfv = contours.ratio * pfa if has_pfv else np.nan
+            case = Cases.of(breadth=grid.breadth[column], height=2.0, pfa=pfa, pfv=pfv)
+            assert risk[row, column] == method.evaluate(case, SETTINGS).value[0]
+
+
+def test_the_map_holds_all_pieces(mixed):
+    grid = build_grid(mixed)
+    for one in mixed.pieces:
+        assert grid.breadth[0] < one.item.breadth < grid.breadth[-1]
+        assert grid.pfa[0] < one.governing.demand.pfa < grid.pfa[-1]
+
+
+# --- what is drawn ---
+
+
+def test_each_piece_is_drawn_in_both_panels(mixed):
+    assert len(_ids(mixed, "piece")) == 2 * 2
+    assert len(_ids(mixed, "name")) == 2 * 2
+    assert len(_ids(mixed, "checked")) == 1, "only the formula has a checked range"
+    assert 2 * 4 <= len(_ids(mixed, "chance")) <= 2 * len(LINES)
+
+
+def test_one_piece_and_many(tmp_path):
+    one = _chosen(tmp_path, TALL)
+    assert (len(_ids(one, "piece")), len(_ids(one, "name"))) == (2, 2)
+    many = _chosen(tmp_path, *[{"breadth": 20 + 3 * at, "height": 200} for at in range(24)], TALL, TALL)
+    assert len(many.pieces) == 26
+    assert len(_ids(many, "piece")) == 2 * len({one.item.breadth for one in many.pieces})
+    assert 2 <= len(_ids(many, "name")) <= 2 * MOST_NAMES
+    assert len(draw_contours(many, SETTINGS)) < 250_000
+
+
+def test_recorded_and_verified(tmp_path):
+    shutil.copy(RECORDS / "made-up-sweep.csv", tmp_path)
+    floors = [{"floor": "1", "record_x": "made-up-sweep.csv#north"}]
+    run = assessed(tmp_path / "w.xlsx", _items(TALL), floors, settings=Settings(verify="all", runs=5))
+    chosen = choose_contours(build_content(run))
+    demand = run.result(0).governing.demand
+    assert chosen.ratio == demand.motion.pfv / demand.motion.pfa
+    assert len(_ids(chosen, "piece")) == 2
+
+
+def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):
+    items = [{"item": "棚 $x$ \u0628", "floor": "1", "axis": "X", "breadth": 5, "height": 300}]
+    chosen = choose_contours(_content(tmp_path, items, [{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}]))
+    assert len(_ids(chosen, "piece")) == 2
+
+
+def test_numbers_and_words_in_another_language(mixed):
+    english = draw_contours(mixed, SETTINGS)
+    words = {"breadth [cm]": ("larghezza [cm]",), "low": ("basso",)}
+    with speaking(Catalogue("it", words, decimal=",", group=".")):
+        assert draw_contours(mixed, SETTINGS) != english
+    assert draw_contours(mixed, SETTINGS) == english
+
+
+@pytest.mark.parametrize("shares", [False, True])
+def test_ticks_are_written_once_with_the_decimal_sign_of_the_language(shares):
+    found = []
+
+    def paint(figure):
+        panels = figure.subplots(1, 2, sharey=shares)
+        for axes in panels:
+            axes.plot([0, 1], [0, 0.5])
+        panels[1].set_xticks([0, 1], ["J.P. Room", "1,5"])
+        found.append(panels)
+
+    with speaking(Catalogue("it", decimal=",", group=".")):
+        draw(4, 2, paint)
+        labels = [[text.get_text() for text in axes.get_yticklabels()] for axes in found[0]]
+        assert "0,2" in labels[0]
+        assert not any("." in text for one in labels for text in one)
+        assert [text.get_text() for text in found[0][1].get_xticklabels()] == ["J.P. Room", "1,5"]
+
+
+def test_the_figure_speaks_the_language(tmp_path):
+    content = _content(tmp_path, _items(TALL))
+    contours, settings = choose_contours(content), content.assessment.settings
+    assert contours is not None
+    english = draw_contours(contours, settings)
+    with speaking(Catalogue("it", {"high": ("alto",), "low": ("basso",)})):
+        assert draw_contours(contours, settings) != english
+
+
+# --- where texts go ---
+
+
+def test_a_text_goes_beside_its_symbol_where_there_is_room():
+    panel, wide = (100.0, 50.0), LETTER * 3
+    first = find_room((50, 25), "abc", panel, [])
+    assert first is not None
+    assert first == pytest.approx((50 + GAP, 25 - LINE / 2, 50 + GAP + wide, 25 + LINE / 2))
+    second = find_room((50, 25), "abc", panel, [first])
+    assert second == pytest.approx((50 - GAP - wide, 25 - LINE / 2, 50 - GAP, 25 + LINE / 2))
+    assert find_room((99, 25), "abc", panel, []) == pytest.approx((99 - GAP - wide, 21.5, 99 - GAP, 28.5))
+    assert find_room((50, 25), "abc", panel, [box_around(50, 25, 90, 60)]) is None
+
+
+def test_the_clearest_place_on_a_line():
+    line = np.column_stack([np.linspace(0, 100, 11), np.full(11, 20.0)])
+    assert find_clearest(line, (100.0, 50.0), np.array([[20.0, 20.0]]), 10) == 9
+    assert find_clearest(line, (100.0, 50.0), np.array([[20.0, 20.0], [90.0, 20.0]]), 10) in (5, 6)
+    assert find_clearest(line, (100.0, 50.0), np.empty((0, 2)), 10) == 1
+    assert find_clearest(line, (100.0, 50.0), np.empty((0, 2)), 25) is None
+
+
+def test_every_method_drawn_needs_no_more_than_sizes_and_peaks(mixed):
+    keys = {method.key for method in mixed.methods}
+    assert all(method.needs <= {"breadth", "height", "pfa"} for method in all_methods() if method.key in keys)
