@@ -1,0 +1,85 @@
+"""One worked example: what each method computes for one piece, step by step with its numbers."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.language import gettext as _
+from assess.methods import all_methods
+from assess.report.working import Piece, Worked
+from assess.report.working_formulas import work_kaneko_hayashi, work_proposed_or
+from assess.report.working_others import work_fema_p58, work_housner, work_ishiyama, work_japan_rule, work_static
+from assess.results import ItemResult
+from assess.settings import Settings
+from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
+
+WORKING: Mapping[str, Callable[[Piece], Worked]] = {
+    "proposed_or": work_proposed_or,
+    "kaneko_hayashi": work_kaneko_hayashi,
+    "static": work_static,
+    "ishiyama": work_ishiyama,
+    "japan_rule": work_japan_rule,
+    "fema_p58": work_fema_p58,
+    "housner_monte_carlo": work_housner,
+}
+"""How each method's numbers are shown; a method that is not here has no worked example."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorkedMethod:
+    """What one method computes for the piece: `steps` with the numbers put in, and the `result` in words."""
+
+    key: str
+    title: str
+    steps: Sequence[str]
+    result: str
+
+
+def choose_example(results: Iterable[ItemResult]) -> ItemResult | None:
+    """Return the piece that is worked through, the worst that is free-standing and verified; None of no pieces.
+
+    One that is free-standing comes before one that is verified, and that before one of a higher risk.
+    """
+    return min(results, key=_example_first, default=None)
+
+
+def _example_first(one: ItemResult) -> tuple[bool, bool, int, float]:
+    return one.is_anchored, not one.is_verified, -int(one.adopted.upper), -one.adopted.probability
+
+
+def work_example(one: ItemResult, settings: Settings, *, restitution: float | None = None) -> Sequence[WorkedMethod]:
+    """Return the calculation of every method that was evaluated for a piece, under the motion that governs it.
+
+    Parameters
+    ----------
+    one : ItemResult
+        The piece.
+    settings : Settings
+        Of the assessment.
+    restitution : float, optional
+        The building's own restitution [-]; None is Housner's.
+
+    Returns
+    -------
+    sequence of WorkedMethod
+        In the order of reports.
+    """
+    case = one.governing
+    piece = Piece(
+        B=to_edge(one.item.breadth, LENGTH["cm"]),
+        H=to_edge(one.item.height, LENGTH["cm"]),
+        PFA=case.demand.pfa / ACCELERATION["cm/s2"],
+        PFV=case.demand.pfv / VELOCITY["cm/s"],
+        case=case,
+        settings=settings,
+        restitution=math.nan if restitution is None else restitution,
+    )
+    worked = []
+    for method in all_methods():
+        if method.key in WORKING and case.methods[method.key].value is not None:
+            with np.errstate(all="ignore"):
+                steps, result = WORKING[method.key](piece)
+            worked.append(WorkedMethod(method.key, _(method.title), tuple(steps), result))
+    return tuple(worked)
