@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from assess.demand import Demand
+from assess.language import gettext as _
+from assess.language import ngettext, number
 from assess.methods._method import Joint
 from assess.methods.housner_monte_carlo import LOOKS, LOOKS_Z, interval_width
 from assess.report import words
@@ -73,21 +75,26 @@ def _describe(assessment: Assessment, verified: Verified) -> Iterator[str]:
 
 
 def _extent(assessment: Assessment, verified: Verified) -> str:
-    text = (
-        f"The rocking of {len(verified.done):,} of {words.plural(verified.rows, 'row')} was integrated step by step "
-        "(Housner's equations of a rigid block, see Methods). The chance is the share of motions under which the piece "
-        "overturns."
+    text = _(
+        "The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, see "
+        "Methods). The chance is the share of motions under which the piece overturns.",
+        done=len(verified.done),
+        rows=words.plural(verified.rows, "row"),
     )
     stocky = sum(one.does_not_rock for one in verified.left)
-    return text + (
-        f" {words.plural(stocky, 'row is', 'rows are')} too stocky to rock (B/H of 1.41 or more)." * bool(stocky)
+    told = ngettext(
+        "{n:,} row is too stocky to rock (B/H of {limit:.2f} or more).",
+        "{n:,} rows are too stocky to rock (B/H of {limit:.2f} or more).",
+        stocky,
+        limit=1.41,
     )
+    return f"{text} {told}" if stocky else text
 
 
 def _selection(assessment: Assessment) -> str:
     if assessment.settings.verify == "all":
-        return "All rows were chosen."
-    return (
+        return _("All rows were chosen.")
+    return _(
         "Chosen were the rows that are of high or very high class by the proposed OR formula or by Kaneko-Hayashi "
         "under any of their motions, those outside the formula's checked range, and those on a route."
     )
@@ -95,16 +102,18 @@ def _selection(assessment: Assessment) -> str:
 
 def _describe_motions(assessment: Assessment) -> str:
     if assessment.suite is not None:
-        return (
-            f"The motions are the user's own: {describe_suite(assessment)}. Motion k is one earthquake, the same on "
-            "every floor and axis."
+        return _(
+            "The motions are the user's own: {motions}. Motion k is one earthquake, the same on every floor and axis.",
+            motions=describe_suite(assessment),
         )
-    count = "as many motions as are needed" if assessment.settings.runs == AUTO else _count(assessment)
-    return (
-        f"On each floor and axis {count} were generated (seed {assessment.settings.seed}). Their mean 5 % response "
-        "spectrum meets that of the floor's recorded motion, or a generic one where only peaks are known; their peaks "
-        "scatter about the floor's, as those of earthquakes do. Motion k has the same random phases on every floor "
-        "along an axis: it is one earthquake of the whole building."
+    is_auto = assessment.settings.runs == AUTO
+    return _(
+        "On each floor and axis {motions} were generated (seed {seed}). Their mean 5 % response spectrum meets that of "
+        "the floor's recorded motion, or a generic one where only peaks are known; their peaks scatter about the "
+        "floor's, as those of earthquakes do. Motion k has the same random phases on every floor along an axis: it is "
+        "one earthquake of the whole building.",
+        motions=_("as many motions as are needed") if is_auto else _count(assessment),
+        seed=assessment.settings.seed,
     )
 
 
@@ -115,27 +124,31 @@ def _count(assessment: Assessment) -> str:
 def _restitution(assessment: Assessment) -> str:
     own = assessment.inventory.building.restitution
     if own is None:
-        return "At each impact a piece keeps 1 - 1.5 sin²α of its angular velocity, as Housner has it."
-    return f"At each impact a piece keeps {own:g} of its angular velocity, as the workbook sets."
+        return _("At each impact a piece keeps 1 - 1.5 sin²α of its angular velocity, as Housner has it.")
+    return _("At each impact a piece keeps {share:g} of its angular velocity, as the workbook sets.", share=own)
 
 
 def _interval(assessment: Assessment) -> str:
-    return (
-        f"The interval is Wilson's with z = {interval_width(assessment.settings):.2f}; it covers the number of records "
-        "only: not the model of the block, not the motion of the floor, not the earthquake."
+    return _(
+        "The interval is Wilson's with z = {z:.2f}; it covers the number of records only: not the model of the block, "
+        "not the motion of the floor, not the earthquake.",
+        z=interval_width(assessment.settings),
     )
 
 
 def _stopping(verified: Verified) -> str:
     """Say by which rule motions were added, and which pieces remain open."""
-    looks = ", ".join(f"{look:,}" for look in LOOKS[:-1])
-    text = (
-        f"Motions were added until each piece's interval lay within one class. That was looked at after {looks} and "
-        f"{LOOKS[-1]:,} motions, with an interval (z = {LOOKS_Z:g}) that holds with 95 % for all six looks together."
+    text = _(
+        "Motions were added until each piece's interval lay within one class. That was looked at after {looks} and "
+        "{last:,} motions, with an interval (z = {z:g}) that holds with 95 % for all six looks together.",
+        looks=", ".join(number(look, ",") for look in LOOKS[:-1]),
+        last=LOOKS[-1],
+        z=LOOKS_Z,
     )
     if not verified.undecided:
-        return f"{text} No piece is left undecided."
-    return f"{text} Undecided after {LOOKS[-1]:,}: {name_some(verified.undecided)}."
+        return f"{text} {_('No piece is left undecided.')}"
+    left = _("Undecided after {last:,}: {pieces}.", last=LOOKS[-1], pieces=name_some(verified.undecided))
+    return f"{text} {left}"
 
 
 def _floor_motions(assessment: Assessment, demand: Demand, joint: Joint) -> FloorMotions:
@@ -149,13 +162,18 @@ def _floor_motions(assessment: Assessment, demand: Demand, joint: Joint) -> Floo
     return FloorMotions(
         floor=words.clip(demand.floor.floor, 20),
         axis=demand.axis,
-        source=words.clip(demand.label.rsplit("/", 1)[-1], 60),
+        source=words.clip(_(demand.label).rsplit("/", 1)[-1], 60),
         kind=_kind(assessment, joint),
-        motions=f"{most:,}" if least == most else f"{least:,} to {most:,}",
+        motions=number(most, ",") if least == most else _("{least:,} to {most:,}", least=least, most=most),
         rows=len(joint.cases),
         spectrum=words.DASH
         if fit is None
-        else f"{words.percent(fit.mean_deviation)}; {100 * fit.worst_deviation:+.1f} % at {fit.worst_period:.2f} s",
+        else _(
+            "{mean}; {most:+.1f} % at {period:.2f} s",
+            mean=words.percent(fit.mean_deviation),
+            most=100 * fit.worst_deviation,
+            period=fit.worst_period,
+        ),
         pfa=pfa,
         pfv=pfv,
     )
@@ -163,20 +181,21 @@ def _floor_motions(assessment: Assessment, demand: Demand, joint: Joint) -> Floo
 
 def _kind(assessment: Assessment, joint: Joint) -> str:
     if assessment.suite is not None:
-        return "own, scaled to PFA" if assessment.settings.scale_motions else "own, not scaled"
-    return "generic spectrum" if assessment.cases.ensembles[joint.ensemble].is_generic else "recorded spectrum"
+        return _("own, scaled to PFA") if assessment.settings.scale_motions else _("own, not scaled")
+    is_generic = assessment.cases.ensembles[joint.ensemble].is_generic
+    return _("generic spectrum") if is_generic else _("recorded spectrum")
 
 
 def _ratio(ratio: float, scatter: float) -> str:
     """Return a ratio of peaks with its scatter, which is a coefficient of variation."""
-    return words.DASH if ratio != ratio else f"{ratio:.2f} ± {ratio * scatter:.2f}"
+    return words.DASH if ratio != ratio else f"{number(ratio, '.2f')} ± {number(ratio * scatter, '.2f')}"
 
 
 def _suite_ratios(assessment: Assessment, demand: Demand) -> tuple[str, str]:
     """Return PFA and PFV of the user's own motions, as used, over those of the floor."""
     if assessment.suite is None:
         return words.DASH, words.DASH
-    motions = [motion for _, motion in assessment.suite.motions]
+    motions = [motion for __, motion in assessment.suite.motions]
     peaks = np.array([(motion.pfa, motion.pfv) for motion in motions])
     if assessment.settings.scale_motions:
         peaks *= demand.pfa / peaks[:, :1]
@@ -190,10 +209,14 @@ def _misfits(assessment: Assessment) -> Iterator[str]:
     for demand, joint in assessment.joints.items():
         fit = joint.fit
         if fit is not None and fit.mean_deviation > LARGE_MISFIT:
-            yield (
-                f"Floor {words.clip(demand.floor.floor, 20)} {demand.axis}: PFA and the spectrum cannot both be met. "
-                f"PFA wins; the mean spectrum is met within {words.percent(fit.mean_deviation)} on average, and within "
-                f"{words.percent(abs(fit.worst_deviation))} at {fit.worst_period:.2f} s, where it is worst."
+            yield _(
+                "Floor {floor} {axis}: PFA and the spectrum cannot both be met. PFA wins; the mean spectrum is met "
+                "within {mean} on average, and within {most} at {period:.2f} s, where it is worst.",
+                floor=words.clip(demand.floor.floor, 20),
+                axis=demand.axis,
+                mean=words.percent(fit.mean_deviation),
+                most=words.percent(abs(fit.worst_deviation)),
+                period=fit.worst_period,
             )
 
 
@@ -202,14 +225,17 @@ def list_assumptions(assessment: Assessment, verified: Verified) -> list[tuple[s
     if not verified.done:
         return []
     own, z = assessment.inventory.building.restitution, interval_width(assessment.settings)
-    restitution = (
-        "Housner's, 1 - 1.5 sin²α, as the workbook leaves it blank" if own is None else f"{own:g}, the workbook's"
-    )
-    seed = "" if assessment.suite is not None else f", generated with seed {assessment.settings.seed}"
-    auto = assessment.settings.runs == AUTO
+    restitution = _("Housner's, 1 - 1.5 sin²α, as the workbook leaves it blank")
+    if own is not None:
+        restitution = _("{ratio:g}, the workbook's", ratio=own)
+    motions, seed = verified.motions, assessment.settings.seed
+    if assessment.suite is None:
+        motions = _("{motions}, generated with seed {seed}", motions=motions, seed=seed)
+    is_auto = assessment.settings.runs == AUTO
     return [
-        ("Restitution (angular velocity after an impact over that before)", restitution),
-        ("Motions of the verification", f"{verified.motions}{seed}"),
-        ("Interval of a verified chance",
-         f"Wilson's, z = {z:.2f}: 95 %" + (" for all six looks together" if auto else "")),
+        (_("Restitution (angular velocity after an impact over that before)"), restitution),
+        (_("Motions of the verification"), motions),
+        (_("Interval of a verified chance"),
+         _("Wilson's, z = {z:.2f}: 95 % for all six looks together", z=z) if is_auto
+         else _("Wilson's, z = {z:.2f}: 95 %", z=z)),
     ]  # fmt: skip

@@ -1,8 +1,10 @@
 """What a report says of the verification: how much was verified, what it changed, what is still open."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+from assess.language import fill, ngettext
+from assess.language import gettext as _
 from assess.methods._method import Reference
 from assess.methods.housner_monte_carlo import LOOKS
 from assess.report import words
@@ -12,8 +14,8 @@ from assess.settings import AUTO
 
 NAMED = 12
 """Pieces that a sentence names; the rest are counted."""
-SCENARIO = "Chance of overturning in this scenario, not per year."
-INTERVAL = "the interval covers the number of records only"
+SCENARIO = fill("Chance of overturning in this scenario, not per year.")
+INTERVAL = fill("the interval covers the number of records only")
 WILSON = Reference(
     authors="Wilson EB",
     year="1927",
@@ -53,45 +55,83 @@ class Verified:
     def status(self) -> tuple[str, str]:
         """The state of the report in one or two words, and what it means."""
         if not self.done:
-            return (
-                "Not verified",
-                "classes are those of a published formula; no direct integration has been run",
+            meaning = _("classes are those of a published formula; no direct integration has been run")
+            return _("Not verified"), meaning
+        done, kept, motions = len(self.done), len(self.kept), self.motions
+        texts = [
+            ngettext(
+                "{done:,} of {n:,} row by direct integration, {motions}",
+                "{done:,} of {n:,} rows by direct integration, {motions}",
+                self.rows,
+                done=done,
+                motions=motions,
             )
-        extent = f"{len(self.done):,} of {words.plural(self.rows, 'row')} by direct integration, {self.motions}"
-        if self.kept:
-            extent += f"; of {words.plural(len(self.kept), 'row')} the formula's higher class is kept"
+        ]
+        if kept:
+            texts.append(
+                ngettext(
+                    "of {n:,} row the formula's higher class is kept",
+                    "of {n:,} rows the formula's higher class is kept",
+                    kept,
+                )
+            )
         if self.is_all:
-            return "Verified", extent
-        return "Partly verified", f"{extent}; the classes of the other rows are those of a published formula"
+            return _("Verified"), "; ".join(texts)
+        texts.append(_("the classes of the other rows are those of a published formula"))
+        return _("Partly verified"), "; ".join(texts)
 
     @property
     def footer(self) -> str:
         """What stands at the foot of every page."""
         if not self.done:
-            return f"{SCENARIO} Not verified."
-        return f"{SCENARIO} Verified: {len(self.done):,} of {words.plural(self.rows, 'row')}; {INTERVAL}."
+            return f"{_(SCENARIO)} {_('Not verified.')}"
+        told = ngettext(
+            "Verified: {done:,} of {n:,} row; {interval}.",
+            "Verified: {done:,} of {n:,} rows; {interval}.",
+            self.rows,
+            done=len(self.done),
+            interval=INTERVAL,
+        )
+        return f"{_(SCENARIO)} {told}"
 
     @property
     def interval(self) -> str:
         """What the interval covers, and which pieces have none."""
         if not self.done:
-            return f"{INTERVAL}, and there is none yet: nothing has been verified by direct integration in this run"
-        covers = f"{INTERVAL}, not the formula, the motion of the floor or the earthquake"
+            return _(
+                "{interval}, and there is none yet: nothing has been verified by direct integration in this run",
+                interval=INTERVAL,
+            )
+        covers = _("{interval}, not the formula, the motion of the floor or the earthquake", interval=INTERVAL)
         if self.is_all and not self.kept:
             return covers
-        kept = ", or verification gave a lower class, which is not adopted" if self.kept else ""
-        return f"{covers}. A chance without an interval is the formula's: it is not verified{kept}"
+        without = _("A chance without an interval is the formula's: it is not verified")
+        if self.kept:
+            without = _(
+                "A chance without an interval is the formula's: it is not verified, or verification gave a lower "
+                "class, which is not adopted"
+            )
+        return f"{covers}. {without}"
 
     @property
     def adopted(self) -> str:
         """Which method the chances of the report are those of."""
-        formula = "the proposed OR formula"
         if not self.done:
-            return f"The adopted risk is that of {formula}; the others stand beside it for comparison."
-        text = "The adopted risk is that of Housner Monte Carlo (direct integration) where a piece was verified"
-        text += "" if self.is_all else f", and that of {formula} where it was not"
-        kept = f" Where verification gave a lower class that may not be adopted, it is that of {formula} (not lowered)."
-        return f"{text}; the others stand beside it for comparison.{kept if self.kept else ''}"
+            return _("The adopted risk is that of the proposed OR formula; the others stand beside it for comparison.")
+        text = _(
+            "The adopted risk is that of Housner Monte Carlo (direct integration) where a piece was verified, and that "
+            "of the proposed OR formula where it was not; the others stand beside it for comparison."
+        )
+        if self.is_all:
+            text = _(
+                "The adopted risk is that of Housner Monte Carlo (direct integration) where a piece was verified; the "
+                "others stand beside it for comparison."
+            )
+        kept = _(
+            "Where verification gave a lower class that may not be adopted, it is that of the proposed OR formula (not "
+            "lowered)."
+        )
+        return f"{text} {kept}" if self.kept else text
 
 
 def build_verified(assessment: Assessment, results: Sequence[ItemResult]) -> Verified:
@@ -117,32 +157,51 @@ def build_verified(assessment: Assessment, results: Sequence[ItemResult]) -> Ver
 
 def _motions(assessment: Assessment) -> str:
     if assessment.suite is not None:
-        return f"{words.plural(len(assessment.suite), 'motion')} of the user's own"
-    return f"{count_motions(assessment)} on each floor and axis"
+        return ngettext("{n:,} motion of the user's own", "{n:,} motions of the user's own", len(assessment.suite))
+    return _("{motions} on each floor and axis", motions=count_motions(assessment))
 
 
 def count_motions(assessment: Assessment) -> str:
     """Return how many motions each piece was integrated under."""
     runs = assessment.settings.runs
-    return f"{LOOKS[0]:,} to {LOOKS[-1]:,} motions" if runs == AUTO else words.plural(int(runs), "motion")
+    if runs == AUTO:
+        return _("{least:,} to {most:,} motions", least=LOOKS[0], most=LOOKS[-1])
+    return words.plural(int(runs), "motion")
 
 
 def describe_verification(assessment: Assessment) -> str:
     """Say in one or two sentences how much has been verified, and what that changed."""
     verified = build_verified(assessment, tuple(assessment))
     if not verified.done:
-        return "Not verified."
-    extent = f"{len(verified.done):,} of {words.plural(verified.rows, 'row')}, {count_motions(assessment)} each"
-    changes = [
-        (verified.lowered, "{} lowered by it", "class", "classes"),
-        (verified.raised, "{} raised by it", "class", "classes"),
-        (verified.may_be, "{} of a higher class", "row may be", "rows may be"),
-        (verified.kept, "{} the formula's class, which verification may not lower", "row keeps", "rows keep"),
-        (verified.fell, "{} under the record itself", "row overturns", "rows overturn"),
-        (verified.undecided, "{} undecided", "row still", "rows still"),
-    ]
-    told = [text.format(words.plural(len(found), *nouns)) for found, text, *nouns in changes if found]
-    return "; ".join([f"Verified by direct integration: {extent}", *told]) + "."
+        return _("Not verified.")
+    extent = ngettext(
+        "Verified by direct integration: {done:,} of {n:,} row, {motions} each",
+        "Verified by direct integration: {done:,} of {n:,} rows, {motions} each",
+        verified.rows,
+        done=len(verified.done),
+        motions=count_motions(assessment),
+    )
+    return "; ".join([extent, *_list_changes(verified)]) + "."
+
+
+def _list_changes(verified: Verified) -> Iterator[str]:
+    """Say what the verification changed, and what is open."""
+    if n := len(verified.lowered):
+        yield ngettext("{n:,} class lowered by it", "{n:,} classes lowered by it", n)
+    if n := len(verified.raised):
+        yield ngettext("{n:,} class raised by it", "{n:,} classes raised by it", n)
+    if n := len(verified.may_be):
+        yield ngettext("{n:,} row may be of a higher class", "{n:,} rows may be of a higher class", n)
+    if n := len(verified.kept):
+        yield ngettext(
+            "{n:,} row keeps the formula's class, which verification may not lower",
+            "{n:,} rows keep the formula's class, which verification may not lower",
+            n,
+        )
+    if n := len(verified.fell):
+        yield ngettext("{n:,} row overturns under the record itself", "{n:,} rows overturn under the record itself", n)
+    if n := len(verified.undecided):
+        yield ngettext("{n:,} row still undecided", "{n:,} rows still undecided", n)
 
 
 def list_summary(verified: Verified) -> list[str]:
@@ -150,29 +209,39 @@ def list_summary(verified: Verified) -> list[str]:
     if not verified.done:
         return []
     lines = [
-        ("Class lowered by verification", verified.lowered,
-         _by_class(verified.lowered, "from", lambda one: one.adopted.lowered_from or RiskClass.LOW)),
-        ("Class raised by verification", verified.raised,
-         _by_class(verified.raised, "to", lambda one: one.adopted.risk)),
-        ("Class of the formula kept although verification gave a lower one (see the comparison of the methods), as "
-         "the motions follow a generic spectrum or are weaker than the floor's, or its PFV is an estimate",
+        (_("Class lowered by verification"), verified.lowered, _lowered_from(verified.lowered)),
+        (_("Class raised by verification"), verified.raised, _raised_to(verified.raised)),
+        (_("Class of the formula kept although verification gave a lower one (see the comparison of the methods), as "
+           "the motions follow a generic spectrum or are weaker than the floor's, or its PFV is an estimate"),
          verified.kept, ""),
-        ("May be of a higher class, as the interval reaches into it", verified.may_be, ""),
-        (f"Undecided, as the interval still reaches over more than one class after {LOOKS[-1]:,} motions",
+        (_("May be of a higher class, as the interval reaches into it"), verified.may_be, ""),
+        (_("Undecided, as the interval still reaches over more than one class after {most:,} motions", most=LOOKS[-1]),
          verified.undecided, name_some(verified.undecided)),
-        ("Overturn under the recorded motion itself, and so are at least high", verified.fell,
+        (_("Overturn under the recorded motion itself, and so are at least high"), verified.fell,
          name_some(verified.fell)),
-        ("Not verified, chance and class are the formula's", verified.left, ""),
+        (_("Not verified, chance and class are the formula's"), verified.left, ""),
     ]  # fmt: skip
     return [
         f"{label}: {count_pieces(results)}{': ' if told else ''}{told}." for label, results, told in lines if results
     ]
 
 
-def _by_class(results: Sequence[ItemResult], preposition: str, risk_of: Callable[[ItemResult], RiskClass]) -> str:
-    """Return how many pieces were lowered from, or raised to, each class."""
-    by_class = [(risk, _pieces(one for one in results if risk_of(one) == risk)) for risk in reversed(RiskClass)]
-    return ", ".join(f"{count:,} {preposition} {risk.word}" for risk, count in by_class if count)
+def _lowered_from(results: Sequence[ItemResult]) -> str:
+    """Return how many pieces were lowered from each class."""
+    counts = _by_class(results, lambda one: one.adopted.lowered_from or RiskClass.LOW)
+    return ", ".join(_("{count:,} from {risk}", count=count, risk=words.risk_word(risk)) for risk, count in counts)
+
+
+def _raised_to(results: Sequence[ItemResult]) -> str:
+    """Return how many pieces were raised to each class."""
+    counts = _by_class(results, lambda one: one.adopted.risk)
+    return ", ".join(_("{count:,} to {risk}", count=count, risk=words.risk_word(risk)) for risk, count in counts)
+
+
+def _by_class(results: Sequence[ItemResult], risk_of: Callable[[ItemResult], RiskClass]) -> list[tuple[RiskClass, int]]:
+    """Return the classes that there are, the highest first, with the pieces of each."""
+    counts = [(risk, _pieces(one for one in results if risk_of(one) == risk)) for risk in reversed(RiskClass)]
+    return [(risk, count) for risk, count in counts if count]
 
 
 def _pieces(results: Iterable[ItemResult]) -> int:
@@ -182,11 +251,13 @@ def _pieces(results: Iterable[ItemResult]) -> int:
 def count_pieces(results: Sequence[ItemResult]) -> str:
     """Return ``5 pieces in 3 rows``, with those that are anchored, which stand outside the classes."""
     anchored = _pieces(one for one in results if one.is_anchored)
-    text = f"{words.plural(_pieces(results), 'piece')} in {words.plural(len(results), 'row')}"
-    return f"{text} ({anchored:,} of them anchored)" if anchored else text
+    pieces, rows = words.plural(_pieces(results), "piece"), words.plural(len(results), "row")
+    if not anchored:
+        return _("{pieces} in {rows}", pieces=pieces, rows=rows)
+    return _("{pieces} in {rows} ({anchored:,} of them anchored)", pieces=pieces, rows=rows, anchored=anchored)
 
 
 def name_some(results: Sequence[ItemResult]) -> str:
     """Return the names of the first rows, and how many more there are."""
     names = ", ".join(words.clip(one.item.item, 40) for one in results[:NAMED])
-    return names if len(results) <= NAMED else f"{names} and {len(results) - NAMED:,} more"
+    return names if len(results) <= NAMED else _("{names} and {more:,} more", names=names, more=len(results) - NAMED)

@@ -1,5 +1,9 @@
 """Numbers and sentences as reports show them."""
 
+from collections.abc import Callable, Mapping
+
+from assess.language import fill, ngettext, number
+from assess.language import gettext as _
 from assess.results import ItemResult
 from assess.risk import RiskClass, classify
 from assess.units import ACCELERATION, LENGTH, VELOCITY
@@ -16,17 +20,24 @@ def clip(text: str, longest: int = LONGEST) -> str:
     text = " ".join(text.split())
     if len(text) <= longest:
         return text
-    return f"{text[:longest].rstrip()}… ({len(text):,} characters; whole in report.xlsx)"
+    told = _("{count:,} characters; whole in report.xlsx", count=len(text))
+    return f"{text[:longest].rstrip()}… ({told})"
+
+
+def cut(text: str, longest: int) -> str:
+    """Return a text short enough for one line; an ellipsis stands for what was left out."""
+    text = " ".join(text.split())
+    return text if len(text) <= longest else f"{text[: longest - 1].rstrip()}…"
 
 
 def percent(value: float | None) -> str:
     """Return a probability as a percentage with one decimal."""
-    return DASH if value is None else f"{100 * value:.1f} %"
+    return DASH if value is None else f"{number(100 * value, '.1f')} %"
 
 
 def fixed(value: float | None, decimals: int) -> str:
     """Return a number with decimals, a dash for what is unknown."""
-    return DASH if value is None or value != value else f"{value:.{decimals}f}"
+    return DASH if value is None or value != value else number(value, f".{decimals}f")
 
 
 def in_g(value: float | None) -> str:
@@ -41,12 +52,12 @@ def in_cm_s(value: float | None) -> str:
 
 def in_cm(value: float | None) -> str:
     """Return a length [m] in cm, without needless decimals."""
-    return DASH if value is None else f"{value / LENGTH['cm']:.4g}"
+    return DASH if value is None else number(value / LENGTH["cm"], ".4g")
 
 
 def in_m(value: float | None) -> str:
     """Return a length [m]."""
-    return DASH if value is None else f"{value:.4g}"
+    return DASH if value is None else number(value, ".4g")
 
 
 def size(one: ItemResult) -> str:
@@ -54,9 +65,18 @@ def size(one: ItemResult) -> str:
     return " × ".join(in_cm(side) for side in (one.item.breadth, one.item.width, one.item.height))
 
 
-def plural(count: int, one: str, many: str = "") -> str:
-    """Return ``1 piece``, ``2 pieces``."""
-    return f"{count:,} {one if count == 1 else many or one + 's'}"
+_NOUNS: Mapping[str, Callable[[int], str]] = {
+    "piece": lambda n: ngettext("{n:,} piece", "{n:,} pieces", n),
+    "row": lambda n: ngettext("{n:,} row", "{n:,} rows", n),
+    "floor": lambda n: ngettext("{n:,} floor", "{n:,} floors", n),
+    "motion": lambda n: ngettext("{n:,} motion", "{n:,} motions", n),
+    "impact": lambda n: ngettext("{n:,} impact", "{n:,} impacts", n),
+}
+
+
+def plural(count: int, noun: str) -> str:
+    """Return ``1 piece``, ``2 pieces``; raises KeyError for a noun of which no plural is known."""
+    return _NOUNS[noun](count)
 
 
 def chance(one: ItemResult) -> str:
@@ -64,7 +84,7 @@ def chance(one: ItemResult) -> str:
     adopted = one.adopted
     if adopted.low is None or adopted.high is None:
         return percent(adopted.probability)
-    interval = f"({100 * adopted.low:.1f} to {percent(adopted.high)})"
+    interval = _("({low:.1f} to {high:.1f} %)", low=100 * adopted.low, high=100 * adopted.high)
     return f"{percent(adopted.probability)} {interval.replace(' ', NO_BREAK)}"
 
 
@@ -78,42 +98,64 @@ def under_record(one: ItemResult) -> str:
     found = [case.verification for case in one.cases if case.verification is not None]
     turned = [verified.record_rotation for verified in found if verified.record_rotation is not None]
     if fell_in_record(one):
-        return "overturns"
+        return _("overturns")
     if not turned:
         return DASH
     most = max(turned)
     if most == 0:
-        return "stays at rest"
-    return f"{most:.2f} of critical" if most >= 0.005 else "< 0.01 of critical"
+        return _("stays at rest")
+    if most < 0.005:
+        return _("< {least:.2f} of critical", least=0.01)
+    return _("{ratio:.2f} of critical", ratio=most)
 
 
 def risk_words(one: ItemResult) -> str:
     """Return the class in words, with what must be said beside it."""
-    words = ", ".join([one.adopted.risk.word, *risk_notes(one)])
-    return f"depends on its anchor (free-standing: {words})" if one.is_anchored else words
+    words = free_words(one)
+    return _("depends on its anchor (free-standing: {risk})", risk=words) if one.is_anchored else words
+
+
+def free_words(one: ItemResult) -> str:
+    """Return the class of a piece as if it were free-standing, with what must be said beside it."""
+    return ", ".join([risk_word(one.adopted.risk), *risk_notes(one)])
 
 
 def risk_notes(one: ItemResult) -> list[str]:
     """Return what must be said beside the class: that it may be higher, was lowered, or is not that of the chance."""
     adopted, notes = one.adopted, []
     if classify(adopted.probability) != adopted.risk:
-        notes.append("as it overturns under the record itself")
+        notes.append(_("as it overturns under the record itself"))
     if adopted.upper != adopted.risk:
-        notes.append(f"may be {adopted.upper.word}")
+        notes.append(_("may be {risk}", risk=risk_word(adopted.upper)))
     if adopted.lowered_from is not None:
-        notes.append(f"lowered by verification (formula: {adopted.lowered_from.word})")
+        notes.append(_("lowered by verification (formula: {risk})", risk=risk_word(adopted.lowered_from)))
     return notes
 
 
 MAY_BE, LOWERED = "?", "↓"
 """Marks beside the symbol of a class where there is no room for words."""
-MARKS = f"{MAY_BE}: may be of a higher class; {LOWERED}: lowered by verification"
+MARKS = fill("{may_be}: may be of a higher class; {lowered}: lowered by verification", may_be=MAY_BE, lowered=LOWERED)
+
+
+def marks() -> str:
+    """Say what the marks mean."""
+    return _(MARKS)
 
 
 def class_marks(one: ItemResult) -> str:
     """Return the marks that stand beside the symbol of a class."""
     may_be = MAY_BE if one.adopted.upper != one.adopted.risk else ""
     return may_be + (LOWERED if one.adopted.lowered_from is not None else "")
+
+
+def risk_word(risk: RiskClass) -> str:
+    """Return a class in words."""
+    return _(risk.word)
+
+
+def risk_label(risk: RiskClass) -> str:
+    """Return a class as symbol and words, ``■ very high``."""
+    return f"{risk.symbol} {risk_word(risk)}"
 
 
 def class_name(risk: RiskClass) -> str:

@@ -1,0 +1,211 @@
+"""What the templates of a report see: its content, figures, lists, and the words for numbers."""
+
+import base64
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from assess.language import gettext as _
+from assess.language import markup, nmarkup, number
+from assess.motion.scenario import PROFILES
+from assess.report import compact, motions, summary, trials, verified, words
+from assess.report.captions import caption_traced
+from assess.report.content import Content, has_worse_motion
+from assess.report.contours import choose_contours, draw_contours
+from assess.report.counts import build_bars
+from assess.report.disagreements import find_disagreements, group_disagreements, summarise_disagreements
+from assess.report.figures import draw_motion
+from assess.report.look import Look
+from assess.report.page import read_script, script_hash
+from assess.report.plan import build_plan
+from assess.report.rocked import choose_traced, draw_traced
+from assess.report.worked import choose_example, work_example
+from assess.results import ItemResult
+
+FULL_ROWS = 150
+"""Rows up to which a PDF shows whole tables of all pieces; longer ones go to the appendix in a compact form."""
+LIMITS: Mapping[str, int] = {
+    "most_rows": 5000, "most_lines": compact.MOST_LINES, "most_fixes": summary.FIXES, "most_routes": 150,
+    "most_problems": 120, "most_notes": 150, "most_motions": 60, "most_groups": 15, "most_risky": 60,
+    "listed": trials.LISTED,
+}  # fmt: skip
+"""What the lists of HTML and PDF show at most; the Excel report holds all."""
+MOST_RECORDS = 16
+"""Recorded motions that are drawn; the others are described."""
+
+
+def build_context(content: Content, look: Look, *, for_print: bool) -> dict[str, Any]:
+    """Return the names that the templates use."""
+    is_long = len(content.results) > FULL_ROWS
+    is_compact = is_long and for_print and not look.accessible
+    script = read_script(look, for_print=for_print)
+    context = {
+        **LIMITS,
+        "content": content,
+        "language": look.language,
+        "for_print": for_print,
+        "is_long": is_long,
+        "is_compact": is_compact,
+        "parts": _parts(content, is_compact),
+        "listings": _listings(content) if is_compact else {},
+        "logo": _logo(content),
+        "script": script,
+        "script_hash": script_hash(script),
+    }
+    return context | _of_summary(content) | _of_floors(content) | _of_methods(content) | _of_figures(content)
+
+
+def _parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
+    """Return the parts of a report in their order: file of the template, which is the anchor as well, and heading."""
+    parts = {
+        "summary": _("Summary"),
+        "floors": _("Floors"),
+        "routes": _("Evacuation routes"),
+        "items": _("All pieces"),
+        "comparison": _("Comparison of the methods"),
+        "verification": _("Verification"),
+        "contours": _("Risk over breadth and acceleration"),
+        "methods": _("Methods"),
+        "limits": _("Limits of the methods"),
+        "assumptions": _("Assumptions and defaults"),
+        "quality": _("Data-quality log"),
+        "references": _("References"),
+        "appendix": _("Appendix"),
+        "lists": _("Appendix: all pieces"),
+    }
+    if not content.results:
+        del parts["contours"]
+    if not is_compact:
+        del parts["lists"]
+    return list(parts.items())
+
+
+def _listings(content: Content) -> dict[str, Sequence[compact.Block]]:
+    return {
+        "pieces": compact.list_pieces(content.results, has_verified=bool(content.verified.done)),
+        "methods": compact.list_methods(content.results, content.methods),
+    }
+
+
+def _of_summary(content: Content) -> dict[str, Any]:
+    return {
+        "floor_bars": build_bars(content.worst_floors),
+        "summary_lines": verified.list_summary(content.verified),
+        "verification_sentence": verified.describe_verification(content.assessment),
+        "marks": words.marks(),
+        "risky": summary.list_risky(content.results),
+    }
+
+
+def _of_floors(content: Content) -> dict[str, Any]:
+    inventory = content.assessment.inventory
+    on_route: dict[str, list[ItemResult]] = {}
+    for one in content.results:
+        on_route.setdefault(one.item.route, []).append(one)
+    beside = {
+        (segment.route, segment.segment): [
+            one for one in on_route.get(segment.route, ()) if one.item.segment in ("", segment.segment)
+        ]
+        for segment in inventory.routes
+    }
+    plans = {page.floor.floor: build_plan(page, inventory) for page in content.shown_floors}
+    return {"plans": plans, "beside": beside, "source": motions.describe_source, "origin": motions.describe_origin}
+
+
+def _of_methods(content: Content) -> dict[str, Any]:
+    assessment = content.assessment
+    example = choose_example(content.results)
+    found = find_disagreements(content.results)
+    types = {item.type for item in assessment.inventory.items}
+    return {
+        "example": example,
+        "worked": work_example(example, assessment.settings, restitution=assessment.inventory.building.restitution)
+        if example
+        else (),
+        "disagreement": summarise_disagreements(found, len(content.results)),
+        "disagreements": group_disagreements(found),
+        "more": has_worse_motion,
+        "quantities": {"breadth_to_height": "B/H", "pfa": "PFA", "pfv": "PFV"},
+        "profiles": tuple(PROFILES.values()),
+        "used_profiles": motions.used_profiles(assessment.demands),
+        "used_types": [one for one in assessment.inventory.catalogue if one.source and one.type in types],
+        "status": motions.profile_status,
+        "clauses": motions.list_clauses,
+        "envelopes": _(motions.ENVELOPES),
+        "treatment": motions.describe_treatment,
+    }
+
+
+def _of_figures(content: Content) -> dict[str, Any]:
+    """Draw the figures: the motions of the verification, contours and records."""
+    traced, contours = choose_traced(content), choose_contours(content)
+    drawn = draw_traced(content, traced)
+    figures = {"contours": _svg(draw_contours(contours, content.assessment.settings))} if contours else {}
+    captions = [
+        {"image": _svg(drawn[one.name]), "caption": one.caption, "alternative": one.alternative}
+        for one in caption_traced(content, traced)
+    ]
+    return {"contours": contours, "figures": figures, "traced_figures": captions, "recorded": _recorded(content)}
+
+
+def _recorded(content: Content) -> list[tuple[str, Any, str]]:
+    """Return every record with its floor, and the figures of those of the floors that are shaken most."""
+    found = [
+        (page.title, demand)
+        for page in content.floors
+        for demand in page.demands
+        if demand.motion is not None and demand.record is not None and not demand.is_borrowed
+    ]
+    strongest = sorted(range(len(found)), key=lambda at: -found[at][1].pfa)[:MOST_RECORDS]
+    return [
+        (title, demand, _svg(draw_motion(demand)) if at in strongest else "")
+        for at, (title, demand) in enumerate(found)
+    ]
+
+
+def _svg(drawing: bytes) -> str:
+    return _data_uri(drawing, "image/svg+xml")
+
+
+def _data_uri(data: bytes, kind: str) -> str:
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
+
+
+def _logo(content: Content) -> str:
+    path: Path | None = content.assessment.inventory.building.logo
+    if path is None:
+        return ""
+    data = path.read_bytes()
+    return _data_uri(data, "image/png" if data.startswith(b"\x89PNG") else "image/jpeg")
+
+
+def _share(value: float) -> str:
+    return f"{number(100 * value, '.0f')} %"
+
+
+FILTERS: Mapping[str, Any] = {
+    "chance": words.chance,
+    "class_marks": words.class_marks,
+    "class_name": words.class_name,
+    "clip": words.clip,
+    "cut": words.cut,
+    "described": summary.describe,
+    "fixed": words.fixed,
+    "flag_name": lambda flag: _(flag.replace("_", " ")),
+    "in_cm_s": words.in_cm_s,
+    "in_g": words.in_g,
+    "in_m": words.in_m,
+    "in_whole": lambda value: number(value, ",d"),
+    "percent": words.percent,
+    "plural": words.plural,
+    "risk_label": words.risk_label,
+    "risk_notes": words.risk_notes,
+    "risk_word": words.risk_word,
+    "say": _,
+    "share": _share,
+    "size": words.size,
+    "under_record": words.under_record,
+}
+"""Filters of the templates, which show numbers and texts in the language in use."""
+GLOBALS: Mapping[str, Any] = {"_": markup, "ngettext": nmarkup}
+"""Functions of the templates: texts by their English ones."""

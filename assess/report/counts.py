@@ -1,0 +1,135 @@
+"""Pieces counted by class: of the building, a floor or a room, and drawn as bars."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from assess.language import gettext as _
+from assess.language import number
+from assess.ranking import count_pieces
+from assess.report import words
+from assess.results import ItemResult
+from assess.risk import RiskClass
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Pieces (not rows) of a room, a floor, or of the building, by class; anchored ones stand outside the classes.
+
+    `lowered` of those with a class were lowered by verification, and `may_be` may be of a higher one; `expected` is the
+    number of free-standing pieces that are expected to fall.
+    """
+
+    label: str
+    by_class: Mapping[RiskClass, int]
+    anchored: int
+    lowered: int = 0
+    may_be: int = 0
+    expected: float = 0.0
+
+    @property
+    def free(self) -> int:
+        """Free-standing pieces: those that have a class."""
+        return sum(self.by_class.values())
+
+    @property
+    def total(self) -> int:
+        """All pieces."""
+        return self.free + self.anchored
+
+    @property
+    def risky(self) -> int:
+        """Pieces of high and very high class."""
+        return self.by_class[RiskClass.HIGH] + self.by_class[RiskClass.VERY_HIGH]
+
+    def share(self, risk: RiskClass) -> str:
+        """Share of a class among the pieces that have one."""
+        return f"{number(100 * self.by_class[risk] / self.free, '.0f')} %" if self.free else words.DASH
+
+
+def count(label: str, results: Sequence[ItemResult]) -> Counts:
+    """Count pieces by class, and of those that have one how many were lowered, or may be of a higher one."""
+    free = [one for one in results if not one.is_anchored]
+    return Counts(
+        label,
+        *count_pieces(results),
+        lowered=sum(one.item.quantity for one in free if one.adopted.lowered_from is not None),
+        may_be=sum(one.item.quantity for one in free if one.adopted.upper != one.adopted.risk),
+        expected=sum(one.adopted.probability * one.item.quantity for one in free),
+    )
+
+
+def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
+    """Count the pieces of each room, the rooms with most of high and very high class first."""
+    rooms: dict[str, list[ItemResult]] = {}
+    for one in results:
+        rooms.setdefault(one.item.room, []).append(one)
+    counts = [count(words.clip(room, 40) if room else _("no room named"), own) for room, own in sorted(rooms.items())]
+    return sorted(counts, key=lambda one: -one.risky)
+
+
+MOST_BARS = 30
+"""Bars that one picture shows."""
+_LABEL, _WIDTH, _ROW, _BAR = 150.0, 480.0, 17.0, 13.0
+"""Of the picture, in its own units: width for the labels, for the bars, height of a row and of a bar."""
+_LEAST = 13.0
+"""Width below which a part of a bar holds no number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One part of a bar: where it begins, how wide it is, its class (None: anchored) and the number of pieces."""
+
+    x: float
+    width: float
+    risk: RiskClass | None
+    pieces: int
+
+    @property
+    def label(self) -> str:
+        """Symbol and number where there is room for them, else the number or nothing."""
+        symbol = "⚓" if self.risk is None else self.risk.symbol
+        if self.width >= 2 * _LEAST:
+            return f"{symbol} {self.pieces}"
+        return f"{self.pieces}" if self.width >= _LEAST else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """One bar of the picture: its label, upper edge, and parts from the left."""
+
+    label: str
+    y: float
+    parts: Sequence[Part]
+    total: int
+
+
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """A picture of counts: stacked bars, one a room or floor; `left_out` are those that it does not show."""
+
+    width: float
+    height: float
+    label_width: float
+    bar_height: float
+    bars: Sequence[Bar]
+    left_out: int
+
+
+def build_bars(counts: Sequence[Counts], most: int = MOST_BARS) -> Bars | None:
+    """Lay out counts as bars; None where there is nothing to show."""
+    there = [one for one in counts if one.total]
+    shown = there[:most]
+    if not shown:
+        return None
+    scale = (_WIDTH - 40) / max(one.total for one in shown)
+    bars = tuple(_bar(one, at * _ROW + 2, scale) for at, one in enumerate(shown))
+    return Bars(_LABEL + _WIDTH, len(shown) * _ROW + 4, _LABEL, _BAR, bars, len(there) - len(shown))
+
+
+def _bar(counts: Counts, y: float, scale: float) -> Bar:
+    parts, x = [], _LABEL
+    for risk, pieces in (*counts.by_class.items(), (None, counts.anchored)):
+        if pieces:
+            parts.append(Part(x, pieces * scale, risk, pieces))
+            x += pieces * scale
+    return Bar(words.clip(counts.label, 30), y, parts, counts.total)

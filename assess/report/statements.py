@@ -1,0 +1,148 @@
+"""What a report states of itself: what was assumed, what the marks mean, and where the methods end."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+from assess.cases import FLAGS as ITEM_FLAGS
+from assess.demand import FLAGS as DEMAND_FLAGS
+from assess.inventory.columns import ITEMS
+from assess.language import gettext as _
+from assess.language import ngettext, number
+from assess.report import motions, words
+from assess.results import Assessment
+from assess.units import GRAVITY
+from assess.version import __version__
+
+MOST_FILES = 40
+"""Input files whose hashes a report lists."""
+
+
+def list_flags(assessment: Assessment) -> dict[str, str]:
+    """Return what every mark means; where methods mean different things by one, each with its method."""
+    meanings: dict[str, dict[str, str]] = {}
+    for method in assessment.methods:
+        for flag, meaning in method.flags.items():
+            meanings.setdefault(flag, {}).setdefault(_(meaning), _(method.title))
+    told = {
+        flag: next(iter(by_meaning))
+        if len(by_meaning) == 1
+        else "; ".join(f"{title}: {text}" for text, title in by_meaning.items())
+        for flag, by_meaning in meanings.items()
+    }
+    return told | {flag: _(text) for flag, text in (*ITEM_FLAGS.items(), *DEMAND_FLAGS.items())}
+
+
+def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
+    """Return what was assumed, and for how many rows or where."""
+    settings, items = assessment.settings, assessment.inventory.items
+    counted = Counter(name for item in items for name in item.assumed)
+    lines = motions.list_assumptions(assessment)
+    for name, text in _assumed().items():
+        if counted[name]:
+            where = ngettext("{column} blank in {n:,} row", "{column} blank in {n:,} rows", counted[name],
+                             column=_(ITEMS.column(name).label))  # fmt: skip
+            lines.append((where, text))
+    axes, frictions = (sum(value is None for value in values) for values in
+                       ((item.axis for item in items), (item.friction for item in items)))  # fmt: skip
+    lines += [
+        (ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", axes), _("the worse of X and Y governs")),
+        (ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions),
+         _("no sliding, as the paper assumes")),
+        (_("Kaneko-Hayashi, standard deviations (not printed in the source)"),
+         f"ζ_A = {number(settings.zeta_acceleration, 'g')}, ζ_V = {number(settings.zeta_velocity, 'g')}"),
+        (_("Kaneko-Hayashi, slide coefficient α"), number(settings.slide_coefficient, "g")),
+        (_("Gravity"), f"{number(GRAVITY)} m/s²"),
+        (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
+    ]  # fmt: skip
+    return lines
+
+
+def _assumed() -> Mapping[str, str]:
+    catalogue = _("taken from the Catalogue by Type")
+    return {
+        "breadth": catalogue,
+        "width": catalogue,
+        "height": catalogue,
+        "quantity": _("1 piece"),
+        "axis": _("set from Angle, which lies within 15° of X or Y"),
+        "anchored": _("unknown, which counts as free-standing"),
+        "friction": _("the building's default friction"),
+    }
+
+
+def list_limits(*, has_verified: bool) -> Sequence[str]:
+    """Return where the methods end, in plain words."""
+    return _of_the_block() + _of_the_formulas() + (_of_verification() if has_verified else ())
+
+
+def _of_the_block() -> tuple[str, ...]:
+    return (
+        _(
+            "The chance is that of overturning in this scenario. It is not a chance per year, and says nothing of"
+            " how likely the scenario is."
+        ),
+        _(
+            "Every piece is a rigid block on a rigid floor, moving in one vertical plane, with its centroid at "
+            "mid-height. A top-heavy piece falls sooner, a bottom-heavy one later."
+        ),
+        _(
+            "No piece slides. On a smooth floor (friction below B/H) a piece slides before it rocks, and may "
+            "still hit people or block a way."
+        ),
+        _("Vertical motion is left out."),
+        _(
+            "Not covered: castors, stacked or leaning pieces, pieces linked to each other, open drawers, spilt "
+            "contents, fastenings that fail."
+        ),
+    )
+
+
+def _of_the_formulas() -> tuple[str, ...]:
+    return (
+        _(
+            "The proposed OR formula was fitted in three steel buildings and is checked by shaking-table tests "
+            "for B/H 0.14 to 0.39 and PFA 0.10 to 0.90 g only; results outside are marked."
+        ),
+        _(
+            "The proposed OR formula knows no size: a large piece and a small one of the same proportions get the"
+            " same value, although the larger is harder to overturn."
+        ),
+        _(
+            "The proposed OR formula calls pieces high below the acceleration at which they can start to rock; "
+            "the comparison shows the static criterion beside it."
+        ),
+        _("A piece marked as anchored is only as safe as its anchor; its free-standing risk is shown, never zero."),
+    )
+
+
+def _of_verification() -> tuple[str, ...]:
+    return (
+        _(
+            "A verified chance is that of the rigid block under motions that meet the floor's spectrum and peak. "
+            "Its interval covers the number of motions only."
+        ),
+        _(
+            "Rocking depends on details of a motion that a response spectrum does not hold, such as long pulses. "
+            "What a piece does under the recorded motion itself therefore stands beside its chance."
+        ),
+    )
+
+
+def list_making(assessment: Assessment, platform: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return what a run is made again from: version, settings, seed, and the hash of every input."""
+    settings, inventory = assessment.settings, assessment.inventory
+    made_with = ", ".join(f"{name} {value}" for name, value in platform.items())
+    lines = [
+        ("assess", f"{__version__} ({made_with})"),
+        (_("Scenario kind"), _(assessment.scenario)),
+        (_("Verification"), f"--verify {settings.verify}"),
+    ]
+    if assessment.joints and assessment.suite is None:
+        lines += [(_("Motions of each floor and axis"), f"{settings.runs}"), (_("Seed"), f"{settings.seed}")]
+    lines.append((_("Workbook"), f"{words.cut(inventory.source.name, 80)}, SHA-256 {inventory.sha256}"))
+    files = list(inventory.files.items())
+    lines += [(_("File"), f"{words.cut(name, 80)}, SHA-256 {digest}") for name, digest in files[:MOST_FILES]]
+    if len(files) > MOST_FILES:
+        more = len(files) - MOST_FILES
+        lines.append((_("File"), ngettext("{n:,} more is in results.json.", "{n:,} more are in results.json.", more)))
+    return lines

@@ -1,0 +1,159 @@
+"""The summary: one page that a manager can act on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from assess.inventory.model import Segment
+from assess.language import gettext as _
+from assess.language import ngettext
+from assess.ranking import fix_first
+from assess.report import words
+from assess.report.counts import Counts
+from assess.results import Assessment, ItemResult
+from assess.risk import RiskClass
+
+WORST, FIXES, FLOORS, ROUTES, CAUTIONS = 10, 6, 8, 4, 2
+"""Pieces, fixes, floors, routes and cautions that the page has room for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """One line of what to fix first: its place in the list, what it saves, and what all up to it save together.
+
+    `saved` are the falls that are expected of this row and no longer happen if the anchor holds; `together` is the
+    share of all expected falls that this line and those above it save.
+    """
+
+    place: int
+    result: ItemResult
+    saved: float
+    together: float
+
+    @property
+    def reason(self) -> str:
+        """Why it comes first, as far as more than its chance tells."""
+        item = self.result.item
+        route = _("route {route}", route=words.cut(item.route, 30)) if item.route else ""
+        return ", ".join(part for part in (_(item.importance), route) if part) or words.DASH
+
+
+@dataclass(frozen=True, slots=True)
+class RouteAtRisk:
+    """A route with pieces of high or very high class beside it, or that may be of such a class."""
+
+    route: str
+    floors: str
+    pieces: int
+    worst: RiskClass
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """What the page says: a paragraph in plain words, the worst pieces, what to fix first, and routes at risk."""
+
+    plainly: Sequence[str]
+    worst: Sequence[ItemResult]
+    fixes: Sequence[Fix]
+    routes: Sequence[RouteAtRisk]
+
+
+def build_summary(assessment: Assessment, results: Sequence[ItemResult], total: Counts) -> Summary:
+    """Gather the summary."""
+    worst, fixes = list_worst(results), list_fixes(results, total)
+    may_be = sum(one.item.quantity for one in list_risky(results) if one.adopted.risk < RiskClass.HIGH)
+    return Summary(say_plainly(total, may_be, worst, fixes), worst, fixes, list_routes_at_risk(assessment, results))
+
+
+def list_fixes(results: Sequence[ItemResult], total: Counts) -> list[Fix]:
+    """Return the pieces of at least medium class, what to fix first at the top."""
+    fixes, sum_saved = [], 0.0
+    for place, one in enumerate(fix_first(iter(results)), 1):
+        saved = one.adopted.probability * one.item.quantity
+        sum_saved += saved
+        fixes.append(Fix(place, one, saved, sum_saved / total.expected if total.expected else 0.0))
+    return fixes
+
+
+def list_routes_at_risk(assessment: Assessment, results: Sequence[ItemResult]) -> list[RouteAtRisk]:
+    """Return the routes that the workbook ties risky pieces to, the worst first."""
+    beside: dict[str, list[ItemResult]] = {}
+    for one in results:
+        if one.item.route and not one.is_anchored and one.adopted.upper >= RiskClass.HIGH:
+            beside.setdefault(one.item.route, []).append(one)
+    floors = _floors_of(assessment.inventory.routes)
+    found = [
+        RouteAtRisk(
+            route,
+            ", ".join(floors.get(route, ())),
+            sum(one.item.quantity for one in own),
+            max(one.adopted.upper for one in own),
+        )
+        for route, own in beside.items()
+    ]
+    return sorted(found, key=lambda one: (-one.worst, -one.pieces, one.route))
+
+
+def _floors_of(routes: Sequence[Segment]) -> dict[str, list[str]]:
+    floors: dict[str, list[str]] = {}
+    for segment in routes:
+        if segment.floor and segment.floor not in floors.setdefault(segment.route, []):
+            floors[segment.route].append(segment.floor)
+    return floors
+
+
+def list_worst(results: Sequence[ItemResult]) -> list[ItemResult]:
+    """Return the free-standing pieces that are most likely to fall."""
+    return sorted((one for one in results if not one.is_anchored), key=_worst_first)[:WORST]
+
+
+def list_risky(results: Sequence[ItemResult]) -> list[ItemResult]:
+    """Return the free-standing pieces of high or very high class, or that may be, the worst first."""
+    risky = [one for one in results if not one.is_anchored and one.adopted.upper >= RiskClass.HIGH]
+    return sorted(risky, key=_worst_first)
+
+
+def _worst_first(one: ItemResult) -> tuple[float, float, str]:
+    return -one.adopted.upper, -one.adopted.probability, one.item.item
+
+
+def say_plainly(total: Counts, may_be: int, worst: Sequence[ItemResult], fixes: Sequence[Fix]) -> list[str]:
+    """Say in plain words what was found: the first paragraph of the summary."""
+    texts = [_say_counts(total)]
+    if may_be:
+        texts.append(ngettext("{n:,} more may have either.", "{n:,} more may have either.", may_be))
+    if total.anchored:
+        texts.append(ngettext("{n:,} further piece is anchored, and only as safe as its anchor.",
+                              "{n:,} further pieces are anchored, and only as safe as their anchors.",
+                              total.anchored))  # fmt: skip
+    if worst and worst[0].adopted.risk > RiskClass.LOW:
+        one = worst[0]
+        texts.append(_("The worst is {item} ({what}, floor {floor}) with a chance of {chance}.",
+                       item=words.cut(one.item.item, 40), what=describe(one, 60),
+                       floor=words.cut(one.item.floor, 20), chance=words.chance(one)))  # fmt: skip
+    if total.expected >= 0.05 and fixes:
+        first = fixes[:FIXES]
+        texts.append(ngettext(
+            "About {expected:.1f} pieces are expected to fall; fixing the first row of the list below takes away "
+            "{share:.0f} % of that.",
+            "About {expected:.1f} pieces are expected to fall; fixing the first {n} rows of the list below takes away "
+            "{share:.0f} % of that.",
+            len(first), expected=total.expected, share=100 * first[-1].together,
+        ))  # fmt: skip
+    return texts
+
+
+def _say_counts(total: Counts) -> str:
+    if not total.free:
+        return _("There are no free-standing pieces.")
+    return ngettext(
+        "Of {n:,} free-standing piece, {very_high:,} have a very high chance of overturning in this scenario and "
+        "{high:,} a high one.",
+        "Of {n:,} free-standing pieces, {very_high:,} have a very high chance of overturning in this scenario and "
+        "{high:,} a high one.",
+        total.free, very_high=total.by_class[RiskClass.VERY_HIGH], high=total.by_class[RiskClass.HIGH],
+    )  # fmt: skip
+
+
+def describe(one: ItemResult, longest: int = 80) -> str:
+    """Return what a piece is, in the workbook's words."""
+    return words.cut(one.item.description or one.item.type or _("no description"), longest)
