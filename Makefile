@@ -4,7 +4,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: example test lint benchmark blank docs texts clean
+.PHONY: example test lint benchmark blank docs texts samples clean
 
 example: .venv/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street
@@ -22,12 +22,16 @@ benchmark: .venv/.developing
 
 blank: .venv/.installed
 	$(BIN)/assess new inventories/blank.xlsx --force
+	$(BIN)/assess new inventories/blank-it.xlsx --language it --force
 	$(BIN)/python inventories/market_street.py
 
 docs: .venv/.installed
 	$(BIN)/python docs/motions.py
 	$(BIN)/python docs/rocking.py
 	$(BIN)/python docs/verification.py
+
+samples: .venv/.developing
+	$(BIN)/python docs/samples.py
 
 texts: .venv/.installed
 	$(BIN)/python docs/texts.py

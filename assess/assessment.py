@@ -85,7 +85,7 @@ def run(
         outcomes=outcomes,
         adoption=adoption,
         governing=find_governing(adoption.probability, case_item, cases.pfa),
-        problems=(*inventory.problems, *remarks, *remark_suite(suite, cases)),
+        problems=(*inventory.problems, *map(inventory.place, (*remarks, *remark_suite(suite, cases)))),
     )
 
 

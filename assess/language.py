@@ -8,7 +8,7 @@ parts, so that a report can say it in another language. ``make texts`` collects 
 
 import gettext as _standard
 import string
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
@@ -40,6 +40,12 @@ def fill(template: str, /, **values: Any) -> Text:
 def nfill(one: str, many: str, n: int, /, **values: Any) -> Text:
     """Return the sentence for one or for many, with ``{n}`` and `values` put in."""
     return _fill(one, many, {"n": n, **values}, n)
+
+
+def join(mark: str, parts: Iterable[object]) -> Text:
+    """Return `parts` with a `mark` between them; those that are a `Text` are translated when it is."""
+    values = {f"part_{at}": part for at, part in enumerate(parts)}
+    return _fill(mark.join(f"{{{name}}}" for name in values), "", values, None)
 
 
 def _fill(template: str, many: str, values: Mapping[str, Any], n: int | None) -> Text:

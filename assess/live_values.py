@@ -12,8 +12,9 @@ from assess.adoption import FORMULA
 from assess.assessment import run
 from assess.inventory.blank import Content, Units, write_workbook
 from assess.inventory.lists import RUN_ASSESS
-from assess.inventory.live import OUTSIDE
+from assess.inventory.live import OUTSIDE, say_class
 from assess.inventory.workbook import read_inventory
+from assess.language import gettext
 from assess.results import Assessment, ItemResult
 from assess.risk import classify
 from assess.settings import Settings
@@ -21,7 +22,7 @@ from assess.units import GRAVITY
 
 
 def stored_live(assessment: Assessment) -> list[list[float | str]]:
-    """Return what the columns `assess.inventory.columns.LIVE` show, five values an item.
+    """Return what the columns `assess.inventory.columns.LIVE` show in the language in use, five values an item.
 
     They equal what the formulas compute where the assessment was made with the workbook's own scenario and the default
     settings, which are all that the formulas know.
@@ -32,12 +33,12 @@ def stored_live(assessment: Assessment) -> list[list[float | str]]:
 def _live_row(one: ItemResult) -> list[float | str]:
     breadth_to_height = one.item.breadth / one.item.height
     if any(case.demand.source != "given" for case in one.cases):
-        return [breadth_to_height, *[RUN_ASSESS] * 4]
+        return [breadth_to_height, *[gettext(RUN_ASSESS)] * 4]
     methods = one.by_formula.methods
     risks = [methods[key].value for key in (FORMULA, "kaneko_hayashi")]
     outside = OUTSIDE if "extrapolated" in methods[FORMULA].flags else ""
     risk = None if risks[0] is None else classify(risks[0])
-    label = (risk.label if risk is not None else "") + outside
+    label = (say_class(risk) if risk is not None else "") + outside
     pfa_g = one.by_formula.demand.pfa / GRAVITY
     return [breadth_to_height, pfa_g, *("" if risk is None else risk for risk in risks), label]
 

@@ -6,11 +6,14 @@ from typing import Literal
 
 from assess.errors import OutputError
 from assess.inventory.blank import Content, write_workbook
+from assess.language import ENGLISH, load_catalogue, speaking
 
 Units = Literal["si", "imperial"]
 
 
-def start_workbook(path: Path, units: Units, *, example: bool = False, replace: bool = False) -> None:
+def start_workbook(
+    path: Path, units: Units, *, language: str = "en", example: bool = False, replace: bool = False
+) -> None:
     """Write a workbook to fill in.
 
     Parameters
@@ -19,6 +22,8 @@ def start_workbook(path: Path, units: Units, *, example: bool = False, replace: 
         An .xlsx; it appears whole or not at all.
     units : "si" or "imperial"
         Units of the headers.
+    language : str
+        Code of the language of the workbook, one of `assess.language.LANGUAGES`.
     example : bool
         Whether to fill in a small office.
     replace : bool
@@ -36,8 +41,9 @@ def start_workbook(path: Path, units: Units, *, example: bool = False, replace: 
     from assess.inventory.example import example_content
     from assess.live_values import with_live
 
+    catalogue = ENGLISH if language == ENGLISH.code else load_catalogue(language)
     try:
-        with tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=path.parent) as stage:
+        with speaking(catalogue), tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=path.parent) as stage:
             part = Path(stage) / path.name
             content = with_live(example_content(units), units) if example else Content()
             write_workbook(part, content, units)

@@ -42,6 +42,7 @@ def _of_themselves() -> Iterator[tuple[str, str]]:
     """Yield the texts that are not inside a call, and where they stand."""
     yield from _of_methods()
     yield from _of_columns()
+    yield from _of_the_workbook()
 
 
 def _of_methods() -> Iterator[tuple[str, str]]:
@@ -53,7 +54,8 @@ def _of_methods() -> Iterator[tuple[str, str]]:
 
     for method in all_methods():
         texts = (method.title, method.predicts, *method.assumptions, *method.departures, *method.flags.values())
-        for text in (*texts, *method.equations, *method.words):
+        marks = (flag.replace("_", " ") for flag in method.flags)
+        for text in (*texts, *marks, *method.equations, *method.words):
             if any(character.isalpha() for character in text):
                 yield text, f"assess/methods/{method.key}.py"
     for flags, name in ((ITEM_FLAGS, "cases"), (DEMAND_FLAGS, "demand")):
@@ -64,6 +66,7 @@ def _of_methods() -> Iterator[tuple[str, str]]:
         yield from ((text, "assess/motion/scenario.py") for text in (profile.remark, profile.equation) if text)
     yield from ((text, "assess/motion/scenario.py") for text in (VERIFIED, UNVERIFIED))
     yield from ((risk.word, "assess/risk.py") for risk in RiskClass)
+    yield from ((severity, "assess/errors.py") for severity in ("warning", "note"))
 
 
 def _of_columns() -> Iterator[tuple[str, str]]:
@@ -77,6 +80,23 @@ def _of_columns() -> Iterator[tuple[str, str]]:
                     yield text, "assess/inventory/columns.py"
     for label in (*LIVE, *WORKINGS):
         yield label.split(" [")[0], "assess/inventory/columns.py"
+
+
+def _of_the_workbook() -> Iterator[tuple[str, str]]:
+    """Yield what the empty workbook and the example hold beside the names of the columns."""
+    from assess.inventory import helptext, lists, live_row
+    from assess.inventory.blank import read_catalogue
+    from assess.inventory.columns import HELP, LISTS
+    from assess.inventory.example import example_texts
+
+    texts = (helptext.TITLE, *helptext.HEADS, *helptext.FIRST_LINES, helptext.CLASS_NOTE, helptext.LISTS_NOTE)
+    yield from ((text, "assess/inventory/helptext.py") for text in (*texts, helptext.FOOTER))
+    yield from ((text, "assess/inventory/columns.py") for text in (HELP, LISTS))
+    yield from ((text, "assess/inventory/lists.py") for text in (lists.RUN_ASSESS, lists.NO_UNIT, *lists.LISTED))
+    hints = (live_row.NO_FLOOR, live_row.NO_AXIS, live_row.WRONG)
+    yield from ((text, "assess/inventory/live_row.py") for text in hints)
+    yield from ((text, "assess/inventory/example.py") for text in example_texts())
+    yield from ((row["type"], "assess/inventory/catalogue.csv") for row in read_catalogue())
 
 
 def update(code: str) -> None:

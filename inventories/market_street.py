@@ -60,6 +60,8 @@ FLOORS: tuple[dict[str, str | float], ...] = (  # X: channels that point to 45 o
 BUILDING = {
     "height": HEIGHT, "ground_pga": 0.139,  # the ground floor channel's printed peak, 136.6 cm/s2
     "building": "575 Market Street", "address": "575 Market Street, San Francisco, California", "use": "Office",
+    "client": "Example client", "prepared_by": "Example consultant", "checked_by": "Second engineer",
+    "approved_by": "Head of department", "revision": "1",
     "scenario": "Loma Prieta earthquake, 17 October 1989, as recorded in the building. "
     "The furniture is an example; the records are real. Floors are assumed to be evenly spread.", "azimuth_deg": 45,
 }  # fmt: skip

@@ -25,7 +25,7 @@ LAYERS = {
     "ensembles": 7, "adoption": 7, "verification": 7, "ranking": 7, "cases": 7,
     "remarks": 7, "results": 7, "assessment": 7, "live_values": 7,
     "report": 8, "start": 8,
-    "__init__": 9, "__main__": 9, "cli": 9, "console": 9, "progress": 9, "doctor": 9,
+    "__init__": 9, "__main__": 9, "cli": 9, "console": 9, "options": 9, "progress": 9, "doctor": 9,
 }  # fmt: skip
 """A module imports from lower layers, and inside its own layer or folder without a loop."""
 
@@ -146,15 +146,14 @@ def readme_table():
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
-def test_blank_workbook_is_in_step_with_the_columns(tmp_path):
+@pytest.mark.parametrize(("name", "language"), [("blank.xlsx", "en"), ("blank-it.xlsx", "it")])
+def test_blank_workbook_is_in_step_with_the_columns(tmp_path, name, language):
     import openpyxl
 
-    from assess.inventory.blank import write_workbook
+    from assess.start import start_workbook
 
-    write_workbook(tmp_path / "blank.xlsx")
-    fresh, kept = (
-        openpyxl.load_workbook(path) for path in (tmp_path / "blank.xlsx", ROOT / "inventories" / "blank.xlsx")
-    )
+    start_workbook(tmp_path / name, "si", language=language)
+    fresh, kept = (openpyxl.load_workbook(path) for path in (tmp_path / name, ROOT / "inventories" / name))
     assert fresh.sheetnames == kept.sheetnames
     for name in fresh.sheetnames:
         cells = [

@@ -8,7 +8,7 @@ import pytest
 
 from tests.workbooks import write
 
-HEAVY = ("pandas", "matplotlib", "weasyprint", "scipy.stats", "numba", "scipy", "xlsxwriter", "jinja2")
+HEAVY = ("pandas", "matplotlib", "weasyprint", "scipy.stats", "numba", "scipy", "xlsxwriter", "jinja2", "babel")
 
 
 def _child(code):

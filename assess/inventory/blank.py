@@ -5,7 +5,7 @@ Everything is derived from `columns`; the sheet Lists, which drop-downs and form
 
 from collections.abc import Mapping, Sequence
 from csv import DictReader
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from importlib.resources import files
 from io import StringIO
@@ -15,12 +15,14 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from assess.inventory.columns import CATALOGUE, ITEMS, LIVE, SHEETS, WORKINGS, Column, Sheet
-from assess.inventory.helptext import FIRST_LINES
+from assess.inventory.columns import CATALOGUE, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.inventory.helptext import CLASS_NOTE, FIRST_LINES, FOOTER, HEADS, TITLE
 from assess.inventory.lists import ROWS, ListsWriter, Units, slug
 from assess.inventory.live import OUTSIDE, write_plainly
 from assess.inventory.live_row import FIRST, LiveRow
+from assess.inventory.wording import say_live
 from assess.inventory.writer import write_book
+from assess.language import gettext
 from assess.risk import RiskClass
 
 __all__ = ["ROWS", "Content", "Rows", "Units", "describe", "read_catalogue", "write_workbook"]
@@ -33,7 +35,7 @@ CREATED = datetime(2000, 1, 1)
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """What to fill in: rows by sheet, each a value by field name in the units of the headers.
+    """What to fill in: rows by sheet, each a value by field name in the units of the headers, choices in English.
 
     `live` holds the results of the live columns, one sequence an item, stored so that a viewer that does not
     calculate shows them.
@@ -44,12 +46,13 @@ class Content:
 
 
 def read_catalogue(units: Units = "si") -> list[dict[str, Any]]:
-    """Return the built-in types of furniture, sizes in the units of the headers (cm or in)."""
+    """Return the built-in types of furniture in the language in use, sizes in the units of the headers (cm or in)."""
     text = (files("assess.inventory") / "catalogue.csv").read_text(encoding="utf-8")
     scale = 1 if units == "si" else 1 / 2.54
     rows = []
     for line in DictReader(StringIO(text)):
-        row: dict[str, Any] = {"type": line["type"], "source": line["source"]}
+        kind = line["type"]
+        row: dict[str, Any] = {"type": gettext(kind), "source": line["source"]}
         for name in ("breadth", "width", "height"):
             if line[f"{name}_cm"]:
                 row[name] = round(float(line[f"{name}_cm"]) * scale, 2)
@@ -58,7 +61,7 @@ def read_catalogue(units: Units = "si") -> list[dict[str, Any]]:
 
 
 def write_workbook(path: Path, content: Content | None = None, units: Units = "si") -> None:
-    """Write a workbook to fill in, or one that is filled in already.
+    """Write a workbook to fill in, or one that is filled in already, in the language in use.
 
     Parameters
     ----------
@@ -77,7 +80,8 @@ def write_workbook(path: Path, content: Content | None = None, units: Units = "s
     filled = content or Content()
 
     def fill(book: Any) -> None:
-        book.set_properties({"title": "Furniture inventory", "comments": "Made with assess new", "created": CREATED})
+        title, made = gettext("Furniture inventory"), gettext("Made with assess new")
+        book.set_properties({"title": title, "comments": made, "created": CREATED})
         _Writer(book, filled, units).write()
 
     write_book(path, fill)
@@ -101,9 +105,9 @@ class _Writer:
         self.last = {name: 1 + max(rows, len(self._rows(name))) for name, rows in ROWS.items()}
 
     def write(self) -> None:
-        help_sheet = self.book.add_worksheet("Help")
-        pages = {sheet.name: self.book.add_worksheet(sheet.name) for sheet in SHEETS}
-        lists = self.book.add_worksheet("Lists")
+        help_sheet = self.book.add_worksheet(gettext(HELP))
+        pages = {sheet.name: self.book.add_worksheet(gettext(sheet.name)) for sheet in SHEETS}
+        lists = self.book.add_worksheet(gettext(LISTS))
         for page in (*pages.values(), lists):
             write_plainly(page)
         ListsWriter(self.book, lists, self.title, self.units, self.last).write()
@@ -122,42 +126,45 @@ class _Writer:
         page.set_column(1, 1, 44)
         page.set_column(2, 2, 80, self.wrap)
         for at, column in enumerate(sheet.columns):
-            page.write_string(at, 0, column.header(self.units), self.head)
-            self._write_cell(page, at, 1, values.get(column.name))
-            page.write_string(at, 2, column.help)
+            page.write_string(at, 0, self._header(column), self.head)
+            self._write_cell(page, at, 1, column, values.get(column.name))
+            page.write_string(at, 2, gettext(column.help))
             self._validate(page, column, at, 1, at)
 
     def _write_table(self, page: Any, sheet: Sheet) -> None:
         last = self.last[sheet.name] - 1
         for at, column in enumerate(sheet.columns):
             page.set_column(at, at, column.width, self.text if column.kind == "text" else None)
-            page.write_string(0, at, column.header(self.units), self.head)
+            page.write_string(0, at, self._header(column), self.head)
             self._validate(page, column, 1, at, last)
         for number, row in enumerate(self._rows(sheet.name), 1):
             for at, column in enumerate(sheet.columns):
-                self._write_cell(page, number, at, row.get(column.name))
+                self._write_cell(page, number, at, column, row.get(column.name))
         page.freeze_panes(1, 1)
         more = len(LIVE) + len(WORKINGS)
         page.autofilter(0, 0, last, len(sheet.columns) - 1 + (more if sheet.name == "Items" else 0))
         page.set_landscape()
         page.fit_to_pages(1, 0)
         page.repeat_rows(0)
-        page.set_footer("&C&A, page &P of &N")
+        page.set_footer(gettext(FOOTER))
 
     def _rows(self, sheet: str) -> Rows:
         rows = self.content.rows.get(sheet, ())
         return read_catalogue(self.units) if sheet == CATALOGUE.name and not rows else rows
 
-    def _write_cell(self, page: Any, row: int, at: int, value: Any) -> None:
+    def _header(self, column: Column) -> str:
+        return replace(column, label=gettext(column.label)).header(self.units)
+
+    def _write_cell(self, page: Any, row: int, at: int, column: Column, value: Any) -> None:
         if isinstance(value, str):
-            page.write_string(row, at, value, self.text)
+            page.write_string(row, at, gettext(value) if column.choices else value, self.text)
         elif value is not None:
             page.write_number(row, at, value)
 
     def _validate(self, page: Any, column: Column, row: int, at: int, last: int) -> None:
         """Attach the drop-down or the check of a number, and the input message."""
         options: dict[str, Any] = {
-            "input_title": column.label[:32],
+            "input_title": gettext(column.label)[:32],
             "input_message": _message(column),
             "ignore_blank": True,
         }
@@ -168,7 +175,8 @@ class _Writer:
         elif column.kind == "count":
             options |= {"validate": "integer", "criteria": "between", "minimum": column.low, "maximum": column.high}
         elif column.kind == "number":
-            options |= {"validate": "decimal", "criteria": ">", "value": -1e9, "error_message": "Type a number."}
+            options |= {"validate": "decimal", "criteria": ">", "value": -1e9}
+            options |= {"error_message": gettext("Type a number.")}
         else:
             options |= {"validate": "any"}
         page.data_validation(row, at, last, at, options)
@@ -177,10 +185,9 @@ class _Writer:
 
     def _write_live(self, page: Any) -> None:
         for at, label in enumerate((*LIVE, *WORKINGS)):
-            page.write_string(0, FIRST + at, label, self.live_head)
+            page.write_string(0, FIRST + at, say_live(label), self.live_head)
             page.set_column(FIRST + at, FIRST + at, 16 if at == len(LIVE) - 1 else 10)
-        page.write_comment(0, FIRST + 4, f"Computed by Excel from this row. {OUTSIDE} behind a class: outside the "
-                           "range in which the formula was checked by tests.", {"x_scale": 2})  # fmt: skip
+        page.write_comment(0, FIRST + 4, gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 2})
         last = self.last[ITEMS.name]
         for row in range(2, last + 1):
             stored = self.content.live[row - 2] if row - 2 < len(self.content.live) else ()
@@ -209,30 +216,30 @@ class _Writer:
         page.set_column(1, 1, 22)
         page.set_column(2, 2, 90, self.wrap)
         page.hide_gridlines(2)
-        page.write_string(0, 0, "Furniture in earthquakes: how to fill this in", self.title)
+        page.write_string(0, 0, gettext(TITLE), self.title)
         row = 2
-        for line in FIRST_LINES:
+        for line in map(gettext, FIRST_LINES):
             page.merge_range(row, 0, row, 2, line, self.wrap)
             page.set_row(row, 15 * (1 + len(line) // 125))
             row += 1
-        for at, head in enumerate(("Sheet", "Column", "What to fill in")):
-            page.write_string(row + 1, at, head, self.head)
+        for at, head in enumerate(HEADS):
+            page.write_string(row + 1, at, gettext(head), self.head)
         row += 2
         for sheet in SHEETS:
             for column in sheet.columns:
-                page.write_string(row, 0, sheet.name, self.bold)
-                page.write_string(row, 1, column.header(self.units) + (" *" if column.required else ""), self.bold)
+                page.write_string(row, 0, gettext(sheet.name), self.bold)
+                page.write_string(row, 1, self._header(column) + (" *" if column.required else ""), self.bold)
                 page.write_string(row, 2, describe(column), self.wrap)
                 row += 1
 
 
 def describe(column: Column) -> str:
-    """Return the help of a column with its choices and what a blank means, in one or two sentences."""
-    parts = [column.help]
+    """Return the help of a column with its choices and what a blank means, in the language in use."""
+    parts = [gettext(column.help)]
     if column.choices:
-        parts.append(f"One of: {', '.join(column.choices)}.")
+        parts.append(gettext("One of: {choices}.", choices=", ".join(map(gettext, column.choices))))
     if column.default:
-        parts.append(f"Blank: {column.default}.")
+        parts.append(gettext("Blank: {default}.", default=gettext(column.default)))
     return " ".join(parts)
 
 

@@ -6,9 +6,10 @@ import math
 import re
 import unicodedata
 
+from assess.errors import InputError
 from assess.inventory.columns import Column
-from assess.inventory.labels import key
-from assess.settings import match_choice
+from assess.inventory.wording import find_choice, plain, say_choices
+from assess.language import Text, fill, find_language
 from assess.units import QUANTITIES
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
@@ -108,13 +109,28 @@ def read_count(column: Column, value: object) -> int:
 def read_choice(column: Column, value: object) -> str:
     """Return the choice that was meant; raises CellError if there is none such."""
     text = read_text(value)
-    if (choice := match_choice(text, column.choices)) is not None:
+    if (choice := find_choice(text, column.choices)) is not None:
         return choice
-    allowed = ", ".join(column.choices)
-    near = difflib.get_close_matches(key(text), [key(choice) for choice in column.choices], 1, 0.75)
-    meant = next((choice for choice in column.choices if near and key(choice) == near[0]), None)
+    own = say_choices(column.choices, column.language)
+    allowed, words = ", ".join(own), {plain(word): word for word in (*column.choices, *own)}
+    near = difflib.get_close_matches(plain(text), words, 1, 0.75)
+    meant = words[near[0]] if near else None
     hint = f"Did you mean {meant}?" if meant else "Choose from the list."
     raise CellError(f"{column.label} is {shorten(text)}, expected one of: {allowed}.", hint)
+
+
+def read_language(column: Column, value: object) -> str:
+    """Return the language that was meant by any of its names, or its code; raises CellError if there is none such."""
+    try:
+        code = find_language(read_text(value))
+    except InputError:
+        return read_choice(column, value)
+    return next(choice for choice in column.choices if find_language(choice) == code)
+
+
+def read_date(value: object) -> str:
+    """Return a date as text: an ISO date, or as it was typed."""
+    return read_text(value.date() if isinstance(value, datetime.datetime) else value)
 
 
 def is_unusual(column: Column, number: float, unit: str) -> bool:
@@ -125,9 +141,22 @@ def is_unusual(column: Column, number: float, unit: str) -> bool:
     )
 
 
-def usual_range(column: Column, unit: str) -> str:
-    """Return the usual range in the unit of the column's header, ``20 to 300 cm``."""
-    return _span(column.usual_low, column.usual_high, _scale(column, unit), unit)
+def describe_unusual(column: Column, number: float, unit: str) -> Text:
+    """Say that a number is not what is usual, which is given in the unit of the column's header."""
+    return fill(
+        "{column} is {number:g} {unit}, usual is {usual}.",
+        column=fill(column.label),
+        number=number,
+        unit=unit,
+        usual=_span(column.usual_low, column.usual_high, _scale(column, unit), unit),
+    )
+
+
+def describe_removed(count: int, column: Column) -> Text:
+    """Say how many characters `clean` took out of a text."""
+    return fill(
+        "{count} control or direction characters in {column} were taken out.", count=count, column=fill(column.label)
+    )
 
 
 def _not_a_number(label: str, text: str, unit: str) -> CellError:
@@ -184,8 +213,10 @@ def _likely_slip(column: Column, number: float, unit: str) -> str:
     return "Check the number and the unit in the header."
 
 
-def _span(low: float | None, high: float | None, scale: float, unit: str) -> str:
+def _span(low: float | None, high: float | None, scale: float, unit: str) -> Text:
     suffix = f" {unit}" if unit else ""
     if low is not None and high is not None:
-        return f"{low / scale:.4g} to {high / scale:.4g}{suffix}"
-    return f"at least {low / scale:.4g}{suffix}" if low is not None else f"at most {(high or 0) / scale:.4g}{suffix}"
+        return fill("{low:.4g} to {high:.4g}{unit}", low=low / scale, high=high / scale, unit=suffix)
+    if low is not None:
+        return fill("at least {low:.4g}{unit}", low=low / scale, unit=suffix)
+    return fill("at most {high:.4g}{unit}", high=(high or 0) / scale, unit=suffix)

@@ -1,6 +1,7 @@
 """Every sheet and column of the workbook, once.
 
-Reading, checking, the empty workbook, the report's headings and the README's table are all derived from `SHEETS`.
+Reading, checking, the empty workbook, the report's headings and the README's table are all derived from `SHEETS`, and
+so are the names in other languages, by which a workbook may call its sheets, columns and choices, too: see `wording`.
 A header is the label with its unit in brackets, ``Height [cm]``; the bracket is the unit of the column.
 """
 
@@ -10,13 +11,14 @@ from typing import Literal
 from assess.settings import SCENARIOS
 from assess.units import QUANTITIES
 
-Kind = Literal["text", "number", "count", "choice", "file", "records"]
+Kind = Literal["text", "number", "count", "choice", "language", "date", "file", "records"]
 
 AXES = ("X", "Y")
 ANCHORED = ("no", "yes", "partly", "unknown")
 IMPORTANCE = ("life safety", "function", "property")
 PLACES = ("room", "corridor", "door", "stair", "exit")
-LANGUAGES = ("English",)
+LANGUAGES = ("English", "Italiano")
+"""Of reports: names that `assess.language.find_language` knows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +51,8 @@ class Column:
         What a blank means, in words.
     width : int
         Width in the empty workbook [characters].
+    language : str
+        Code of the language that `label` is in.
     """
 
     name: str
@@ -67,6 +71,7 @@ class Column:
     source: str = ""
     default: str = ""
     width: int = 12
+    language: str = "en"
 
     def header(self, units: Literal["si", "imperial"] = "si") -> str:
         """Label with the unit in brackets, as the empty workbook writes it."""
@@ -137,6 +142,7 @@ BUILDING = Sheet(
         Column(name="building", label="Building", kind="text", help="Name of the building.", width=40),
         Column(name="address", label="Address", kind="text", help="Street and town."),
         Column(name="use", label="Use", kind="text", help="Office, hospital, school ..."),
+        Column(name="client", label="Client", kind="text", help="For whom the report is made: for its cover."),
         Column(name="storeys", label="Storeys", kind="count", help="Storeys above ground.", low=1, high=300),
         Column(
             name="height", label="Height", kind="number", quantity="length", unit="m", imperial="ft", low=2, high=1000,
@@ -153,6 +159,10 @@ BUILDING = Sheet(
             low=-360, high=360, default="directions of records are not checked",
         ),
         Column(name="prepared_by", label="Prepared by", kind="text", help="Who answers for the report."),
+        Column(name="checked_by", label="Checked by", kind="text", help="Who has checked the report: for its cover."),
+        Column(name="approved_by", label="Approved by", kind="text", help="Who has approved the report: for its cover."),
+        Column(name="revision", label="Revision", kind="text", help="Number or letter of this issue of the report."),
+        Column(name="report_date", label="Report date", kind="date", help="Date on the cover of the report.", default="today"),
         Column(name="organisation", label="Organisation", kind="text", help="For the cover of the report."),
         Column(name="logo", label="Logo file", kind="file", help="PNG or JPEG file beside the workbook, for the cover."),
         Column(name="scenario", label="Scenario", kind="text", help="The earthquake, in words: for the cover."),
@@ -175,7 +185,7 @@ BUILDING = Sheet(
             help="Angular velocity after an impact over that before it, for direct integration.",
         ),
         Column(
-            name="language", label="Report language", kind="choice", choices=LANGUAGES, default="English",
+            name="language", label="Report language", kind="language", choices=LANGUAGES, default="the workbook's",
             help="Language of the report.",
         ),
     ),
@@ -303,6 +313,9 @@ CATALOGUE = Sheet(
 )
 
 SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE)
+
+HELP, LISTS = "Help", "Lists"
+"""Sheets of the empty workbook that hold no data; reading leaves them out."""
 
 LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)")
 """Columns at the right of Items that Excel computes; reading leaves them out."""

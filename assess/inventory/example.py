@@ -3,11 +3,12 @@
 All numbers are made up. They stand here in the SI headers' units and are converted where the headers are imperial.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from assess.inventory.blank import Content, Units
 from assess.inventory.columns import SHEETS, Column, Sheet
+from assess.language import gettext
 from assess.units import QUANTITIES
 
 SCENARIO = "Example values, not a real building"
@@ -72,8 +73,21 @@ _ROWS: Mapping[str, tuple[dict[str, Any], ...]] = {
 }  # fmt: skip
 
 
+def example_texts() -> Iterator[str]:
+    """Yield every text of the example that is more than a number or the name of a type."""
+    for name, rows in _ROWS.items():
+        columns = {column.name: column for sheet in SHEETS if sheet.name == name for column in sheet.columns}
+        for row in rows:
+            for field, value in row.items():
+                if isinstance(value, str) and not columns[field].choices and field != "type":
+                    yield from (value,) if any(sign.isalpha() for sign in value) else ()
+
+
 def example_content(units: Units = "si") -> Content:
-    """Return the example's rows in the units of the headers; `assess.live_values.with_live` adds the results."""
+    """Return the example's rows in the language in use and in the units of the headers.
+
+    `assess.live_values.with_live` adds the results.
+    """
     sheets = {sheet.name: sheet for sheet in SHEETS}
     return Content({name: [_convert(sheets[name], row, units) for row in rows] for name, rows in _ROWS.items()})
 
@@ -83,6 +97,8 @@ def _convert(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, An
 
 
 def _in_units(column: Column, value: Any, units: Units) -> Any:
+    if isinstance(value, str):
+        return value if column.choices else gettext(value)  # choices are translated where they are written
     if units == "si" or column.imperial == column.unit:
         return value
     factors = QUANTITIES[column.quantity]

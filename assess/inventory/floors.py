@@ -12,6 +12,7 @@ from assess.inventory.files import find_file, find_picture
 from assess.inventory.model import Axis, Building, Floor, FloorRecord
 from assess.inventory.names import check_unique, check_wildcards
 from assess.inventory.tables import Row, Table
+from assess.language import fill
 from assess.motion.formats import read_records, select
 from assess.motion.record import Record
 
@@ -96,7 +97,7 @@ class FloorReader:
         text, cell = row.values.get("plan"), self.table.cell("plan", row.number)
         if text is None:
             return None
-        self.table.report(cell, "Plan image is kept, not drawn by this version.", severity="note")
+        self.table.report(cell, fill("Plan image is kept, not drawn by this version."), severity="note")
         try:
             return find_picture(text, self.folder)
         except CellError as error:
@@ -154,8 +155,14 @@ class FloorReader:
         along = self.building.azimuth_deg + (90 if axis == "Y" else 0)
         off = angle_between(record.azimuth_deg, along)
         if off > NEAR_AXIS:
-            message = f"{shorten(text)} points to {record.azimuth_deg:g} deg, {off:.0f} deg off the {axis} axis."
-            self.table.report(cell, message, "Check the axis, or Azimuth of X in Building.", "warning")
+            message = fill(
+                "{record} points to {azimuth:g} deg, {off:.0f} deg off the {axis} axis.",
+                record=shorten(text),
+                azimuth=record.azimuth_deg,
+                off=off,
+                axis=axis,
+            )
+            self.table.report(cell, message, fill("Check the axis, or Azimuth of X in Building."), "warning")
 
 
 def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[str, str]:

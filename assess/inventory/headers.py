@@ -1,7 +1,7 @@
 """Headers: which row holds them, which column each names, and the unit in its brackets."""
 
 import difflib
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain, islice
 from typing import Any, Protocol
@@ -10,8 +10,10 @@ from openpyxl.utils import get_column_letter
 
 from assess.errors import Severity
 from assess.inventory.cells import read_text, shorten
-from assess.inventory.columns import LIVE, WORKINGS, Column, Sheet
-from assess.inventory.labels import fold, split_header
+from assess.inventory.columns import Column, Sheet
+from assess.inventory.labels import split_header
+from assess.inventory.wording import find_column, is_live, plain, versions
+from assess.language import fill
 from assess.units import QUANTITIES, read_unit
 
 HEADER_ROWS = 20
@@ -29,13 +31,14 @@ class Report(Protocol):
 
 @dataclass(slots=True)
 class Headers:
-    """The headers of one sheet.
+    """The headers of one sheet, in any language: `english` is the sheet with its English names, `sheet` with its own.
 
     `columns` and `others` tell by place what stands in a column: one that is known, or the header of one that is not.
     `cells` and `units` tell by field name where the header stands and which unit it gives; `blind` are the fields
-    whose unit is not known.
+    whose unit is not known; `found` the columns with the labels that they have here.
     """
 
+    english: Sheet
     sheet: Sheet
     report: Report
     columns: dict[int, Column] = field(default_factory=dict)
@@ -43,22 +46,23 @@ class Headers:
     cells: dict[str, str] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     blind: set[str] = field(default_factory=set)
+    found: list[Column] = field(default_factory=list)
 
     def read(self, number: int, values: Values) -> None:
         """Read the header row of a table."""
-        live = {fold(split_header(label)[0]) for label in (*LIVE, *WORKINGS)}
         texts = {at: read_text(value) for at, value in enumerate(values) if value is not None}
-        labels = {fold(split_header(text)[0]) for text in texts.values()}
+        labels = {plain(split_header(text)[0]) for text in texts.values()}
         for at, text in texts.items():
             cell = f"{get_column_letter(at + 1)}{number}"
-            if not text or fold(split_header(text)[0]) in live:
+            if not text or is_live(self.english, split_header(text)[0]):
                 continue
             column, is_wrong = self.match(text, cell, "column", labels)
             if column:
                 self.columns[at] = column
             elif not is_wrong:
                 self.others[at] = text
-                self.report(cell, f"the column {shorten(text)} is not known; it is kept, not used.", severity="note")
+                message = fill("the column {name} is not known; it is kept, not used.", name=shorten(text))
+                self.report(cell, message, severity="note")
         for column in self.missing():
             self.report(f"A{number}", f"the column {column.header()} is missing.", "Add it to the header row.")
 
@@ -69,7 +73,7 @@ class Headers:
     def match(self, header: str, cell: str, what: str, labels: Collection[str] = ()) -> tuple[Column | None, bool]:
         """Return the column that a header names, and whether the header was reported as wrong."""
         label, unit = split_header(header)
-        column = next((one for one in self.sheet.columns if fold(one.label) == fold(label)), None)
+        column = find_column(self.english, label)
         if column is None:
             near = self._near(label, unit, labels)
             if near:
@@ -80,6 +84,7 @@ class Headers:
             self.report(cell, f"the {what} {column.label} is here twice, also in {also}.", "Delete one of them.")
             return None, True
         self.cells[column.name] = cell
+        self.found.append(column)
         self._read_unit(column, unit, cell)
         return column, False
 
@@ -97,9 +102,9 @@ class Headers:
 
     def _near(self, label: str, unit: str | None, labels: Collection[str]) -> Column | None:
         """Return the column that a header nearly names; Weight [kg] beside Height [cm] is no slip."""
-        folded = fold(label)
-        for one in self.sheet.columns:
-            known = fold(one.label)
+        folded = plain(label)
+        for one in chain(self.sheet.columns, *(sheet.columns for sheet in versions(self.english))):
+            known = plain(one.label)
             if unit is None and _has_bare_unit(folded, known, one):
                 return one
             if unit is not None and read_unit(unit) not in QUANTITIES.get(one.quantity, {}):
@@ -117,18 +122,28 @@ def _has_bare_unit(folded: str, known: str, column: Column) -> bool:
     return folded.startswith(known) and read_unit(rest) in QUANTITIES.get(column.quantity, {})
 
 
-def find_header(sheet: Sheet, rows: Rows, report: Report) -> tuple[int, Values, Rows] | None:
+def find_header(headers: Headers, rows: Rows) -> tuple[int, Values, Rows] | None:
     """Return number and values of the header row, and the rows below it; None, reported, where there is none."""
-    known = {fold(column.label) for column in sheet.columns}
+    sheet, report = headers.sheet, headers.report
     top = list(islice(rows, HEADER_ROWS))
-    scores = [
-        sum(fold(split_header(str(cell))[0]) in known for cell in values if cell is not None) for _, values in top
-    ]
-    if any(scores):
-        best = scores.index(max(scores))
+    best = _best_row(headers.english, top)
+    if best is not None:
         return top[best][0], top[best][1], chain(top[best + 1 :], rows)
     if sheet.required or any(value is not None for _, values in top for value in values):
         needed = " and ".join(column.header() for column in sheet.columns if column.required)
         message = f"no header row was found in the first {HEADER_ROWS} rows."
         report("A1", message, f"It needs the columns {needed}.")
     return None
+
+
+def _best_row(sheet: Sheet, top: Sequence[tuple[int, Values]]) -> int | None:
+    """Return which row names most columns, the first of them; other languages count where English falls short."""
+    rows = [[plain(split_header(str(cell))[0]) for cell in values if cell is not None] for _, values in top]
+    known: set[str] = set()
+    for said in versions(sheet):
+        known |= {plain(column.label) for column in said.columns}
+        scores = [sum(label in known for label in labels) for labels in rows]
+        best = scores.index(max(scores)) if any(scores) else None
+        if best is not None and {plain(column.label) for column in said.columns if column.required} <= {*rows[best]}:
+            return best
+    return best

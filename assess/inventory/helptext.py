@@ -1,4 +1,8 @@
-"""What the sheet Help says before the list of columns."""
+"""What the sheets of the empty workbook say beside the columns, and the sheet Help before the list of them."""
+
+TITLE = "Furniture in earthquakes: how to fill this in"
+
+HEADS = ("Sheet", "Column", "What to fill in")
 
 FIRST_LINES = (
     "1. Building: what you know of the building and the earthquake. Every line may stay blank.",
@@ -20,3 +24,11 @@ FIRST_LINES = (
 )
 
 LISTS_NOTE = "Lists, units and helper columns for the drop-downs and live columns. Please leave this sheet as it is."
+
+CLASS_NOTE = (
+    "Computed by Excel from this row. {mark} behind a class: outside the range in which the formula was checked "
+    "by tests."
+)
+
+FOOTER = "&C&A, page &P of &N"
+"""In the spreadsheet program's own signs: centred, the sheet's name, its page and the number of pages."""

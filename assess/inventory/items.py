@@ -10,6 +10,7 @@ from assess.inventory.labels import key
 from assess.inventory.model import Building, CatalogueType, Item
 from assess.inventory.names import check_references, check_unique, defined_names
 from assess.inventory.tables import Row, Table
+from assess.language import fill
 from assess.units import ROUNDING
 
 
@@ -68,8 +69,9 @@ class ItemReader:
             elif name != "width" and name not in table.letters:
                 self.lacking.setdefault(name, []).append(row)  # said once for the column, not in every row
             elif name != "width" and not table.spoilt("type", row):
-                message = f"{table.sheet.column(name).label} is blank and no Type gives it."
-                table.report(table.cell(name, row), message, "Fill it in, or choose a Type that has one.")
+                label = table.label("type")
+                message = f"{table.label(name)} is blank and no {label} gives it."
+                table.report(table.cell(name, row), message, f"Fill it in, or choose a {label} that has one.")
         return assumed
 
 
@@ -78,16 +80,22 @@ def _check_axis(table: Table, row: int, values: Mapping[str, Any]) -> None:
     axis, angle = values.get("axis"), values.get("angle_deg")
     turned = axis_of(angle) if angle is not None else None
     if axis is not None and turned is not None and axis != turned:
-        message = f"Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used."
-        table.report(table.cell("axis", row), message, "Correct one of the two.", "warning")
+        message = fill(
+            "Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.",
+            axis=axis,
+            angle=angle,
+            turned=turned,
+        )
+        table.report(table.cell("axis", row), message, fill("Correct one of the two."), "warning")
 
 
 def check_plan_sides(table: Table, row: int, values: Mapping[str, Any]) -> None:
     """Report a Breadth that is greater than the Width: Breadth is the shorter plan side."""
     breadth, width = values.get("breadth"), values.get("width")
     if breadth is not None and width is not None and breadth > width * (1 + ROUNDING):
-        message = f"Breadth {breadth * 100:g} cm is greater than Width {width * 100:g} cm."
-        mend = "Breadth is the shorter plan side: exchange the two."
+        shorter = table.label("breadth")
+        message = f"{shorter} {breadth * 100:g} cm is greater than {table.label('width')} {width * 100:g} cm."
+        mend = f"{shorter} is the shorter plan side: exchange the two."
         table.report(table.cell("breadth", row), message, mend)
 
 
@@ -95,18 +103,21 @@ def _check_sizes(table: Table, row: int, values: Mapping[str, Any]) -> None:
     check_plan_sides(table, row, values)
     breadth, height = values.get("breadth"), values.get("height")
     if breadth is not None and height is not None and breadth > height * (1 + ROUNDING):
-        message = f"Breadth {breadth * 100:g} cm is greater than Height {height * 100:g} cm."
-        table.report(table.cell("breadth", row), message, "Are the two exchanged?", "warning")
+        message = fill(
+            "Breadth {breadth:g} cm is greater than Height {height:g} cm.", breadth=breadth * 100, height=height * 100
+        )
+        table.report(table.cell("breadth", row), message, fill("Are the two exchanged?"), "warning")
 
 
 def _check_position(table: Table, row: int, values: Mapping[str, Any]) -> None:
     x, y, quantity = (values.get(name) for name in ("x", "y", "quantity"))
     if (x is not None or y is not None) and (quantity or 1) > 1:
-        message = f"Quantity is {quantity} on a row with a position."
+        message = f"{table.label('quantity')} is {quantity} on a row with a position."
         table.report(table.cell("quantity", row), message, "Write one row a piece, or clear X and Y.")
     if (x is None) != (y is None) and not (table.spoilt("x", row) or table.spoilt("y", row)):
         cell = table.cell("y" if y is None else "x", row)
-        table.report(cell, "a position needs both X and Y.", "Fill in the other, or clear both.", "warning")
+        message = fill("a position needs both X and Y.")
+        table.report(cell, message, fill("Fill in the other, or clear both."), "warning")
 
 
 def _check_routes(table: Table, routes: Table) -> None:
@@ -128,7 +139,8 @@ def _check_segment(table: Table, row: Row, names: Mapping[str, str], known: set[
     route, segment = row.values.get("route"), row.values.get("segment")
     cell = table.cell("segment", row.number)
     if segment and not route:
-        table.report(cell, "a Segment is named without its Route.", "Fill in Route.")
+        part, whole = table.label("segment"), table.label("route")
+        table.report(cell, f"a {part} is named without its {whole}.", f"Fill in {whole}.")
     elif route and segment and key(route) in names and (key(route), key(segment)) not in known:
         message = f"Route {shorten(route)} has no segment {shorten(segment)}."
         table.report(cell, message, "Add it to Routes, or clear the cell.")

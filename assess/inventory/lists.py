@@ -11,8 +11,9 @@ from typing import Any, Literal
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.inventory import live
-from assess.inventory.columns import BUILDING, SHEETS, Column
+from assess.inventory.columns import BUILDING, LISTS, SHEETS, Column
 from assess.inventory.helptext import LISTS_NOTE
+from assess.language import gettext
 from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
 from assess.units import ALIASES, GRAVITY, QUANTITIES
 
@@ -28,17 +29,28 @@ RUN_ASSESS = "run assess"
 """What the live columns say of a floor with a record, which no spreadsheet formula can read, of one of which nothing is
 known, and of every floor where a code's profile is chosen."""
 
+NO_UNIT = "unit?"
+"""What they say where the bracket of a header holds no unit that is known."""
+
+LISTED = ("length", "acceleration", "velocity", "time")
+"""Quantities of which the sheet holds the units."""
+
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
     ("Floors", "pfa_x"), ("Floors", "pfa_y"), ("Floors", "pfv_x"), ("Floors", "pfv_y"), ("Building", "period"),
 )  # fmt: skip
+
+_OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "given"}
+"""Scenarios that floors' own values serve, by how choices are compared."""
+
+_SCENARIO_NAMES = ("scenario_typed", "scenario_kind", "scenario_is_own")
 
 _FLOOR_HELPERS = ("own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best")
 
 
 def slug(column: Column) -> str:
     """Return the part of a defined name that stands for a column."""
-    return column.label.lower().replace(" ", "_")
+    return column.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,49 +65,52 @@ class ListsWriter:
 
     def write(self) -> None:
         """Write everything, one block beside the other."""
-        self.page.write_string(0, 0, LISTS_NOTE, self.title)
+        self.page.write_string(0, 0, gettext(LISTS_NOTE), self.title)
         at = self._write_choices()
         at = self._write_units(at + 1)
         at = self._write_factors(at + 1)
         self._write_floors(at + 1)
         for name in ("Floors", "Catalogue", "Places", "Routes"):
             self._name(f"list_{name.lower()}", name, "A", 2, self.last[name])
-        self.book.define_name("period", f"=Building!$B${_line('period')}")
+        self.book.define_name("period", f"={gettext(BUILDING.name)}!$B${_line('period')}")
 
     def _name(self, name: str, sheet: str, column: str, first: int, last: int) -> None:
-        self.book.define_name(name, f"={sheet}!${column}${first}:${column}${last}")
+        self.book.define_name(name, f"={gettext(sheet)}!${column}${first}:${column}${last}")
+
+    def _name_cell(self, name: str, at: int, row: int) -> None:
+        self.book.define_name(name, f"={gettext(LISTS)}!${xl_col_to_name(at)}${row}")
 
     def _write_choices(self) -> int:
         chosen = {slug(column): column for sheet in SHEETS for column in sheet.columns if column.choices}
         for at, (name, column) in enumerate(chosen.items()):
-            self.page.write_column(2, at, (column.label, *column.choices))
-            self._name(f"list_{name}", "Lists", xl_col_to_name(at), 4, 3 + len(column.choices))
+            self.page.write_column(2, at, [gettext(text) for text in (column.label, *column.choices)])
+            self._name(f"list_{name}", LISTS, xl_col_to_name(at), 4, 3 + len(column.choices))
         return len(chosen)
 
     def _write_units(self, at: int) -> int:
-        for quantity in ("length", "acceleration", "velocity", "time"):
+        for quantity in LISTED:
             units = dict(QUANTITIES[quantity])
             units |= {other: units[unit] for other, unit in ALIASES.items() if unit in units}
-            self.page.write_column(2, at, (quantity, *units))
+            self.page.write_column(2, at, (gettext(quantity), *units))
             self.page.write_column(2, at + 1, ("SI", *units.values()))
             first, second = xl_col_to_name(at), xl_col_to_name(at + 1)
-            self.book.define_name(f"units_{quantity}", f"=Lists!${first}$4:${second}${3 + len(units)}")
+            self.book.define_name(f"units_{quantity}", f"={gettext(LISTS)}!${first}$4:${second}${3 + len(units)}")
             at += 2
         return at
 
     def _write_factors(self, at: int) -> int:
         """Write the factor of every header that a live formula needs, read from the header's own bracket."""
-        self.page.write_row(2, at, ("header", "factor"))
+        self.page.write_row(2, at, (gettext("header"), gettext("factor")))
         for row, (name, field) in enumerate(_NEEDED_FACTORS, 4):
             sheet = next(sheet for sheet in SHEETS if sheet.name == name)
             column = sheet.column(field)
             cell = f"$A${sheet.columns.index(column) + 1}" if sheet.layout == "form" else f"{LETTERS[name, field]}$1"
-            unit = _bracket(f"{name}!{cell}")
+            unit = _bracket(f"{gettext(name)}!{cell}")
             factor = QUANTITIES[column.quantity][column.header(self.units).partition("[")[2].rstrip("]")]
-            formula = f'=IFERROR(VLOOKUP({unit},units_{column.quantity},2,FALSE),"unit?")'
-            self.page.write_string(row - 1, at, f"{name}: {column.label}")
+            formula = f'=IFERROR(VLOOKUP({unit},units_{column.quantity},2,FALSE),"{gettext(NO_UNIT)}")'
+            self.page.write_string(row - 1, at, f"{gettext(name)}: {gettext(column.label)}")
             self.page.write_formula(row - 1, at + 1, formula, None, factor)
-            self.book.define_name(f"unit_{name.lower()}_{field}", f"=Lists!${xl_col_to_name(at + 1)}${row}")
+            self._name_cell(f"unit_{name.lower()}_{field}", at + 1, row)
         self._write_sizes_unit(len(_NEEDED_FACTORS) + 4, at)
         self._write_scenario(len(_NEEDED_FACTORS) + 5, at)
         return at + 2
@@ -103,24 +118,23 @@ class ListsWriter:
     def _write_sizes_unit(self, row: int, at: int) -> None:
         """Write what the live columns say where a header of a size has no known unit."""
         sizes = (f"unit_{sheet}_{name}" for sheet in ("items", "catalogue") for name in ("breadth", "height"))
-        self.page.write_string(row - 1, at, "unknown unit of a size")
-        formula = f'=IF(OR({",".join(f"ISTEXT({size})" for size in sizes)}),"unit?","")'
+        self.page.write_string(row - 1, at, gettext("unknown unit of a size"))
+        formula = f'=IF(OR({",".join(f"ISTEXT({size})" for size in sizes)}),"{gettext(NO_UNIT)}","")'
         self.page.write_formula(row - 1, at + 1, formula, None, "")
-        self.book.define_name("sizes_unit", f"=Lists!${xl_col_to_name(at + 1)}${row}")
+        self._name_cell("sizes_unit", at + 1, row)
 
     def _write_scenario(self, row: int, at: int) -> None:
         """Write the kind of scenario as choices are compared, and whether floors' own values serve it."""
-        plain = f"LOWER(Building!$B${_line('scenario_kind')})"
+        plain = f"LOWER({gettext(BUILDING.name)}!$B${_line('scenario_kind')})"
         for sign in (" ", "-", "_"):
             plain = f'SUBSTITUTE({plain},"{sign}","")'
-        name = f"${xl_col_to_name(at + 1)}${row}"
-        own = ",".join(f'{name}="{kind}"' for kind in ("", "asfilled", "recorded", "given"))
-        for line, (label, formula, value) in enumerate(
-            (("scenario_kind", f"={plain}", ""), ("scenario_is_own", f"=IF(OR({own}),1,0)", 1)), row
-        ):
+        typed, kind = (f"${xl_col_to_name(at + 1)}${row + line}" for line in range(2))
+        own = ",".join(f'{kind}="{one}"' for one in ("", *_OWN_SCENARIOS))
+        formulas = (plain, _in_english(typed), f"IF(OR({own}),1,0)")
+        for line, (label, formula) in enumerate(zip(_SCENARIO_NAMES, formulas, strict=True), row):
             self.page.write_string(line - 1, at, label)
-            self.page.write_formula(line - 1, at + 1, formula, None, value)
-            self.book.define_name(label, f"=Lists!${xl_col_to_name(at + 1)}${line}")
+            self.page.write_formula(line - 1, at + 1, f"={formula}", None, 1 if formula is formulas[-1] else "")
+            self._name_cell(label, at + 1, line)
 
     # ------------------------------------------------------------------ floors
 
@@ -135,33 +149,42 @@ class ListsWriter:
             for place, formula in enumerate(formulas):
                 self.page.write_formula(row - 1, at + place, f"={formula}", None, "")
         for name, letter in letters.items():
-            self._name(f"floor_{name}", "Lists", letter, 2, last)
+            self._name(f"floor_{name}", LISTS, letter, 2, last)
 
     def _floor(self, name: str, row: int) -> str:
         """Refer to a cell of Floors so that rows inserted or sorted there do not move the reference."""
         letter = LETTERS["Floors", name]
-        return f"INDEX(Floors!${letter}$1:${letter}${self.last['Floors']},{row})"
+        return f"INDEX({gettext('Floors')}!${letter}$1:${letter}${self.last['Floors']},{row})"
 
     def _own_pfa(self, row: int) -> Iterator[str]:
         for axis in "xy":
             pfa, record = self._floor(f"pfa_{axis}", row), self._floor(f"record_{axis}", row)
-            number = f'IF(ISTEXT(unit_floors_pfa_{axis}),"unit?",{pfa}*unit_floors_pfa_{axis}/{GRAVITY!r})'
+            number = f'IF(ISTEXT(unit_floors_pfa_{axis}),"{gettext(NO_UNIT)}",{pfa}*unit_floors_pfa_{axis}/{GRAVITY!r})'
             given = f'IF(OR({pfa}="",scenario_kind="recorded"),"",{number})'
             aside = f'AND(TRIM({record})<>"",scenario_kind<>"given")'
-            yield f'IF(OR(scenario_is_own=0,{aside}),"{RUN_ASSESS}",{given})'
+            yield f'IF(OR(scenario_is_own=0,{aside}),"{gettext(RUN_ASSESS)}",{given})'
 
     def _own_pfv(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
         for axis in "xy":
             pfa, pfv = cells[f"own_pfa_{axis}"], self._floor(f"pfv_{axis}", row)
             frequency = f"MIN(1/(period*unit_building_period),{HIGHEST_FLOOR_FREQUENCY!r})"
             estimate = f'IF(ISNUMBER(period),{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency}),"")'
-            given = f'IF(ISTEXT(unit_floors_pfv_{axis}),"unit?",{pfv}*unit_floors_pfv_{axis}*100)'
+            given = f'IF(ISTEXT(unit_floors_pfv_{axis}),"{gettext(NO_UNIT)}",{pfv}*unit_floors_pfv_{axis}*100)'
             yield f'IF(ISNUMBER({pfa}),IF({pfv}<>"",{given},{estimate}),"")'
 
 
 def _line(name: str) -> int:
     """Row of the form Building in which the empty workbook has a field."""
     return BUILDING.columns.index(BUILDING.column(name)) + 1
+
+
+def _in_english(typed: str) -> str:
+    """Expression for a kind of scenario by its English name, where it was typed by that of the language in use."""
+    expression = typed
+    for kind, name in _OWN_SCENARIOS.items():
+        said = gettext(name).lower().replace(" ", "").replace("-", "")
+        expression = expression if said == kind else f'IF({typed}="{said}","{kind}",{expression})'
+    return expression
 
 
 def _bracket(cell: str) -> str:
@@ -175,7 +198,7 @@ def _serving(cells: Mapping[str, str]) -> list[str]:
     x, y = cells["own_pfa_x"], cells["own_pfa_y"]
     nothing = {"pfa": f'AND({x}="",{y}="")', "pfv": "FALSE"}
     return [
-        f'IF({nothing[what]},"{RUN_ASSESS}",'
+        f'IF({nothing[what]},"{gettext(RUN_ASSESS)}",'
         f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]}))'
         for what in ("pfa", "pfv")
         for axis, other in ("xy", "yx")

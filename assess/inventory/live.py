@@ -7,6 +7,7 @@ workbooks in a spreadsheet engine and holds both to 1e-9.
 
 from typing import Any
 
+from assess.language import gettext
 from assess.methods import kaneko_hayashi as kh
 from assess.methods._method import ALIKE
 from assess.methods.proposed_or import CHECKED_BREADTH_TO_HEIGHT, CHECKED_PFA, COEFFICIENTS, THIN_PFA_CAP
@@ -59,14 +60,19 @@ def kaneko_hayashi(ratio: str, height: str, pfa: str, pfv: str, zeta_a: str, zet
 
 
 def risk_class(probability: str, ratio: str, pfa: str, limits: tuple[str, str, str] | None = None) -> str:
-    """Return the label of the class, with `OUTSIDE` behind it where the formula was not checked."""
+    """Return the class in the language in use, with `OUTSIDE` behind it where the formula was not checked."""
     medium, high, very_high = limits or tuple(repr(limit) for limit in LIMITS)
-    words, *labels = (f'"{risk.label}"' for risk in RiskClass)
+    words, *labels = (f'"{say_class(risk)}"' for risk in RiskClass)
     for limit, label in zip((medium, high, very_high), labels, strict=True):
         words = f"IF({probability}>={limit},{label},{words})"
     inside = ",".join((_between(ratio, CHECKED_BREADTH_TO_HEIGHT.low, CHECKED_BREADTH_TO_HEIGHT.high),
                        _between(pfa, CHECKED_PFA.low, CHECKED_PFA.high)))  # fmt: skip
     return _plain(f'{words}&IF(AND({inside}),"","{OUTSIDE}")')
+
+
+def say_class(risk: RiskClass) -> str:
+    """Return symbol and word of a class in the language in use."""
+    return f"{risk.symbol} {gettext(risk.word)}"
 
 
 def worse_axis(x: str, y: str) -> str:

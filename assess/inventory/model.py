@@ -1,11 +1,12 @@
 """The inventory: what a workbook holds, checked, in SI units."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from assess.errors import Problem
+from assess.language import find_language
 from assess.motion.record import Record
 
 if TYPE_CHECKING:
@@ -25,11 +26,16 @@ class Building:
     building: str = ""
     address: str = ""
     use: str = ""
+    client: str = ""
     storeys: int | None = None
     height: float | None = None
     period: float | None = None
     azimuth_deg: float | None = None
     prepared_by: str = ""
+    checked_by: str = ""
+    approved_by: str = ""
+    revision: str = ""
+    report_date: str = ""
     organisation: str = ""
     logo: Path | None = None
     scenario: str = ""
@@ -167,6 +173,10 @@ class Inventory:
         Headers of the columns of Items that `assess` does not know.
     files : mapping of str to str
         Hashes (SHA-256) of the recorded motions, by name.
+    language : str
+        Code of the workbook's language: that of more than half of the sheets it has, by their names; else English.
+    sheets : mapping of str to str
+        The workbook's own names of its sheets, by the English ones.
     """
 
     source: Path
@@ -180,6 +190,17 @@ class Inventory:
     problems: tuple[Problem, ...] = ()
     extra_columns: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict)
+    language: str = "en"
+    sheets: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def report_language(self) -> str:
+        """Code of the language of the reports: what Building asks for, else the workbook's own."""
+        return find_language(self.building.language or self.language)
+
+    def place(self, problem: Problem) -> Problem:
+        """Return a problem with the workbook's own name of its sheet."""
+        return replace(problem, sheet=self.sheets.get(problem.sheet, problem.sheet))
 
     def __repr__(self) -> str:
         return f"<Inventory {self.source.name}: {len(self.items):,} items on {len(self.floors):,} floors>"

@@ -5,6 +5,7 @@ import difflib
 from assess.inventory.cells import shorten
 from assess.inventory.labels import key
 from assess.inventory.tables import Table
+from assess.language import fill
 
 
 def defined_names(table: Table, name: str) -> dict[str, str]:
@@ -33,8 +34,12 @@ def check_wildcards(table: Table, name: str) -> None:
     for row in table.rows:
         value = row.values.get(name)
         if value is not None and any(sign in value for sign in "*?~"):
-            message = f"{label} {shorten(value)} holds *, ? or ~, which Excel's look-ups read as patterns."
-            mend = "Rename it: the live columns may show another row's values."
+            message = fill(
+                "{column} {name} holds *, ? or ~, which Excel's look-ups read as patterns.",
+                column=fill(label),
+                name=shorten(value),
+            )
+            mend = fill("Rename it: the live columns may show another row's values.")
             table.report(table.cell(name, row.number), message, mend, "warning")
 
 

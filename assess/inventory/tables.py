@@ -3,46 +3,34 @@
 Every problem is collected with its cell; reading goes on, so that one run names them all.
 """
 
-import difflib
-import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
-from typing import IO, Any
-from zipfile import ZipFile
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from openpyxl import DEFUSEDXML
-from openpyxl.reader.excel import ExcelReader
-from openpyxl.styles.stylesheet import apply_stylesheet
 from openpyxl.utils import get_column_letter, range_boundaries
 
 from assess.errors import Problem, Severity, WorkbookError
-from assess.inventory.archive import (
-    DAMAGE,
-    MAX_COLUMNS,
-    MAX_ROWS,
-    check_parts,
-    explain,
-    open_archive,
-    sheet_paths,
-    unreadable,
-)
+from assess.inventory.archive import MAX_COLUMNS, MAX_ROWS
 from assess.inventory.cells import (
     ERRORS,
     CellError,
     clean,
+    describe_removed,
+    describe_unusual,
     is_unusual,
     read_choice,
     read_count,
+    read_date,
+    read_language,
     read_number,
     read_text,
     shorten,
-    usual_range,
 )
-from assess.inventory.columns import SHEETS, Column, Sheet
+from assess.inventory.columns import Column, Sheet
 from assess.inventory.headers import Headers, Rows, Values, find_header
-from assess.inventory.labels import fold
-from assess.inventory.scan import Scan, scan_sheet
+from assess.inventory.scan import Scan
+from assess.inventory.wording import ENGLISH
+from assess.language import fill
 from assess.units import QUANTITIES
 
 
@@ -59,13 +47,15 @@ class Row:
 class Table:
     """One sheet as it was read.
 
-    `letters` tells in which column of the sheet a field stands; `form` and `lines` hold the values and rows of a form;
-    `failed` the cells that have been reported as wrong, `blind` the fields whose column has no known unit.
+    `sheet` has the names that the workbook gives it and its columns; `language` is that of the sheet's name. `letters`
+    tells in which column of the sheet a field stands; `form` and `lines` hold the values and rows of a form; `failed`
+    the cells that have been reported as wrong, `blind` the fields whose column has no known unit.
     """
 
     sheet: Sheet
     problems: list[Problem]
     found: bool = False
+    language: str = ENGLISH
     letters: dict[str, str] = field(default_factory=dict)
     rows: list[Row] = field(default_factory=list)
     extra: tuple[str, ...] = ()
@@ -84,90 +74,24 @@ class Table:
         """Address of a field in a row; the first column where the sheet lacks the field."""
         return f"{self.letters.get(name, 'A')}{row}"
 
+    def label(self, name: str) -> str:
+        """Return the label of a field as the workbook's language has it."""
+        return self.sheet.column(name).label
+
     def spoilt(self, name: str, row: int) -> bool:
         """Tell whether a field of a row was filled in but could not be read, which has been reported."""
         return name in self.blind or (name in self.letters and self.cell(name, row) in self.failed)
 
 
-def read_tables(path: Path) -> tuple[dict[str, Table], list[Problem]]:
-    """Read every sheet of the workbook.
+class SheetReader:
+    """Reads one sheet into its table; holds what every step needs. `sheet` has the English names."""
 
-    Raises
-    ------
-    WorkbookError
-        If the file cannot be opened as a workbook at all.
-    """
-    if not DEFUSEDXML:
-        raise unreadable(
-            "defusedxml is missing, without which a hostile workbook could do harm.", "pip install defusedxml"
-        )
-    problems: list[Problem] = []
-    try:
-        with open_archive(path) as archive, warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # openpyxl's remarks on drawings and the like mean nothing to a user
-            return _read_sheets(path, archive, problems), problems
-    except DAMAGE as error:
-        raise explain(error, path.name) from error
-
-
-def _read_sheets(path: Path, archive: ZipFile, problems: list[Problem]) -> dict[str, Table]:
-    check_parts(archive, path.name)
-    paths = sheet_paths(archive)
-    tables = {sheet.name: Table(sheet, problems) for sheet in SHEETS}
-    found = {name: _find_sheet(table, list(paths)) for name, table in tables.items()}
-    own = {name: paths[sheet] for name, sheet in found.items() if sheet}
-    scans = {name: scan_sheet(archive, part) for name, part in own.items()}
-    with path.open("rb") as file:
-        workbook = _open(file, list(own.values()))
-        for name, scan in scans.items():
-            tables[name].found = True
-            worksheet = workbook[found[name]]
-            worksheet.reset_dimensions()
-            _Reader(tables[name], scan).read(worksheet)
-    return tables
-
-
-def _open(file: IO[bytes], parts: list[str]) -> Any:
-    """Open the workbook as openpyxl's `load_workbook` does, but with these sheets alone and nothing beside them.
-
-    Other sheets, properties, themes and print areas need memory, and may be damaged, without being of use here.
-    """
-    reader = ExcelReader(file, read_only=True, data_only=True, keep_links=False)
-    reader.valid_files = parts
-    reader.read_manifest()
-    reader.read_strings()
-    reader.read_workbook()
-    apply_stylesheet(reader.archive, reader.wb)
-    reader.read_worksheets()
-    return reader.wb
-
-
-def _find_sheet(table: Table, present: list[str]) -> str | None:
-    """Return the name, as the workbook spells it, of a table's sheet; None where it is missing."""
-    sheet, report = table.sheet, table.report
-    found = [name for name in present if fold(name) == fold(sheet.name)]
-    if len(found) > 1:
-        report("", f"there are {len(found)} sheets of this name.", "Delete all but one, or rename them.")
-    if found:
-        return found[0]
-    near = difflib.get_close_matches(fold(sheet.name), [fold(name) for name in present], 1, 0.75)
-    if near:
-        wrong = next(name for name in present if fold(name) == near[0])
-        mend = f"Did you mean {sheet.name}? Rename it."
-        table.problems.append(Problem("error", wrong, "", f"there is no sheet named {sheet.name}.", mend))
-    elif sheet.required:
-        report("", "the sheet is missing.", "Add it, or start from a workbook made with `assess new`.")
-    return None
-
-
-class _Reader:
-    """Reads one sheet into its table; holds what every step needs."""
-
-    def __init__(self, table: Table, scan: Scan) -> None:
+    def __init__(self, table: Table, sheet: Sheet, scan: Scan) -> None:
         self.table, self.scan, self.sheet, self.report = table, scan, table.sheet, table.report
-        self.headers = Headers(table.sheet, table.report)
+        self.headers = Headers(sheet, table.sheet, table.report)
 
     def read(self, worksheet: Any) -> None:
+        """Read the sheet; problems are reported to its table."""
         if self.scan.last_row > MAX_ROWS:
             message = f"holds a value far below the table; at most {MAX_ROWS:,} rows are read."
             self.report(f"A{self.scan.last_row}", message, "Delete the rows below the table.")
@@ -179,6 +103,10 @@ class _Reader:
         else:
             self._read_table(self._rows(worksheet))
         self.table.blind = self.headers.blind
+        named = {column.name: column for column in self.headers.found}
+        self.table.sheet = replace(
+            self.sheet, columns=tuple(named.get(column.name, column) for column in self.sheet.columns)
+        )
 
     def _rows(self, worksheet: Any) -> Iterator[tuple[int, Values]]:
         """Yield the rows up to the last that holds a value: below it there can be a million that are only styled."""
@@ -201,12 +129,12 @@ class _Reader:
                 self.table.lines[column.name] = number
                 self.table.form[column.name] = self._value(column, value, f"B{number}")
             elif value is not None and not is_wrong:
-                self.report(cell, f"{shorten(text)} is not known; it is not used.", severity="note")
+                self.report(cell, fill("{name} is not known; it is not used.", name=shorten(text)), severity="note")
 
     # ----------------------------------------------------------------- tables
 
     def _read_table(self, rows: Rows) -> None:
-        head = find_header(self.sheet, rows, self.report)
+        head = find_header(self.headers, rows)
         if head is None:
             return
         number, header, body = head
@@ -219,7 +147,15 @@ class _Reader:
         for at, values in body:
             self._read_row(at, values)
         if self.sheet.required and not self.table.rows and not self.headers.missing():
-            self.report(f"A{number + 1}", "the table has no rows.", "Fill in at least one.")
+            self._report_no_rows(f"A{number + 1}")
+
+    def _report_no_rows(self, cell: str) -> None:
+        """Report a table without rows: a building may have no furniture, yet no report can do without a floor."""
+        if self.sheet.name == "Items":
+            message = fill("the table has no rows: nothing is assessed.")
+            self.report(cell, message, fill("Fill in at least one."), "warning")
+        else:
+            self.report(cell, "the table has no rows.", "Fill in at least one.")
 
     def _read_row(self, number: int, values: Values) -> None:
         columns, others = self.headers.columns, self.headers.others
@@ -227,7 +163,8 @@ class _Reader:
             stray = next((at for at in others if not _blank(values[at])), None)
             if stray is not None:
                 cell = f"{get_column_letter(stray + 1)}{number}"
-                self.report(cell, "stands in a row without an entry; the row is left out.", severity="warning")
+                message = fill("stands in a row without an entry; the row is left out.")
+                self.report(cell, message, severity="warning")
             return
         extra = tuple("" if _blank(values[at]) else read_text(values[at]) for at in others)
         parsed = {
@@ -266,10 +203,13 @@ class _Reader:
             raise CellError(f"{column.label} holds the error {value.strip()}.", "Mend the formula in the cell.")
         if column.kind == "choice":
             return read_choice(column, value)
+        if column.kind == "language":
+            return read_language(column, value)
+        if column.kind == "date":
+            return read_date(value)
         removed = clean(value)[1] if isinstance(value, str) else 0
         if removed:
-            message = f"{removed} control or direction characters in {column.label} were taken out."
-            self.report(cell, message, severity="warning")
+            self.report(cell, describe_removed(removed, column), severity="warning")
         return read_text(value) or None
 
     def _number(self, column: Column, value: Any, cell: str) -> float | None:
@@ -278,8 +218,8 @@ class _Reader:
             return None  # the header's unit is unknown, and has been reported there
         number = read_number(column, value, unit)
         if is_unusual(column, number, unit):
-            message = f"{column.label} is {number:g} {unit}, usual is {usual_range(column, unit)}."
-            self.report(cell, message, "Check the number and the unit.", "warning")
+            message, mend = describe_unusual(column, number, unit), fill("Check the number and the unit.")
+            self.report(cell, message, mend, "warning")
         return number * QUANTITIES[column.quantity][unit] if column.quantity else number
 
 

@@ -4,6 +4,7 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
+from assess.inventory.book import find_language, read_tables
 from assess.inventory.cells import CellError
 from assess.inventory.files import find_picture
 from assess.inventory.floors import FloorReader
@@ -11,7 +12,8 @@ from assess.inventory.items import ItemReader, check_plan_sides
 from assess.inventory.labels import key
 from assess.inventory.model import Building, CatalogueType, Inventory, Place, Segment
 from assess.inventory.names import check_references, check_unique, check_wildcards
-from assess.inventory.tables import Row, Table, raise_errors, read_tables
+from assess.inventory.tables import Row, Table, raise_errors
+from assess.language import fill
 
 
 def read_inventory(path: str | Path) -> Inventory:
@@ -55,6 +57,8 @@ def read_inventory(path: str | Path) -> Inventory:
         problems=tuple(problems),
         extra_columns=tables["Items"].extra,
         files=floors.hashes,
+        language=find_language(tables.values()),
+        sheets={name: table.sheet.name for name, table in tables.items()},
     )
 
 
@@ -97,7 +101,7 @@ def _read_routes(tables: dict[str, Table]) -> tuple[Segment, ...]:
     check_references(table, "floor", tables["Floors"], "floor")
     rows = _with(table, "route", "segment")
     if rows:
-        message = "routes are kept and listed; this version does not evaluate them."
+        message = fill("routes are kept and listed; this version does not evaluate them.")
         table.report("", message, severity="note")
     return tuple(Segment(row=row.number, **_filled(row)) for row in rows)
 

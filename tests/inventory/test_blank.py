@@ -42,7 +42,7 @@ def book(path: Path) -> Any:
 def test_it_lacks_nothing_but_rows(path: Path) -> None:
     assert [str(problem) for problem in problems_of(path)] == [
         "Floors!A2: the table has no rows. Fill in at least one.",
-        "Items!A2: the table has no rows. Fill in at least one.",
+        "Items!A2: the table has no rows: nothing is assessed. Fill in at least one.",
     ]
 
 

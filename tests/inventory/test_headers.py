@@ -106,7 +106,7 @@ def test_header_below_a_title(tmp_path: Path, above: int) -> None:
 
 
 def test_header_too_far_down(tmp_path: Path) -> None:
-    assert errors_of(write(tmp_path, [*([["note"]] * 20), *ITEMS])) == {
+    assert errors_of(write(tmp_path, [*([["remark"]] * 20), *ITEMS])) == {
         "Items!A1: no header row was found in the first 20 rows. It needs the columns Item and Floor."
     }
 

@@ -17,8 +17,10 @@ import pytest
 from assess.assessment import run
 from assess.inventory.blank import Content, Units, write_workbook
 from assess.inventory.columns import ITEMS, LIVE, SHEETS
-from assess.inventory.live import OUTSIDE
+from assess.inventory.live import OUTSIDE, say_class
+from assess.inventory.wording import say_live
 from assess.inventory.workbook import read_inventory
+from assess.language import load_catalogue, speaking
 from assess.methods import kaneko_hayashi as _kaneko_hayashi
 from assess.results import ItemResult
 from assess.units import GRAVITY, QUANTITIES
@@ -34,6 +36,8 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 AGREEMENT = 1e-9
 POISON = 0.123
+ITEMS_AT = 3
+"""Place of the sheet Items, whatever its name: after Help, Building and Floors."""
 
 FLOORS: Rows = [
     {"floor": "x", "pfa_x": 0.45},
@@ -130,21 +134,22 @@ def poison(path: Path) -> Path:
 
 def _places(path: Path) -> tuple[list[int], int]:
     """Return the columns of the live values, found by their headers, and the number of rows."""
-    page = openpyxl.load_workbook(path)["Items"]
+    page = openpyxl.load_workbook(path).worksheets[ITEMS_AT]
     places = {cell.value: at for at, cell in enumerate(page[1], 1)}
-    return [places[label] for label in LIVE], page.max_row
+    return [places[say_live(label)] for label in LIVE], page.max_row
 
 
 def by_formualizer(path: Path) -> dict[int, Live]:
     places, last = _places(path)
     book = formualizer.load_workbook(str(path))
     book.evaluate_all()
-    return {row: [book.get_value("Items", row, at) for at in places] for row in range(2, last + 1)}
+    name = book.sheet_names[ITEMS_AT]
+    return {row: [book.get_value(name, row, at) for at in places] for row in range(2, last + 1)}
 
 
 def by_libreoffice(path: Path) -> dict[int, Live]:
     places, last = _places(path)
-    page = openpyxl.load_workbook(libreoffice(path, path.with_name("again.xlsx")), data_only=True)["Items"]
+    page = openpyxl.load_workbook(libreoffice(path, path.with_name("again.xlsx")), data_only=True).worksheets[ITEMS_AT]
     return {row: [page.cell(row, at).value for at in places] for row in range(2, last + 1)}
 
 
@@ -160,7 +165,7 @@ ENGINES = [
 def expected(one: ItemResult) -> Live:
     """Return what the live columns must show of an item on a floor with a given PFA."""
     methods = one.governing.methods
-    label = one.adopted.risk.label + (OUTSIDE if "extrapolated" in methods["proposed_or"].flags else "")
+    label = say_class(one.adopted.risk) + (OUTSIDE if "extrapolated" in methods["proposed_or"].flags else "")
     values = [methods["proposed_or"].value, methods[_kaneko_hayashi.METHOD.key].value]
     return [one.item.breadth / one.item.height, one.governing.demand.pfa / GRAVITY, *values, label]
 
@@ -217,6 +222,43 @@ def test_a_stored_result_is_not_taken_for_a_computed_one(tmp_path: Path, engine:
     stored = openpyxl.load_workbook(path, data_only=True)["Items"].cell(2, len(ITEMS.columns) + 1).value
     assert stored == POISON
     assert engine(path)[2][0] == pytest.approx(0.05)
+
+
+ITALIAN_TYPES = {"Bookcase 5 shelves": "Libreria a 5 ripiani", "bookcase 6 shelves": "libreria a 6 ripiani"}
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_live_columns_of_an_italian_workbook_equal_the_program(tmp_path: Path, units: Units, engine: Engine) -> None:
+    grid = [row | ({"type": ITALIAN_TYPES[row["type"]]} if "type" in row else {}) for row in GRID]
+    with speaking(load_catalogue("it")):
+        check(fill(tmp_path / "book.xlsx", grid, FLOORS, {"period": 0.4, "scenario_kind": "given"}, units), engine)
+
+
+ITALIAN_WORDS = [
+    ({"floor": "9"}, {}, ["piano?"] * 4), ({"axis": "Z"}, {}, ["asse?"] * 4),
+    ({}, {"scenario_kind": " REGISTRATO"}, ["eseguire assess"] * 4), ({}, {"scenario_kind": "Assegnato"}, None),
+    ({}, {"scenario_kind": "given"}, None), ({}, {"scenario_kind": "come-compilato"}, None), ({}, {}, None),
+    ({}, {"scenario_kind": "as filled"}, None), ({}, {"scenario_kind": "NTC 2018"}, ["eseguire assess"] * 4),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("item", "building", "words"), ITALIAN_WORDS)
+def test_words_of_an_italian_workbook(
+    tmp_path: Path, item: dict[str, Any], building: dict[str, Any], words: list[str] | None
+) -> None:
+    with speaking(load_catalogue("it")):
+        shown = shown_of(tmp_path, item, **building)
+    assert shown[1:] == words if words else shown[1] == 0.5
+
+
+def test_an_unreadable_unit_of_an_italian_workbook(tmp_path: Path) -> None:
+    with speaking(load_catalogue("it")):
+        path = fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {})
+        book = openpyxl.load_workbook(path)
+        book["Arredi"]["I1"] = "Altezza"
+        book.save(path)
+        assert by_formualizer(poison(path))[2][2:] == ["unità?"] * 3
 
 
 # ---------------------------------------------------------------- words in place of numbers
