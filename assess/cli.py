@@ -5,7 +5,6 @@ written. Messages go to standard error, what was asked for to standard output.
 """
 
 import json
-from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,15 +13,12 @@ import typer
 
 from assess.console import exits, print_problems, print_result
 from assess.errors import InputError
-from assess.settings import AUTO, MOST_RUNS, SCENARIOS, SEED, VERIFY, Settings, match_choice, read_runs
+from assess.options import read_formats, read_look, read_settings
+from assess.settings import SCENARIOS, Settings
 from assess.version import __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from assess.inventory.model import Inventory
     from assess.progress import Progress
-    from assess.report.look import Look
     from assess.results import Assessment
     from assess.verification import Work
 
@@ -69,14 +65,16 @@ def options(
 def new(
     path: Annotated[Path, typer.Argument(help="The workbook to write, .xlsx.", show_default=False)],
     units: Annotated[UnitSystem, typer.Option(help="Units of the headers: cm or in.")] = UnitSystem.SI,
+    language: Annotated[str, typer.Option(help="Language of the workbook: en, it.")] = "en",
     example: Annotated[bool, typer.Option("--example", help="Fill in an example.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that is there already.")] = False,
 ) -> None:
     """Write an empty workbook to fill in: drop-downs, units, help, and classes that show as one types."""
+    from assess.language import find_language
     from assess.start import start_workbook
 
     with exits():
-        start_workbook(path, units.value, example=example, replace=force)
+        start_workbook(path, units.value, language=find_language(language), example=example, replace=force)
     typer.echo(f"Wrote {path}. Fill it in, then: assess check {path}", err=True)
 
 
@@ -133,7 +131,7 @@ def run(
     """Assess a workbook and write the reports."""
     from assess.report import check_folder, write_reports
 
-    wanted = _read_formats(formats, verify)
+    wanted = read_formats(formats, verify)
     folder = out or Path(f"{path.stem}-report")
     if folder.exists() and not folder.is_dir():
         raise typer.BadParameter(f"{folder} is a file; name a folder.", param_hint="--out")
@@ -144,12 +142,16 @@ def run(
         raise typer.BadParameter(
             "there are no motions to scale: name their folder by --motions.", param_hint="--scale-motions"
         )
-    settings = _settings(verify, runs, seed, scale_motions, scenario)
+    settings = read_settings(verify, runs, seed, scale_motions, scenario)
     with exits():
         check_folder(folder)
-        look = _look(language, template, accessible)
+        look = read_look(language, template, accessible)
         assessment = _assess(path, settings, motions, jobs)
         print_problems([one for one in assessment.problems if one.severity == "warning"])
+        if "pdf" in wanted:
+            from assess.report.pdf import list_problems
+
+            print_problems([one for one in list_problems(assessment) if one.severity == "warning"])
         written = write_reports(assessment, folder, wanted, look(assessment.inventory))
     print_result(assessment, list(written.values()))
 
@@ -255,44 +257,6 @@ def doctor() -> None:
         typer.echo(f"{'ok     ' if finding.works else 'missing'}  {finding.what}: {finding.detail}")
     if not all(finding.works for finding in findings):
         raise typer.Exit(1)
-
-
-def _look(language: str | None, template: Path | None, accessible: bool) -> "Callable[[Inventory], Look]":
-    """Return how the reports of an inventory are to look; what is wrong with the options is told before the work."""
-    from assess.language import find_language
-    from assess.report.look import Look
-
-    look = Look(language=find_language(language or "en"), templates=template, accessible=accessible)
-    return lambda inventory: replace(look, language=find_language(language or inventory.building.language or "en"))
-
-
-def _read_formats(formats: str, verify: str) -> list[str]:
-    from assess.report import FILES
-
-    wanted = [name.strip().lower() for name in formats.split(",") if name.strip()]
-    if not wanted or any(name not in FILES for name in wanted):
-        raise typer.BadParameter(f"{formats!r} is not a list of: {', '.join(FILES)}.", param_hint="--formats")
-    if "npz" in wanted and verify == "none":
-        raise typer.BadParameter("npz holds what verification finds: leave out --verify none.", param_hint="--formats")
-    return wanted
-
-
-def _settings(verify: str, runs: str | None, seed: int | None, scale_motions: bool, scenario: str | None) -> Settings:
-    if verify not in VERIFY:
-        raise typer.BadParameter(f"{verify!r} is not one of: {', '.join(VERIFY)}.", param_hint="--verify")
-    count = read_runs(runs)
-    if count is None:
-        raise typer.BadParameter(f"{runs!r} is not a number from 1 to {MOST_RUNS:,}, nor {AUTO}.", param_hint="--runs")
-    kind = None if scenario is None else match_choice(scenario, SCENARIOS)
-    if scenario is not None and kind is None:
-        raise typer.BadParameter(f"{scenario!r} is not one of: {', '.join(SCENARIOS)}.", param_hint="--scenario")
-    return Settings(
-        verify=verify,  # type: ignore[arg-type]
-        runs=count,
-        seed=SEED if seed is None else seed,
-        scale_motions=scale_motions,
-        scenario=kind,  # type: ignore[arg-type]
-    )
 
 
 def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: int | None = None) -> "Assessment":

@@ -42,7 +42,7 @@ def examine() -> list[Finding]:
     fonts = resources.fonts()
     mend = "pip install --force-reinstall matplotlib"
     findings.append(
-        Finding("fonts", len(fonts) == 3, ", ".join(path.name for path in fonts.values()) if fonts else mend)
+        Finding("fonts", len(fonts) == 5, ", ".join(path.name for path in fonts.values()) if fonts else mend)
     )
     findings.append(_pdf())
     return findings

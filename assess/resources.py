@@ -20,5 +20,7 @@ def fonts() -> dict[tuple[str, str], Path]:
         ("Report", "regular"): "DejaVuSans.ttf",
         ("Report", "bold"): "DejaVuSans-Bold.ttf",
         ("Report", "italic"): "DejaVuSans-Oblique.ttf",
+        ("Report Mono", "regular"): "DejaVuSansMono.ttf",
+        ("Report Mono", "bold"): "DejaVuSansMono-Bold.ttf",
     }
     return {style: folder / name for style, name in names.items() if (folder / name).is_file()}

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import cast
 
 from assess.errors import OutputError, PdfUnavailableError
-from assess.language import find_language
 from assess.report.look import Look
 from assess.results import Assessment
 
@@ -80,7 +79,7 @@ def write_reports(
     unknown = [name for name in formats if name not in FILES]
     if unknown:
         raise ValueError(f"format is {unknown[0]!r}, expected some of: {', '.join(FILES)}")
-    folder, look = Path(folder), look or Look(language=find_language(assessment.inventory.building.language or "en"))
+    folder, look = Path(folder), look or Look(language=assessment.inventory.report_language)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _sweep(folder)

@@ -1,6 +1,5 @@
 """Every number and word of a report, gathered once; HTML, PDF and Excel show what stands here."""
 
-import datetime
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from assess.language import number
 from assess.methods import Method
 from assess.report import motions, statements, trials, words
 from assess.report.counts import Bars, Counts, build_bars, count, count_rooms
-from assess.report.provenance import versions
+from assess.report.provenance import report_time, versions
 from assess.report.summary import FLOORS, Summary, build_summary, list_risky
 from assess.report.trials import Trials
 from assess.report.verified import WILSON, Verified, build_verified
@@ -146,7 +145,7 @@ def build_content(assessment: Assessment) -> Content:
     return Content(
         assessment=assessment,
         title=assessment.inventory.building.building or assessment.inventory.source.stem,
-        date=report_date(assessment),
+        date=report_date(assessment.inventory.building.report_date),
         version=__version__,
         platform=platform,
         building=_building(assessment),
@@ -169,15 +168,13 @@ def build_content(assessment: Assessment) -> Content:
     )
 
 
-def report_date(assessment: Assessment | None = None) -> str:
-    """Return the date that the workbook gives, else today's, or that of SOURCE_DATE_EPOCH (reproducible-builds.org)."""
-    given = getattr(assessment.inventory.building, "report_date", "") if assessment else ""
-    if given:
-        return str(given)
-    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
-    if epoch.isdigit():
-        return datetime.datetime.fromtimestamp(int(epoch), datetime.UTC).date().isoformat()
-    return datetime.datetime.now().astimezone().date().isoformat()
+def report_date(given: str = "") -> str:
+    """Return the date that the workbook gives, else that of the report in the reader's own time zone.
+
+    Where SOURCE_DATE_EPOCH is set, it is that day in UTC.
+    """
+    moment = report_time()
+    return given or (moment if "SOURCE_DATE_EPOCH" in os.environ else moment.astimezone()).date().isoformat()
 
 
 def _building(assessment: Assessment) -> dict[str, tuple[str, str]]:

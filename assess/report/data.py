@@ -30,11 +30,12 @@ SCHEMA = Path(__file__).with_name("results.schema.json")
 
 def write_json(assessment: Assessment, path: Path) -> None:
     """Write results.json; its shape is that of `SCHEMA`."""
+    sheet = assessment.inventory.sheets.get("Items", "Items")
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write("{\n")
         for name, value in describe_run(assessment).items():
             file.write(f" {json.dumps(name)}: {_dump(value)},\n")
-        _write_list(file, "items", (item_record(one) for one in assessment))
+        _write_list(file, "items", (item_record(one, sheet) for one in assessment))
         file.write(",\n")
         _write_list(file, "routes", (route_record(one) for one in assessment.inventory.routes))
         file.write(",\n")
@@ -160,8 +161,8 @@ def fit_record(fit: "Fit") -> dict[str, float | None]:
     }
 
 
-def item_record(one: ItemResult) -> dict[str, Any]:
-    """Return one item as it stands in results.json."""
+def item_record(one: ItemResult, sheet: str = "Items") -> dict[str, Any]:
+    """Return one item as it stands in results.json; `sheet` is what the workbook calls its sheet of items."""
     item, case = one.item, one.governing
     return {
         **_piece_record(one),
@@ -178,7 +179,7 @@ def item_record(one: ItemResult) -> dict[str, Any]:
         "edge_distance_m": item.edge_distance,
         "notes": item.notes,
         "assumed": list(item.assumed),
-        "source": {"sheet": "Items", "row": item.row},
+        "source": {"sheet": sheet, "row": item.row},
     }
 
 

@@ -1,8 +1,20 @@
 """What the numbers of a report were computed with."""
 
+import contextlib
+import datetime
+import os
 import platform
 from collections.abc import Mapping
 from functools import cache
+
+
+def report_time() -> datetime.datetime:
+    """Return the time of the report in UTC: that of SOURCE_DATE_EPOCH where it is set (reproducible-builds.org)."""
+    with contextlib.suppress(KeyError, ValueError, OverflowError, OSError):
+        epoch = int(os.environ["SOURCE_DATE_EPOCH"])
+        if epoch >= 0:
+            return datetime.datetime.fromtimestamp(epoch, datetime.UTC)
+    return datetime.datetime.now(datetime.UTC)
 
 
 @cache

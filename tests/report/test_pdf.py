@@ -1,0 +1,145 @@
+"""The PDF itself, read back: what it says of itself, what is attached to it, its outline and its fonts."""
+
+import ctypes
+import re
+
+import pypdfium2
+import pypdfium2.raw as pdfium
+import pytest
+
+import assess
+from assess.report.attached import list_attached
+from assess.report.look import Look
+from assess.report.pdf import list_problems, write_pdf
+from tests.workbooks import assessed
+
+EPOCH = 1_700_000_000
+PREPARED = {"building": "Town hall & Café", "prepared_by": "Ann Bee", "organisation": "Us & Co"}
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """The default report in Italian, dated by SOURCE_DATE_EPOCH."""
+    folder = tmp_path_factory.mktemp("pdf")
+    assessment = assessed(folder / "Büro 1.xlsx", **PREPARED)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", str(EPOCH))
+        written = assess.write_reports(assessment, folder / "out", ("pdf", "json"), Look(language="it"))
+    document = pypdfium2.PdfDocument(written["pdf"])
+    yield assessment, written, document
+    document.close()
+
+
+def _attachments(document):
+    return {
+        (one := document.get_attachment(at)).get_name(): bytes(one.get_data())
+        for at in range(document.count_attachments())
+    }
+
+
+def test_it_tells_what_it_is(report):
+    _, _, document = report
+    told = document.get_metadata_dict()
+    assert "Town hall & Café" in told["Title"]
+    assert told["Author"] == "Ann Bee, Us & Co"
+    assert told["Keywords"]
+    assert told["Creator"] == f"assess {assess.__version__}"
+    assert told["CreationDate"] == told["ModDate"] == "D:20231114221320Z"
+    assert _language(document) == "it"
+    assert len(document) > 5
+    assert document.is_tagged()
+
+
+def _language(document):
+    size = pdfium.FPDFCatalog_GetLanguage(document.raw, None, 0)
+    text = ctypes.create_string_buffer(size)
+    pdfium.FPDFCatalog_GetLanguage(document.raw, ctypes.cast(text, ctypes.POINTER(ctypes.c_ushort)), size)
+    return text.raw.decode("utf-16-le").rstrip("\0")
+
+
+def test_workbook_and_results_are_attached_byte_for_byte(report):
+    assessment, written, document = report
+    source = assessment.inventory.source
+    assert _attachments(document) == {
+        source.name: source.read_bytes(),
+        "results.json": written["json"].read_bytes(),
+    }
+    data = written["pdf"].read_bytes()
+    kinds = re.findall(rb"/Subtype /(application[^/\s]+)", data)
+    assert kinds == [b"application#2fvnd.openxmlformats-officedocument.spreadsheetml.sheet", b"application#2fjson"]
+    packed = _unpack(written["pdf"])
+    assert set(re.findall(rb"/AFRelationship /(\w+)", packed)) == {b"Source", b"Data"}
+    dates = re.findall(rb"/(?:Creation|Mod)Date \((D:\d{14}Z)\)", data + packed)
+    assert dates == [b"D:20231114221320Z"] * 6
+
+
+def test_its_outline_holds_the_parts_and_what_is_in_them(report):
+    _, _, document = report
+    outline = [(mark.level, mark.get_title()) for mark in document.get_toc()]
+    parts = [title for level, title in outline if level == 0]
+    pages = "\n".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
+    assert len(parts) >= 10
+    assert any(level == 1 for level, _ in outline)
+    assert all(title.split()[0] in pages for _, title in outline)
+
+
+def test_every_font_is_embedded_and_of_the_report(report):
+    _, _, document = report
+    fonts = {}
+    for page in document:
+        for one in page.get_objects(filter=[pdfium.FPDF_PAGEOBJ_TEXT]):
+            font = pdfium.FPDFTextObj_GetFont(one.raw)
+            name = ctypes.create_string_buffer(80)
+            pdfium.FPDFFont_GetBaseFontName(font, name, 80)
+            fonts[name.value.decode()] = pdfium.FPDFFont_GetIsEmbedded(font)
+    assert fonts
+    assert set(fonts.values()) == {1}
+    assert {name.split("+")[-1].split("-")[0] for name in fonts} <= {"Report", "emoji"}
+
+
+def test_an_accessible_report_has_the_same_attachments(tmp_path):
+    assessment = assessed(tmp_path / "w.xlsx")
+    write_pdf(assessment, tmp_path / "a.pdf", Look(accessible=True))
+    assert b"pdfuaid" in _unpack(tmp_path / "a.pdf")
+    document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
+    assert list(_attachments(document)) == ["results.json", "w.xlsx"]
+    document.close()
+
+
+def _unpack(path):
+    """Return the small compressed streams of a PDF: objects, and what it says of itself."""
+    import zlib
+
+    found = re.findall(rb"stream\n(.*?)\nendstream", path.read_bytes(), re.DOTALL)
+    return b"".join(zlib.decompress(one) for one in found if one[:1] == b"\x78" and len(one) < 50_000)
+
+
+def test_a_workbook_that_is_no_longer_what_was_read_is_not_attached(tmp_path):
+    assessment = assessed(tmp_path / "w.xlsx")
+    assert list_problems(assessment) == []
+    (tmp_path / "w.xlsx").write_bytes(b"changed")
+    assert [str(one) for one in list_problems(assessment)] == [
+        "w.xlsx is not attached to the PDF: it has changed since it was read. "
+        "Run it again, so that report and workbook agree."
+    ]
+    (tmp_path / "w.xlsx").unlink()
+    assert [str(one) for one in list_problems(assessment)] == [
+        "w.xlsx is not attached to the PDF: it can no longer be read."
+    ]
+    assert [file.name for file in list_attached(assessment)] == ["results.json"]
+    write_pdf(assessment, tmp_path / "a.pdf", Look())
+    document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
+    text = " ".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
+    assert list(_attachments(document)) == ["results.json"]
+    assert "w.xlsx is not attached to the PDF" in " ".join(text.split())
+    document.close()
+
+
+def test_a_date_of_no_use_is_today(tmp_path, monkeypatch):
+    from assess.report.pdf import report_time
+
+    for epoch in ("", "yesterday", "-1", "1e9", "9" * 30, "²"):
+        monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
+        assert report_time().year >= 2025, epoch
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    assert report_time().year == 1970

@@ -1,0 +1,100 @@
+"""The PDFs are what they say they are: PDF/A-3u and PDF/UA-1, by veraPDF, the validator of the PDF Association.
+
+Its jars come from Maven Central into build/verapdf. Without Java, Maven or a network these tests are skipped, but fail
+where ASSESS_CI is set.
+"""
+
+import contextlib
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import assess
+from assess.report.look import Look
+from assess.report.pdf import load_weasyprint, write_pdf
+from tests.workbooks import UNVERIFIED, assessed
+
+HERE = Path(__file__).parents[1] / "verapdf"
+ROOT = HERE.parents[1]
+JARS = ROOT / "build" / "verapdf"
+
+pytestmark = [pytest.mark.verapdf, pytest.mark.slow]
+
+JAPANESE = [
+    {"item": "棚 1", "floor": "1", "room": "会議室", "description": "書棚 ντουλάπι", "breadth": 30, "height": 200}
+]
+
+
+@pytest.fixture(scope="module")
+def jars():
+    """The validator's folder, filled once; several processes may fill it at the same time."""
+    if not (shutil.which("java") and shutil.which("mvn")):
+        _go_without("Java or Maven is not installed")
+    if not JARS.is_dir():
+        JARS.parent.mkdir(exist_ok=True)
+        folder = JARS.with_name(f"verapdf-{os.getpid()}")
+        command = ["mvn", "-q", "-B", "dependency:copy-dependencies", f"-DoutputDirectory={folder}"]
+        done = subprocess.run(command, cwd=HERE, capture_output=True, text=True, timeout=600, check=False)
+        if done.returncode:
+            shutil.rmtree(folder, ignore_errors=True)
+            _go_without(f"Maven cannot fetch the validator: {done.stdout[-500:]}")
+        with contextlib.suppress(OSError):  # another process was first
+            folder.rename(JARS)
+        shutil.rmtree(folder, ignore_errors=True)
+    return JARS
+
+
+def _go_without(reason):
+    """Skip, but where the tests are to run for real: see .ci/run."""
+    if os.environ.get("ASSESS_CI"):
+        pytest.fail(reason)
+    pytest.skip(reason)
+
+
+def _validate(jars, *pairs):
+    """Return what each file breaks, in a word with its clause."""
+    words = [str(word) for pair in pairs for word in pair]
+    command = ["java", "-cp", f"{jars}/*", str(HERE / "Validate.java"), *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+    assert done.returncode == 0, done.stderr
+    verdicts = re.findall(r"^(PASS|FAIL) \S+ (.+)\n((?:  .*\n)*)", done.stdout, re.MULTILINE)
+    assert [file for _, file, _ in verdicts] == [str(file) for file, _ in pairs]
+    for verdict, _, broken in verdicts:
+        assert (verdict == "PASS") == (broken == "")
+    return [broken for _, _, broken in verdicts]
+
+
+def _write(assessment, path, *, accessible=False, language="en"):
+    look = Look(language=language, accessible=accessible)
+    with look.spoken():
+        write_pdf(assessment, path, look)
+    return path
+
+
+def test_a_small_report_is_valid_and_the_validator_can_say_no(tmp_path, jars):
+    small = assessed(tmp_path / "w.xlsx", building="Town hall", scenario="A test", prepared_by="A. Engineer")
+    strange = assessed(tmp_path / "表.xlsx", JAPANESE, building="東京", organisation="Us & Co")
+    archival, accessible = _write(small, tmp_path / "a.pdf"), _write(small, tmp_path / "u.pdf", accessible=True)
+    plain = tmp_path / "plain.pdf"
+    load_weasyprint().HTML(string="<h1>Plain</h1>").write_pdf(plain)
+    good = _validate(
+        jars,
+        (archival, "3u"),
+        (accessible, "ua1"),
+        (_write(strange, tmp_path / "s.pdf", language="it"), "3u"),
+        (_write(strange, tmp_path / "t.pdf", accessible=True, language="it"), "ua1"),
+    )
+    assert good == ["", "", "", ""]
+    archival_as_accessible, plain_as_archival = _validate(jars, (archival, "ua1"), (plain, "3u"))
+    assert re.search(r"^  5 test 1: .*PDF/UA", archival_as_accessible)
+    assert "6.6" in plain_as_archival
+
+
+def test_the_example_is_valid(tmp_path, jars):
+    example = assess.run(assess.read_inventory(ROOT / "inventories" / "market-street.xlsx"), UNVERIFIED)
+    archival, accessible = _write(example, tmp_path / "a.pdf"), _write(example, tmp_path / "u.pdf", accessible=True)
+    assert _validate(jars, (archival, "3u"), (accessible, "ua1")) == ["", ""]
