@@ -32,7 +32,7 @@ class RiskClass(IntEnum):
     @property
     def fill(self) -> str:
         """Background colour, light to dark: told apart without red and green, and in grey."""
-        return ("#dcebf7", "#fbe29a", "#f0954a", "#8c1d3f")[self]
+        return ("#eaf3fb", "#f7cf5c", "#db7133", "#8c1d3f")[self]
 
     @property
     def ink(self) -> str:

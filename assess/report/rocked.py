@@ -30,7 +30,7 @@ MOST_STEPS = 300
 """Points of a curve of convergence."""
 MOST_SAMPLES, MOST_ORDINATES = 800, 60
 """Points of a curve of acceleration, and about as many of each of the thin spectra."""
-RECORD, MOTION, MEAN, BAND = "#1c1c1c", "#1b4f72", "#f0954a", "#c6d3dd"
+RECORD, MOTION, MEAN, BAND = "#1c1c1c", "#1b4f72", "#db7133", "#c6d3dd"
 BINS = 10
 """Bars between rest and the critical angle."""
 
@@ -131,7 +131,8 @@ def _paint_convergences(traced: Sequence[Traced], z: float, is_long: bool, figur
     last = _paint_panels(traced, partial(_paint_convergence, z, is_long), figure)
     edges = np.sqrt([0, *LIMITS, 1])
     for risk, middle in zip(RiskClass, (edges[1:] + edges[:-1]) / 2, strict=True):
-        last.text(1.06, middle, words.risk_label(risk), transform=last.transAxes, fontsize=6, va="center").set_gid("class")
+        name = last.text(1.06, middle, words.risk_label(risk), transform=last.transAxes, fontsize=6, va="center")
+        name.set_gid("class")
     drawn, names = last.get_legend_handles_labels()
     figure.legend(drawn[::-1], names[::-1], loc="outside lower center", ncols=3, fontsize=6, frameon=False)
 

@@ -10,7 +10,9 @@ import pytest
 import assess
 from assess.cases import FLAGS as CASE_FLAGS
 from assess.methods import all_methods
+from assess.report.context import LIMITS
 from assess.report.html import render
+from assess.report.page import script_hash
 from tests.workbooks import assessed, write
 
 
@@ -22,7 +24,7 @@ class _Page(HTMLParser):
         self.text, self.open, self.wrong = [], [], []
 
     def handle_starttag(self, tag, attrs):
-        if tag not in ("meta", "img", "br", "col", "link"):
+        if tag not in ("meta", "img", "br", "col", "link", "input"):
             self.open.append(tag)
 
     def handle_endtag(self, tag):
@@ -30,7 +32,7 @@ class _Page(HTMLParser):
             self.wrong.append(tag)
 
     def handle_data(self, data):
-        if not self.open or self.open[-1] != "style":
+        if not self.open or self.open[-1] not in ("style", "script"):
             self.text.append(data)
 
 
@@ -80,16 +82,18 @@ def test_anchored_pieces_stand_outside_the_classes(report):
     _, written = report
     text = _read(written["html"].read_text(encoding="utf-8"))
     assert "depends on its anchor (free-standing:" in text
-    assert "1 further piece is anchored and only as safe as the anchor" in text
+    assert "1 further piece is anchored, and only as safe as its anchor." in text
 
 
-def test_html_fetches_nothing_and_runs_nothing(report):
+def test_html_fetches_nothing_and_runs_its_one_script_alone(report):
     _, written = report
     html = written["html"].read_text(encoding="utf-8")
     assert "default-src 'none'" in html
     assert not re.search(r'(?:src|href)="(?!data:image/|#)', html)
-    assert "<script" not in html
-    assert "url(" not in re.sub(r"url\(data:", "", html)
+    (script,) = re.findall(r"<script>(.*?)</script>", html, flags=re.DOTALL)
+    assert html.count("<script") == 1
+    assert f"script-src '{script_hash(script)}'" in html
+    assert "url(" not in re.sub(r"url\((data:|#)", "", html)
 
 
 def test_every_picture_has_an_alternative_text_and_every_heading_cell_a_scope(report):
@@ -125,7 +129,7 @@ def test_a_report_of_a_single_floor_without_items_renders(tmp_path):
 
 
 def test_a_long_list_is_cut_with_a_word(tmp_path, monkeypatch):
-    monkeypatch.setattr("assess.report.html.MOST_ROWS", 3)
+    monkeypatch.setattr("assess.report.context.LIMITS", LIMITS | {"most_rows": 3})
     text = _read(render(assessed(tmp_path / "w.xlsx")))
     assert "5 rows, the first 3 of which are shown: the Excel report holds all" in text
 

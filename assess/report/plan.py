@@ -1,0 +1,270 @@
+"""The plan of a floor, in metres: its pieces to scale, what they would cover if they fell, places and routes.
+
+The template plan.svg.j2 draws it in pixels, Y downwards, by `Plan.x`, `Plan.y` and `Plan.outline`: in metres its
+letters would be smaller than some programs can draw.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from assess.inventory.model import Inventory, Item, Segment
+from assess.language import gettext as _
+from assess.report import words
+from assess.report.content import FloorPage
+from assess.results import ItemResult
+from assess.risk import RiskClass
+
+Point = tuple[float, float]
+Corners = tuple[Point, Point, Point, Point]
+Bounds = tuple[float, float, float, float]
+
+ANCHORED = "#d0d0d0"
+"""Fill of an anchored piece, which stands outside the classes."""
+WIDE, HIGH = 660.0, 780.0
+"""Most of a drawing [px]: the width of a page in upright format, and what of its height leaves room for the text."""
+BESIDE, BELOW = 26.0, 44.0
+"""Room for the ticks, and for the scale bar below them [px]."""
+LARGEST = 90.0
+"""Scale [px/m] that is not gone beyond for a few pieces close together."""
+BORDER = 0.4
+"""Free space round everything that is drawn [m]."""
+NAMED = 24
+"""Characters of a place's name that are drawn."""
+LETTER, LINE = 5.6, 10.0
+"""Width of a letter and height of a line of such a name [px]."""
+_STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
+_TICKS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One piece; `number` is that of its row among all pieces, from 1, and `side` its shorter side [m]."""
+
+    number: int
+    title: str
+    class_name: str
+    fill: str
+    ink: str
+    symbol: str
+    marks: str
+    side: float
+    at: Point
+    corners: Corners
+    fallen: tuple[Corners, ...]
+    """What it would cover if it fell, one rectangle a way: only for a free-standing one of at least medium class."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A place with its name, which begins or, `is_before`, ends at `label`."""
+
+    name: str
+    at: Point
+    label: Point
+    is_before: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """One floor's plan; `low` and `high` are the corners of what is drawn, `unit` [m] one pixel of the drawing."""
+
+    key: str
+    """What the ids of the drawing begin with: no other plan of the report has the same."""
+    title: str
+    pieces: tuple[Piece, ...]
+    places: tuple[Spot, ...]
+    ways: tuple[tuple[Point, Point], ...]
+    low: Point
+    high: Point
+    unit: float
+    north: float | None
+    """Direction of north [deg], anticlockwise from X, where it is known."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the drawing [px], with room for the ticks on the left and below."""
+        return math.ceil(self.x(self.high[0])), math.ceil(self.y(self.low[1]) + BELOW)
+
+    def x(self, value: float) -> float:
+        """Return where an X [m] lies in the drawing."""
+        return round(BESIDE + (value - self.low[0]) / self.unit, 2)
+
+    def y(self, value: float) -> float:
+        """Return where a Y [m] lies in the drawing."""
+        return round((self.high[1] - value) / self.unit, 2)
+
+    def outline(self, corners: Iterable[Point]) -> str:
+        """Return a closed path."""
+        return "M" + "L".join(f"{self.x(x):g} {self.y(y):g}" for x, y in corners) + "Z"
+
+    @property
+    def falls(self) -> str:
+        """All that would be covered, as one path: where two overlap it is hatched once."""
+        return "".join(self.outline(corners) for piece in self.pieces for corners in piece.fallen)
+
+    @property
+    def ticks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Values along X and Y, at the same round distance."""
+        step = _step(max(self.high[0] - self.low[0], self.high[1] - self.low[1]) / _TICKS)
+        return _multiples(step, self.low[0], self.high[0]), _multiples(step, self.low[1], self.high[1])
+
+    @property
+    def bar(self) -> float:
+        """Length of the scale bar [m]: round, and about a sixth of the width."""
+        return _step((self.high[0] - self.low[0]) / 8)
+
+    def symbol_size(self, piece: Piece) -> float:
+        """Return the size of a piece's symbol [px]: that of the piece, yet legible and no giant."""
+        return round(min(max(0.95 * piece.side / self.unit, 6), 16), 1)
+
+    def right(self, piece: Piece) -> float:
+        """Return where the right end of a piece lies in the drawing."""
+        return self.x(max(x for x, _y in piece.corners))
+
+
+def build_plan(page: FloorPage, inventory: Inventory) -> Plan | None:
+    """Return the plan of a floor, or None where no piece of it has a position."""
+    numbers = {item.row: at for at, item in enumerate(inventory.items, start=1)}
+    pieces = tuple(
+        _piece(one, (one.item.x, one.item.y), numbers[one.item.row])
+        for one in page.results
+        if one.item.x is not None and one.item.y is not None
+    )
+    if not pieces:
+        return None
+    places = {
+        place.place: (place.x, place.y)
+        for place in inventory.places
+        if place.floor == page.floor.floor and place.x is not None and place.y is not None
+    }
+    low, high = _frame(pieces, places.values())
+    unit = _unit(low, high)
+    return Plan(
+        key=f"plan-{[floor.floor for floor in inventory.floors].index(page.floor.floor) + 1}",
+        title=page.title,
+        pieces=pieces,
+        places=tuple(_spots(places, pieces, high, unit)),
+        ways=tuple(_ways(inventory.routes, places)),
+        low=low,
+        high=high,
+        unit=unit,
+        north=inventory.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
+    )
+
+
+def _ways(routes: Sequence[Segment], places: Mapping[str, Point]) -> Iterator[tuple[Point, Point]]:
+    for segment in routes:
+        if segment.start in places and segment.end in places:
+            yield places[segment.start], places[segment.end]
+
+
+def _piece(one: ItemResult, at: Point, number: int) -> Piece:
+    item, risk = one.item, one.adopted.risk
+    across, angle = item.width or item.breadth, turn(item)
+    falls = not one.is_anchored and max(risk, one.adopted.upper) >= RiskClass.MEDIUM
+    return Piece(
+        number=number,
+        title=_title(one),
+        class_name="anchored" if one.is_anchored else words.class_name(risk),
+        fill=ANCHORED if one.is_anchored else risk.fill,
+        ink=risk.ink,
+        symbol="" if one.is_anchored else risk.symbol,
+        marks="" if one.is_anchored else words.class_marks(one),
+        side=min(item.breadth, across),
+        at=at,
+        corners=rectangle(at, angle, (-item.breadth / 2, item.breadth / 2), across),
+        fallen=fallen(at, angle, item.breadth, across, item.height) if falls else (),
+    )
+
+
+def _title(one: ItemResult) -> str:
+    named, kind = words.cut(one.item.item, 40), one.item.description or one.item.type
+    described = f"{named}, {words.cut(kind, 80)}" if kind else named
+    return _("{item}: {risk}; chance {chance}", item=described, risk=words.risk_words(one), chance=words.chance(one))
+
+
+def turn(item: Item) -> float:
+    """Return the direction of Breadth [deg], anticlockwise from X: that of the axis where no angle is given."""
+    if item.angle_deg is not None:
+        return item.angle_deg
+    return 90.0 if item.axis == "Y" else 0.0
+
+
+def rectangle(at: Point, angle: float, along: tuple[float, float], across: float) -> Corners:
+    """Return the corners of a rectangle, anticlockwise.
+
+    Parameters
+    ----------
+    at : (2,) floats
+        Centre of the piece [m].
+    angle : float
+        Direction of Breadth, anticlockwise from X [deg].
+    along : (2,) floats
+        Where it begins and ends along Breadth, from the centre [m].
+    across : float
+        Its width across Breadth [m], half of it on each side.
+    """
+    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    (x, y), (near, far), half = at, along, across / 2
+    local = ((near, -half), (far, -half), (far, half), (near, half))
+    one, two, three, four = ((x + u * cos - v * sin, y + u * sin + v * cos) for u, v in local)
+    return one, two, three, four
+
+
+def fallen(at: Point, angle: float, breadth: float, width: float, height: float) -> tuple[Corners, Corners]:
+    """Return what a piece covers beyond its footprint if it falls over either of its edges across Breadth.
+
+    Either, as the sign of a motion says nothing of the way in which a piece falls.
+    """
+    edge = breadth / 2
+    return rectangle(at, angle, (edge, edge + height), width), rectangle(at, angle, (-edge - height, -edge), width)
+
+
+def _frame(pieces: Sequence[Piece], places: Iterable[Point]) -> tuple[Point, Point]:
+    """Return the lower left and the upper right corner of what is drawn."""
+    points = [point for one in pieces for corners in (one.corners, *one.fallen) for point in corners]
+    xs, ys = zip(*points, *places, strict=True)
+    return (min(xs) - BORDER, min(ys) - BORDER), (max(xs) + BORDER, max(ys) + BORDER)
+
+
+def _unit(low: Point, high: Point) -> float:
+    return max((high[0] - low[0]) / (WIDE - BESIDE), (high[1] - low[1]) / (HIGH - BELOW), 1 / LARGEST)
+
+
+def _spots(places: Mapping[str, Point], pieces: Sequence[Piece], high: Point, unit: float) -> Iterator[Spot]:
+    """Place the name of each place above or below it, right or left, where it covers least of what is drawn already."""
+    taken = [_bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)]
+    for name, (x, y) in places.items():
+        shown = words.cut(name, NAMED)
+        wide, tall, off = LETTER * unit * len(shown), LINE * unit, 4 * unit
+        tried = [(x0, y0, x0 + wide, y0 + tall) for y0 in (y + off, y - off - tall) for x0 in (x + off, x - off - wide)]
+        box = min(tried, key=lambda one: _cost(one, taken, high))
+        taken.append(box)
+        is_before = box[0] < x
+        yield Spot(shown, (x, y), (box[2 if is_before else 0], box[1] + 0.2 * tall), is_before)
+
+
+def _cost(box: Bounds, taken: Sequence[Bounds], high: Point) -> float:
+    """Return how much [m2] of a name lies over other things; outside the drawing is worse than over anything."""
+    over = sum(_overlap(box, other) for other in taken)
+    return over + (1e6 if box[2] > high[0] or box[3] > high[1] else 0)
+
+
+def _overlap(one: Bounds, other: Bounds) -> float:
+    wide = min(one[2], other[2]) - max(one[0], other[0])
+    tall = min(one[3], other[3]) - max(one[1], other[1])
+    return wide * tall if wide > 0 and tall > 0 else 0.0
+
+
+def _bounds(corners: Corners) -> Bounds:
+    xs, ys = zip(*corners, strict=True)
+    return min(xs), min(ys), max(xs), max(ys)
+
+
+def _step(least: float) -> float:
+    return next((step for step in _STEPS if step >= least), _STEPS[-1])
+
+
+def _multiples(step: float, low: float, high: float) -> tuple[float, ...]:
+    return tuple(round(step * at, 1) for at in range(math.ceil(low / step), math.floor(high / step) + 1))

@@ -1,0 +1,282 @@
+"""The HTML report in a browser: filters, sorting, the plan, printing, small screens, and what it may not do."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import assess
+from assess.inventory.blank import Content, write_workbook
+from docs.screenshot import HEIGHT, WIDTH, find_browser
+from tests.workbooks import FLOORS, UNVERIFIED
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(find_browser() is None, reason="no Chromium or Chrome is installed"),
+]
+
+PIECES = [
+    {"item": "A1", "floor": "1", "room": "Hall", "breadth": 30, "width": 80, "height": 200, "x": 2.0, "y": 3.0,
+     "angle_deg": 90, "route": "R", "segment": "a", "description": "Bookcase"},
+    {"item": "A2", "floor": "1", "room": "Office", "breadth": 40, "width": 90, "height": 180, "x": 5.0, "y": 3.0,
+     "anchored": "yes"},
+    {"item": "A3", "floor": "1", "room": "Office", "breadth": 90, "width": 90, "height": 92, "x": 5.0, "y": 6.0,
+     "axis": "Y", "description": "Low chest"},
+    {"item": "A10", "floor": "2", "room": "Archive", "breadth": 40, "height": 180, "quantity": 3},
+    {"item": "B<i>1</i>", "floor": "2", "room": "Office", "breadth": 25, "width": 90, "height": 210, "x": 1.0,
+     "y": 1.0},
+]  # fmt: skip
+PLACES = [{"place": "Hall", "floor": "1", "x": 1.0, "y": 1.0}, {"place": "Stair", "floor": "1", "x": 6.0, "y": 1.0}]
+ROUTES = [{"route": "R", "segment": "a", "floor": "1", "start": "Hall", "end": "Stair", "clear_width": 1.2}]
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("browser")
+    rows = {"Building": [{"building": "Town hall"}], "Floors": FLOORS, "Items": PIECES, "Places": PLACES}
+    write_workbook(folder / "w.xlsx", Content(rows=rows | {"Routes": ROUTES}), "si")
+    assessment = assess.run(assess.read_inventory(folder / "w.xlsx"), UNVERIFIED)
+    return assess.write_reports(assessment, folder, "html")["html"]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=find_browser())
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser, report):
+    """Open the report in a window of its own; whatever it complains of, or asks the network for, fails the test."""
+    contexts, complaints = [], []
+
+    def open_page(width=1280, height=900, **options):
+        context = browser.new_context(viewport={"width": width, "height": height}, **options)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: complaints.append(request.url) if _is_outside(request.url) else None)
+        page.goto(report.as_uri())
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert complaints == []
+
+
+def _is_outside(url):
+    return not url.startswith(("file:", "data:"))
+
+
+def _filter(page, label):
+    return page.locator("#filter-bar").get_by_label(label, exact=True)
+
+
+def _shown(page):
+    return page.locator("#pieces tbody tr:visible td:first-child").all_inner_texts()
+
+
+def _status(page):
+    return page.locator("#filter-status").inner_text()
+
+
+def test_it_opens_without_a_complaint_or_a_request_and_shows_all_rows(open_page):
+    page = open_page()
+    assert _shown(page) == ["A1", "A2", "A3", "A10", "B<i>1</i>"]
+    assert _status(page) == "5 rows, all shown"
+
+
+def test_nothing_but_its_own_script_runs(browser, report):
+    """A script that is slipped in is refused by the policy, whether inline, as a handler or from elsewhere."""
+    page = browser.new_page()
+    complaints = []
+    page.on("console", lambda message: complaints.append(message.text))
+    html = report.read_text(encoding="utf-8")
+    slipped = "<script>window.ran = 1</script><img src='x' onerror='window.ran = 1' alt=''><script src='x.js'></script>"
+    other = report.with_name("slipped.html")
+    other.write_text(html.replace("</main>", f"{slipped}</main>"), encoding="utf-8")
+    page.goto(other.as_uri())
+    assert page.evaluate("window.ran") is None
+    assert _status(page) == "5 rows, all shown"
+    refused = [text for text in complaints if "Content Security Policy" in text]
+    assert any("inline script" in text for text in refused)
+    assert any("x.js" in text for text in refused)
+    page.close()
+
+
+def test_filters_narrow_the_rows_down_and_say_so(open_page):
+    page = open_page()
+    _filter(page, "Floor").select_option("1")
+    assert _shown(page) == ["A1", "A2", "A3"]
+    assert _status(page) == "3 of 5 rows shown: Floor: 1"
+    _filter(page, "Room").select_option("Office")
+    assert _shown(page) == ["A2", "A3"]
+    _filter(page, "Class").select_option("anchored")
+    assert _shown(page) == ["A2"]
+    page.get_by_role("button", name="Show all").click()
+    assert len(_shown(page)) == 5
+    _filter(page, "Class").select_option(label="○ low")
+    assert _shown(page) == ["A3"]
+
+
+def test_rooms_are_those_of_the_floor(open_page):
+    page = open_page()
+    rooms = _filter(page, "Room")
+    assert rooms.locator("option").all_inner_texts() == ["all", "Archive", "Hall", "Office"]
+    rooms.select_option("Hall")
+    _filter(page, "Floor").select_option("2")
+    assert rooms.locator("option").all_inner_texts() == ["all", "Archive", "Office"]
+    assert rooms.input_value() == ""
+    assert _shown(page) == ["A10", "B<i>1</i>"]
+
+
+def test_search_finds_all_words_in_any_column(open_page):
+    page = open_page()
+    _filter(page, "Search").fill("CHEST office")
+    assert _shown(page) == ["A3"]
+    assert _status(page) == "1 of 5 rows shown: “CHEST office”"
+    _filter(page, "Search").fill("nothing like it")
+    assert _shown(page) == []
+    assert _status(page).startswith("0 of 5 rows shown")
+
+
+def test_a_filter_of_one_choice_is_offered_only_where_rows_differ_by_it(open_page):
+    page = open_page()
+    assert _filter(page, "Route").is_visible()
+    _filter(page, "Route").select_option("R")
+    assert _shown(page) == ["A1"]
+
+
+def test_heads_sort_by_mouse_and_keyboard_and_say_so(open_page):
+    page = open_page()
+    page.get_by_role("button", name="Chance").click()
+    head = page.locator("#pieces").get_by_role("columnheader", name="Chance", exact=True)
+    assert head.get_attribute("aria-sort") == "descending"
+    chances = page.locator("#pieces tbody tr td:nth-child(12)").evaluate_all(
+        "cells => cells.map(c => +c.dataset.value)"
+    )
+    assert chances == sorted(chances, reverse=True)
+    page.get_by_role("button", name="Item", exact=True).focus()
+    page.keyboard.press("Enter")
+    assert _shown(page) == ["A1", "A2", "A3", "A10", "B<i>1</i>"]
+    assert head.get_attribute("aria-sort") is None
+    page.keyboard.press("Space")
+    assert _shown(page) == ["B<i>1</i>", "A10", "A3", "A2", "A1"]
+    page.get_by_role("button", name="Show all").click()
+    assert _shown(page)[0] == "A1"
+    assert page.locator("[aria-sort]").count() == 0
+
+
+def test_sorting_keeps_the_filter(open_page):
+    page = open_page()
+    _filter(page, "Floor").select_option("1")
+    page.get_by_role("button", name="B/H").click()
+    assert _shown(page) == ["A3", "A2", "A1"]
+
+
+def test_a_piece_of_the_plan_leads_to_its_row_even_where_it_is_filtered_out(open_page):
+    page = open_page()
+    _filter(page, "Floor").select_option("2")
+    assert "A1" not in _shown(page)
+    page.locator("#piece-1").click()
+    row = page.locator("#row-1")
+    assert row.is_visible()
+    assert _status(page) == "5 rows, all shown"
+    _assert_marked_and_in_sight(page, row)
+
+
+def test_a_piece_of_the_plan_is_reached_by_keyboard(open_page):
+    page = open_page()
+    page.get_by_role("link", name="A3, Low chest: low").focus()
+    page.keyboard.press("Enter")
+    _assert_marked_and_in_sight(page, page.locator("#row-3"))
+
+
+def test_going_back_to_a_row_that_is_filtered_out_shows_it(open_page):
+    page = open_page()
+    page.locator("#piece-1").click()
+    page.locator("#piece-3").click()
+    _filter(page, "Floor").select_option("2")
+    page.go_back()
+    assert page.locator("#row-1").is_visible()
+
+
+def test_a_row_leads_back_to_its_piece_on_the_plan(open_page):
+    page = open_page()
+    page.get_by_role("link", name="A1", exact=True).last.click()
+    assert page.url.endswith("#piece-1")
+    top = page.locator("#piece-1").evaluate("piece => piece.getBoundingClientRect().top")
+    assert 0 <= top < 900
+    assert page.locator("#row-4 td:first-child a").count() == 0
+
+
+def _assert_marked_and_in_sight(page, row):
+    head = page.locator("#pieces thead").bounding_box()
+    box = row.bounding_box()
+    assert box["y"] >= head["height"] - 1
+    assert box["y"] < 900
+    marked = row.locator("td").first.evaluate("cell => getComputedStyle(cell).backgroundColor")
+    assert marked == "rgb(255, 243, 191)"
+
+
+def test_without_javascript_all_rows_are_shown_and_links_work(open_page):
+    page = open_page(java_script_enabled=False)
+    assert page.locator("#pieces tbody tr:visible").count() == 5
+    assert page.locator("#filter-bar, .sort").count() == 0
+    page.locator("#piece-3").click()
+    assert page.url.endswith("#row-3")
+    page.locator("#row-1 a").first.click()
+    assert page.url.endswith("#piece-1")
+
+
+def test_print_shows_the_rows_as_filtered_and_no_controls(open_page):
+    page = open_page()
+    page.emulate_media(media="print")
+    assert not page.locator("#filter-bar").is_visible()
+    page.emulate_media(media="screen")
+    _filter(page, "Floor").select_option("1")
+    page.emulate_media(media="print")
+    assert not page.get_by_role("button", name="Show all").is_visible()
+    assert not page.locator("#filter-floor").is_visible()
+    assert _status(page) == "3 of 5 rows shown: Floor: 1"
+    assert page.locator("#pieces tbody tr:visible").count() == 3
+
+
+@pytest.mark.parametrize("width", [320, 375, 768, 1280, 1600])
+def test_the_page_never_scrolls_sideways(open_page, width):
+    page = open_page(width=width, height=700)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    for selector in ("#pieces", "svg.floor-plan", "#filter-bar"):
+        assert page.locator(selector).first.is_visible()
+
+
+def test_head_of_the_table_stays_in_sight(open_page):
+    page = open_page(height=400)
+    page.locator("#row-5").scroll_into_view_if_needed()
+    page.evaluate("window.scrollBy(0, document.querySelector('#row-5').getBoundingClientRect().top - 120)")
+    assert -1 <= page.locator("#pieces thead th").first.bounding_box()["y"] < 60
+
+
+def test_every_control_has_a_name(open_page):
+    page = open_page()
+    for role in ("combobox", "searchbox", "button", "link"):
+        for control in page.get_by_role(role).all():
+            snapshot = control.aria_snapshot()
+            assert '"' in snapshot or ":" in snapshot, snapshot
+    assert page.get_by_role("search").get_attribute("aria-label") == "Filter the pieces"
+    assert page.get_by_role("table", name="All pieces").count() == 1
+    assert page.get_by_role("group", name="Plan of Floor 1").count() == 1
+
+
+def test_a_picture_is_taken(report, tmp_path):
+    script = Path(assess.__file__).parents[1] / "docs" / "screenshot.py"
+    subprocess.run([sys.executable, script, report, tmp_path / "report.png"], check=True)
+    head = (tmp_path / "report.png").read_bytes()[:24]
+    assert (int.from_bytes(head[16:20], "big"), int.from_bytes(head[20:24], "big")) == (WIDTH, HEIGHT)

@@ -1,0 +1,72 @@
+"""Reports of unusual buildings: nothing on them, one of everything, very long names, very many floors."""
+
+import re
+
+import openpyxl
+import pypdfium2
+import pytest
+
+import assess
+from tests.workbooks import FLOORS, ITEMS, assessed
+
+LONG = "N" * 299 + "Z"
+BARE = {"item": "A1", "floor": "1", "breadth": 30, "height": 200}
+
+
+def floors(count):
+    return [
+        {"floor": f"F{at}", "name": f"Level {at}", "elevation": 3.0 * at, "pfa_x": 0.1 + 0.001 * at}
+        for at in range(count)
+    ]
+
+
+CASES = {
+    "no items": ({"items": []}, ["There are no free-standing pieces.", "There are no pieces.", "2 floors have no"]),
+    "one item on one floor": ({"items": ITEMS[:1], "floors": FLOORS[:1]}, ["Of 1 free-standing piece,", "1 floor"]),
+    "a floor without items": ({"items": ITEMS[:1]}, ["1 floor has no pieces and no page of its own."]),
+    "an item with no name but its number": ({"items": [BARE]}, ["A1: no description", "no room named"]),
+    "names of 300 characters": (
+        {"items": [dict(ITEMS[0], item=LONG, room=LONG, description=LONG)], "building": LONG},
+        ["N" * 38, "…"],
+    ),
+    "names in other scripts": (
+        {"items": [dict(ITEMS[0], item="Ωmega", description="本棚 خزانة كتب")], "building": "Κτίριο"},
+        ["Ωmega", "Κτίριο"],
+    ),
+    "markup in names": (
+        {"items": [dict(ITEMS[0], item="<b>x</b>", room="{{ 1 }}")], "building": "a & b"},
+        ["<b>x</b>", "{{ 1 }}", "a & b"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.parametrize("name", CASES)
+def test_it_renders(tmp_path, name):
+    given, told = CASES[name]
+    written = assess.write_reports(assessed(tmp_path / "w.xlsx", **given), tmp_path / "out")
+    document = pypdfium2.PdfDocument(written["pdf"])
+    pages = [page.get_textpage().get_text_range() for page in document]
+    text = re.sub(r"\s+", " ", " ".join(pages).replace("\ufffe", "-"))
+    for one in told:
+        assert one in text, one
+    assert sum(page.lstrip().startswith("Summary") for page in pages) == 1, "the summary is one page"
+    book = openpyxl.load_workbook(written["xlsx"])
+    assert "Items" in book.sheetnames
+    book.close()
+    assert LONG not in text or name != "names of 300 characters"
+
+
+@pytest.mark.slow
+def test_two_hundred_floors(tmp_path):
+    levels = floors(200)
+    items = [dict(ITEMS[0], item=f"P{at}", floor=f"F{at}") for at in range(200)]
+    written = assess.write_reports(
+        assessed(tmp_path / "w.xlsx", items, levels), tmp_path / "out", ("pdf", "html", "xlsx")
+    )
+    pages = [page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(written["pdf"])]
+    assert len(pages) < 120
+    text = " ".join(" ".join(pages).split())
+    for floor in levels:
+        assert f"{floor['floor']} – {floor['name']}" in text
+    assert sum(page.lstrip().startswith("Summary") for page in pages) == 1

@@ -1,0 +1,125 @@
+"""How a report looks: its language, and a firm's own templates."""
+
+import re
+
+import pytest
+
+import assess
+from assess.errors import InputError
+from assess.language import load_catalogue
+from assess.report.html import render
+from assess.report.look import Look
+from tests.workbooks import ITEMS, assessed
+
+HEAD = """msgid ""
+msgstr ""
+"Content-Type: text/plain; charset=utf-8\\n"
+"Plural-Forms: nplurals=2; plural=(n != 1);\\n"
+
+"""
+
+
+@pytest.fixture(scope="module")
+def assessment(tmp_path_factory):
+    return assessed(tmp_path_factory.mktemp("look") / "w.xlsx", building="Town hall", period=0.9)
+
+
+def own(folder, name, text):
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return Look(templates=folder)
+
+
+def rendered(assessment, look):
+    with look.spoken():
+        return render(assessment, look)
+
+
+def test_a_file_of_the_firms_own_stands_in(assessment, tmp_path):
+    look = own(
+        tmp_path, "sections/limits.html.j2", '<section id="limits"><h2>Our limits: {{ content.title }}</h2></section>'
+    )
+    html = rendered(assessment, look)
+    assert "Our limits: Town hall" in html
+    assert "Every piece is a rigid block" not in html
+    assert "Data-quality log" in html
+
+
+def test_a_style_of_the_firms_own_stands_in(assessment, tmp_path):
+    assert "h1 { color: teal; }" in rendered(assessment, own(tmp_path, "style/screen.css", "h1 { color: teal; }"))
+
+
+def test_texts_of_the_firms_own_come_first(assessment, tmp_path):
+    look = own(tmp_path, "texts/en.po", HEAD + 'msgid "Summary"\nmsgstr "What matters"\n')
+    assert "<h2>What matters</h2>" in rendered(assessment, look)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("{{ content.nothing }}", r"limits\.html\.j2, line 2: .*has no attribute 'nothing'"),
+        ("{% if %}", r"limits\.html\.j2, line 2: "),
+        ("{{ content.__class__ }}", r"limits\.html\.j2, line 2: access to attribute '__class__' .* is unsafe"),
+        ("{{ 1 / 0 }}", r"limits\.html\.j2, line 2: division by zero"),
+        ("{% include 'other.j2' %}", r"other\.j2"),
+    ],
+)
+def test_a_fault_in_a_template_is_told_with_its_place(assessment, tmp_path, text, told):
+    with pytest.raises(InputError, match=f"^--template: .*{told}"):
+        rendered(assessment, own(tmp_path, "sections/limits.html.j2", f"\n{text}"))
+
+
+def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
+    look = own(tmp_path / "firm", "sections/limits.html.j2", "{{ nothing }}")
+    with pytest.raises(InputError, match="'nothing' is undefined"):
+        assess.write_reports(assessment, tmp_path / "out", ("json", "html"), look)
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [("sections/limit.html.j2", "sections/limit.html.j2 stands in for nothing"), (".hidden", "it holds no template")],
+)
+def test_a_folder_without_templates_is_told(tmp_path, name, told):
+    with pytest.raises(InputError, match=told):
+        own(tmp_path, name, "")
+
+
+def test_a_folder_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(InputError, match="--template: there is no folder"):
+        Look(templates=tmp_path / "none")
+
+
+def test_a_language_that_is_not_there_is_told():
+    with pytest.raises(InputError, match="language 'xx' is unknown: expected one of en, it"):
+        Look(language="xx")
+
+
+def test_an_italian_report_holds_no_english_sentence(tmp_path):
+    """Every text of the catalogue that is more than a word or two, and is another in Italian, is said in Italian."""
+    items = [*ITEMS[:4], {"item": "A6", "x": 1.0, "y": 2.0, "floor": "1", "breadth": 90, "width": 90, "height": 45, "friction": 0.2}]
+    found = assessed(tmp_path / "w.xlsx", items, period=0.9, ground_pga=0.2, language="Italiano")
+    assert found.inventory.report_language == "it"
+    html = rendered(found, Look(language="it"))
+    assert '<html lang="it">' in html
+    text = " ".join(re.sub(r"<(style|script)>.*?</\1>|<[^>]*>", " ", html, flags=re.DOTALL).split())
+    english = {
+        one: texts
+        for one, texts in load_catalogue("it").messages.items()
+        if len(one.split()) >= 3 and one not in texts and "{" not in one and "<" not in one
+    }
+    assert len(english) > 200
+    titles = str([str(method.reference) for method in found.methods])  # publications keep their titles
+    left = [one for one in english if one in text and one not in titles]
+    assert left == []
+    assert re.search(r"\d,\d %", text)
+    assert not re.search(r"\d\.\d %", text)
+
+
+def test_the_files_for_programs_are_the_same_in_every_language(assessment, tmp_path):
+    formats = ("json", "csv")
+    english = assess.write_reports(assessment, tmp_path / "en", formats)
+    italian = assess.write_reports(assessment, tmp_path / "it", formats, Look(language="it"))
+    for name in formats:
+        assert english[name].read_bytes() == italian[name].read_bytes()

@@ -1,0 +1,132 @@
+"""Every number of every item in the PDF is that of results.json: read back, formatted anew, compared."""
+
+import json
+import re
+
+import pypdfium2
+import pytest
+
+import assess
+from assess.settings import Settings
+from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, assessed
+
+VERIFIED = Settings(verify="all", runs=20)
+SYMBOLS = {"low": "○ low", "medium": "◇ medium", "high": "▲ high", "very high": "■ very high"}
+
+
+def read_pages(path):
+    """Return the text of every page, with what the reader of a PDF does to spaces and hyphens undone."""
+    document = pypdfium2.PdfDocument(path)
+    texts = [page.get_textpage().get_text_range() for page in document]
+    return [re.sub(r"\s+", " ", text.replace("\ufffe", "-").replace("\xa0", " ")) for text in texts]
+
+
+def read_section(path, heading, following):
+    """Return the text from the page that begins with a heading to that with the one after it."""
+    pages = read_pages(path)
+    starts = [at for at, text in enumerate(pages) if text.lstrip().startswith(heading)]
+    ends = [at for at, text in enumerate(pages) if text.lstrip().startswith(following)]
+    assert len(starts) == 1, heading
+    assert ends, following
+    return " ".join(pages[starts[0] : max(ends)])
+
+
+def percent(value):
+    return "–" if value is None else f"{100 * value:.1f} %"
+
+
+def chance(adopted):
+    if adopted["low"] is None:
+        return percent(adopted["probability"])
+    return f"{percent(adopted['probability'])} ({100 * adopted['low']:.1f} to {percent(adopted['high'])})"
+
+
+def of_row(item):
+    """Return what the table of all pieces shows of an item, in order."""
+    methods = item["methods"]
+    size = " × ".join(
+        "–" if item[f"{side}_cm"] is None else f"{item[f'{side}_cm']:.4g}" for side in ("breadth", "width", "height")
+    )
+    return [
+        str(item["quantity"]), size, f"{item['breadth_to_height']:.3f}", item["axis"], f"{item['pfa_g']:.3f}",
+        f"{percent(methods['proposed_or']['value'])} ({methods['proposed_or']['raw']:.3f})",
+        percent(methods["kaneko_hayashi"]["value"]), chance(item["adopted"]),
+    ]  # fmt: skip
+
+
+def of_comparison(item):
+    methods = item["methods"]
+    pfv = item["pfv_cm_s"]
+    return [f"{item['breadth_to_height']:.3f}", f"{item['pfa_g']:.3f}", "–" if pfv is None else f"{pfv:.1f}",
+            percent(methods["proposed_or"]["value"]), percent(methods["kaneko_hayashi"]["value"]),
+            percent(methods["fema_p58"]["value"]), percent(methods["housner_monte_carlo"]["value"])]  # fmt: skip
+
+
+def assert_rows(text, items, cells):
+    """Have every item's row, from its name to the next one's, hold its cells in order."""
+    at = 0
+    for number, item in enumerate(items):
+        start = text.index(f" {item['item']} {item['floor']} ", at)
+        following = items[number + 1 : number + 2]
+        end = text.index(f" {following[0]['item']} {following[0]['floor']} ", start + 1) if following else start + 600
+        row, place = text[start:end], 0
+        for cell in cells(item):
+            found = row.find(cell, place)
+            assert found >= 0, f"{item['item']}: {cell!r} is not in {row!r} behind {row[:place]!r}"
+            place = found + len(cell)
+        at = start + 1
+
+
+@pytest.fixture(scope="module", params=["formulas", "verified"])
+def small(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("numbers")
+    items = [dict(one, item=f"{one['item']}-{copy}") for copy in range(8) for one in ITEMS]
+    settings = VERIFIED if request.param == "verified" else UNVERIFIED
+    written = assess.write_reports(
+        assessed(folder / "w.xlsx", items, settings=settings), folder / "out", ("pdf", "json")
+    )
+    return written["pdf"], json.loads(written["json"].read_text(encoding="utf-8"))
+
+
+def test_the_table_of_all_pieces(small):
+    path, results = small
+    assert_rows(read_section(path, "All pieces", "Comparison of the methods"), results["items"], of_row)
+
+
+def test_the_comparison_of_the_methods(small):
+    path, results = small
+    text = read_section(path, "Comparison of the methods", "Methods")
+    assert_rows(text[text.index("What every method says") :], results["items"], of_comparison)
+
+
+def test_the_counts(small):
+    path, results = small
+    text = next(page for page in read_pages(path) if page.lstrip().startswith("Floors"))
+    free = [one for one in results["items"] if one["anchored"] != "yes"]
+    anchored = sum(one["quantity"] for one in results["items"]) - sum(one["quantity"] for one in free)
+    by_class = {name: sum(one["quantity"] for one in free if one["adopted"]["class"] == name) for name in SYMBOLS}
+    total = sum(by_class.values())
+    shown = " ".join(f"{count} ({100 * count / total:.0f} %)" for count in by_class.values())
+    assert f"All floors {shown}" in text
+    expected = sum(one["adopted"]["probability"] * one["quantity"] for one in free)
+    assert re.search(rf"All floors .* {anchored} {total + anchored} {expected:.1f}\b", text)
+
+
+def test_a_long_list_in_the_appendix(tmp_path):
+    items = [dict(one, item=f"{one['item']}-{copy}") for copy in range(40) for one in ITEMS]
+    written = assess.write_reports(assessed(tmp_path / "w.xlsx", items, FLOORS), tmp_path / "out", ("pdf", "json"))
+    results = json.loads(written["json"].read_text(encoding="utf-8"))
+    text = " ".join(read_pages(written["pdf"]))
+    at = (
+        text.rindex("Appendix: all pieces Piece")
+        if "Appendix: all pieces Piece" in text
+        else text.rindex("One line a row")
+    )
+    pieces, _, methods = text[at:].partition("What every method says of each row under its governing motion")
+
+    def compact(item):
+        cells = of_row(item)
+        return [*cells[:5], cells[5].split(" (")[0], *cells[6:]]
+
+    assert_rows(pieces, results["items"], compact)
+    assert_rows(methods, results["items"], of_comparison)

@@ -1,0 +1,207 @@
+"""The plan of a floor: geometry in metres, and the drawing made of it."""
+
+import re
+from xml.etree import ElementTree
+
+import pypdfium2
+import pytest
+
+import assess
+from assess.inventory.blank import Content, write_workbook
+from assess.report.content import build_content
+from assess.report.html import render
+from assess.report.plan import build_plan, fallen, rectangle
+from tests.workbooks import FLOORS, UNVERIFIED
+
+SVG = "{http://www.w3.org/2000/svg}"
+PIECES = [
+    {"item": "A1", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 2.0, "y": 3.0, "angle_deg": 90},
+    {"item": "A2", "floor": "1", "breadth": 40, "width": 90, "height": 180, "x": 5.0, "y": 3.0, "angle_deg": 30,
+     "anchored": "yes"},
+    {"item": "A3", "floor": "1", "breadth": 90, "width": 90, "height": 92, "x": 5.0, "y": 8.0, "axis": "Y"},
+    {"item": "A4", "floor": "1", "breadth": 60, "width": 60, "height": 200},
+    {"item": "<b>B1 & co</b>", "floor": "2", "description": "<script>", "breadth": 40, "height": 180, "x": 1.0,
+     "y": 1.0, "axis": "Y"},
+]  # fmt: skip
+PLACES = [
+    {"place": "Hall", "floor": "1", "x": 1.0, "y": 1.0},
+    {"place": "Stair <2>", "floor": "1", "x": 6.0, "y": 1.0},
+    {"place": "Roof", "floor": "2"},
+]
+ROUTES = [{"route": "R", "segment": "a", "floor": "1", "start": "Hall", "end": "Stair <2>", "clear_width": 1.2}]
+
+
+def _assess(path, pieces=PIECES, places=PLACES, routes=ROUTES, **building):
+    rows = {"Building": [building], "Floors": FLOORS, "Items": pieces, "Places": places, "Routes": routes}
+    write_workbook(path, Content(rows=rows), "si")
+    return assess.run(assess.read_inventory(path), UNVERIFIED)
+
+
+@pytest.fixture(scope="module")
+def html(assessment):
+    return render(assessment)
+
+
+def _plans(assessment):
+    return [build_plan(page, assessment.inventory) for page in build_content(assessment).floors]
+
+
+@pytest.fixture(scope="module")
+def assessment(tmp_path_factory):
+    return _assess(tmp_path_factory.mktemp("plan") / "w.xlsx", azimuth_deg=45)
+
+
+def _near(corners, expected):
+    for one, other in zip(corners, expected, strict=True):
+        assert one == pytest.approx(other)
+
+
+def test_breadth_lies_along_the_angle():
+    _near(rectangle((2, 3), 0, (-0.15, 0.15), 0.8), [(1.85, 2.6), (2.15, 2.6), (2.15, 3.4), (1.85, 3.4)])
+    _near(rectangle((2, 3), 90, (-0.15, 0.15), 0.8), [(2.4, 2.85), (2.4, 3.15), (1.6, 3.15), (1.6, 2.85)])
+    cos, sin = 3**0.5 / 2, 0.5
+    _near(
+        rectangle((0, 0), 30, (-1, 1), 4),
+        [(-cos + 2 * sin, -sin - 2 * cos), (cos + 2 * sin, sin - 2 * cos),
+         (cos - 2 * sin, sin + 2 * cos), (-cos - 2 * sin, -sin + 2 * cos)],
+    )  # fmt: skip
+
+
+def test_a_fallen_piece_covers_its_height_beyond_either_edge():
+    ahead, behind = fallen((2, 3), 0, 0.3, 0.8, 2.0)
+    _near(ahead, [(2.15, 2.6), (4.15, 2.6), (4.15, 3.4), (2.15, 3.4)])
+    _near(behind, [(-0.15, 2.6), (1.85, 2.6), (1.85, 3.4), (-0.15, 3.4)])
+
+
+@pytest.mark.parametrize("angle", [0, 30, 90, 217])
+def test_a_fallen_piece_touches_its_footprint_at_any_angle(angle):
+    near_start, near_end, far_end, far_start = rectangle((1, 2), angle, (-0.2, 0.2), 0.7)
+    ahead, behind = fallen((1, 2), angle, 0.4, 0.7, 1.9)
+    _near((ahead[0], ahead[3]), (near_end, far_end))
+    _near((behind[1], behind[2]), (near_start, far_start))
+    for one in (ahead, behind):
+        (x0, y0), (x1, y1), (x2, y2), _last = one
+        assert ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5 == pytest.approx(1.9)
+        assert ((x2 - x1) ** 2 + (y2 - y1) ** 2) ** 0.5 == pytest.approx(0.7)
+
+
+def test_pieces_with_a_position_are_drawn_and_those_that_may_fall_are_hatched(assessment):
+    plan, _second = _plans(assessment)
+    assert [one.number for one in plan.pieces] == [1, 2, 3]
+    risky, anchored, low = plan.pieces
+    _near(risky.corners, rectangle((2, 3), 90, (-0.15, 0.15), 0.8))
+    assert len(risky.fallen) == 2
+    assert not anchored.fallen
+    assert (anchored.class_name, anchored.symbol) == ("anchored", "")
+    assert (low.class_name, low.fallen) == ("low", ())
+    assert plan.north == 45
+
+
+def test_a_piece_without_width_or_angle_is_square_and_lies_along_its_axis(assessment):
+    _first, plan = _plans(assessment)
+    (only,) = plan.pieces
+    _near(only.corners, rectangle((1, 1), 90, (-0.2, 0.2), 0.4))
+    assert only.number == 5
+
+
+def test_y_points_upwards(assessment):
+    plan, _second = _plans(assessment)
+    assert plan.y(plan.high[1]) == 0
+    assert plan.y(4.0) < plan.y(3.0) < plan.size[1]
+    assert plan.x(3.0) - plan.x(2.0) == pytest.approx(1 / plan.unit, abs=0.02)
+    assert plan.y(2.0) - plan.y(3.0) == pytest.approx(1 / plan.unit, abs=0.02)
+    assert plan.outline([(plan.low[0], plan.high[1]), (plan.high[0], plan.high[1])]).startswith("M26 0L")
+    for piece in plan.pieces:
+        for corners in (piece.corners, *piece.fallen):
+            assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)
+
+
+def test_ticks_and_bar_are_round_and_inside(assessment):
+    plan, _second = _plans(assessment)
+    along_x, along_y = plan.ticks
+    assert set(along_x) >= {1.0, 2.0, 3.0}
+    assert min(along_x) >= plan.low[0]
+    assert max(along_y) <= plan.high[1]
+    assert plan.bar in (0.5, 1.0, 2.0)
+
+
+def test_names_of_places_cover_neither_pieces_nor_each_other(tmp_path):
+    places = [{"place": f"Place {at}", "floor": "1", "x": 3.0 + 0.01 * at, "y": 6.0} for at in range(3)]
+    plan = _plans(_assess(tmp_path / "w.xlsx", PIECES, places, ()))[0]
+    assert len({(spot.label, spot.is_before) for spot in plan.places}) == 3
+    assert plan.ways == ()
+
+
+def test_no_plan_without_positions(tmp_path):
+    pieces = [{"item": "A", "floor": "1", "breadth": 30, "height": 200}]
+    assert _plans(_assess(tmp_path / "w.xlsx", pieces, (), ())) == [None, None]
+
+
+def test_a_floor_with_one_piece_is_drawn_at_a_sensible_scale(assessment):
+    _first, plan = _plans(assessment)
+    assert plan.unit >= 1 / 90
+    assert 50 < plan.size[0] <= 660
+    assert 50 < plan.size[1] <= 780
+
+
+def _drawings(html):
+    return [ElementTree.fromstring(text) for text in re.findall(r'<svg[^>]*class="floor-plan".*?</svg>', html, re.S)]
+
+
+def test_ids_are_unique_and_links_lead_somewhere(html):
+    ids = re.findall(r'\bid="([^"]+)"', html)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
+    assert {"piece-1", "piece-2", "piece-3", "piece-5", "row-1", "row-5"} <= set(ids)
+    assert "piece-4" not in ids
+    assert set(re.findall(r"url\(#([^)]+)\)", html)) <= set(ids)
+
+
+def test_the_drawing_is_named_and_every_piece_says_what_it_is(html):
+    first, second = _drawings(html)
+    title = first.find(f"{SVG}title")
+    assert title.text == "Plan of Floor 1"
+    assert title.get("id") == first.get("aria-labelledby")
+    titles = [link.find(f"{SVG}title").text for link in first.iter(f"{SVG}a")]
+    assert len(titles) == 3
+    assert re.fullmatch(r"A1: high; chance \d+\.\d %", titles[0])
+    assert titles[1].startswith("A2: depends on its anchor")
+    assert next(second.iter(f"{SVG}a")).find(f"{SVG}title").text.startswith("<b>B1 & co</b>, <script>:")
+
+
+def test_names_with_markup_stay_text(html):
+    assert "<b>B1" not in html
+    assert "Stair &lt;2&gt;" in html
+
+
+def test_colours_are_those_of_the_classes_and_each_has_its_symbol(html):
+    first, _second = _drawings(html)
+    risky, anchored, low = first.iter(f"{SVG}a")
+    assert risky.find(f"{SVG}path").get("fill") == assess.risk.RiskClass.HIGH.fill
+    assert risky.find(f"{SVG}text").text == "▲"
+    assert anchored.find(f"{SVG}text") is None
+    assert low.find(f"{SVG}text").text == "○"
+
+
+def test_the_pdf_draws_the_plan_without_links(assessment, tmp_path):
+    html = render(assessment, for_print=True)
+    assert not any(list(drawing.iter(f"{SVG}a")) for drawing in _drawings(html))
+    path = assess.write_reports(assessment, tmp_path, "pdf")["pdf"]
+    document = pypdfium2.PdfDocument(path)
+    texts = [document[at].get_textpage().get_text_range() for at in range(len(document))]
+    (page,) = (document[at] for at, text in enumerate(texts) if "Stair <2>" in text and "X [m]" in text)
+    colours = {colour for _count, colour in page.render(scale=2).to_pil().getcolors(1 << 20)}
+    document.close()
+    fill = assess.risk.RiskClass.HIGH.fill
+    assert tuple(int(fill[at : at + 2], 16) for at in (1, 3, 5)) in colours
+    assert (0xD0, 0xD0, 0xD0) in colours
+
+
+def test_hundreds_of_pieces_stay_small(tmp_path):
+    pieces = [
+        {"item": f"A{at}", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": at % 30, "y": at // 30}
+        for at in range(600)
+    ]
+    assessment = _assess(tmp_path / "w.xlsx", pieces, (), ())
+    (drawing,) = re.findall(r'<svg[^>]*class="floor-plan".*?</svg>', render(assessment), re.S)
+    assert len(drawing) < 600 * 600
