@@ -17,6 +17,7 @@ import assess
 import assess.report
 from assess import verification
 from assess.cli import app
+from assess.motion.spectrum import pseudo_acceleration
 from assess.report.data import SCHEMA
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
@@ -260,6 +261,22 @@ def test_a_borrowed_motion_has_phases_of_its_own(tmp_path):
     assert not np.array_equal(one.rotation, other.rotation)
     assert not np.array_equal(one.examples[0][0], other.examples[0][0])
     assert "one_axis_only" in along_y.demand.flags
+
+
+def test_the_spectra_of_each_floor_are_kept(assessment):
+    """Those of the examples, worked out alone; the target of a recorded floor is the record's own spectrum."""
+    for demand, joint in assessment.joints.items():
+        spectra = joint.spectra
+        assert spectra.ordinates.shape == (100, spectra.periods.size)
+        for (motion, step), ordinates in zip(joint.examples, spectra.ordinates, strict=False):
+            expected = pseudo_acceleration(motion, step, spectra.periods)
+            np.testing.assert_allclose(ordinates, expected, rtol=1e-4)  # examples are kept in single precision
+        deviation = spectra.ordinates.mean(axis=0) / spectra.target - 1
+        assert np.abs(deviation).mean() == pytest.approx(joint.fit.mean_deviation, rel=1e-5)
+        assert deviation[np.abs(deviation).argmax()] == pytest.approx(joint.fit.worst_deviation, rel=1e-5)
+        if demand.motion is not None:
+            own = pseudo_acceleration(demand.motion.acceleration, demand.motion.time_step, spectra.periods)
+            np.testing.assert_allclose(spectra.target, own, rtol=0.02)
 
 
 def test_restitution_changes_what_blocks_do(tmp_path, assessment):

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.motion.compatible import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
-from tests.benchmarks import rocking, verified
+from tests.benchmarks import report, rocking, verified
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -54,7 +54,7 @@ def main() -> None:
         )
         print(_once("1,000 items, not verified, json,csv", [*run, str(thousand), "--formats", "json,csv", *out]))
         print()
-        for row in verified.rows(folder):
+        for row in (*report.rows(folder), "", *verified.rows(folder)):
             print(row)
     print("\n| motions of 4,000 samples | seconds | rival | seconds | times as fast | aim |\n|---|---|---|---|---|---|")
     print(_spectrum())
@@ -124,18 +124,9 @@ def _timed(work: Callable[[], object]) -> float:
     return time.perf_counter() - start
 
 
-_MEASURE = (
-    "import resource, subprocess, sys\n"
-    "subprocess.run(sys.argv[1:], check=True, capture_output=True)\n"
-    "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)"
-)
-"""Run from a small process: a child's peak counts that of the process which started it."""
-
-
 def _once(name: str, command: list[str]) -> str:
-    start = time.perf_counter()
-    done = subprocess.run([sys.executable, "-c", _MEASURE, *command], check=True, capture_output=True, text=True)
-    return f"| {name} | {time.perf_counter() - start:.1f} | {float(done.stdout):.0f} |"
+    seconds, peak = report.measure(command)
+    return f"| {name} | {seconds:.1f} | {peak:.0f} |"
 
 
 if __name__ == "__main__":

@@ -98,7 +98,8 @@ def test_a_language_that_is_not_there_is_told():
 
 def test_an_italian_report_holds_no_english_sentence(tmp_path):
     """Every text of the catalogue that is more than a word or two, and is another in Italian, is said in Italian."""
-    items = [*ITEMS[:4], {"item": "A6", "x": 1.0, "y": 2.0, "floor": "1", "breadth": 90, "width": 90, "height": 45, "friction": 0.2}]
+    stool = {"item": "A6", "x": 1.0, "y": 2.0, "floor": "1", "breadth": 90, "width": 90, "height": 45, "friction": 0.2}
+    items = [*ITEMS[:4], stool]
     found = assessed(tmp_path / "w.xlsx", items, period=0.9, ground_pga=0.2, language="Italiano")
     assert found.inventory.report_language == "it"
     html = rendered(found, Look(language="it"))

@@ -136,7 +136,7 @@ def test_a_workbook_that_is_no_longer_what_was_read_is_not_attached(tmp_path):
 
 
 def test_a_date_of_no_use_is_today(tmp_path, monkeypatch):
-    from assess.report.pdf import report_time
+    from assess.report.provenance import report_time
 
     for epoch in ("", "yesterday", "-1", "1e9", "9" * 30, "²"):
         monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)

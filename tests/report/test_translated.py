@@ -14,6 +14,8 @@ from assess.demand import Demand
 from assess.inventory.blank import Content, write_workbook
 from assess.language import Catalogue, gettext, speaking
 from assess.motion.suite import read_suite
+from assess.motion.formats import read_records
+from assess.motion.scenario import PROFILES
 from assess.report import motions, trials, words
 from assess.report.verified import build_verified, describe_verification, list_summary
 from docs.texts import collect
@@ -115,7 +117,7 @@ def test_what_shakes_the_floors_is_said(odd, spoken):
             assert not _left(text), text
         for line in motions.list_assumptions(odd):
             assert not _left(" ".join(line)), line
-        for profile in motions.PROFILES.values():
+        for profile in PROFILES.values():
             assert not _left(motions.profile_status(profile))
 
 
@@ -127,7 +129,7 @@ def _names(demand: Demand):
 def test_what_reading_changed_of_a_record_is_said(spoken, tmp_path):
     lines = ["# maker: 1", "time [s], 1 [g]", *(f"{0.01 * at + 0.3 * (at > 200):g}, {at % 7}" for at in range(400))]
     (tmp_path / "r.csv").write_text("\n".join([*lines[:50], lines[48], *lines[50:]]), encoding="utf-8")
-    (record,) = assess.motion.formats.read_records(tmp_path / "r.csv")
+    (record,) = read_records(tmp_path / "r.csv")
     assert len(record.notes) == 4
     with speaking(spoken):
         for note in record.notes:

@@ -19,7 +19,7 @@ from assess.report import words
 from assess.report.content import build_content
 from assess.report.html import render
 from assess.report.motions import list_cautions
-from assess.report.rocked import choose_traced
+from assess.report.rocked import choose_traced, draw_traced
 from assess.report.verified import describe_verification
 from assess.risk import RiskClass
 from assess.settings import Settings
@@ -277,6 +277,59 @@ def test_the_figures_show_each_piece_once_and_hold_no_markup(some):
     assert SCRIPT not in html
     assert "&lt;b&gt;$x$&lt;/b&gt;" in html
     assert all(re.search(r'alt="[^"]{10,}"', image) for image in re.findall(r"<img [^>]*>", html))
+
+
+def _drawn(assessment):
+    content = build_content(assessment)
+    traced = choose_traced(content)
+    return traced[0], {name: ET.fromstring(svg) for name, svg in draw_traced(content, traced).items()}
+
+
+def _subpaths(figure, name):
+    """Count the curves of a line: the pen is lifted between two."""
+    (group,) = _ids(figure, name)
+    return sum(path.get("d", "").count("M") for path in group.iter())
+
+
+def test_the_spectra_of_the_users_motions_are_drawn(some):
+    first, figures = _drawn(some)
+    assert first.joint.spectra.ordinates.shape[0] == 40
+    assert _subpaths(figures["motions"], "spectra") == 40
+    assert len(_ids(figures["motions"], "band")) == len(_ids(figures["motions"], "mean")) == 1
+    assert _ids(figures["motions"], "wanted") == [], "neither a record nor a target"
+    assert len(_ids(figures["convergence"], "class")) == 4
+
+
+def test_a_generic_target_is_drawn_dotted(generic):
+    _, figures = _drawn(generic)
+    (wanted,) = _ids(figures["motions"], "wanted")
+    assert "stroke-dasharray" in next(path.get("style") for path in wanted.iter() if path.get("d"))
+    assert _subpaths(figures["motions"], "spectra") == 20, "of the motions that were run, not of those made"
+
+
+def test_the_record_is_the_target(tmp_path):
+    shutil.copy(RECORDS / "made-up-sweep.csv", tmp_path)
+    floors = [{"floor": "1", "record_x": "made-up-sweep.csv#north"}]
+    own = _assess(tmp_path, [1.0] * 3, ITEMS[:1], floors, verify="all")
+    first, figures = _drawn(own)
+    assert first.joint.spectra.target is None
+    assert len(_ids(figures["motions"], "wanted")) == 1, "the record's own"
+    inventory = assess.read_inventory(write(tmp_path / "x.xlsx", ITEMS[:1], floors))
+    first, figures = _drawn(assess.run(inventory, Settings(verify="all", runs=100), jobs=1))
+    assert _subpaths(figures["motions"], "spectra") == 100
+    (wanted,) = _ids(figures["motions"], "wanted")
+    assert "stroke-dasharray" not in next(path.get("style") for path in wanted.iter() if path.get("d"))
+    assert sum(len(ET.tostring(one)) for one in figures.values()) < 450_000
+    assert len(ET.tostring(figures["motions"])) < 250_000
+
+
+def test_a_joint_without_spectra_is_drawn_without_them(some):
+    found = some.outcomes[VERIFICATION]
+    joints = tuple(replace(joint, spectra=None) for joint in found.joints)
+    again = replace(some, outcomes={**some.outcomes, VERIFICATION: replace(found, joints=joints)})
+    _, figures = _drawn(again)
+    assert _ids(figures["motions"], "spectra") == []
+    assert len(_ids(figures["motions"], "motion-1")) == 1
 
 
 def test_the_convergence_ends_at_the_chance(some):

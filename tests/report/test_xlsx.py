@@ -179,7 +179,7 @@ def test_a_size_that_is_cleared_shows_check_and_leaves_the_counts_alive(report):
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_an_anchored_piece_is_marked_and_not_coloured(tmp_path):
-    from assess.report.xlsx.formulas import ANCHORED
+    from assess.report.xlsx.said import ANCHORED
 
     write_xlsx(assessed(tmp_path / "w.xlsx", ITEMS), tmp_path / "r.xlsx")
     sheet = openpyxl.load_workbook(tmp_path / "r.xlsx", data_only=True)["Items"]

@@ -2,11 +2,12 @@
 
 A verified class holds until one of its inputs is edited; then it says that it is void.
 
-Sheets are written row by row and in little memory. Every text of the workbook goes in as text.
+Sheets are written row by row and in little memory. Every text of the workbook goes in as text. Names of sheets,
+headings and the words that formulas compare are in the language in use; formulas find columns by keys.
 """
 
 import datetime
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,25 +15,29 @@ import xlsxwriter
 
 from assess.inventory.live import write_plainly
 from assess.inventory.writer import write_book
-from assess.report.content import Content, build_content
+from assess.language import gettext as _
+from assess.report.content import Content, build_content, report_date
 from assess.report.look import Look
-from assess.report.xlsx import floors, items, sheets, summary, verification
+from assess.report.xlsx import floors, items, method, quality, sheets, summary, verification, worst
 from assess.report.xlsx.pen import Pen
+from assess.report.xlsx.printing import set_print
+from assess.report.xlsx.said import name_sheets
 from assess.results import Assessment
 
-SHEETS: dict[str, Callable[[Pen, Any, Content], None]] = {
+SHEETS: Mapping[str, Callable[[Pen, Any, Content], None]] = {
     "Summary": summary.write_summary,
-    "Fix first": summary.write_fix_first,
+    "Fix first": worst.write_fix_first,
     "Floors": floors.write_floors,
     "Items": items.write_items,
     "Motions": sheets.write_motions,
     "Verification": verification.write_verification,
     "Routes": sheets.write_routes,
-    "Methods": sheets.write_methods,
-    "Assumptions": sheets.write_assumptions,
-    "Notes": sheets.write_notes,
+    "Methods": method.write_methods,
+    "Assumptions": method.write_assumptions,
+    "Quality log": quality.write_quality,
+    "Notes": quality.write_notes,
 }
-"""The sheets in order, and the function that writes each; Verification is left out where no piece was verified."""
+"""The keys of the sheets in order, and the function that writes each."""
 
 
 def write_xlsx(assessment: Assessment, path: Path, look: Look | None = None) -> None:
@@ -46,22 +51,41 @@ def write_xlsx(assessment: Assessment, path: Path, look: Look | None = None) -> 
     content = build_content(assessment)
 
     def fill(book: xlsxwriter.Workbook) -> None:
-        created = datetime.datetime.fromisoformat(content.date)
-        book.set_properties({"title": "Furniture in earthquakes: report", "created": created})
-        _write_sheets(Pen(book), content)
+        created = datetime.datetime.fromisoformat(report_date())
+        title = _("Furniture in earthquakes: {title}", title=content.title[:200])
+        book.set_properties({"title": title, "created": created})
+        _write_sheets(Pen(book, _names(content)), content)
 
     write_book(path, fill, by_row=True)
 
 
+def _names(content: Content) -> dict[str, str]:
+    """Return the names of the sheets by their keys; two are left out where they would be empty."""
+    titles = {
+        "Summary": _("Summary"),
+        "Fix first": _("Fix first"),
+        "Floors": _("Floors"),
+        "Items": _("Items"),
+        "Motions": _("Motions"),
+        "Verification": _("Verification"),
+        "Routes": _("Routes"),
+        "Methods": _("Methods"),
+        "Assumptions": _("Assumptions"),
+        "Quality log": _("Quality log"),
+        "Notes": _("Notes"),
+    }
+    if not content.assessment.joints:
+        del titles["Verification"]
+    if not quality.has_notes(content):
+        del titles["Notes"]
+    return name_sheets(titles)
+
+
 def _write_sheets(pen: Pen, content: Content) -> None:
-    shown = [name for name in SHEETS if name != "Verification" or content.assessment.joints]
-    pages = {name: pen.book.add_worksheet(name) for name in shown}
-    for row, name in enumerate(sheets.NAMES, 2):
-        pen.book.define_name(name, f"=Assumptions!$B${row}")
-    for name, page in pages.items():
+    pages = {key: pen.book.add_worksheet(name) for key, name in pen.sheets.items()}
+    for row, name in enumerate(method.NAMES, 2):
+        pen.book.define_name(name, f"={pen.refer('Assumptions')}$B${row}")
+    for key, page in pages.items():
         write_plainly(page)
-        page.set_landscape()
-        page.set_paper(9)
-        page.fit_to_pages(1, 0)
-        page.set_footer("&L&8Chance of overturning in this scenario, not per year&C&8&A&R&8Page &P of &N")
-        SHEETS[name](pen, page, content)
+        set_print(page, content.title, pen.sheets[key])
+        SHEETS[key](pen, page, content)

@@ -4,22 +4,13 @@ A verified class holds for the inputs that were integrated. Where one of them is
 formula is in force again until assess is run anew.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 from assess.inventory import live
+from assess.language import gettext as _
+from assess.report.xlsx.said import ANCHORED, Terms, hole, join, literal
 from assess.risk import RiskClass
-
-ANCHORED = "⚓ "
-"""Mark before the class of an anchored piece, which is that of the piece without its anchor; it is not coloured."""
-
-EDITED = "edited"
-"""What stands where an input was edited since the run."""
-
-NOT_VERIFIED, VOID = "not verified", "void: inputs changed"
-"""What stands for a class by verification where there is none."""
-
-MAY_BE, LOWERED = ", may be ", ", lowered by verification (formula: "
-"""What is said behind a class by verification."""
 
 TOLERANCE = "1E-9"
 """How far a number may lie from the one as run [-] before it counts as edited."""
@@ -30,85 +21,112 @@ EDITED_LETTERS = {"X": "J", "Y": "K"}
 LIMITS = ("limit_medium", "limit_high", "limit_very_high")
 """Names of the cells that hold the limits of the classes."""
 
+ROW = "\x00"
+"""Stands for the number of the row in a formula."""
 
-def item_formula(which: str, cells: Mapping[str, str], last: int) -> str:
-    """Return a formula of `ItemColumn` for the cells of one row; `last` is the last row of Floors."""
-    ratio, pfa, pfv = cells["B/H"], cells["PFA used [g]"], cells["PFV used [cm/s]"]
-    breadth, height, risk = cells["Breadth [cm]"], cells["Height [cm]"], cells["OR"]
+CLASS_WEIGHT, ROW_WEIGHT = 10, "1E-9"
+"""In the order of the pieces a class weighs more than any chance; of equal chances the upper row comes first."""
 
-    def shown() -> str:
-        return f'IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa, LIMITS)},"check")'
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where formulas look: the cells of a row of Items by the keys of their columns, and Floors with its last row."""
+
+    cells: Mapping[str, str]
+    floors: str
+    last: int
+    terms: Terms
+
+    def floor(self, letter: str) -> str:
+        """Return the value in a column of Floors for the row's floor."""
+        area, names = (f"{self.floors}${one}$2:${one}${self.last}" for one in (letter, "A"))
+        return f"INDEX({area},MATCH({self.cells['floor']},{names},0))"
+
+
+def item_formulas(place: Place) -> dict[str, str]:
+    """Return the formulas of a row of Items by the keys of their columns."""
+    cells, check = place.cells, literal(place.terms.check)
+    ratio, pfa, pfv, risk = (cells[key] for key in ("ratio", "pfa", "pfv", "or"))
+    breadth, height, rank = cells["breadth"], cells["height"], cells["rank"]
 
     def checked(formula: str) -> str:
-        return f'IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},"check")'
+        return f"IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},{check})"
 
-    formulas: dict[str, Callable[[], str]] = {
-        "ratio": lambda: f'IFERROR(IF(OR({breadth}<=0,{height}<=0),"check",{breadth}/{height}),"check")',
-        "axis": lambda: _axis(cells, last),
-        "pfa": lambda: _on_axis(cells, "C", "F", last),
-        "pfv": lambda: _on_axis(cells, "D", "G", last),
-        "raw": lambda: checked(live.equation_9(ratio, pfa)),
-        "or": lambda: checked(live.proposed_or(ratio, pfa)),
-        "kh": lambda: checked(live.kaneko_hayashi(ratio, height, pfa, pfv, "zeta_a", "zeta_v", "slide_alpha")),
-        "class": lambda: f"{_mark(cells)}&{shown()}",
-        "verified": lambda: _verified_class(cells),
-        "in_force": lambda: _class_in_force(cells),
-        "edited": lambda: _edited(cells, last),
-        "rank": lambda: _rank_verified(cells),
-        "rank_upper": lambda: f"MAX({cells['Rank']},{_rank(cells['Upper end as run'])})",
-        "rank_formula": lambda: f'IF(ISNUMBER({risk}),{_rank(risk)},"")',
+    classed = f"IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa, LIMITS)},{check})"
+    formulas = {
+        "ratio": f"IFERROR(IF(OR({breadth}<=0,{height}<=0),{check},{breadth}/{height}),{check})",
+        "axis": _axis(place),
+        "pfa": _on_axis(place, "C", "F"),
+        "pfv": _on_axis(place, "D", "G"),
+        "raw": checked(live.equation_9(ratio, pfa)),
+        "or": checked(live.proposed_or(ratio, pfa)),
+        "kh": checked(live.kaneko_hayashi(ratio, height, pfa, pfv, "zeta_a", "zeta_v", "slide_alpha")),
+        "class_formula": f"{_mark(place)}&{classed}",
+        "class_verified": _verified_class(place),
+        "class": f"IF(ISNUMBER({rank}),{_mark(place)}&{place.terms.label(rank)},{cells['class_formula']})",
+        "chance": f"IF(ISNUMBER({rank}),{cells['chance_run']},{risk})",
+        "edited": _edited(place),
+        "rank": _rank_verified(place),
+        "rank_upper": f"MAX({rank},{_rank(cells['upper_end'])})",
+        "rank_formula": f'IF(ISNUMBER({risk}),{_rank(risk)},"")',
+        "order": _order(place),
     }
-    return f"={formulas[which]()}"
+    return {key: f"={formula}" for key, formula in formulas.items()}
 
 
-def edited_motion(pfa: str, pfv: str, pfa_as_run: str, pfv_as_run: str, *, counts_pfv: bool, had_pfv: bool) -> str:
+def unverified(formulas: Mapping[str, str], cells: Mapping[str, str], terms: Terms) -> dict[str, str]:
+    """Return the formulas of the rows that were not verified: what is in force there is the formula's."""
+    risk = cells["or"]
+    order = _ordered(cells, terms, _rank(risk))
+    return dict(formulas) | {"class": f"={cells['class_formula']}", "chance": f"={risk}", "order": f"={order}"}
+
+
+def edited_motion(terms: Terms, cells: tuple[str, str, str, str], *, counts_pfv: bool, had_pfv: bool) -> str:
     """Return the formula that tells whether a floor's motion along an axis is another than as run.
 
-    PFV counts where the motions were made for it; where it was blank as run, any value is another.
+    `cells` hold PFA and PFV, and both as run. PFV counts where the motions were made for it; where it was blank as run,
+    any value is another.
     """
+    pfa, pfv, pfa_as_run, pfv_as_run = cells
     tests = [_differs(pfa, pfa_as_run)]
     if counts_pfv:
         tests.append(_differs(pfv, pfv_as_run) if had_pfv else f'{pfv}<>""')
-    return f'=IF(IFERROR(OR({",".join(tests)}),TRUE),"{EDITED}","")'
+    return f'=IF(IFERROR(OR({",".join(tests)}),TRUE),{literal(terms.edited)},"")'
 
 
 def _differs(now: str, as_run: str) -> str:
     return f"ABS({now}-{as_run})>{TOLERANCE}*{as_run}"
 
 
-def _floor_value(cells: Mapping[str, str], letter: str, last: int) -> str:
-    return f"INDEX(Floors!${letter}$2:${letter}${last},MATCH({cells['Floor']},Floors!$A$2:$A${last},0))"
-
-
-def _axis(cells: Mapping[str, str], last: int) -> str:
-    given, x, y = cells["Axis given"], _floor_value(cells, "C", last), _floor_value(cells, "F", last)
+def _axis(place: Place) -> str:
+    given, x, y = place.cells["axis_given"], place.floor("C"), place.floor("F")
     return f'IF({given}<>"",{given},{live.worse_axis(x, y)})'
 
 
-def _on_axis(cells: Mapping[str, str], for_x: str, for_y: str, last: int) -> str:
-    x, y = _floor_value(cells, for_x, last), _floor_value(cells, for_y, last)
-    chosen = f'IF({cells["Axis"]}="X",{x},{y})'
+def _on_axis(place: Place, for_x: str, for_y: str) -> str:
+    chosen = f'IF({place.cells["axis"]}="X",{place.floor(for_x)},{place.floor(for_y)})'
     return f'IF({chosen}="","",{chosen})'
 
 
-def _mark(cells: Mapping[str, str]) -> str:
-    return f'IF({cells["Anchored"]}="yes","{ANCHORED}","")'
+def _mark(place: Place) -> str:
+    return f'IF({place.cells["anchored"]}={literal(place.terms.yes)},{literal(ANCHORED)},"")'
 
 
-def _edited(cells: Mapping[str, str], last: int) -> str:
+def _edited(place: Place) -> str:
     """Tell whether the size, the floor, the axis or the motion along it is another than as run."""
-    axis = cells["Axis given"]
+    cells, edited = place.cells, literal(place.terms.edited)
+    axis = cells["axis_given"]
     tests = [
-        _differs(cells["Breadth [cm]"], cells["Breadth as run [cm]"]),
-        _differs(cells["Height [cm]"], cells["Height as run [cm]"]),
-        f"{cells['Floor']}<>{cells['Floor as run']}",
-        f"{axis}<>{cells['Axis given as run']}",
+        _differs(cells["breadth"], cells["breadth_run"]),
+        _differs(cells["height"], cells["height_run"]),
+        f"{cells['floor']}<>{cells['floor_run']}",
+        f"{axis}<>{cells['axis_given_run']}",
         *(
-            f'IF({axis}="{other}",FALSE,{_floor_value(cells, EDITED_LETTERS[own], last)}="{EDITED}")'
+            f'IF({axis}="{other}",FALSE,{place.floor(EDITED_LETTERS[own])}={edited})'
             for own, other in (("X", "Y"), ("Y", "X"))
         ),
     ]
-    return f'IF(IFERROR(OR({",".join(tests)}),TRUE),"{EDITED}","")'
+    return f'IF(IFERROR(OR({",".join(tests)}),TRUE),{edited},"")'
 
 
 def _rank(chance: str) -> str:
@@ -117,25 +135,33 @@ def _rank(chance: str) -> str:
     return f"IF({chance}>={very_high},3,IF({chance}>={high},2,IF({chance}>={medium},1,0)))"
 
 
-def _rank_verified(cells: Mapping[str, str]) -> str:
-    at_least = f'IF({cells["Fell under the record"]}="yes",{int(RiskClass.HIGH)},0)'
-    return f'IF({cells["Edited"]}="{EDITED}","",MAX({_rank(cells["Chance behind the class"])},{at_least}))'
+def _rank_verified(place: Place) -> str:
+    cells = place.cells
+    at_least = f"IF({cells['fell']}=1,{int(RiskClass.HIGH)},0)"
+    return f'IF({cells["edited"]}={literal(place.terms.edited)},"",MAX({_rank(cells["behind"])},{at_least}))'
 
 
-def _label(rank: str) -> str:
-    return f"CHOOSE({rank}+1,{_LABELS})"
+def _order(place: Place) -> str:
+    """Return the number by which pieces stand in order of their class and chance; nothing for anchored ones."""
+    rank = place.cells["rank"]
+    return _ordered(
+        place.cells,
+        place.terms,
+        f"IF(ISNUMBER({rank}),{place.cells['rank_upper']},{_rank(place.cells['or'])})",
+    )
 
 
-_LABELS = ",".join(f'"{risk.label}"' for risk in RiskClass)
+def _ordered(cells: Mapping[str, str], terms: Terms, rank: str) -> str:
+    free = f"AND({cells['anchored']}<>{literal(terms.yes)},ISNUMBER({cells['chance']}))"
+    return f'IF({free},{CLASS_WEIGHT}*{rank}+{cells["chance"]}-ROW()*{ROW_WEIGHT},"")'
 
 
-def _verified_class(cells: Mapping[str, str]) -> str:
-    rank, upper, formula = cells["Rank"], cells["Rank, upper"], cells["Rank, formula"]
-    may_be = f'IF({upper}>{rank},"{MAY_BE}"&{_label(upper)},"")'
-    lowered = f'IF({formula}>{rank},"{LOWERED}"&{_label(formula)}&")","")'
-    return f'IF(ISNUMBER({rank}),{_mark(cells)}&{_label(rank)}&{may_be}&{lowered},"{VOID}")'
-
-
-def _class_in_force(cells: Mapping[str, str]) -> str:
-    rank = cells["Rank"]
-    return f"IF(ISNUMBER({rank}),{_mark(cells)}&{_label(rank)},{cells['Class (formula)']})"
+def _verified_class(place: Place) -> str:
+    rank, upper, formula = (place.cells[key] for key in ("rank", "rank_upper", "rank_formula"))
+    may_be = join(", " + _("may be {risk}", risk=hole(0)), place.terms.label(upper))
+    lowered = join(
+        ", " + _("lowered by verification (formula: {risk})", risk=hole(0)),
+        place.terms.label(formula),
+    )
+    notes = f'IF({upper}>{rank},{may_be},"")&IF({formula}>{rank},{lowered},"")'
+    return f"IF(ISNUMBER({rank}),{_mark(place)}&{place.terms.label(rank)}&{notes},{literal(place.terms.void)})"

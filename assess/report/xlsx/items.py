@@ -1,210 +1,150 @@
-"""The columns of the sheet Items in the Excel report: what stands in each, and its live formula."""
+"""The sheet Items: every row of furniture, with live formulas for axis, PFA, risks and class."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from assess.inventory.live import OUTSIDE
-from assess.report import words
+from assess.inventory.columns import ANCHORED
+from assess.language import gettext as _
 from assess.report.content import Content
-from assess.report.data import edge
-from assess.report.xlsx import verified
-from assess.report.xlsx.formulas import ANCHORED, VOID, item_formula
-from assess.report.xlsx.pen import Pen
+from assess.report.xlsx.columns import INPUT, LIVE, PERCENT, TEXT, ItemColumn, chance_in_force, item_columns
+from assess.report.xlsx.formulas import CLASS_WEIGHT, ROW, Place, item_formulas, unverified
+from assess.report.xlsx.pen import LINE, Pen, count_lines
 from assess.results import ItemResult
+from assess.risk import RiskClass, classify
 
 HEAD = 1
 """Rows above the data of Items and Floors: the headings alone."""
-
-
-@dataclass(frozen=True, slots=True)
-class ItemColumn:
-    """One column of Items: heading, width, and what stands in a row: a value, or a formula with its result.
-
-    A formula that is `of_verified` rows alone gives way to the value in the others.
-    """
-
-    label: str
-    width: int
-    read: Callable[[ItemResult], Any]
-    formula: str = ""
-    number_format: str = ""
-    of_verified: bool = False
+MOST_LINES = 6
+"""Lines of a row: a longer text is cut by its cell, and whole in it."""
 
 
 def write_items(pen: Pen, page: Any, content: Content) -> None:
-    """Write every row of furniture, with live formulas for axis, PFA, risks and class."""
+    """Write every row of furniture."""
     columns = item_columns(content)
-    letters = {column.label: xl_col_to_name(at) for at, column in enumerate(columns)}
     pen.heads(page, [column.label for column in columns], [column.width for column in columns])
+    _comment(page, columns)  # now: what is above the row being written is left out
+    place = _place(pen, columns, HEAD + len(content.floors))
+    verified = item_formulas(place)
+    formulas = {True: verified, False: unverified(verified, place.cells, pen.terms)}
+    plan = [(at, column, _format(pen, column)) for at, column in enumerate(columns)]
+    texts = [(column.read, column.width) for column in columns if column.look == TEXT and not column.hidden]
     for row, one in enumerate(content.results, HEAD):
-        cells = {label: f"${letter}{row + 1}" for label, letter in letters.items()}
-        for at, column in enumerate(columns):
-            form = pen.format(column.number_format) if column.number_format else None
-            value = column.read(one)
-            if column.formula and (one.is_verified or not column.of_verified):
-                formula = item_formula(column.formula, cells, HEAD + len(content.floors))
-                page.write_formula(row, at, formula, form, "" if value is None else value)
-            else:
-                pen.put(page, row, at, value, pen.input if column.label in INPUTS else form)
-    _dress(pen, page, letters, HEAD + max(1, len(content.results)))
+        lines = max(count_lines(read(one), width, MOST_LINES) for read, width in texts)
+        if lines > 1:
+            page.set_row(row, LINE * lines)
+        _write_row(pen, page, row, one, plan, formulas[one.is_verified])
+    _dress(pen, page, columns, HEAD + max(1, len(content.results)))
 
 
-def _dress(pen: Pen, page: Any, letters: Mapping[str, str], last: int) -> None:
-    """Freeze, filter, hide the workings and colour; `last` is the last row."""
+def _write_row(
+    pen: Pen, page: Any, row: int, one: ItemResult, plan: Sequence[tuple[int, ItemColumn, Any]],
+    formulas: Mapping[str, str],
+) -> None:  # fmt: skip
+    number = str(row + 1)
+    for at, column, form in plan:
+        value = order_number(one, row) if column.key == "order" else column.read(one)
+        if column.live and (one.is_verified or not column.of_verified):
+            formula = formulas[column.key].replace(ROW, number)
+            page.write_formula(row, at, formula, form, "" if value is None else value)
+        elif column.look == INPUT or not (value is None or value == ""):
+            pen.put(page, row, at, value, form)
+
+
+def _place(pen: Pen, columns: Sequence[ItemColumn], last: int) -> Place:
+    """Return where the formulas of a row look; `last` is the last row of Floors."""
+    cells = {column.key: f"${xl_col_to_name(at)}{ROW}" for at, column in enumerate(columns)}
+    return Place(cells, pen.refer("Floors"), last, pen.terms)
+
+
+def _format(pen: Pen, column: ItemColumn) -> Any:
+    named = {"num_format": column.number_format, "align": column.align}
+    more = {name: value for name, value in named.items() if value}
+    if column.look in (INPUT, LIVE):
+        return pen.style({INPUT: "Input", LIVE: "Calculation"}[column.look], **more)
+    if column.look in (TEXT, PERCENT):
+        return {TEXT: pen.wrap, PERCENT: pen.percent}[column.look]
+    return pen.format(column.number_format or "General", valign="top")
+
+
+def order_number(one: ItemResult, row: int) -> float | None:
+    """Return the number by which pieces stand in order, as the formula of its row has it; None for anchored ones."""
+    chance = chance_in_force(one)
+    if one.is_anchored or chance is None:
+        return None
+    upper = one.adopted.upper if one.is_verified else classify(chance)
+    return CLASS_WEIGHT * int(upper or RiskClass.LOW) + chance - (row + 1) * 1e-9
+
+
+def item_areas(pen: Pen, content: Content) -> dict[str, str]:
+    """Return the cells of each column of Items by its key, as formulas of other sheets refer to them."""
+    last, sheet = HEAD + max(1, len(content.results)), pen.refer("Items")
+    letters = {column.key: xl_col_to_name(at) for at, column in enumerate(item_columns(content))}
+    return {key: f"{sheet}${letter}${HEAD + 1}:${letter}${last}" for key, letter in letters.items()}
+
+
+def _dress(pen: Pen, page: Any, columns: Sequence[ItemColumn], last: int) -> None:
+    """Freeze, filter, hide the workings, colour, and set up the print; `last` is the last row."""
+    letters = {column.key: xl_col_to_name(at) for at, column in enumerate(columns)}
     page.freeze_panes(1, 1)
+    page.autofilter(0, 0, last - 1, len(columns) - 1)
+    for at, column in enumerate(columns):
+        if column.hidden:
+            page.set_column(at, at, column.width, None, {"hidden": True})
+    for key in ("class_formula", "class_verified", "class"):
+        pen.colour(page, f"{letters[key]}2:{letters[key]}{last}")
+    for key in ("or", "kh", "verified_chance", "chance"):
+        pen.bar(page, f"{letters[key]}2:{letters[key]}{last}")
+    area = f"{letters['class_verified']}2:{letters['class_verified']}{last}"
+    void = {"type": "text", "criteria": "begins with", "value": pen.terms.void, "format": pen.void}
+    page.conditional_format(area, void)
+    _validate(page, letters, last)
+    _print(page, columns, last)
+
+
+def _comment(page: Any, columns: Sequence[ItemColumn]) -> None:
+    comments = {
+        "breadth": _(
+            "Edit the coloured cells: chance, class, counts and charts follow. The columns as run hold what was run."
+        ),
+        "class_formula": _(
+            "By the limits in Assumptions. * behind a class: outside the range in which the formula was checked by "
+            "tests. ⚓ before it: anchored, so only as safe as its anchor; the class is that of the piece without it."
+        ),
+        "class_verified": _(
+            "The class of the verified chance by the limits in Assumptions; at least high where the piece overturns "
+            "under the record itself; where its motions are generic or PFV is estimated, never below the class of the "
+            "formula. Where a size, the floor, the axis or the motion of the floor was edited since the run it is "
+            "void: the column Class then shows the class of the formula until assess is run again."
+        ),
+        "class": _(
+            "Chance and class in force: by verification where there is one and it holds, else by the formula. Columns "
+            "to the right are not printed."
+        ),
+    }
+    for at, column in enumerate(columns):
+        if column.key in comments:
+            page.write_comment(0, at, comments[column.key], {"x_scale": 3, "y_scale": 2})
+
+
+def _validate(page: Any, letters: Mapping[str, str], last: int) -> None:
+    """Let cells to edit take only what formulas can work with."""
+    rules: dict[str, dict[str, Any]] = {
+        "quantity": {"validate": "integer", "criteria": ">=", "value": 1},
+        "axis_given": {"validate": "list", "source": ["X", "Y"]},
+        "anchored": {"validate": "list", "source": [_(word) for word in ANCHORED]},
+    }
+    rules |= {key: {"validate": "decimal", "criteria": ">", "value": 0} for key in ("breadth", "width", "height")}
+    for key, rule in rules.items():
+        page.data_validation(f"{letters[key]}2:{letters[key]}{last}", rule)
+
+
+def _print(page: Any, columns: Sequence[ItemColumn], last: int) -> None:
+    """Print up to the class in force: on one page across, on two where the columns of the verification are shown."""
     page.repeat_rows(0)
     page.repeat_columns(0)
-    page.fit_to_pages(3, 0)  # on one page across nobody could read it
-    page.autofilter(0, 0, last - 1, len(letters) - 1)
-    for column in _WORKINGS:
-        letter = letters[column.label]
-        page.set_column(f"{letter}:{letter}", column.width, None, {"hidden": True})
-    for label in ("Class (formula)", "Class (verified)", "Class"):
-        pen.colour(page, f"{letters[label]}2:{letters[label]}{last}")
-    area = f"{letters['Class (verified)']}2:{letters['Class (verified)']}{last}"
-    void = {"type": "text", "criteria": "begins with", "value": VOID, "format": pen.void}
-    page.conditional_format(area, void)
-    page.write_comment(f"{letters['Class (verified)']}1", _EXPLAINED, {"x_scale": 3, "y_scale": 2})
-    area = f"{letters['OR']}2:{letters['OR']}{last}"
-    bar = {"type": "data_bar", "bar_color": "#9db7c9", "bar_solid": True}
-    page.conditional_format(area, bar | {"min_type": "num", "max_type": "num", "min_value": 0, "max_value": 1})
-
-
-INPUTS = ("Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis given", "Anchored")
-
-_EXPLAINED = (
-    "The class of the verified chance by the limits in Assumptions; at least high where the piece overturns under the "
-    "record itself; where its motions are generic or PFV is estimated, never below the class of the formula. Where a "
-    "size, the floor, the axis or the motion of the floor was edited since the run it is void: the column Class then "
-    "shows the class of the formula until assess is run again."
-)
-
-
-def item_columns(content: Content) -> list[ItemColumn]:
-    """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
-    others = [method for method in content.methods if method.key not in ("proposed_or", "kaneko_hayashi")]
-    as_run = [
-        ItemColumn(f"{one.title} (as run)", 23 if any(one.words) else 16, _as_run(one.key, one.words), "", "0.0%")
-        for one in others
-    ]
-    columns = [*_SIZES, *_LIVE, *_VERIFIED, *as_run, *_REST]
-    taken = {column.label for column in (*columns, *_WORKINGS)}
-    for at, label in enumerate(content.assessment.inventory.extra_columns):
-        name = label if label not in taken else f"{label} (own column)"
-        columns.append(ItemColumn(name, 16, _extra(at)))
-        taken.add(name)
-    return [*columns, *_WORKINGS]
-
-
-def _value(key: str) -> Callable[[ItemResult], Any]:
-    return lambda one: one.by_formula.methods[key].value
-
-
-def _mark(one: ItemResult) -> str:
-    return ANCHORED if one.is_anchored else ""
-
-
-def _class_by_formula(one: ItemResult) -> str:
-    outside = OUTSIDE if "extrapolated" in one.by_formula.methods["proposed_or"].flags else ""
-    return _mark(one) + one.formula_class.label + outside
-
-
-def _class_verified(one: ItemResult) -> str:
-    return (_mark(one) if one.is_verified else "") + verified.class_verified(one)
-
-
-def _class_in_force(one: ItemResult) -> str:
-    return _mark(one) + one.adopted.risk.label if one.is_verified else _class_by_formula(one)
-
-
-def _if_verified(read: Callable[[ItemResult], Any]) -> Callable[[ItemResult], Any]:
-    return lambda one: read(one) if one.is_verified else None
-
-
-def _as_run(key: str, criterion: tuple[str, str]) -> Callable[[ItemResult], Any]:
-    def read(one: ItemResult) -> Any:
-        value = one.governing.methods[key].value
-        if value is None:
-            return "not evaluated"
-        return value if criterion == ("", "") else criterion[0 if value else 1]
-
-    return read
-
-
-def _extra(at: int) -> Callable[[ItemResult], str]:
-    return lambda one: one.item.extra[at] if at < len(one.item.extra) else ""
-
-
-_SIZES = (
-    ItemColumn("Item", 12, lambda one: one.item.item),
-    ItemColumn("Floor", 8, lambda one: one.item.floor),
-    ItemColumn("Room", 16, lambda one: one.item.room),
-    ItemColumn("Description", 32, lambda one: one.item.description),
-    ItemColumn("Type", 26, lambda one: one.item.type),
-    ItemColumn("Quantity", 9, lambda one: one.item.quantity),
-    ItemColumn("Breadth [cm]", 10, lambda one: edge(one.item.breadth, "cm")),
-    ItemColumn("Width [cm]", 10, lambda one: edge(one.item.width, "cm")),
-    ItemColumn("Height [cm]", 10, lambda one: edge(one.item.height, "cm")),
-    ItemColumn("Axis given", 7, lambda one: one.item.axis),
-    ItemColumn("Anchored", 10, lambda one: one.item.anchored),
-)
-
-_LIVE = (
-    ItemColumn("B/H", 8, lambda one: one.item.breadth / one.item.height, "ratio", "0.000"),
-    ItemColumn("Axis", 6, lambda one: one.by_formula.demand.axis, "axis"),
-    ItemColumn("PFA used [g]", 9, lambda one: edge(one.by_formula.demand.pfa, "g"), "pfa", "0.000"),
-    ItemColumn("PFV used [cm/s]", 9, lambda one: edge(one.by_formula.demand.pfv, "cm/s"), "pfv", "0.0"),
-    ItemColumn("OR raw", 9, lambda one: one.by_formula.methods["proposed_or"].detail["raw"], "raw", "0.000"),
-    ItemColumn("OR", 9, _value("proposed_or"), "or", "0.0%"),
-    ItemColumn("Kaneko-Hayashi", 10, _value("kaneko_hayashi"), "kh", "0.0%"),
-    ItemColumn("Class (formula)", 16, _class_by_formula, "class"),
-)
-
-_VERIFIED = (
-    ItemColumn("Verified chance", 9, verified.adopted_chance, "", "0.0%"),
-    ItemColumn("Interval low", 9, lambda one: one.adopted.low, "", "0.0%"),
-    ItemColumn("Interval high", 9, lambda one: one.adopted.high, "", "0.0%"),
-    ItemColumn("Runs", 7, verified.count_runs, "", "#,##0"),
-    ItemColumn("Under the record", 34, verified.under_record),
-    ItemColumn("Class (verified)", 62, _class_verified, "verified", of_verified=True),
-    ItemColumn("Class", 16, _class_in_force, "in_force"),
-    ItemColumn("Axis (as run)", 7, lambda one: one.governing.demand.axis),
-)
-"""What verification found, and the class in force; the columns as run stand for the axis named last."""
-
-_WORKINGS = (
-    ItemColumn("Breadth as run [cm]", 24, _if_verified(lambda one: edge(one.item.breadth, "cm"))),
-    ItemColumn("Height as run [cm]", 24, _if_verified(lambda one: edge(one.item.height, "cm"))),
-    ItemColumn("Floor as run", 24, _if_verified(lambda one: one.item.floor)),
-    ItemColumn("Axis given as run", 24, _if_verified(lambda one: one.item.axis)),
-    ItemColumn("Edited", 24, lambda one: "", "edited", of_verified=True),
-    ItemColumn("Fell under the record", 24, lambda one: "yes" if words.fell_in_record(one) else ""),
-    ItemColumn("Chance behind the class", 24, verified.chance_behind),
-    ItemColumn("Upper end as run", 24, verified.upper_end),
-    ItemColumn("Rank", 24, _if_verified(lambda one: int(one.adopted.risk)), "rank", of_verified=True),
-    ItemColumn("Rank, upper", 24, _if_verified(lambda one: int(one.adopted.upper)), "rank_upper", of_verified=True),
-    ItemColumn(
-        "Rank, formula",
-        10,
-        _if_verified(lambda one: int(one.formula_class)),
-        "rank_formula",
-        of_verified=True,
-    ),
-)
-"""Hidden at the far right: the inputs as run, and the classes as numbers from 0, low, to 3."""
-
-_REST = (
-    ItemColumn("Marks (as run)", 36, lambda one: ", ".join(flag.replace("_", " ") for flag in one.adopted.flags)),
-    ItemColumn("Assumed", 28, lambda one: ", ".join(one.item.assumed)),
-    ItemColumn("Friction", 9, lambda one: one.item.friction),
-    ItemColumn("Importance", 12, lambda one: one.item.importance),
-    ItemColumn("Route", 24, lambda one: one.item.route),
-    ItemColumn("Segment", 24, lambda one: one.item.segment),
-    ItemColumn("X [m]", 8, lambda one: one.item.x),
-    ItemColumn("Y [m]", 8, lambda one: one.item.y),
-    ItemColumn("Angle [deg]", 8, lambda one: one.item.angle_deg),
-    ItemColumn("Notes", 40, lambda one: one.item.notes),
-)
+    printed = next(at for at, column in enumerate(columns) if column.key == "class")
+    page.print_area(0, 0, last - 1, printed)
+    is_verified = not next(column for column in columns if column.key == "class_verified").hidden
+    page.fit_to_pages(2 if is_verified else 1, 0)

@@ -1,160 +1,141 @@
-"""The sheets Summary and Fix first."""
+"""The sheet Summary: counts by class and floor, the pieces most likely to fall, and their charts, all of them live."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.inventory.live import OUTSIDE
-from assess.report import words
+from assess.language import gettext as _
 from assess.report.content import Content
 from assess.report.verified import describe_verification
-from assess.report.xlsx.formulas import VOID
-from assess.report.xlsx.items import HEAD, item_columns
-from assess.report.xlsx.pen import LINE, Pen, count_lines
-from assess.results import ItemResult
+from assess.report.xlsx import charts, worst
+from assess.report.xlsx.items import HEAD, item_areas
+from assess.report.xlsx.pen import LINE, Pen, clip, count_lines
+from assess.report.xlsx.said import hole, join, literal
 from assess.risk import RiskClass
 
-CHART_ROWS = 18
-NAME_WIDTH, CLASS_WIDTH = 34, 40
-"""Widths of the columns of names and of classes."""
+NAME_WIDTH, COUNT_WIDTH, CLASS_WIDTH = 34, 15, 40
+"""Widths of the columns of names, of counts, and of classes."""
+LAST = 7
+"""Last column that is printed."""
+CHART_ROWS = 15
+"""Rows of the charts below the counts."""
+MOST_FLOORS = 12
+"""Floors up to which the summary is printed on one page."""
 
 
 def write_summary(pen: Pen, page: Any, content: Content) -> None:
-    """Write the counts by floor and class as formulas over Items, their chart, and the worst pieces."""
+    """Write what is known in words, the pieces most likely to fall, and the counts by floor, with their charts."""
     page.set_column(0, 0, NAME_WIDTH)
-    page.set_column(1, 6, 15)
-    page.set_column(7, 7, CLASS_WIDTH)
-    page.write_string(0, 0, f"Furniture in earthquakes: {words.clip(content.title, 100)}", pen.title)
-    lines = _lines(content)
-    for row, (line, formula) in enumerate(lines, 1):
+    page.set_column(1, LAST - 1, COUNT_WIDTH)
+    page.set_column(LAST, LAST, CLASS_WIDTH)
+    page.write_string(0, 0, _("Furniture in earthquakes: {title}", title=clip(content.title, 100)), pen.title)
+    areas = item_areas(pen, content)
+    top = _write_lines(pen, page, content, areas) + 1
+    listed = top + 3 + CHART_ROWS
+    counted = listed + worst.count_rows(content) + 1
+    bottom = counted + 2 + len(content.floors)
+    _write_building(pen, page, content, top, bottom)
+    worst.write_worst(pen, page, content, areas, listed)
+    _write_counts(pen, page, content, areas, counted)
+    charts.add_classes(pen, page, (top + 3, 0), top)
+    worst.chart_worst(pen, page, content, (top + 3, 3), listed)
+    charts.add_floors(pen, page, (bottom + 2, 0), (counted + 2, bottom - 1))
+    page.print_area(0, 0, bottom + 2 + charts.count_rows(len(content.floors)), LAST)
+    is_short = len(content.floors) <= MOST_FLOORS
+    page.fit_to_pages(1, 1 if is_short else 0)
+    if not is_short:
+        page.repeat_rows(counted + 1)
+        page.set_h_pagebreaks([bottom + 2])
+
+
+def _write_lines(pen: Pen, page: Any, content: Content, areas: Mapping[str, str]) -> int:
+    """Write the sentences below the title and return the row below them."""
+    lines = [*_lines(pen, content, areas), *((text, "") for text in content.cautions)]
+    width = NAME_WIDTH + COUNT_WIDTH * (LAST - 1) + CLASS_WIDTH
+    for row, (text, formula) in enumerate(lines, 1):
+        page.merge_range(row, 0, row, LAST, "", pen.wrap)
+        page.set_row(row, LINE * count_lines(text, width))
         if formula:
-            page.write_formula(row, 0, formula, None, line)
+            page.write_formula(row, 0, f"={formula}", pen.wrap, text)
         else:
-            pen.put(page, row, 0, line)
-    for row, line in enumerate(content.cautions, len(lines) + 1):
-        page.merge_range(row, 0, row, 6, "", pen.wrap)
-        page.write_string(row, 0, line, pen.wrap)
-        page.set_row(row, LINE * (1 + len(line) // 110))
-    top = len(lines) + len(content.cautions) + 2
-    bottom = _write_counts(pen, page, content, top)
-    _chart(pen, page, top, bottom)
-    _write_worst(pen, page, content, bottom + CHART_ROWS)
+            pen.put(page, row, 0, text, pen.wrap)
+    return len(lines) + 1
 
 
-def _lines(content: Content) -> list[tuple[str, str]]:
-    """Return the lines below the title, each with its formula where it has one."""
+def _lines(pen: Pen, content: Content, areas: Mapping[str, str]) -> list[tuple[str, str]]:
+    """Return the sentences, each with its formula where it has one."""
     scenario = content.assessment.inventory.building.scenario
-    texts = [
-        f"Scenario: {words.clip(scenario, 300)}" if scenario else "",
-        "Chance of overturning in this scenario, not per year; the interval covers the number of records only.",
-    ]
-    follow = "Counts are pieces and follow the sheets Floors, Items and Assumptions when those are edited."
+    texts = [_("Scenario: {scenario}", scenario=clip(scenario, 300))] if scenario else []
+    texts.append(
+        _("Chance of overturning in this scenario, not per year; the interval covers the number of records only.")
+    )
+    follow = _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited.")
     if not content.verified.done:
-        texts.append("Not verified: classes are those of a published formula; no direct integration has been run.")
-        return [(text, "") for text in (*texts, follow)]
-    item = _areas(content)
-    rank, said = item["Rank"], "Rows whose class verification lowers: "
-    lowered = f'SUMPRODUCT(({rank}<>"")*({rank}<{item["Rank, formula"]}))'
-    void = f'COUNTIF({item["Class (verified)"]},"{VOID}")'
-    live = f"{said}{len(content.verified.lowered)}; void, as an input was edited: 0."
+        told = _("Not verified: classes are those of a published formula; no direct integration has been run.")
+        return [(text, "") for text in (*texts, told, follow)]
+    rank = areas["rank"]
+    lowered = f'SUMPRODUCT(({rank}<>"")*({rank}<{areas["rank_formula"]}))'
+    void = f"COUNTIF({areas['class_verified']},{literal(pen.terms.void)})"
+    changed = _("Rows whose class verification lowers: {lowered}; void, as an input was edited: {void}.",
+                lowered=hole(0), void=hole(1))  # fmt: skip
+    shown = changed.replace(hole(0), str(len(content.verified.lowered))).replace(hole(1), "0")
     return [
         *((text, "") for text in (*texts, describe_verification(content.assessment))),
-        (live, f'="{said}"&{lowered}&"; void, as an input was edited: "&{void}&"."'),
-        ("Void rows fall back to the class of the formula until assess is run again.", ""),
+        (shown, join(changed, lowered, void)),
+        (_("Void rows fall back to the class of the formula until assess is run again."), ""),
         (follow, ""),
     ]
 
 
-def _areas(content: Content) -> dict[str, str]:
-    """Return the cells of each column of Items."""
-    last = HEAD + max(1, len(content.results))
-    letters = {column.label: xl_col_to_name(at) for at, column in enumerate(item_columns(content))}
-    return {label: f"Items!${letter}${HEAD + 1}:${letter}${last}" for label, letter in letters.items()}
+def _write_building(pen: Pen, page: Any, content: Content, top: int, bottom: int) -> None:
+    """Write the counts of the building, which stand in the row `bottom` too."""
+    _write_heads(pen, page, top, _("Building"))
+    page.write_string(top + 1, 0, _("All floors"), pen.total)
+    for at, value in enumerate(_totals(content), 1):
+        page.write_formula(top + 1, at, f"={xl_col_to_name(at)}{bottom + 1}", pen.total, value)
 
 
-def _write_counts(pen: Pen, page: Any, content: Content, top: int) -> int:
-    """Write the table of counts and return the row of its totals."""
-    for at, label in enumerate(("Floor", *(risk.label for risk in RiskClass), "anchored", "all")):
-        page.write_string(top, at, label, pen.head)
-    item = _areas(content)
-    total = top + 1 + len(content.floors)
-    for row, (at_floor, floor_page) in enumerate(enumerate(content.floors, HEAD + 1), top + 1):
-        pen.put(page, row, 0, floor_page.title)
-        on_floor = f"({item['Floor']}=Floors!$A${at_floor})"  # SUMIFS would read names as criteria
-        counts = floor_page.counts
-        for at, risk in enumerate(RiskClass, 1):
-            shown = item["Class"]
-            classed = f'(({shown}="{risk.label}")+({shown}="{risk.label}{OUTSIDE}"))'
-            formula = f'=SUMPRODUCT({on_floor}*{classed}*({item["Anchored"]}<>"yes"),{item["Quantity"]})'
-            page.write_formula(row, at, formula, None, counts.by_class[risk])
-        page.write_formula(
-            row, 5, f'=SUMPRODUCT({on_floor}*({item["Anchored"]}="yes"),{item["Quantity"]})', None, counts.anchored
-        )
-        page.write_formula(row, 6, f"=SUM(B{row + 1}:F{row + 1})", None, counts.total)
-    page.write_string(total, 0, "All floors", pen.bold)
-    totals = (*content.total.by_class.values(), content.total.anchored, content.total.total)
-    for at, value in enumerate(totals, 1):
+def _write_counts(pen: Pen, page: Any, content: Content, areas: Mapping[str, str], top: int) -> None:
+    """Write the counts by floor, and below them those of the building."""
+    page.write_string(top, 0, _("Pieces by class and floor"), pen.heading)
+    _write_heads(pen, page, top + 1, _("Floor"))
+    for number, floor_page in enumerate(content.floors, HEAD + 1):
+        row, counts = top + number, floor_page.counts
+        pen.put(page, row, 0, floor_page.title, pen.wrap)
+        page.set_row(row, LINE * count_lines(floor_page.title, NAME_WIDTH))
+        formulas = _count(pen, areas, f"{pen.refer('Floors')}$A${number}")
+        for at, (formula, count) in enumerate(
+            zip(formulas, (*counts.by_class.values(), counts.anchored), strict=True), 1
+        ):
+            page.write_formula(row, at, formula, pen.live, count)
+        page.write_formula(row, 6, f"=SUM(B{row + 1}:F{row + 1})", pen.live, counts.total)
+    total = top + 2 + len(content.floors)
+    page.write_string(total, 0, _("All floors"), pen.total)
+    for at, value in enumerate(_totals(content), 1):
         letter = xl_col_to_name(at)
-        page.write_formula(total, at, f"=SUM({letter}{top + 2}:{letter}{total})", pen.bold, value)
-    return total
+        page.write_formula(total, at, f"=SUM({letter}{top + 3}:{letter}{total})", pen.total, value)
 
 
-def _chart(pen: Pen, page: Any, top: int, bottom: int) -> None:
-    chart = pen.book.add_chart({"type": "bar", "subtype": "stacked"})
+def _totals(content: Content) -> tuple[int, ...]:
+    return (*content.total.by_class.values(), content.total.anchored, content.total.total)
+
+
+def _write_heads(pen: Pen, page: Any, row: int, label: str) -> None:
+    page.write_string(row, 0, label, pen.head)
     for at, risk in enumerate(RiskClass, 1):
-        chart.add_series({
-            "name": ["Summary", top, at],
-            "categories": ["Summary", top + 1, 0, bottom - 1, 0],
-            "values": ["Summary", top + 1, at, bottom - 1, at],
-            "fill": {"color": risk.fill},
-            "border": {"color": "#444444", "width": 0.5},
-        })  # fmt: skip
-    chart.set_title({"name": "Pieces by class and floor", "name_font": {"size": 11}})
-    chart.set_y_axis({"reverse": True})
-    chart.set_legend({"position": "bottom"})
-    chart.set_size({"width": 760, "height": 320})
-    page.insert_chart(
-        bottom + 1, 0, chart, {"description": "Pieces of each class on every floor, as in the table above"}
-    )
+        page.write_string(row, at, pen.terms.labels[risk], pen.classes[risk])
+    for at, told in enumerate((_("anchored"), _("all")), 1 + len(RiskClass)):
+        page.write_string(row, at, told, pen.head)
 
 
-def _write_worst(pen: Pen, page: Any, content: Content, row: int) -> None:
-    page.write_string(row, 0, "The pieces most likely to fall (as run)", pen.bold)
-    heads = ("Item", "Floor", "Room", "Pieces", "Chance", "Interval low", "Interval high", "Class")
-    for at, label in enumerate(heads):
-        page.write_string(row + 1, at, label, pen.head)
-    percent = pen.format("0.0%", valign="top")
-    for number, one in enumerate(content.worst, row + 2):
-        described, said = _name(one), _class_words(one)
-        page.set_row(number, LINE * max(count_lines(described, NAME_WIDTH), count_lines(said, CLASS_WIDTH)))
-        for at, value in enumerate((described, one.item.floor, one.item.room, one.item.quantity)):
-            pen.put(page, number, at, value, pen.wrap)
-        for at, value in enumerate((one.adopted.probability, one.adopted.low, one.adopted.high), 4):
-            pen.put(page, number, at, value, percent)
-        pen.put(page, number, 7, said, pen.wrap)
-    pen.colour(page, f"H{row + 3}:H{row + 3 + len(content.worst)}")
-
-
-def _name(one: ItemResult) -> str:
-    named = (one.item.item, one.item.description or one.item.type)
-    return words.clip(": ".join(part for part in named if part), 80)
-
-
-def _class_words(one: ItemResult) -> str:
-    """Return the class as run with what must be said beside it, its symbol first: the colours go by that."""
-    return f"{one.adopted.risk.symbol} {words.risk_words(one)}"
-
-
-def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
-    """Write the pieces of at least medium class, what to fix first at the top."""
-    rows = [
-        (at, one.item.item, one.item.floor, one.item.room, one.item.description or one.item.type,
-         one.item.importance, one.item.route, _class_words(one), one.adopted.probability, one.adopted.low,
-         one.adopted.high, one.item.quantity, one.adopted.probability * one.item.quantity)
-        for at, one in enumerate(content.fix_first, 1)
-    ]  # fmt: skip
-    heads = ("No.", "Item", "Floor", "Room", "Description", "Importance", "Route", "Class (as run)", "Chance",
-             "Interval low", "Interval high", "Pieces", "Expected falls saved if the anchor holds")  # fmt: skip
-    formats = dict.fromkeys((8, 9, 10), "0.0%") | {12: "0.00"}
-    pen.listing(page, heads, (6, 12, 9, 16, 36, 13, 12, 36, 10, 10, 10, 8, 16), rows, formats)
-    pen.colour(page, f"H2:H{len(rows) + 2}")
+def _count(pen: Pen, areas: Mapping[str, str], at_floor: str) -> list[str]:
+    """Return the formulas that count the pieces of a floor: of each class, and those that are anchored."""
+    on_floor = f"({areas['floor']}={at_floor})"  # SUMIFS would read names as criteria
+    yes, quantity = literal(pen.terms.yes), areas["quantity"]
+    formulas = []
+    for label in pen.terms.labels:
+        classed = f"(({areas['class']}={literal(label)})+({areas['class']}={literal(label + OUTSIDE)}))"
+        formulas.append(f"=SUMPRODUCT({on_floor}*{classed}*({areas['anchored']}<>{yes}),{quantity})")
+    return [*formulas, f"=SUMPRODUCT({on_floor}*({areas['anchored']}={yes}),{quantity})"]

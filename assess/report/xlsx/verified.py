@@ -2,7 +2,8 @@
 
 from assess.adoption import FORMULA, VERIFICATION
 from assess.cases import CaseResult
-from assess.report.xlsx.formulas import LOWERED, MAY_BE, NOT_VERIFIED
+from assess.inventory.live import say_class
+from assess.language import gettext as _
 from assess.results import ItemResult
 
 LEAST = 0.01
@@ -44,11 +45,20 @@ def under_record(one: ItemResult) -> str:
     if not known:
         return ""
     worst = max(known, key=_severity)
-    fell, rotation = _severity(worst)
-    share = f"{rotation:.2f}" if rotation >= LEAST else f"below {LEAST}"
-    moves = f"rotates to {share} of critical" if rotation > 0 else "stays still"
-    elsewhere = "" if worst.demand.axis == one.governing.demand.axis else f" (along {worst.demand.axis})"
-    return ("overturns" if fell else moves) + elsewhere
+    text = _movement(*_severity(worst))
+    if worst.demand.axis == one.governing.demand.axis:
+        return text
+    return _("{what} (along {axis})", what=text, axis=worst.demand.axis)
+
+
+def _movement(fell: bool, rotation: float) -> str:
+    if fell:
+        return _("overturns")
+    if rotation <= 0:
+        return _("stays still")
+    if rotation < LEAST:
+        return _("rotates to below {least} of critical", least=LEAST)
+    return _("rotates to {share:.2f} of critical", share=rotation)
 
 
 def _severity(case: CaseResult) -> tuple[bool, float]:
@@ -59,9 +69,10 @@ def _severity(case: CaseResult) -> tuple[bool, float]:
 def class_verified(one: ItemResult) -> str:
     """Return its class by the verification, with what must be said beside it."""
     if not one.is_verified:
-        return NOT_VERIFIED
-    adopted = one.adopted
-    text = adopted.risk.label
+        return _("not verified")
+    adopted, told = one.adopted, [say_class(one.adopted.risk)]
     if adopted.upper > adopted.risk:
-        text += f"{MAY_BE}{adopted.upper.label}"
-    return text if adopted.lowered_from is None else f"{text}{LOWERED}{adopted.lowered_from.label})"
+        told.append(_("may be {risk}", risk=say_class(adopted.upper)))
+    if adopted.lowered_from is not None:
+        told.append(_("lowered by verification (formula: {risk})", risk=say_class(adopted.lowered_from)))
+    return ", ".join(told)

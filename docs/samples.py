@@ -1,0 +1,37 @@
+"""Write the sample reports of the example building into samples/reports: ``make samples``.
+
+They are made as on one fixed day, so that only a change of the report changes them.
+"""
+
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+import assess
+
+ROOT = Path(__file__).parents[1]
+SAMPLES = ROOT / "samples" / "reports"
+WORKBOOK = ROOT / "inventories" / "market-street.xlsx"
+DAY = "1767225600"
+"""1 January 2026 as SOURCE_DATE_EPOCH."""
+FORMATS = ("pdf", "html", "xlsx")
+
+
+def write_samples(folder: Path) -> dict[str, Path]:
+    """Write the reports of the example into a folder, as `assess run` does by default; return them by format."""
+    os.environ["SOURCE_DATE_EPOCH"] = DAY
+    with tempfile.TemporaryDirectory() as box:
+        written = assess.write_reports(assess.run(assess.read_inventory(WORKBOOK)), box, FORMATS)
+        for kind, path in written.items():
+            written[kind] = Path(shutil.move(path, folder / f"market-street.{kind}"))
+    return written
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
+    from docs.screenshot import take_screenshot
+
+    SAMPLES.mkdir(parents=True, exist_ok=True)
+    take_screenshot(write_samples(SAMPLES)["html"], SAMPLES / "market-street.png")

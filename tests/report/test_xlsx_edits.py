@@ -1,0 +1,155 @@
+"""An edit of a PFA, a size or a class limit gives what a run of the edited workbook would, charts included."""
+
+import re
+import zipfile
+
+import formualizer
+import openpyxl
+import pytest
+
+from assess.report.xlsx import write_xlsx
+from assess.risk import RiskClass
+from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
+from tests.workbooks import assessed
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2}, {"floor": "2", "pfa_x": 0.5, "pfv_x": 40.0}]
+SIZES = [(20, 200), (30, 200), (36, 92), (45, 90), (60, 60), (28, 180), (33, 170)]
+ITEMS = [
+    {
+        "item": f"{floor}-{at}",
+        "floor": floor,
+        "breadth": breadth,
+        "width": 120,
+        "height": height,
+        "quantity": 1 + at % 2,
+    }
+    | ({"anchored": "yes"} if at == 3 else {})
+    for floor in "12"
+    for at, (breadth, height) in enumerate(SIZES)
+]
+LIMITS = (0.03, 0.3, 0.7)
+EDITS = {
+    "nothing": ({}, {}, LIMITS),
+    "a PFA": ({"pfa_x": 0.85}, {}, LIMITS),
+    "a size": ({}, {"breadth": 70, "height": 90}, LIMITS),
+    "the class limits": ({}, {}, (0.1, 0.4, 0.6)),
+    "all of them": ({"pfa_x": 0.12}, {"breadth": 40, "height": 250}, (0.01, 0.2, 0.45)),
+}
+EDITED_ITEM, EDITED_FLOOR = 1, 0
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("edits")
+    write_xlsx(assessed(folder / "w.xlsx", ITEMS, FLOORS), folder / "r.xlsx")
+    return folder / "r.xlsx"
+
+
+def _cells(path, floor, item, limits):
+    """Return the cells of the report that an edit changes, with their new values."""
+    heads = {cell.value: cell.column_letter for cell in openpyxl.load_workbook(path)["Items"][1]}
+    cells = {("Floors", f"C{EDITED_FLOOR + 2}"): value for value in floor.values()}
+    labels = {"breadth": "Breadth [cm]", "height": "Height [cm]"}
+    cells |= {("Items", f"{heads[labels[name]]}{EDITED_ITEM + 2}"): value for name, value in item.items()}
+    return cells | {("Assumptions", f"B{row}"): limit for row, limit in enumerate(limits, 2)}
+
+
+def _run(folder, floor, item):
+    """Assess the workbook with the same edit made in it."""
+    floors, items = [dict(one) for one in FLOORS], [dict(one) for one in ITEMS]
+    floors[EDITED_FLOOR] |= floor
+    items[EDITED_ITEM] |= item
+    return list(assessed(folder / "edited.xlsx", items, floors))
+
+
+def _class(one, limits):
+    return RiskClass(sum(one.adopted.probability >= limit for limit in limits))
+
+
+def _expected(results, limits):
+    """Return classes by item, counts by floor, and the highest chances."""
+    classes = {one.item.item: ("⚓ " if one.is_anchored else "") + _class(one, limits).label for one in results}
+    counts = {}
+    for floor in ("1", "2"):
+        here = [one for one in results if one.item.floor == floor]
+        free = [one for one in here if not one.is_anchored]
+        by_class = [sum(one.item.quantity for one in free if _class(one, limits) == risk) for risk in RiskClass]
+        anchored = sum(one.item.quantity for one in here if one.is_anchored)
+        counts[floor] = [*by_class, anchored, sum(by_class) + anchored]
+    chances = sorted((one.adopted.probability for one in results if not one.is_anchored), reverse=True)
+    return classes, counts, chances[:10]
+
+
+def _shown(read, path):
+    """Return the same from the report; `read` gives the value of a cell."""
+    book = openpyxl.load_workbook(path)
+    letters = {cell.value: cell.column_letter for cell in book["Items"][1]}
+    rows = range(2, 2 + len(ITEMS))
+    classes = {read("Items", f"A{row}"): read("Items", f"{letters['Class']}{row}").rstrip("*") for row in rows}
+    at = {cell.value: cell.row for cell in book["Summary"]["A"] if isinstance(cell.value, str)}
+    counts = {floor: [read("Summary", f"{letter}{at['Floor'] + int(floor)}") for letter in "BCDEFG"] for floor in "12"}
+    total = [read("Summary", f"{letter}{at['Building'] + 1}") for letter in "BCDEFG"]
+    assert total == [sum(both) for both in zip(*counts.values(), strict=True)]
+    chances = [read("Summary", f"E{at['Item'] + row}") for row in range(1, 11)]
+    return classes, counts, chances
+
+
+def _compare(found, expected):
+    assert found[:2] == expected[:2]
+    assert found[2] == pytest.approx(expected[2], abs=1e-9)
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_an_edit_gives_what_a_run_would(path, tmp_path, edit):
+    floor, item, limits = EDITS[edit]
+    book = formualizer.load_workbook(str(path))
+    for (sheet, cell), value in _cells(path, floor, item, limits).items():
+        row, column = _split(cell)
+        book.set_value(sheet, row, column, value)
+    book.evaluate_all()
+    expected = _expected(_run(tmp_path, floor, item), limits)
+    _compare(_shown(lambda sheet, cell: book.get_value(sheet, *_split(cell)), path), expected)
+
+
+def _split(cell):
+    column, row = openpyxl.utils.cell.coordinate_from_string(cell)
+    return row, openpyxl.utils.column_index_from_string(column)
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+def test_an_edit_gives_in_libreoffice_what_a_run_would(path, tmp_path):
+    floor, item, limits = EDITS["all of them"]
+    book = openpyxl.load_workbook(path)
+    for (sheet, cell), value in _cells(path, floor, item, limits).items():
+        book[sheet][cell] = value
+    book.save(tmp_path / "changed.xlsx")
+    cells = stored_cells(libreoffice(tmp_path / "changed.xlsx", tmp_path / "again.xlsx"))
+    expected = _expected(_run(tmp_path, floor, item), limits)
+    _compare(_shown(lambda sheet, cell: cells.get((sheet, cell)), path), expected)
+
+
+def test_every_chart_draws_cells_that_follow_an_edit(path):
+    """What charts draw are formulas, or in Floors the cells to edit; and each tells in words what it shows."""
+    book = openpyxl.load_workbook(path)
+    with zipfile.ZipFile(path) as archive:
+        charts = [archive.read(name).decode() for name in archive.namelist() if "charts/chart" in name]
+        drawings = [archive.read(name).decode() for name in archive.namelist() if "drawings/drawing" in name]
+    assert len(charts) == 4
+    assert sum(text.count(' descr="') for text in drawings) == 4
+    for chart in charts:
+        areas = re.findall(r"<c:val><c:numRef><c:f>'?([^'!]+)'?!([^<]+)</c:f>", chart)
+        assert areas
+        for sheet, area in areas:
+            cells = [cell for row in book[sheet][area.replace("$", "")] for cell in row]
+            assert all(cell.data_type == "f" or cell.style == "Input" for cell in cells), (sheet, area)
+
+
+def test_charts_have_the_colours_of_the_classes_and_patterns(path):
+    with zipfile.ZipFile(path) as archive:
+        text = "".join(archive.read(name).decode() for name in archive.namelist() if "charts/chart" in name)
+    for risk in RiskClass:
+        assert text.count(risk.fill.removeprefix("#").upper()) >= 3
+    assert text.count("<a:pattFill") >= 6

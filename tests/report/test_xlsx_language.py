@@ -1,0 +1,119 @@
+"""The Excel report in another language: names, words that formulas compare, and headings; formulas still agree."""
+
+from collections.abc import Mapping
+
+import openpyxl
+import pytest
+
+from assess.language import Catalogue, speaking
+from assess.report.xlsx import write_xlsx
+from assess.report.xlsx.said import hole, join, literal, name_sheets, refer
+from assess.settings import Settings
+from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells
+from tests.workbooks import FLOORS, ITEMS, assessed
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+ITALIAN = Catalogue(
+    "it",
+    {
+        "Summary": ("Riepilogo",), "Floors": ("Piani e quote",), "Items": ("L'arredo",), "Assumptions": ("Ipotesi",),
+        "low": ("basso",), "medium": ("medio",), "high": ("alto",), "very high": ("molto alto",), "yes": ("sì",),
+        "no": ("no",), "void: inputs changed": ("nullo: dati cambiati",), "may be {risk}": ("forse {risk}",),
+        "lowered by verification (formula: {risk})": ("{risk} per la formula, abbassato dalla verifica",),
+        "Rows whose class verification lowers: {lowered}; void, as an input was edited: {void}.": (
+            "Righe nulle, perché un dato è cambiato: {void}; abbassate: {lowered}.",
+        ),
+    },
+    decimal=",",
+    group=".",
+)  # fmt: skip
+
+
+class _Marked(Mapping[str, tuple[str, ...]]):
+    """Every text between marks, among them an apostrophe, which names of sheets have to double."""
+
+    def __getitem__(self, key):
+        return (f"l'{key} à",) * 2
+
+    def __iter__(self):
+        return iter(())
+
+    def __len__(self):
+        return 0
+
+
+MARKED = Catalogue("xx", _Marked())
+
+
+@pytest.fixture(scope="module")
+def verified(tmp_path_factory):
+    path = tmp_path_factory.mktemp("language") / "w.xlsx"
+    return assessed(path, ITEMS, FLOORS, settings=Settings(verify="all", runs=10))
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    return assessed(tmp_path_factory.mktemp("language") / "w.xlsx", ITEMS, FLOORS)
+
+
+@pytest.mark.parametrize("catalogue", [ITALIAN, MARKED], ids=["italian", "marked"])
+@pytest.mark.parametrize("which", ["plain", "verified"])
+def test_formulas_agree_in_another_language(catalogue, which, request, tmp_path):
+    assessment = request.getfixturevalue(which)
+    with speaking(catalogue):
+        write_xlsx(assessment, tmp_path / "r.xlsx")
+    stored = stored_cells(tmp_path / "r.xlsx")
+    assert not [place for place, value in stored.items() if isinstance(value, str) and value.startswith("#")]
+    assert compare_formulas(tmp_path / "r.xlsx") > 12 * len(ITEMS)
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+def test_libreoffice_agrees_in_another_language(verified, tmp_path):
+    path = tmp_path / "r.xlsx"
+    with speaking(MARKED):
+        write_xlsx(verified, path)
+    stored = stored_cells(path)
+    poison(path)
+    found = stored_cells(libreoffice(path, tmp_path / "again.xlsx"))
+    assert not [place for place, value in stored.items() if not same(value, found.get(place))]
+
+
+def test_words_and_counts_are_translated(plain, tmp_path):
+    with speaking(ITALIAN):
+        write_xlsx(plain, tmp_path / "r.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "r.xlsx", data_only=True)
+    assert book.sheetnames[0] == "Riepilogo"
+    assert {"Piani e quote", "L'arredo", "Ipotesi"} <= set(book.sheetnames)
+    rows = list(book["Riepilogo"].iter_rows(max_col=7, values_only=True))
+    assert next(row[1:5] for row in rows if row[0] == "Building") == ("○ basso", "◇ medio", "▲ alto", "■ molto alto")
+    assert next(row for row in rows if row[0] == "All floors")[5:7] == (1, sum(one.item.quantity for one in plain))
+    items = [cell.value for row in book["L'arredo"].iter_rows(min_row=2) for cell in row]
+    assert "sì" in items
+    assert not {"yes", "○ low", "◇ medium", "▲ high"} & set(items)
+
+
+def test_every_heading_is_translated(verified, tmp_path):
+    with speaking(MARKED):
+        write_xlsx(verified, tmp_path / "r.xlsx")
+    for sheet in openpyxl.load_workbook(tmp_path / "r.xlsx"):
+        assert sheet.title.startswith("l'"), sheet.title
+        heads = [str(cell.value) for cell in sheet[1] if cell.value]
+        assert heads
+        assert all(head.startswith("l'") for head in heads), heads
+
+
+def test_names_of_sheets_hold_excels_rules():
+    names = name_sheets({
+        "a": "Qualità: log?", "b": "qualità  log", "c": "'x'", "d": "y" * 40, "e": "Y" * 40, "f": "[]",
+    })  # fmt: skip
+    assert names == {
+        "a": "Qualità  log", "b": "qualità  log 2", "c": "x", "d": "y" * 31, "e": "Y" * 29 + " 2", "f": "f",
+    }  # fmt: skip
+    assert refer("L'arredo") == "'L''arredo'!"
+
+
+def test_a_sentence_with_holes_is_an_expression():
+    assert literal('a "b"') == '"a ""b"""'
+    assert join(f"{hole(1)} of {hole(0)}.", "A1", "B2") == 'B2&" of "&A1&"."'

@@ -1,0 +1,166 @@
+"""Every number of the Excel report is that of results.json of the same run."""
+
+import json
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+import assess
+from assess.report import write_reports
+from assess.report.content import build_content
+from assess.report.xlsx.columns import item_columns
+from assess.risk import RiskClass
+from assess.settings import Settings
+from tests.workbooks import UNVERIFIED, assessed
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+STREET = Path(__file__).parents[2] / "inventories" / "market-street.xlsx"
+FLOORS = [{"floor": "1", "pfa_x": 0.45, "pfv_x": 45.0, "pfa_y": 0.4}, {"floor": "2", "pfa_x": 0.8, "pfv_x": 90.0}]
+ITEMS = [
+    {"item": f"{floor}-{at}", "floor": floor, "breadth": breadth, "width": 120, "height": 180, "quantity": 1 + at % 3}
+    | ({"anchored": "yes"} if at == 4 else {})
+    | ({"axis": "Y"} if at == 2 else {})
+    for floor in "12"
+    for at, breadth in enumerate((25, 36, 50, 62, 75, 110))
+]
+
+
+@pytest.fixture(scope="module", params=["formula", "verified"])
+def run(request, tmp_path_factory):
+    """Return the stored Items by key, the other sheets, and results.json."""
+    folder = tmp_path_factory.mktemp(request.param)
+    if request.param == "formula":
+        assessment = assess.run(assess.read_inventory(STREET), UNVERIFIED)
+    else:
+        assessment = assessed(folder / "w.xlsx", ITEMS, FLOORS, settings=Settings(verify="all", runs=20))
+    written = write_reports(assessment, folder / "out", ["xlsx", "json"])
+    book = openpyxl.load_workbook(written["xlsx"], data_only=True)
+    keys = [column.key for column in item_columns(build_content(assessment))]
+    rows = [dict(zip(keys, row, strict=True)) for row in book["Items"].iter_rows(min_row=2, values_only=True)]
+    return rows, book, json.loads(written["json"].read_text(encoding="utf-8"))
+
+
+def _is(value):
+    return None if value is None else pytest.approx(value, abs=1e-9)
+
+
+def _label(word):
+    return next(risk.label for risk in RiskClass if risk.word == word)
+
+
+def test_sizes_and_motions_are_those_of_the_results(run):
+    rows, _, results = run
+    assert len(rows) == len(results["items"])
+    for row, one in zip(rows, results["items"], strict=True):
+        assert row["item"] == one["item"]
+        assert row["floor"] == one["floor"]
+        assert row["quantity"] == one["quantity"]
+        assert row["anchored"] == one["anchored"]
+        for side in ("breadth", "width", "height"):
+            assert row[side] == _is(one[f"{side}_cm"])
+        assert row["ratio"] == _is(one["breadth_to_height"])
+        served = [axis for axis in one["axes"] if axis["axis"] == row["axis"]]
+        assert any((row["pfa"], row["pfv"] or None) == (_is(axis["pfa_g"]), _is(axis["pfv_cm_s"])) for axis in served)
+        assert row["axis_run"] == one["axis"]
+
+
+def test_chances_of_the_formulas_are_those_of_the_results(run):
+    rows, _, results = run
+    for row, one in zip(rows, results["items"], strict=True):
+        if row["axis"] == one["axis"]:
+            assert row["pfa"] == _is(one["pfa_g"])
+            assert row["raw"] == _is(one["methods"]["proposed_or"]["raw"])
+            assert row["or"] == _is(one["methods"]["proposed_or"]["value"])
+            assert row["kh"] == _is(one["methods"]["kaneko_hayashi"]["value"])
+        by_axis = [axis["methods"] for axis in one["axes"] if axis["axis"] == row["axis"]]
+        assert any(row["or"] == _is(methods["proposed_or"]) for methods in by_axis)
+        for key in ("fema_p58", "housner_monte_carlo"):
+            value = one["methods"][key]["value"]
+            assert row[key] == ("not evaluated" if value is None else _is(value))
+
+
+def test_what_verification_found_is_that_of_the_results(run):
+    rows, _, results = run
+    for row, one in zip(rows, results["items"], strict=True):
+        found, adopted = one["verification"], one["adopted"]
+        assert row["runs"] == (found and found["runs"])
+        is_adopted = adopted["method"] == "housner_monte_carlo"
+        assert row["verified_chance"] == (_is(adopted["probability"]) if is_adopted else None)
+        assert (row["low"], row["high"]) == (_is(adopted["low"]), _is(adopted["high"]))
+        assert row["chance"] == _is(adopted["probability"])
+        shown = row["class"].removeprefix("⚓ ").removesuffix("*")
+        assert shown == _label(adopted["class"])
+        if found:
+            assert row["class_verified"].removeprefix("⚓ ").startswith(_label(adopted["class"]))
+            assert ("may be " in row["class_verified"]) == (adopted["class_upper"] != adopted["class"])
+
+
+def _counts(items):
+    free = [one for one in items if one["anchored"] != "yes"]
+    by_class = [sum(one["quantity"] for one in free if one["adopted"]["class"] == risk.word) for risk in RiskClass]
+    anchored = sum(one["quantity"] for one in items if one["anchored"] == "yes")
+    return [*by_class, anchored, sum(by_class) + anchored]
+
+
+def test_counts_are_those_of_the_results(run):
+    _, book, results = run
+    rows = [list(row) for row in book["Summary"].iter_rows(max_col=7, values_only=True)]
+    heads = [at for at, row in enumerate(rows) if row[0] == "Floor"]
+    for at, floor in enumerate(results["floors"], heads[0] + 1):
+        assert rows[at][1:] == _counts([one for one in results["items"] if one["floor"] == floor["floor"]])
+    totals = [row[1:] for row in rows if row[0] == "All floors"]
+    assert totals == [_counts(results["items"])] * 2
+
+
+def test_the_list_on_the_summary_is_that_of_the_highest_classes_and_chances(run):
+    _, book, results = run
+    rows = [list(row) for row in book["Summary"].iter_rows(max_col=8, values_only=True)]
+    top = next(at for at, row in enumerate(rows) if row[0] == "Item")
+    words = [risk.word for risk in RiskClass]
+    free = [one for one in results["items"] if one["anchored"] != "yes"]
+    ranked = [(words.index(one["adopted"]["class_upper"]), one["adopted"]["probability"]) for one in free]
+    expected = [chance for _, chance in sorted(ranked, reverse=True)[:10]]
+    assert [row[4] for row in rows[top + 1 : top + 1 + len(expected)]] == pytest.approx(expected, abs=1e-9)
+
+
+def test_floors_and_motions_are_those_of_the_results(run):
+    _, book, results = run
+    floors = {row[0]: row for row in book["Floors"].iter_rows(min_row=2, values_only=True) if row[0]}
+    motions = list(book["Motions"].iter_rows(min_row=2, values_only=True))
+    expected = [(floor["floor"], one) for floor in results["floors"] for one in floor["demands"]]
+    assert len(motions) == len(expected)
+    for row, (floor, one) in zip(motions, expected, strict=True):
+        assert row[:2] == (floor, one["axis"])
+        assert (row[7], row[8]) == (_is(one["pfa_g"]), _is(one["pfv_cm_s"]))
+        assert row[9] == _is(one["pfa_file_g"])
+    for floor in results["floors"]:
+        for axis, at in (("X", 2), ("Y", 5)):
+            largest = max(one["pfa_g"] for one in floor["demands"] if one["axis"] == axis)
+            assert floors[floor["floor"]][at] == pytest.approx(largest, abs=1e-9)
+
+
+def test_what_to_fix_first_is_that_of_the_results(run):
+    _, book, results = run
+    items = {one["item"]: one for one in results["items"]}
+    rows = list(book["Fix first"].iter_rows(min_row=2, values_only=True))
+    assert rows
+    for row in rows:
+        adopted = items[row[1]]["adopted"]
+        assert row[8:11] == (_is(adopted["probability"]), _is(adopted["low"]), _is(adopted["high"]))
+        assert row[12] == _is(adopted["probability"] * items[row[1]]["quantity"])
+        assert adopted["class"] in row[7]
+
+
+def test_inputs_and_settings_are_those_of_the_results(run):
+    _, book, results = run
+    rows = [row[:3] for row in book["Quality log"].iter_rows(min_row=2, values_only=True)]
+    made, inputs = results["assess"], results["assess"]["inputs"]
+    files = {inputs["workbook"]: inputs["sha256"], **inputs["records"]}
+    assert {("input", name, f"SHA-256 {digest}") for name, digest in files.items()} <= set(rows)
+    assert {("platform", name, value) for name, value in made["platform"].items()} <= set(rows)
+    assert {("setting", name, str(value)) for name, value in made["settings"].items()} <= set(rows)
+    assert ("program", "assess", made["version"]) in rows
+    problems = [(one["severity"], one["message"]) for one in results["problems"]] or [("note", "Nothing to remark.")]
+    assert [(row[0], row[2]) for row in rows if row[0] in ("warning", "note")] == problems

@@ -1,0 +1,167 @@
+"""Sheets of the Excel report: what they are, how they are printed and read, with few rows, many floors, long texts."""
+
+import os
+import re
+import subprocess
+import sys
+import zipfile
+from html import unescape
+
+import openpyxl
+import pytest
+
+from assess.report.xlsx import write_xlsx
+from tests.recalculate import compare_formulas, stored_cells
+from tests.workbooks import FLOORS, ITEMS, assessed, write
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+NAMES = ["Summary", "Fix first", "Floors", "Items", "Motions", "Routes", "Methods", "Assumptions", "Quality log"]
+LONG = "A very long name of a cabinet " * 10
+
+
+def _report(folder, *args, **named):
+    write_xlsx(assessed(folder / "w.xlsx", *args, **named), folder / "r.xlsx")
+    return folder / "r.xlsx"
+
+
+def test_every_sheet_is_set_up_for_print(tmp_path):
+    book = openpyxl.load_workbook(_report(tmp_path, building="575 Market & Sons"))
+    assert book.sheetnames == NAMES
+    for sheet in book:
+        assert (sheet.page_setup.orientation, sheet.page_setup.paperSize) == ("landscape", 9)
+        assert sheet.sheet_properties.pageSetUpPr.fitToPage
+        assert sheet.page_setup.fitToWidth in (None, 1)
+        assert sheet.oddHeader.left.text.strip() == "575 Market && Sons"
+        assert sheet.oddHeader.right.text.strip() == sheet.title
+        assert sheet.oddFooter.left.text.strip() == "Chance of overturning in this scenario, not per year"
+        assert sheet.oddFooter.right.text.strip() == "Page &P of &N"
+        if sheet.title != "Summary":
+            assert sheet.print_title_rows == "$1:$1"
+            assert sheet.freeze_panes in ("A2", "B2")
+        if sheet.title not in ("Summary", "Assumptions"):
+            assert sheet.auto_filter.ref
+
+
+def test_a_title_cannot_change_the_header(tmp_path):
+    book = openpyxl.load_workbook(_report(tmp_path, building="&P 9 &R" + "long " * 60))
+    with zipfile.ZipFile(tmp_path / "r.xlsx") as archive:
+        text = archive.read(f"xl/worksheets/sheet{book.sheetnames.index('Items') + 1}.xml").decode()
+    header = unescape(re.findall("<oddHeader>(.*?)</oddHeader>", text)[0])
+    assert re.fullmatch(r"&L&8 &&P 9 &&Rlong (long )+.*…&R&8 Items", header)
+    assert len(header) < 120
+
+
+def test_items_show_bars_colours_and_choices(tmp_path):
+    sheet = openpyxl.load_workbook(_report(tmp_path))["Items"]
+    rules = [rule.type for area in sheet.conditional_formatting for rule in area.rules]
+    assert rules.count("dataBar") == 4
+    assert rules.count("beginsWith") == 3 * 4 + 1
+    heads = {cell.value: cell.column_letter for cell in sheet[1]}
+    choices = {
+        str(rule.sqref).rstrip("0123456789").split(":")[0][:-1]: rule for rule in sheet.data_validations.dataValidation
+    }
+    assert choices[heads["Anchored"]].formula1 == '"no,yes,partly,unknown"'
+    assert choices[heads["Height [cm]"]].operator == "greaterThan"
+    assert sheet.row_dimensions[1].height >= 30
+    comments = [cell.comment.text for cell in sheet[1] if cell.comment]
+    assert len(comments) == 4
+    assert sheet.print_area.endswith(f"${heads['Class']}$6")
+    for label in ("Verified chance", "Class (verified)", "Order"):
+        assert sheet.column_dimensions[heads[label]].hidden or _is_hidden(sheet, heads[label])
+
+
+def _is_hidden(sheet, letter):
+    at = openpyxl.utils.column_index_from_string(letter)
+    return any(one.hidden and one.min <= at <= one.max for one in sheet.column_dimensions.values())
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_few_items(tmp_path, count):
+    path = _report(tmp_path, ITEMS[:count])
+    stored = stored_cells(path)
+    assert stored["Floors", "A3"] == "2"  # a floor without items
+    assert not [place for place, value in stored.items() if isinstance(value, str) and value.startswith("#")]
+    assert compare_formulas(path) > count
+
+
+def test_two_hundred_floors_stay_readable(tmp_path):
+    floors = [{"floor": str(at), "name": f"Level {at}", "pfa_x": 0.2 + at / 400} for at in range(200)]
+    items = [{"item": f"i{at}", "floor": str(at), "breadth": 30, "width": 80, "height": 150} for at in range(0, 200, 2)]
+    path = _report(tmp_path, items, floors)
+    with zipfile.ZipFile(path) as archive:
+        charts = "".join(archive.read(name).decode() for name in archive.namelist() if "charts/chart" in name)
+    assert int(re.findall(r'<c:tickLblSkip val="(\d+)"', charts)[0]) >= 2
+    sheet = openpyxl.load_workbook(path)["Summary"]
+    assert sheet.page_setup.fitToHeight == 0
+    assert int(sheet.print_area.rsplit("$", 1)[1]) < 350
+    assert compare_formulas(path) > 2000
+
+
+def test_long_names_are_whole_in_rows_that_grow(tmp_path):
+    items = [ITEMS[0] | {"description": LONG, "notes": "https://example.org"}, *ITEMS[1:]]
+    book = openpyxl.load_workbook(_report(tmp_path, items))
+    sheet = book["Items"]
+    heads = {cell.value: cell.column for cell in sheet[1]}
+    cell = sheet.cell(2, heads["Description"])
+    assert cell.value == LONG.strip()
+    assert cell.alignment.wrap_text
+    assert 60 <= sheet.row_dimensions[2].height <= 90
+    assert sheet.row_dimensions[3].height in (None, 15)
+    assert [row[1:3] for row in book["Notes"].iter_rows(min_row=2, values_only=True)] == [("A1", "https://example.org")]
+
+
+def test_the_quality_log_tells_what_to_mend(tmp_path):
+    rows = list(openpyxl.load_workbook(_report(tmp_path, [ITEMS[0] | {"height": 400}]))["Quality log"].values)
+    assert rows[0] == ("Kind", "Place", "What", "Mend")
+    assert any(row[0] == "warning" and "Items" in row[1] and row[2] for row in rows)
+    kinds = {row[0] for row in rows[1:]}
+    assert {"input", "program", "setting", "platform"} <= kinds
+    assert any(row[:2] == ("setting", "seed") and row[2] == "1" for row in rows)
+
+
+def test_methods_tell_limits_classes_and_sources(tmp_path):
+    rows = list(openpyxl.load_workbook(_report(tmp_path))["Methods"].values)
+    assert [row[1] for row in rows if row[0] == "Classes"] == ["○ low", "◇ medium", "▲ high", "■ very high"]
+    for what in ("Equation", "Assumption", "Departure from the source", "Source", "Limit", "Checked for"):
+        assert any(row[1] == what for row in rows), what
+    assert any(row[0] == "References" for row in rows)
+
+
+def test_routes_list_the_pieces_beside_them(tmp_path):
+    from assess import read_inventory, run
+    from assess.inventory.blank import Content, write_workbook
+    from tests.workbooks import UNVERIFIED
+
+    items = [ITEMS[0] | {"route": "R", "segment": "1"}, ITEMS[3] | {"route": "R"}, *ITEMS[1:3]]
+    routes = [
+        {"route": "R", "segment": "1", "clear_width": 1.2},
+        {"route": "R", "segment": "2"},
+        {"route": "S", "segment": "1"},
+    ]
+    rows = {"Building": [{}], "Floors": FLOORS, "Items": items, "Routes": routes}
+    write_workbook(tmp_path / "w.xlsx", Content(rows=rows))
+    assessment = run(read_inventory(tmp_path / "w.xlsx"), UNVERIFIED)
+    write_xlsx(assessment, tmp_path / "r.xlsx")
+    found = list(openpyxl.load_workbook(tmp_path / "r.xlsx")["Routes"].iter_rows(min_row=2, values_only=True))
+    label = next(one for one in assessment if one.item.item == "A1").adopted.risk.label
+    assert [(row[0], row[1], row[8]) for row in found[:4]] == [
+        ("R", "1", "A1"), ("R", "1", "A4"), ("R", "2", "A4"), ("S", "1", "none"),
+    ]  # fmt: skip
+    assert found[0][11].startswith(label)
+    assert found[1][11].startswith("⚓ depends on its anchor")
+    assert any("not evaluated by this version" in str(row[0]) for row in found)
+
+
+def test_two_processes_write_the_same_bytes(tmp_path):
+    write(tmp_path / "w.xlsx")
+    code = (
+        "import sys; from pathlib import Path; import assess; from assess.report.xlsx import write_xlsx;"
+        "from assess.settings import Settings;"
+        "write_xlsx(assess.run(assess.read_inventory(Path(sys.argv[1])), Settings(verify='none')), Path(sys.argv[2]))"
+    )
+    for name, seed, zone in (("a", "1", "UTC"), ("b", "2", "Pacific/Auckland")):
+        environment = os.environ | {"SOURCE_DATE_EPOCH": "1700000000", "PYTHONHASHSEED": seed, "TZ": zone}
+        command = [sys.executable, "-c", code, str(tmp_path / "w.xlsx"), str(tmp_path / f"{name}.xlsx")]
+        subprocess.run(command, check=True, env=environment)
+    assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
