@@ -28,8 +28,8 @@ def test_new_then_check_says_what_is_missing(tmp_path):
     assert run(app, ["new", str(path)]).exit_code == 0
     checked = run(app, ["check", str(path)])
     assert checked.exit_code == 2
-    assert "Items!A2: the table has no rows. Fill in at least one." in checked.stderr
-    assert "2 errors; nothing was written." in checked.stderr
+    assert "Items!A2: the table has no rows: nothing is assessed. Fill in at least one." in checked.stderr
+    assert "1 error; nothing was written." in checked.stderr
 
 
 @pytest.mark.parametrize("units", ["si", "imperial"])

@@ -12,7 +12,7 @@ from assess.report.counts import Counts
 from assess.results import Assessment, ItemResult
 from assess.risk import RiskClass
 
-WORST, FIXES, FLOORS, ROUTES, CAUTIONS = 10, 6, 8, 4, 2
+WORST, FIXES, FLOORS, ROUTES, CAUTIONS = 10, 6, 8, 4, 3
 """Pieces, fixes, floors, routes and cautions that the page has room for."""
 
 

@@ -73,9 +73,11 @@ def test_json_holds_what_was_used_on_each_floor_and_axis(mixed):
 
 def test_html_says_what_was_used_and_what_to_beware_of(mixed):
     text = _read(mixed["html"].read_text(encoding="utf-8"))
-    assert text.count(f"Floor 4: the motion is that of ASCE 7-22. {ENVELOPES}") == 2  # summary, and floors
+    assert text.count(f"Floor 4: the motion is that of ASCE 7-22. {ENVELOPES}") == 1
+    assert text.count("Floor 4: the motion is that of ASCE 7-22.") == 2  # cut on the summary, whole with the floors
     assert text.count("Floor 2: nothing is known of the motion there, it is interpolated between the floors above") == 2
     assert text.count("The floors' motion comes from mixed sources") == 2
+    assert "All 3 cautions on the motion of the floors" in text
     assert text.count(WORKED_OUT) == 2  # one an axis
     assert "linear over elevation, PFA and PFV each: interpolated between floors 1 and 3" in text
     assert "interpolated between floors 1 and 3: 2 X" in text
@@ -130,7 +132,8 @@ def test_a_report_of_given_floors_alone_says_nothing_of_profiles_on_its_summary(
 def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
     written = _reports(tmp_path, "NTC 2018", ground_pga=0.3)
     text = _read(written["html"].read_text(encoding="utf-8"))
-    assert text.count(f"the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES}") == 2  # summary, and floors
+    assert text.count(f"the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES}") == 1
+    assert text.count(f"the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES[:40]}") == 2  # the summary cuts it
     assert {one["profile_verified"] for floor in _json(written)["floors"] for one in floor["demands"]} == {False}
     assert f"NTC 2018, Circolare 21 gennaio 2019 n. 7, C7.2.3 ({UNVERIFIED}): z/h 1.000, amplification 2.000" in text
     assert "NTC 2018 (the workbook: as filled)" in text
@@ -143,7 +146,8 @@ def _cautions(folder, floors, **building):
 
 def test_interpolation_is_said_to_be_possibly_too_low(mixed):
     text = _read(mixed["html"].read_text(encoding="utf-8"))
-    assert text.count(f"the floors above and below. This {MAY_BE_LOWER}.") == 2  # summary, and floors
+    assert text.count(f"the floors above and below. This {MAY_BE_LOWER}.") == 1
+    assert text.count("the floors above and below. This may be lower than the truth") == 2  # the summary cuts it
     assert MAY_BE_LOWER in FLAGS["interpolated"]
 
 
@@ -152,8 +156,8 @@ def test_that_more_is_known_than_is_used_stands_on_summary_and_floors(tmp_path):
     message = "the profile would give 0.250 g on floor '1', 0.300 g is known there: floors on the profile may come"
     written = _reports(tmp_path, floors=floors, ground_pga=0.25, height=20)
     text = _read(written["html"].read_text(encoding="utf-8"))
-    assert text.count(f"More is known than is used: {message}") == 2
-    assert text.count(message) == 3  # and the data-quality log
+    assert text.count(f"More is known than is used: {message[:60]}") == 2
+    assert text.count(message) >= 2  # the floors, which hold it whole, and the data-quality log
     assert any(message in str(row[0]) for row in _rows(written, "Summary"))
 
 

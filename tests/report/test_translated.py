@@ -13,9 +13,9 @@ import assess
 from assess.demand import Demand
 from assess.inventory.blank import Content, write_workbook
 from assess.language import Catalogue, gettext, speaking
-from assess.motion.suite import read_suite
 from assess.motion.formats import read_records
 from assess.motion.scenario import PROFILES
+from assess.motion.suite import read_suite
 from assess.report import motions, trials, words
 from assess.report.verified import build_verified, describe_verification, list_summary
 from docs.texts import collect
