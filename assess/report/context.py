@@ -25,9 +25,9 @@ from assess.results import ItemResult
 FULL_ROWS = 150
 """Rows up to which a PDF shows whole tables of all pieces; longer ones go to the appendix in a compact form."""
 LIMITS: Mapping[str, int] = {
-    "most_rows": 5000, "most_lines": compact.MOST_LINES, "most_fixes": summary.FIXES, "most_cautions": summary.CAUTIONS, "most_at_risk": summary.ROUTES, "most_routes": 150,
-    "most_problems": 120, "most_notes": 150, "most_motions": 60, "most_groups": 15, "most_risky": 60,
-    "listed": trials.LISTED,
+    "most_rows": 5000, "most_lines": compact.MOST_LINES, "most_routes": 150, "most_problems": 120, "most_notes": 150,
+    "most_motions": 60, "most_groups": 15, "most_risky": 60, "listed": trials.LISTED,
+    "most_fixes": summary.FIXES, "most_cautions": summary.CAUTIONS, "most_at_risk": summary.ROUTES,
 }  # fmt: skip
 """What the lists of HTML and PDF show at most; the Excel report holds all."""
 MOST_RECORDS = 16

@@ -9,7 +9,7 @@ import pytest
 
 from docs.samples import SAMPLES, write_samples
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*extension is not supported")]
 
 
 @pytest.fixture(scope="module")
