@@ -20,12 +20,14 @@ def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], i
 def fix_first(results: Iterator[ItemResult]) -> list[ItemResult]:
     """Return the free-standing pieces of at least medium class, what to fix first at the top.
 
-    Life safety or on a route first; then the upper class; then probability times quantity; then name.
+    Those of high or very high class, or that may be, come before all others; among both, life safety and routes first;
+    then the upper class; then probability times quantity; then name.
     """
     chosen = [one for one in results if not one.is_anchored and one.adopted.upper >= RiskClass.MEDIUM]
     return sorted(
         chosen,
         key=lambda one: (
+            one.adopted.upper < RiskClass.HIGH,
             not one.is_urgent,
             -one.adopted.upper,
             -one.adopted.probability * one.item.quantity,

@@ -101,9 +101,11 @@ def test_what_to_fix_first(tmp_path):
         },
         {"item": "stable", "floor": "1", "breadth": 90, "height": 90, "importance": "life safety"},
         {"item": "worst", "floor": "1", "breadth": 28, "height": 200, "importance": "life safety"},
+        {"item": "mild", "floor": "1", "breadth": 70, "height": 180, "importance": "life safety"},
     ]
     results = list(assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.25}]))
-    assert [one.item.item for one in fix_first(iter(results))] == ["worst", "many", "few", "plain"]
+    assert [one.item.item for one in fix_first(iter(results))] == ["worst", "many", "few", "plain", "mild"]
+    assert results[6].adopted.risk is RiskClass.MEDIUM  # no life safety puts it before what is likely to fall
     assert results[4].adopted.risk is RiskClass.LOW
 
 

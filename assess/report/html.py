@@ -39,18 +39,41 @@ def render(assessment: Assessment, look: Look | None = None, *, for_print: bool 
     except (TemplateError, SecurityError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
         if look.templates is None:
             raise  # ours are right, or it is a fault of ours
-        raise InputError(_describe(error)) from None
+        raise InputError(_describe(error, look)) from None
     return page
 
 
-def _describe(error: Exception) -> str:
+def check_look(look: Look) -> None:
+    """Raise InputError if a template or catalogue of the firm's own cannot be read: before the long work.
+
+    What only shows when a report is rendered, such as an undefined name, `render` tells.
+    """
+    from jinja2 import TemplateError
+
+    if look.templates is None:
+        return
+    with look.spoken():
+        environment = _environment(look)
+        for path in sorted(look.templates.rglob("*.j2")):
+            try:
+                environment.get_template(path.relative_to(look.templates).as_posix())
+            except TemplateError as error:
+                raise InputError(_describe(error, look)) from None
+
+
+def _describe(error: Exception, look: Look) -> str:
     """Return where in the templates something is wrong, and what."""
     name, line = getattr(error, "name", None), getattr(error, "lineno", None)
     if line is None:  # one that came up while rendering has its place in the traceback alone
         frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.endswith(".j2")]
-        name, line = (Path(frames[-1].filename).name, frames[-1].lineno) if frames else (name, None)
+        name, line = (_place(Path(frames[-1].filename), look), frames[-1].lineno) if frames else (name, None)
     place = f"{name or 'a template'}{f', line {line}' if line else ''}"
     return f"--template: {place}: {error}"
+
+
+def _place(path: Path, look: Look) -> str:
+    """Return the name of a template within its folder."""
+    return next(path.relative_to(folder).as_posix() for folder in look.folders if path.is_relative_to(folder))
 
 
 def _environment(look: Look) -> Any:

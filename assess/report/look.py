@@ -1,5 +1,6 @@
 """How a report looks: its language, a firm's own templates, and whether it is made for everybody's eyes and ears."""
 
+import difflib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -64,6 +65,10 @@ def _check_templates(folder: Path) -> None:
     ours = {path.relative_to(resources.templates()).as_posix() for path in resources.templates().rglob("*.*")}
     own = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
     unknown = sorted(name for name in own - ours if not Path(name).name.startswith("."))
-    if unknown or not own & ours:
-        named = f"{unknown[0]} stands in for nothing" if unknown else "it holds no template"
-        raise InputError(f"--template: {folder}: {named}; expected some of: {', '.join(sorted(ours))}")
+    if unknown:
+        near = difflib.get_close_matches(unknown[0], ours, 1, 0.5)
+        meant = f" Did you mean {near[0]}?" if near else ""
+        raise InputError(f"--template: {folder}: {unknown[0]} stands in for no template of ours.{meant}")
+    if not own & ours:
+        names = ", ".join(sorted({name.split("/")[0] for name in ours}))
+        raise InputError(f"--template: {folder} holds no template: expected some of {names}, as in ours")

@@ -3,13 +3,15 @@
 import re
 
 import pytest
+from typer.testing import CliRunner
 
 import assess
+from assess.cli import app
 from assess.errors import InputError
 from assess.language import load_catalogue
 from assess.report.html import render
 from assess.report.look import Look
-from tests.workbooks import ITEMS, assessed
+from tests.workbooks import ITEMS, assessed, write
 
 HEAD = """msgid ""
 msgstr ""
@@ -58,16 +60,34 @@ def test_texts_of_the_firms_own_come_first(assessment, tmp_path):
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("{{ content.nothing }}", r"limits\.html\.j2, line 2: .*has no attribute 'nothing'"),
-        ("{% if %}", r"limits\.html\.j2, line 2: "),
-        ("{{ content.__class__ }}", r"limits\.html\.j2, line 2: access to attribute '__class__' .* is unsafe"),
-        ("{{ 1 / 0 }}", r"limits\.html\.j2, line 2: division by zero"),
+        ("{{ content.nothing }}", r"sections/limits\.html\.j2, line 2: .*has no attribute 'nothing'"),
+        ("{% if %}", r"sections/limits\.html\.j2, line 2: "),
+        ("{{ content.__class__ }}", r"sections/limits\.html\.j2, line 2: access to attribute '__class__' .* is unsafe"),
+        ("{{ 1 / 0 }}", r"sections/limits\.html\.j2, line 2: division by zero"),
         ("{% include 'other.j2' %}", r"other\.j2"),
     ],
 )
 def test_a_fault_in_a_template_is_told_with_its_place(assessment, tmp_path, text, told):
     with pytest.raises(InputError, match=f"^--template: .*{told}"):
         rendered(assessment, own(tmp_path, "sections/limits.html.j2", f"\n{text}"))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "told"),
+    [
+        ("sections/limits.html.j2", "{% if %}", "sections/limits.html.j2, line 1: Expected an expression"),
+        ("texts/en.po", "msgid no quotes", "the texts cannot be read"),
+    ],
+)
+def test_what_cannot_be_read_is_told_before_the_work(tmp_path, name, text, told):
+    book = write(tmp_path / "w.xlsx")
+    own(tmp_path / "firm", name, text)
+    done = CliRunner().invoke(
+        app, ["run", str(book), "--out", str(tmp_path / "o"), "--template", str(tmp_path / "firm")]
+    )
+    assert done.exit_code == 2
+    assert told in done.stderr
+    assert not (tmp_path / "o").exists()
 
 
 def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
@@ -79,7 +99,16 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "told"),
-    [("sections/limit.html.j2", "sections/limit.html.j2 stands in for nothing"), (".hidden", "it holds no template")],
+    [
+        (
+            "sections/limit.html.j2",
+            r"limit.html.j2 stands in for no template of ours. Did you mean sections/limits.html",
+        ),
+        (
+            ".hidden",
+            "holds no template: expected some of macros.html.j2, plan.svg.j2, report.html.j2, script, sections",
+        ),
+    ],
 )
 def test_a_folder_without_templates_is_told(tmp_path, name, told):
     with pytest.raises(InputError, match=told):

@@ -20,7 +20,7 @@ def written(tmp_path_factory):
 
 
 def read_pdf(path):
-    return [page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(path)]
+    return [" ".join(page.get_textpage().get_text_range().split()) for page in pypdfium2.PdfDocument(path)]
 
 
 def read_html(path):
