@@ -4,7 +4,6 @@ Texts are what stands in `_`, `gettext`, `ngettext`, `fill` and `nfill` in the c
 the methods, profiles, flags and columns say of themselves. Translations are kept; a text that is gone leaves.
 """
 
-import datetime
 import sys
 from collections.abc import Iterator
 from io import BytesIO
@@ -19,10 +18,23 @@ from assess.language import LANGUAGES
 
 ROOT = Path(__file__).parents[1]
 KEYWORDS = {"_": None, "gettext": None, "fill": None, "ngettext": (1, 2), "nfill": (1, 2)}
-DATED = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
-"""In the head of every catalogue, so that only texts make a difference."""
-HEADER = """# Texts of assess in {name}. Made by: make texts. Fill in what is empty; keep the names in {{}}.
+HEAD = """# Texts of assess in {name}. Made by: make texts. {purpose}
+msgid ""
+msgstr ""
+"Project-Id-Version: assess\\n"
+"Language: {code}\\n"
+"Plural-Forms: {plural}\\n"
+"MIME-Version: 1.0\\n"
+"Content-Type: text/plain; charset=utf-8\\n"
+"Content-Transfer-Encoding: 8bit\\n"
+
 """
+"""The head of every catalogue: it holds no dates and no names, so that only texts make a difference."""
+TRANSLATED = "Fill in what is empty; keep the names in {}."
+ENGLISH = """Every text stands for itself here.
+# This is the list of all texts: to word some otherwise, copy them, with this head, to texts/en.po in a folder of
+# templates of your own, and edit them there; keep the names in {}."""
+"""Why there is a catalogue of English, the language of the code."""
 
 
 def collect() -> Catalog:
@@ -55,7 +67,7 @@ def _of_methods() -> Iterator[tuple[str, str]]:
     for method in all_methods():
         texts = (method.title, method.predicts, *method.assumptions, *method.departures, *method.flags.values())
         marks = (flag.replace("_", " ") for flag in method.flags)
-        for text in (*texts, *marks, *method.equations, *method.words):
+        for text in (*texts, *marks, *method.equations, *method.words, method.reference.remark):
             if any(character.isalpha() for character in text):
                 yield text, f"assess/methods/{method.key}.py"
     for flags, name in ((ITEM_FLAGS, "cases"), (DEMAND_FLAGS, "demand")):
@@ -99,6 +111,18 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     yield from ((row["type"], "assess/inventory/catalogue.csv") for row in read_catalogue())
 
 
+def _head(catalogue: Catalog, code: str) -> str:
+    name = catalogue.locale.english_name if catalogue.locale else code
+    purpose = ENGLISH if code == "en" else TRANSLATED
+    return HEAD.format(name=name, purpose=purpose, code=code, plural=catalogue.plural_forms)
+
+
+def _body(catalogue: Catalog) -> bytes:
+    buffer = BytesIO()
+    write_po(buffer, catalogue, sort_output=True, omit_header=True, width=120, include_lineno=False)
+    return buffer.getvalue()
+
+
 def update(code: str) -> None:
     """Bring the catalogue of a language up to date."""
     path = resources.templates() / "texts" / f"{code}.po"
@@ -111,11 +135,7 @@ def update(code: str) -> None:
     if code == "en":
         for message in old:
             message.string = message.string if message.string and all(message.string) else message.id
-    old.header_comment = HEADER.format(name=old.locale.english_name if old.locale else code)
-    old.creation_date = old.revision_date = DATED
-    buffer = BytesIO()
-    write_po(buffer, old, sort_output=True, omit_header=False, width=120, no_location=False, include_lineno=False)
-    path.write_bytes(buffer.getvalue())
+    path.write_bytes(_head(old, code).encode() + _body(old))
     empty = sum(1 for one in old if one.id and not all(one.string if isinstance(one.string, tuple) else (one.string,)))
     sys.stdout.write(f"{path.name}: {len(old)} texts, {empty} without a translation\n")
 

@@ -1,10 +1,12 @@
 """Texts in another language: catalogues that are complete, sentences made of parts, numbers."""
 
+import re
 from pathlib import Path
 
 import pytest
 from babel.messages.pofile import read_po
 
+import assess
 from assess import resources
 from assess.errors import InputError
 from assess.language import (
@@ -21,6 +23,9 @@ from assess.language import (
     placeholders,
     speaking,
 )
+from assess.methods import all_methods
+from assess.methods._method import Reference
+from assess.report.provenance import say_date, say_reference
 from docs.texts import collect
 
 
@@ -52,6 +57,22 @@ def test_every_text_stands_in_every_catalogue(code):
         for text in texts:
             assert placeholders(text) | {"n"} == set().union(*map(placeholders, ids)) | {"n"}, ids[0]
             assert text.count("<") == ids[0].count("<"), ids[0]
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_the_head_of_a_catalogue_names_nobody(code):
+    head = (resources.templates() / "texts" / f"{code}.po").read_text(encoding="utf-8").partition("\n\n")[0]
+    assert '"Project-Id-Version: assess\\n"' in head
+    assert "fuzzy" not in head
+    assert "@" not in head
+    assert ("texts/en.po in a folder" in head) == (code == "en")
+
+
+def test_no_text_is_hidden_from_the_collection():
+    """`gettext` is called by its name or as _: another name in a module would keep its texts out of the catalogues."""
+    root = Path(assess.__file__).parent
+    aliased = re.compile(r"^from assess\.language import .*\bn?gettext as (?!_$)", re.MULTILINE)
+    assert [str(path) for path in root.rglob("*.py") if aliased.search(path.read_text(encoding="utf-8"))] == []
 
 
 def test_a_sentence_of_parts_is_english_and_can_be_said_otherwise(tmp_path):
@@ -112,3 +133,37 @@ def test_languages_have_names(name, code):
 def test_an_unknown_language_is_told():
     with pytest.raises(InputError, match="language 'Klingon' is unknown: expected one of en, it"):
         find_language("Klingon")
+
+
+@pytest.mark.parametrize(
+    ("given", "english", "italian"),
+    [
+        ("2026-11-21", "November 21, 2026", "21 novembre 2026"),
+        (" 2026-01-02 ", "January 2, 2026", "2 gennaio 2026"),
+        ("2026-02-30", "2026-02-30", "2026-02-30"),
+        ("20261121", "20261121", "20261121"),
+        ("spring 2026", "spring 2026", "spring 2026"),
+        ("", "", ""),
+    ],
+)
+def test_dates_are_written_as_the_language_does(given, english, italian):
+    assert say_date(given) == english
+    with speaking(load_catalogue("it")):
+        assert say_date(given) == italian
+
+
+@pytest.mark.parametrize("method", all_methods(), ids=lambda method: method.key)
+def test_references_keep_their_titles_and_their_remarks_are_translated(method):
+    reference = method.reference
+    assert say_reference(reference) == str(reference)
+    with speaking(load_catalogue("it")):
+        said = say_reference(reference)
+    assert said.startswith(reference.bibliographic)
+    assert (said == str(reference)) == (not reference.remark)
+
+
+def test_a_reference_holds_what_is_known():
+    bare = Reference(authors="", year="", title="On blocks", source="")
+    assert str(bare) == "On blocks."
+    full = Reference(authors="A B", year="1999", title="On blocks", source="J 1:2", doi="10.1/x", remark="Section 2.")
+    assert str(full) == "A B (1999). On blocks. J 1:2. doi:10.1/x Section 2."

@@ -186,7 +186,7 @@ def test_every_lowered_class_is_marked_in_all_outputs(done, assessment):
         rows = list(csv.DictReader(file))
     assert lowered == {row["item"]: row["adopted_lowered_from"] for row in rows if row["adopted_lowered_from"]}
     last = done.stdout.splitlines()[-1]
-    assert f"{len(lowered)} classes lowered by it" in last
+    assert re.search(rf"; class lowered by it: \d+ pieces in {len(lowered)} rows", last)
     assert "7 of 8 rows, 100 motions each" in last
 
 
@@ -228,7 +228,8 @@ def test_a_real_record_lowers_classes_and_says_so(tmp_path):
     done = _run(tmp_path, path, "--runs", 20)
     assert [one["adopted"]["lowered_from"] for one in done.items.values()] == ["high"] * 3
     assert done.stdout.splitlines()[-1].endswith(
-        "3 of 3 rows, 20 motions each; 3 classes lowered by it; 3 rows may be of a higher class."
+        "3 of 3 rows, 20 motions each; class lowered by it: 3 pieces in 3 rows; "
+        "may be of a higher class: 3 pieces in 3 rows."
     )
 
 

@@ -177,6 +177,8 @@ class Inventory:
         Code of the workbook's language: that of more than half of the sheets it has, by their names; else English.
     sheets : mapping of str to str
         The workbook's own names of its sheets, by the English ones.
+    letters : mapping of str to mapping of str to str
+        In which column of a sheet a field stands: letters by field, by the English name of the sheet.
     """
 
     source: Path
@@ -192,6 +194,7 @@ class Inventory:
     files: Mapping[str, str] = field(default_factory=dict)
     language: str = "en"
     sheets: Mapping[str, str] = field(default_factory=dict)
+    letters: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
     @property
     def report_language(self) -> str:

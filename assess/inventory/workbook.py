@@ -59,6 +59,7 @@ def read_inventory(path: str | Path) -> Inventory:
         files=floors.hashes,
         language=find_language(tables.values()),
         sheets={name: table.sheet.name for name, table in tables.items()},
+        letters={name: table.letters for name, table in tables.items()},
     )
 
 

@@ -138,17 +138,28 @@ class Range:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The publication: who, when, what and where; `doi` where one is known."""
+    """The publication: who, when, what and where; `doi` where one is known.
+
+    `remark` is what is not bibliographic, in sentences: the place in the publication, or how it came to be known.
+    Reports translate it; the rest stands as the publication has it.
+    """
 
     authors: str
     year: str
     title: str
     source: str
     doi: str = ""
+    remark: str = ""
+
+    @property
+    def bibliographic(self) -> str:
+        """The reference without its remark: the same in every language."""
+        lead = f"{self.authors} ({self.year}). " if self.authors else ""
+        source = f" {self.source}." if self.source else ""
+        return f"{lead}{self.title}.{source}" + (f" doi:{self.doi}" if self.doi else "")
 
     def __str__(self) -> str:
-        lead = f"{self.authors} ({self.year}). " if self.authors else ""
-        return f"{lead}{self.title}. {self.source}." + (f" doi:{self.doi}" if self.doi else "")
+        return f"{self.bibliographic} {self.remark}".strip()
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

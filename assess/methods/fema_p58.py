@@ -86,8 +86,8 @@ METHOD = Method(
         authors="Federal Emergency Management Agency",
         year="2018",
         title="Seismic Performance Assessment of Buildings, FEMA P-58, second edition",
-        source="Fragility database 3.1.2, E.20.22.102a to E.20.22.125a, as carried by the SimCenter "
-        "DamageAndLossModelLibrary",
+        source="Fragility database 3.1.2",
+        remark="E.20.22.102a to E.20.22.125a, as carried by the SimCenter DamageAndLossModelLibrary.",
     ),
     needs=frozenset({"breadth", "height", "pfv"}),
     valid={"breadth_to_height": CHECKED_BREADTH_TO_HEIGHT},

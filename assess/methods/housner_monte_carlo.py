@@ -221,8 +221,8 @@ METHOD = Method(
         authors="Housner G",
         year="1963",
         title="The behavior of inverted pendulum structures during earthquakes",
-        source="Bulletin of the Seismological Society of America 53(2):403-417; the Monte Carlo is section 3.2.2 of "
-        "Overturning Risk of Furniture in Earthquake Affected Areas",
+        source="Bulletin of the Seismological Society of America 53(2):403-417",
+        remark='The Monte Carlo is section 3.2.2 of "Overturning Risk of Furniture in Earthquake Affected Areas".',
     ),
     needs=frozenset({"breadth", "height", "ensemble"}),
     evaluate=evaluate,

@@ -117,8 +117,9 @@ METHOD = Method(
         year="2004",
         title="A proposal for simple equations to express a relation between overturning ratios of rigid bodies and "
         "input excitation",
-        source='13th World Conference on Earthquake Engineering, Vancouver, Canada; as printed in "Overturning Risk of '
-        'Furniture in Earthquake Affected Areas", section 2.2, equations (5) to (7)',
+        source="13th World Conference on Earthquake Engineering, Vancouver, Canada",
+        remark='As printed in "Overturning Risk of Furniture in Earthquake Affected Areas", section 2.2, '
+        "equations (5) to (7).",
     ),
     needs=frozenset({"breadth", "height", "pfa"}),
     evaluate=evaluate,

@@ -76,7 +76,7 @@ def list_pieces(results: Sequence[ItemResult], *, has_verified: bool) -> list[Bl
         _Column(_("Item"), 12, lambda one: one.item.item),
         _Column(_("Floor"), 6, lambda one: one.item.floor),
         _Column(_("Room"), 14, lambda one: one.item.room),
-        _Column(_("Description"), 30, describe),
+        _Column(_("Description"), 30, lambda one: describe(one, 30)),
         _Column(_("No."), 5, lambda one: f"{one.item.quantity}", is_number=True),
         _Column("B × W × H [cm]", 17, words.size, is_number=True),
         _Column("B/H", 6, lambda one: words.fixed(one.item.breadth / one.item.height, 3), is_number=True),

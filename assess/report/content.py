@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from assess.adoption import FORMULA
 from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.columns import BUILDING
@@ -13,9 +12,9 @@ from assess.inventory.model import Floor
 from assess.language import gettext as _
 from assess.language import number
 from assess.methods import Method
-from assess.report import motions, statements, trials, words
-from assess.report.counts import Bars, Counts, build_bars, count, count_rooms
-from assess.report.provenance import report_time, versions
+from assess.report import cautions, motions, statements, trials, words
+from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, count_cannot_rock, count_rooms
+from assess.report.provenance import report_time, say_date, say_reference, versions
 from assess.report.summary import FLOORS, Summary, build_summary, list_risky
 from assess.report.trials import Trials
 from assess.report.verified import WILSON, Verified, build_verified
@@ -66,6 +65,7 @@ class Content:
     summary: Summary
     sources: Sequence[str]
     cautions: Sequence[str]
+    short_cautions: Sequence[str]
     floors: Sequence[FloorPage]
     methods: Sequence[Method]
     flags: Mapping[str, str]
@@ -100,28 +100,15 @@ class Content:
             return there
         return sorted(there, key=lambda one: (-one.risky, -one.expected))[:FLOORS]
 
-    @property
-    def cannot_rock(self) -> tuple[int, int, int]:
-        """Pieces of high and very high class by formula; those that the static criterion says cannot start to rock.
-
-        Of these last ones, third, those that direct integration gave a lower class, which was not adopted.
-        """
-        risky = [
-            one
-            for one in self.results
-            if not (one.is_anchored or one.does_not_rock)
-            and one.adopted.risk >= RiskClass.HIGH
-            and one.adopted.method == FORMULA
-        ]
-        still = [one for one in risky if one.governing.methods["static"].value == 0]
-        kept = [one for one in still if one.is_verified]
-        all_risky, all_still, all_kept = (sum(one.item.quantity for one in ones) for ones in (risky, still, kept))
-        return all_risky, all_still, all_kept
+    @cached_property
+    def cannot_rock(self) -> CannotRock:
+        """Pieces of high and very high class by formula that cannot start to rock, or are too stocky to."""
+        return count_cannot_rock(self.results)
 
     @property
     def references(self) -> Sequence[str]:
         """What the methods and the interval were taken from."""
-        return list(dict.fromkeys([*(str(method.reference) for method in self.methods), str(WILSON)]))
+        return list(dict.fromkeys(map(say_reference, (*(method.reference for method in self.methods), WILSON))))
 
     @property
     def class_limits(self) -> Sequence[tuple[RiskClass, str]]:
@@ -145,7 +132,7 @@ def build_content(assessment: Assessment) -> Content:
     return Content(
         assessment=assessment,
         title=assessment.inventory.building.building or assessment.inventory.source.stem,
-        date=report_date(assessment.inventory.building.report_date),
+        date=say_date(report_date(assessment.inventory.building.report_date)),
         version=__version__,
         platform=platform,
         building=_building(assessment),
@@ -154,7 +141,8 @@ def build_content(assessment: Assessment) -> Content:
         by_floor=tuple(page.counts for page in floors),
         summary=build_summary(assessment, results, total),
         sources=motions.list_sources(assessment.demands),
-        cautions=motions.list_cautions(assessment),
+        cautions=cautions.list_cautions(assessment),
+        short_cautions=cautions.list_short_cautions(assessment),
         floors=floors,
         methods=assessment.methods,
         flags=statements.list_flags(assessment),
@@ -185,7 +173,8 @@ def _building(assessment: Assessment) -> dict[str, tuple[str, str]]:
         if column.name == "scenario_kind":
             value = _scenario_kind(value, assessment.scenario)
         if value not in (None, "") and column.kind != "file":
-            shown = f"{number(value / column.factor, 'g')} {column.unit}" if column.quantity else str(value)
+            shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
+            shown += f" {column.unit}" if column.quantity else ""
             lines[column.name] = (_(column.label), words.clip(_(shown) if column.kind == "choice" else shown))
     return lines
 
@@ -199,7 +188,7 @@ def _scenario_kind(chosen: str, used: str) -> str:
 def floor_title(floor: Floor) -> str:
     """Return the floor's name for people."""
     named = f"{floor.floor} – {floor.name}" if floor.name else _("Floor {floor}", floor=floor.floor)
-    return words.clip(named, 60)
+    return words.cut(named, 60)
 
 
 def _floors(assessment: Assessment, results: Sequence[ItemResult]) -> tuple[FloorPage, ...]:

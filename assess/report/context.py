@@ -16,8 +16,9 @@ from assess.report.counts import build_bars
 from assess.report.disagreements import find_disagreements, group_disagreements, summarise_disagreements
 from assess.report.figures import draw_motion
 from assess.report.look import Look
-from assess.report.page import read_script, script_hash
+from assess.report.page import read_script, script_hash, write_equation
 from assess.report.plan import build_plan
+from assess.report.provenance import say_reference
 from assess.report.rocked import choose_traced, draw_traced
 from assess.report.worked import choose_example, work_example
 from assess.results import ItemResult
@@ -189,6 +190,7 @@ FILTERS: Mapping[str, Any] = {
     "class_name": words.class_name,
     "clip": words.clip,
     "cut": words.cut,
+    "equation": write_equation,
     "described": summary.describe,
     "fixed": words.fixed,
     "flag_name": lambda flag: _(flag.replace("_", " ")),
@@ -198,6 +200,7 @@ FILTERS: Mapping[str, Any] = {
     "in_whole": lambda value: number(value, ",d"),
     "percent": words.percent,
     "plural": words.plural,
+    "reference": say_reference,
     "risk_label": words.risk_label,
     "risk_notes": words.risk_notes,
     "risk_word": words.risk_word,

@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from assess.adoption import FORMULA
 from assess.language import gettext as _
-from assess.language import number
+from assess.language import ngettext, number
 from assess.ranking import count_pieces
 from assess.report import words
 from assess.results import ItemResult
@@ -63,8 +64,59 @@ def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
     rooms: dict[str, list[ItemResult]] = {}
     for one in results:
         rooms.setdefault(one.item.room, []).append(one)
-    counts = [count(words.clip(room, 40) if room else _("no room named"), own) for room, own in sorted(rooms.items())]
+    counts = [count(words.cut(room, 40) if room else _("no room named"), own) for room, own in sorted(rooms.items())]
     return sorted(counts, key=lambda one: -one.risky)
+
+
+@dataclass(frozen=True, slots=True)
+class CannotRock:
+    """Free-standing pieces of which the formula makes more than can happen.
+
+    `risky` are all of high and very high class by formula. Of these the static criterion says that `still` cannot start
+    to rock, `kept` among which direct integration gave a lower class, which was not adopted; `stocky` others are too
+    stocky to rock at all.
+    """
+
+    risky: int
+    still: int
+    kept: int
+    stocky: int
+
+    @property
+    def is_any(self) -> bool:
+        """Whether there are such pieces."""
+        return bool(self.still or self.stocky)
+
+    @property
+    def sentence(self) -> str:
+        """How many they are, in words without a full stop."""
+        which = ngettext(
+            "Of {n:,} piece of high or very high class by formula",
+            "Of {n:,} pieces of high or very high class by formula",
+            self.risky,
+        )
+        still = ngettext(
+            "{n:,} cannot even start to rock under this motion",
+            "{n:,} cannot even start to rock under their motions",
+            self.still,
+        )
+        stocky = ngettext("{n:,} is too stocky to rock", "{n:,} are too stocky to rock", self.stocky)
+        if self.still and self.stocky:
+            return _("{which}, {still} and {stocky}", which=which, still=still, stocky=stocky)
+        return f"{which}, {still if self.still else stocky}"
+
+
+def count_cannot_rock(results: Sequence[ItemResult]) -> CannotRock:
+    """Count the pieces of high and very high class by formula that cannot rock, or not under their motion."""
+    risky = [
+        one
+        for one in results
+        if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.method == FORMULA
+    ]
+    stocky = [one for one in risky if one.does_not_rock]
+    still = [one for one in risky if not one.does_not_rock and one.governing.methods["static"].value == 0]
+    kept = [one for one in still if one.is_verified]
+    return CannotRock(*(sum(one.item.quantity for one in ones) for ones in (risky, still, kept, stocky)))
 
 
 MOST_BARS = 30
@@ -132,4 +184,4 @@ def _bar(counts: Counts, y: float, scale: float) -> Bar:
         if pieces:
             parts.append(Part(x, pieces * scale, risk, pieces))
             x += pieces * scale
-    return Bar(words.clip(counts.label, 30), y, parts, counts.total)
+    return Bar(words.cut(counts.label, 30), y, parts, counts.total)

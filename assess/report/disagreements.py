@@ -11,13 +11,16 @@ from dataclasses import dataclass
 from assess.language import gettext as _
 from assess.language import ngettext
 from assess.methods import all_methods
-from assess.report.facts import Facts, span
+from assess.report import words
+from assess.report.facts import Facts
 from assess.report.reasons import KINDS, find_kinds
 from assess.results import ItemResult
 from assess.risk import RiskClass, classify
 
 MOST_REASONS = 4
 """Reasons that are given at most, the most telling first."""
+NAMED = 12
+"""Pieces of a group that a report names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +71,17 @@ class Group:
     @property
     def items(self) -> Sequence[str]:
         """Names of its pieces."""
-        return tuple(row.result.item.item for row in self.rows)
+        return tuple(words.cut(row.result.item.item, 40) for row in self.rows)
+
+    @property
+    def named(self) -> Sequence[str]:
+        """Names that a report has room for."""
+        return self.items[:NAMED]
+
+    @property
+    def left(self) -> int:
+        """Rows that it does not name."""
+        return max(0, len(self.rows) - NAMED)
 
 
 def find_disagreements(results: Iterable[ItemResult]) -> Sequence[Disagreement]:
@@ -117,10 +130,10 @@ def _group(rows: Sequence[Disagreement]) -> Group:
     return Group(
         highest=first.highest.title,
         highest_class=first.highest.risk,
-        highest_value=_("{range} %", range=span([100 * row.highest.value for row in rows], ".1f")),
+        highest_value=words.percents([row.highest.value for row in rows]),
         lowest=first.lowest.title,
         lowest_class=first.lowest.risk,
-        lowest_value=_("{range} %", range=span([100 * row.lowest.value for row in rows], ".1f")),
+        lowest_value=words.percents([row.lowest.value for row in rows]),
         reasons=tuple(KINDS[kind].say(facts) for kind in first.kinds),
         rows=tuple(rows),
     )
@@ -136,6 +149,16 @@ def summarise_disagreements(disagreements: Sequence[Disagreement], rows: int) ->
         )
     pairs = Counter((one.highest.title, one.lowest.title) for one in disagreements)
     (highest, lowest), count = pairs.most_common(1)[0]
+    if count == len(disagreements):
+        return ngettext(
+            "On {n:,} of {rows:,} rows, methods differ by more than one class: {highest} lies above {lowest}.",
+            "On {n:,} of {rows:,} rows, methods differ by more than one class: in every case {highest} lies above "
+            "{lowest}.",
+            count,
+            rows=rows,
+            highest=highest,
+            lowest=lowest,
+        )
     return ngettext(
         "On {n:,} of {rows:,} rows, methods differ by more than one class; most often {highest} lies above {lowest} "
         "(on {count:,}).",

@@ -9,6 +9,7 @@ from assess.adoption import FORMULA, VERIFICATION
 from assess.language import gettext as _
 from assess.language import number
 from assess.methods import Cases, all_methods, proposed_or
+from assess.report import words
 from assess.results import ItemResult
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, VELOCITY
@@ -20,7 +21,6 @@ __all__ = [
     "OR",
     "Facts",
     "medians_of",
-    "percents",
     "span",
     "spans",
     "title_of",
@@ -144,14 +144,9 @@ def spans(rows: Sequence[Facts], *names: str) -> dict[str, str]:
     return {name: span([float(getattr(row, name)) for row in rows], _SPECS[name]) for name in names}
 
 
-def percents(values: Sequence[float]) -> str:
-    """Return the range of probabilities in per cent."""
-    return _("{range} %", range=span([100 * value for value in values], ".1f"))
-
-
 def values_of(rows: Sequence[Facts], key: str) -> str:
     """Return the range of what a method says."""
-    return percents([row.value(key) for row in rows])
+    return words.percents([row.value(key) for row in rows])
 
 
 def medians_of(rows: Sequence[Facts], key: str, name: str, motion: str, spec: str) -> dict[str, str]:

@@ -37,7 +37,8 @@ def list_missing(inventory: Inventory) -> list[Missing]:
         lacking = [(row, lack) for row in rows if (lack := find_missing(_text(row, name)))]
         if lacking:
             characters = "".join(dict.fromkeys("".join(lack for _, lack in lacking)))
-            found.append(Missing(sheet.name, _cell(lacking[0][0], name), label, len(lacking), characters))
+            cell = _cell(inventory, sheet, lacking[0][0], name)
+            found.append(Missing(sheet.name, cell, label, len(lacking), characters))
     return found
 
 
@@ -90,9 +91,9 @@ def _describe(one: Missing, nowhere: Collection[str]) -> Problem | None:
 
 def _name(signs: Sequence[str]) -> str:
     """Return characters with their numbers in Unicode, as they may show as boxes here, too."""
-    named = [f"{sign} (U+{ord(sign):04X})" for sign in signs[:MOST_NAMED]]
+    named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs[:MOST_NAMED])
     left = len(signs) - MOST_NAMED
-    return ", ".join(named) + (f", + {left}" if left > 0 else "")
+    return fill("{names} and {more:,} more", names=named, more=left) if left > 0 else named
 
 
 def _list_fields(inventory: Inventory) -> Iterator[tuple[Sheet, str, str, Sequence[Any]]]:
@@ -120,8 +121,11 @@ def _text(row: Any, name: str) -> str:
     return str(getattr(row, name))
 
 
-def _cell(row: Any, name: str) -> str:
-    return str(row.cell(name)) if hasattr(row, "cell") else f"A{row.row}"
+def _cell(inventory: Inventory, sheet: Sheet, row: Any, name: str) -> str:
+    """Return the cell of a field; the first column where the sheet lacks it."""
+    if hasattr(row, "cell"):
+        return str(row.cell(name))
+    return f"{inventory.letters.get(sheet.name, {}).get(name, 'A')}{row.row}"
 
 
 @cache

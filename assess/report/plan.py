@@ -12,15 +12,14 @@ from assess.inventory.model import Inventory, Item, Segment
 from assess.language import gettext as _
 from assess.report import words
 from assess.report.content import FloorPage
+from assess.report.labels import LINE, Bounds, Label, Point, overlap, place_labels, text_width
 from assess.results import ItemResult
 from assess.risk import RiskClass
 
-Point = tuple[float, float]
 Corners = tuple[Point, Point, Point, Point]
-Bounds = tuple[float, float, float, float]
 
-ANCHORED = "#d0d0d0"
-"""Fill of an anchored piece, which stands outside the classes."""
+ANCHORED, INK = "#d0d0d0", "#1c1c1c"
+"""Fill of an anchored piece, which stands outside the classes, and the colour of its symbol."""
 WIDE, HIGH = 660.0, 780.0
 """Most of a drawing [px]: the width of a page in upright format, and what of its height leaves room for the text."""
 BESIDE, BELOW = 26.0, 44.0
@@ -31,8 +30,8 @@ BORDER = 0.4
 """Free space round everything that is drawn [m]."""
 NAMED = 24
 """Characters of a place's name that are drawn."""
-LETTER, LINE = 5.6, 10.0
-"""Width of a letter and height of a line of such a name [px]."""
+SHORT = 12
+"""Characters of a piece's name that are drawn."""
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 _TICKS = 12
 
@@ -42,7 +41,10 @@ class Piece:
     """One piece; `number` is that of its row among all pieces, from 1, and `side` its shorter side [m]."""
 
     number: int
+    name: str
     title: str
+    upper: RiskClass | None
+    """The class that it may reach; None where it is anchored."""
     class_name: str
     fill: str
     ink: str
@@ -57,12 +59,13 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """A place with its name, which begins or, `is_before`, ends at `label`."""
+    """A place with its name, which begins or, `is_before`, ends at `label`; `box` is the room that it takes."""
 
     name: str
     at: Point
     label: Point
     is_before: bool
+    box: Bounds
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +77,7 @@ class Plan:
     title: str
     pieces: tuple[Piece, ...]
     places: tuple[Spot, ...]
+    labels: tuple[Label, ...]
     ways: tuple[tuple[Point, Point], ...]
     low: Point
     high: Point
@@ -104,6 +108,11 @@ class Plan:
         return "".join(self.outline(corners) for piece in self.pieces for corners in piece.fallen)
 
     @property
+    def boxes(self) -> tuple[Bounds, ...]:
+        """What is taken by the names, of places and of pieces."""
+        return (*(spot.box for spot in self.places), *(label.box for label in self.labels))
+
+    @property
     def ticks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Values along X and Y, at the same round distance."""
         step = _step(max(self.high[0] - self.low[0], self.high[1] - self.low[1]) / _TICKS)
@@ -117,6 +126,12 @@ class Plan:
     def symbol_size(self, piece: Piece) -> float:
         """Return the size of a piece's symbol [px]: that of the piece, yet legible and no giant."""
         return round(min(max(0.95 * piece.side / self.unit, 6), 16), 1)
+
+    def mask(self, box: Bounds) -> str:
+        """Return the attributes of the white ground under a name, which keeps it legible on hatching and lines."""
+        left, high = self.x(box[0]) - 1, self.y(box[3])
+        wide, tall = (box[2] - box[0]) / self.unit + 2, (box[3] - box[1]) / self.unit
+        return f'x="{left:.1f}" y="{high:.1f}" width="{wide:.1f}" height="{tall:.1f}"'
 
     def right(self, piece: Piece) -> float:
         """Return where the right end of a piece lies in the drawing."""
@@ -140,11 +155,13 @@ def build_plan(page: FloorPage, inventory: Inventory) -> Plan | None:
     }
     low, high = _frame(pieces, places.values())
     unit = _unit(low, high)
+    spots = tuple(_spots(places, pieces, high, unit))
     return Plan(
         key=f"plan-{[floor.floor for floor in inventory.floors].index(page.floor.floor) + 1}",
         title=page.title,
         pieces=pieces,
-        places=tuple(_spots(places, pieces, high, unit)),
+        places=spots,
+        labels=tuple(_labels(pieces, spots, (*low, *high), unit)),
         ways=tuple(_ways(inventory.routes, places)),
         low=low,
         high=high,
@@ -165,11 +182,13 @@ def _piece(one: ItemResult, at: Point, number: int) -> Piece:
     falls = not one.is_anchored and max(risk, one.adopted.upper) >= RiskClass.MEDIUM
     return Piece(
         number=number,
+        name=words.cut(item.item, SHORT),
+        upper=None if one.is_anchored else max(risk, one.adopted.upper),
         title=_title(one),
         class_name="anchored" if one.is_anchored else words.class_name(risk),
         fill=ANCHORED if one.is_anchored else risk.fill,
-        ink=risk.ink,
-        symbol="" if one.is_anchored else risk.symbol,
+        ink=INK if one.is_anchored else risk.ink,
+        symbol="⚓" if one.is_anchored else risk.symbol,
         marks="" if one.is_anchored else words.class_marks(one),
         side=min(item.breadth, across),
         at=at,
@@ -237,24 +256,27 @@ def _spots(places: Mapping[str, Point], pieces: Sequence[Piece], high: Point, un
     taken = [_bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)]
     for name, (x, y) in places.items():
         shown = words.cut(name, NAMED)
-        wide, tall, off = LETTER * unit * len(shown), LINE * unit, 4 * unit
+        wide, tall, off = text_width(shown) * unit, LINE * unit, 4 * unit
         tried = [(x0, y0, x0 + wide, y0 + tall) for y0 in (y + off, y - off - tall) for x0 in (x + off, x - off - wide)]
         box = min(tried, key=lambda one: _cost(one, taken, high))
         taken.append(box)
         is_before = box[0] < x
-        yield Spot(shown, (x, y), (box[2 if is_before else 0], box[1] + 0.2 * tall), is_before)
+        yield Spot(shown, (x, y), (box[2 if is_before else 0], box[1] + 0.2 * tall), is_before, box)
+
+
+def _labels(pieces: Sequence[Piece], spots: Sequence[Spot], frame: Bounds, unit: float) -> Iterator[Label]:
+    """Name the pieces that are or may be of high or very high class; without one, those of medium class."""
+    risky = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
+    least = RiskClass.HIGH if any(upper >= RiskClass.HIGH for upper, _one in risky) else RiskClass.MEDIUM
+    named = sorted((pair for pair in risky if pair[0] >= least), key=lambda pair: -pair[0])
+    taken = [*(_bounds(one.corners) for one in pieces), *(spot.box for spot in spots)]
+    return place_labels([(one.name, _bounds(one.corners)) for _upper, one in named], taken, frame, unit)
 
 
 def _cost(box: Bounds, taken: Sequence[Bounds], high: Point) -> float:
     """Return how much [m2] of a name lies over other things; outside the drawing is worse than over anything."""
-    over = sum(_overlap(box, other) for other in taken)
+    over = sum(overlap(box, other) for other in taken)
     return over + (1e6 if box[2] > high[0] or box[3] > high[1] else 0)
-
-
-def _overlap(one: Bounds, other: Bounds) -> float:
-    wide = min(one[2], other[2]) - max(one[0], other[0])
-    tall = min(one[3], other[3]) - max(one[1], other[1])
-    return wide * tall if wide > 0 and tall > 0 else 0.0
 
 
 def _bounds(corners: Corners) -> Bounds:

@@ -1,11 +1,16 @@
-"""What the numbers of a report were computed with."""
+"""What a report comes from: its date, the publications, and what its numbers were computed with."""
 
 import contextlib
 import datetime
 import os
 import platform
+import re
 from collections.abc import Mapping
 from functools import cache
+
+from assess.language import LANGUAGES, spoken
+from assess.language import gettext as _
+from assess.methods._method import Reference
 
 
 def report_time() -> datetime.datetime:
@@ -15,6 +20,22 @@ def report_time() -> datetime.datetime:
         if epoch >= 0:
             return datetime.datetime.fromtimestamp(epoch, datetime.UTC)
     return datetime.datetime.now(datetime.UTC)
+
+
+def say_date(iso: str) -> str:
+    """Return a date as the language in use writes it, as November 21, 2026; what is no ISO date stays as it is."""
+    from babel.dates import format_date
+
+    with contextlib.suppress(ValueError):
+        if re.fullmatch(r"\d{4}-\d{2}-\d{2}", iso.strip(), re.ASCII):
+            code = spoken().code if spoken().code in LANGUAGES else "en"
+            return format_date(datetime.date.fromisoformat(iso.strip()), "long", locale=code)
+    return iso
+
+
+def say_reference(reference: Reference) -> str:
+    """Return a reference with its remark in the language in use; its bibliographic part is never translated."""
+    return f"{reference.bibliographic} {_(reference.remark)}" if reference.remark else reference.bibliographic
 
 
 @cache

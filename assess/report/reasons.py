@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from assess.language import gettext as _
 from assess.methods import fema_p58, proposed_or
 from assess.methods.kaneko_hayashi import NEAR_SWITCH
+from assess.report import words
 from assess.report.facts import (
     FEMA,
     INTEGRATION,
@@ -17,7 +18,6 @@ from assess.report.facts import (
     OR,
     Facts,
     medians_of,
-    percents,
     span,
     spans,
     title_of,
@@ -57,14 +57,14 @@ def _say_or_at_start(rows: Sequence[Facts]) -> str:
     return _(
         "The proposed formula is a surface fitted to results: at g·B/H = {ratio} g, where rocking can only just start, "
         "it gives {start} already; PFA is {pfa} g.",
-        **spans(rows, "pfa", "ratio"), start=percents([row.or_at_start for row in rows]),
+        **spans(rows, "pfa", "ratio"), start=words.percents([row.or_at_start for row in rows]),
     )  # fmt: skip
 
 
 def _say_or_at_most(rows: Sequence[Facts]) -> str:
     return _(
         "At B/H {ratio} the proposed formula gives at most {most}, however strong the motion.",
-        **spans(rows, "ratio"), most=percents([row.or_at_most for row in rows]),
+        **spans(rows, "ratio"), most=words.percents([row.or_at_most for row in rows]),
     )  # fmt: skip
 
 

@@ -34,7 +34,7 @@ def list_flags(assessment: Assessment) -> dict[str, str]:
 
 def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
     """Return what was assumed, and for how many rows or where."""
-    settings, items = assessment.settings, assessment.inventory.items
+    items = assessment.inventory.items
     counted = Counter(name for item in items for name in item.assumed)
     lines = motions.list_assumptions(assessment)
     for name, text in _assumed().items():
@@ -44,17 +44,27 @@ def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
             lines.append((where, text))
     axes, frictions = (sum(value is None for value in values) for values in
                        ((item.axis for item in items), (item.friction for item in items)))  # fmt: skip
-    lines += [
-        (ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", axes), _("the worse of X and Y governs")),
-        (ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions),
-         _("no sliding, as the paper assumes")),
+    if axes:
+        lines.append((ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", axes),
+                      _("the worse of X and Y governs")))  # fmt: skip
+    if frictions:
+        lines.append((ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions),
+                      _("no sliding, as the paper assumes")))  # fmt: skip
+    return lines + _list_constants(assessment)
+
+
+def _list_constants(assessment: Assessment) -> list[tuple[str, str]]:
+    """Return the constants of the methods, and what holds for every number."""
+    settings = assessment.settings
+    return [
         (_("Kaneko-Hayashi, standard deviations (not printed in the source)"),
          f"ζ_A = {number(settings.zeta_acceleration, 'g')}, ζ_V = {number(settings.zeta_velocity, 'g')}"),
         (_("Kaneko-Hayashi, slide coefficient α"), number(settings.slide_coefficient, "g")),
         (_("Gravity"), f"{number(GRAVITY)} m/s²"),
         (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
+        (_("Units"), _("Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
+                       "are.")),
     ]  # fmt: skip
-    return lines
 
 
 def _assumed() -> Mapping[str, str]:

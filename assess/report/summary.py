@@ -119,8 +119,10 @@ def _worst_first(one: ItemResult) -> tuple[float, float, str]:
 def say_plainly(total: Counts, may_be: int, worst: Sequence[ItemResult], fixes: Sequence[Fix]) -> list[str]:
     """Say in plain words what was found: the first paragraph of the summary."""
     texts = [_say_counts(total)]
-    if may_be:
+    if may_be and total.risky:
         texts.append(ngettext("{n:,} more may have either.", "{n:,} more may have either.", may_be))
+    elif may_be:
+        texts.append(ngettext("{n:,} may have either.", "{n:,} may have either.", may_be))
     if total.anchored:
         texts.append(ngettext("{n:,} further piece is anchored, and only as safe as its anchor.",
                               "{n:,} further pieces are anchored, and only as safe as their anchors.",
@@ -145,15 +147,56 @@ def say_plainly(total: Counts, may_be: int, worst: Sequence[ItemResult], fixes: 
 def _say_counts(total: Counts) -> str:
     if not total.free:
         return _("There are no free-standing pieces.")
+    if not total.risky:
+        return ngettext(
+            "The {n:,} free-standing piece has no high or very high chance of overturning in this scenario.",
+            "Of {n:,} free-standing pieces, none has a high or very high chance of overturning in this scenario.",
+            total.free,
+        )
+    if total.free == 1:
+        return (
+            _("The one free-standing piece has a very high chance of overturning in this scenario.")
+            if total.by_class[RiskClass.VERY_HIGH]
+            else _("The one free-standing piece has a high chance of overturning in this scenario.")
+        )
+    return _say_risky(total.free, total.by_class[RiskClass.VERY_HIGH], total.by_class[RiskClass.HIGH])
+
+
+def _say_risky(free: int, very_high: int, high: int) -> str:
+    """Say how many of several pieces are of very high and of high class."""
+    if not very_high:
+        return ngettext(
+            "Of {free:,} free-standing pieces, {n:,} has a high chance of overturning in this scenario, none a very "
+            "high one.",
+            "Of {free:,} free-standing pieces, {n:,} have a high chance of overturning in this scenario, none a very "
+            "high one.",
+            high, free=free,
+        )  # fmt: skip
+    if not high:
+        return ngettext(
+            "Of {free:,} free-standing pieces, {n:,} has a very high chance of overturning in this scenario, none a "
+            "high one.",
+            "Of {free:,} free-standing pieces, {n:,} have a very high chance of overturning in this scenario, none a "
+            "high one.",
+            very_high, free=free,
+        )  # fmt: skip
     return ngettext(
-        "Of {n:,} free-standing piece, {very_high:,} have a very high chance of overturning in this scenario and "
-        "{high:,} a high one.",
-        "Of {n:,} free-standing pieces, {very_high:,} have a very high chance of overturning in this scenario and "
-        "{high:,} a high one.",
-        total.free, very_high=total.by_class[RiskClass.VERY_HIGH], high=total.by_class[RiskClass.HIGH],
+        "Of {free:,} free-standing pieces, {n:,} has a very high chance of overturning in this scenario and {high:,} "
+        "a high one.",
+        "Of {free:,} free-standing pieces, {n:,} have a very high chance of overturning in this scenario and {high:,} "
+        "a high one.",
+        very_high, free=free, high=high,
     )  # fmt: skip
 
 
+LEAST = 12
+"""Characters of a description that are kept beside what must be said with it."""
+
+
 def describe(one: ItemResult, longest: int = 80) -> str:
-    """Return what a piece is, in the workbook's words."""
-    return words.cut(one.item.description or one.item.type or _("no description"), longest)
+    """Return what a piece is, in the workbook's words, and that it is partly anchored, which its class leaves out."""
+    text = one.item.description or one.item.type or _("no description")
+    if one.item.anchored != "partly":
+        return words.cut(text, longest)
+    told = _("partly anchored")
+    return f"{words.cut(text, max(LEAST, longest - len(told) - 2))}, {told}"

@@ -160,9 +160,9 @@ def _floor_motions(assessment: Assessment, demand: Demand, joint: Joint) -> Floo
     if assessment.suite is not None:
         pfa, pfv = _suite_ratios(assessment, demand)
     return FloorMotions(
-        floor=words.clip(demand.floor.floor, 20),
+        floor=words.cut(demand.floor.floor, 20),
         axis=demand.axis,
-        source=words.clip(_(demand.label).rsplit("/", 1)[-1], 60),
+        source=words.cut(_(demand.label).rsplit("/", 1)[-1], 60),
         kind=_kind(assessment, joint),
         motions=number(most, ",") if least == most else _("{least:,} to {most:,}", least=least, most=most),
         rows=len(joint.cases),
@@ -170,7 +170,7 @@ def _floor_motions(assessment: Assessment, demand: Demand, joint: Joint) -> Floo
         if fit is None
         else _(
             "{mean}; {most:+.1f} % at {period:.2f} s",
-            mean=words.percent(fit.mean_deviation),
+            mean=words.deviation(fit.mean_deviation),
             most=100 * fit.worst_deviation,
             period=fit.worst_period,
         ),
@@ -212,10 +212,10 @@ def _misfits(assessment: Assessment) -> Iterator[str]:
             yield _(
                 "Floor {floor} {axis}: PFA and the spectrum cannot both be met. PFA wins; the mean spectrum is met "
                 "within {mean} on average, and within {most} at {period:.2f} s, where it is worst.",
-                floor=words.clip(demand.floor.floor, 20),
+                floor=words.cut(demand.floor.floor, 20),
                 axis=demand.axis,
-                mean=words.percent(fit.mean_deviation),
-                most=words.percent(abs(fit.worst_deviation)),
+                mean=words.deviation(fit.mean_deviation),
+                most=words.deviation(abs(fit.worst_deviation)),
                 period=fit.worst_period,
             )
 

@@ -186,12 +186,12 @@ def describe_verification(assessment: Assessment) -> str:
 
 def _list_changes(verified: Verified) -> Iterator[str]:
     """Say what the verification changed, and what is open."""
-    if n := len(verified.lowered):
-        yield ngettext("{n:,} class lowered by it", "{n:,} classes lowered by it", n)
-    if n := len(verified.raised):
-        yield ngettext("{n:,} class raised by it", "{n:,} classes raised by it", n)
-    if n := len(verified.may_be):
-        yield ngettext("{n:,} row may be of a higher class", "{n:,} rows may be of a higher class", n)
+    if verified.lowered:
+        yield _("class lowered by it: {pieces}", pieces=count_pieces(verified.lowered))
+    if verified.raised:
+        yield _("class raised by it: {pieces}", pieces=count_pieces(verified.raised))
+    if verified.may_be:
+        yield _("may be of a higher class: {pieces}", pieces=count_pieces(verified.may_be))
     if n := len(verified.kept):
         yield ngettext(
             "{n:,} row keeps the formula's class, which verification may not lower",
@@ -259,5 +259,4 @@ def count_pieces(results: Sequence[ItemResult]) -> str:
 
 def name_some(results: Sequence[ItemResult]) -> str:
     """Return the names of the first rows, and how many more there are."""
-    names = ", ".join(words.clip(one.item.item, 40) for one in results[:NAMED])
-    return names if len(results) <= NAMED else _("{names} and {more:,} more", names=names, more=len(results) - NAMED)
+    return words.name_first([words.cut(one.item.item, 40) for one in results], NAMED)

@@ -1,16 +1,18 @@
 """Numbers and sentences as reports show them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from assess.language import fill, ngettext, number
 from assess.language import gettext as _
 from assess.results import ItemResult
-from assess.risk import RiskClass, classify
+from assess.risk import LIMITS, RiskClass, classify
 from assess.units import ACCELERATION, LENGTH, VELOCITY
 
 LONGEST = 160
 """Characters of a text from the workbook that a table shows; the Excel report and results.json hold all of it."""
 
+MOST_DECIMALS = 6
+"""Decimals of a percentage at most, however near a limit it lies."""
 DASH = "–"
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
@@ -30,9 +32,36 @@ def cut(text: str, longest: int) -> str:
     return text if len(text) <= longest else f"{text[: longest - 1].rstrip()}…"
 
 
+def name_first(names: Sequence[str], most: int) -> str:
+    """Return the first names, and how many more there are."""
+    named, more = ", ".join(names[:most]), len(names) - most
+    return _("{names} and {more:,} more", names=named, more=more) if more > 0 else named
+
+
+def in_percent(probability: float) -> str:
+    """Return a probability in percent with one decimal, or as many as it takes to stay below the limit of a class."""
+    for decimals in range(1, MOST_DECIMALS + 1):
+        text = f"{100 * probability:.{decimals}f}"
+        reached = [limit for limit in LIMITS if probability < limit <= float(text) / 100]
+        if not reached:
+            return number(float(text), f".{decimals}f")
+    return number(100 * reached[0] - 10**-MOST_DECIMALS, f".{MOST_DECIMALS}f")
+
+
 def percent(value: float | None) -> str:
-    """Return a probability as a percentage with one decimal."""
-    return DASH if value is None else f"{number(100 * value, '.1f')} %"
+    """Return a probability as a percentage that stands on the same side of every class limit as the value."""
+    return DASH if value is None else f"{in_percent(value)} %"
+
+
+def percents(values: Sequence[float]) -> str:
+    """Return the range of probabilities as percentages, ``34.5 to 48.7 %``."""
+    low, high = in_percent(min(values)), in_percent(max(values))
+    return _("{range} %", range=low if low == high else _("{low} to {high}", low=low, high=high))
+
+
+def deviation(value: float) -> str:
+    """Return a share that is no probability as a percentage with one decimal."""
+    return f"{number(100 * value, '.1f')} %"
 
 
 def fixed(value: float | None, decimals: int) -> str:
@@ -51,13 +80,18 @@ def in_cm_s(value: float | None) -> str:
 
 
 def in_cm(value: float | None) -> str:
-    """Return a length [m] in cm, without needless decimals."""
-    return DASH if value is None else number(value / LENGTH["cm"], ".4g")
+    """Return a length [m] in cm, with one decimal at most."""
+    return DASH if value is None else _short(value / LENGTH["cm"], 1)
 
 
 def in_m(value: float | None) -> str:
-    """Return a length [m]."""
-    return DASH if value is None else number(value, ".4g")
+    """Return a length [m], with two decimals at most."""
+    return DASH if value is None else _short(value, 2)
+
+
+def _short(value: float, decimals: int) -> str:
+    """Return a number with so many decimals at most, without zeros at its end, and never as -0."""
+    return number(round(value, decimals) + 0.0, ".12g")
 
 
 def size(one: ItemResult) -> str:
@@ -84,7 +118,7 @@ def chance(one: ItemResult) -> str:
     adopted = one.adopted
     if adopted.low is None or adopted.high is None:
         return percent(adopted.probability)
-    interval = _("({low:.1f} to {high:.1f} %)", low=100 * adopted.low, high=100 * adopted.high)
+    interval = _("({low} to {high} %)", low=in_percent(adopted.low), high=in_percent(adopted.high))
     return f"{percent(adopted.probability)} {interval.replace(' ', NO_BREAK)}"
 
 

@@ -1,18 +1,19 @@
 """What the worked example is made of: a piece in the units of the paper, and the steps that methods share.
 
 Every step that computes reads ``symbol = numbers = result [unit]``, with more digits than a result needs, so that a
-reader with a calculator finds the result again. Formulas are the same in every language: they are not collected for
-translation, only their numbers are written as the language does.
+reader with a calculator finds the result again. Formulas go through `fill_in`, sentences through ``_``.
 """
 
 import math
+import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from assess.cases import CaseResult
 from assess.language import gettext as _
-from assess.language import gettext as formula
+from assess.language import spoken
 from assess.methods import Method
 from assess.methods._method import normal_cdf
 from assess.methods.kaneko_hayashi import G
@@ -23,6 +24,8 @@ from assess.units import ACCELERATION, GRAVITY
 
 Worked = tuple[list[str], str]
 """The steps, and the result in words."""
+_DECIMAL = re.compile(r"\d+\.\d+")
+"""A decimal number in a formula; the precision of a ``{}`` has no digit before its point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +59,16 @@ class Piece:
         return flag in self.case.methods[method.key].flags
 
 
+def fill_in(template: str, /, **values: Any) -> str:
+    """Return a formula with `values` put in, numbers as the language in use writes them.
+
+    A formula holds symbols only and is the same in every language, so it is not collected for translation; decimals
+    that are part of it are written likewise. A word beside the symbols, such as the name of a result, comes in as one
+    of the `values`, from ``_``.
+    """
+    return _(_DECIMAL.sub(lambda found: spoken().number(found[0]), template), **values)
+
+
 def chance(symbol: str, value: float) -> str:
     """Return a probability as the result of a calculation, with its class."""
     risk = classify(value)
@@ -71,13 +84,13 @@ def verdict(piece: Piece, method: Method) -> str:
 
 def show_ratio(piece: Piece) -> str:
     """Return the step from breadth and height to B/H."""
-    return formula("B/H = {B:.6g}/{H:.6g} = {x:.5f}", **piece.put)
+    return fill_in("B/H = {B:.6g}/{H:.6g} = {x:.5f}", **piece.put)
 
 
 def show_acceleration(piece: Piece) -> str:
     """Return the step from PFA in g to that in cm/s²."""
     in_g = piece.PFA * ACCELERATION["cm/s2"] / GRAVITY
-    return formula("PFA = {in_g:.6g}·{g:.3f} = {PFA:.6g} cm/s²", **piece.put, in_g=in_g)
+    return fill_in("PFA = {in_g:.6g}·{g:.3f} = {PFA:.6g} cm/s²", **piece.put, in_g=in_g)
 
 
 def phi(z: float) -> float:

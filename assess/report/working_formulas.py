@@ -6,12 +6,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from assess.language import gettext as _
-from assess.language import gettext as formula
 from assess.methods import kaneko_hayashi
 from assess.methods.kaneko_hayashi import G
 from assess.methods.proposed_or import COEFFICIENTS, THIN_PFA_CAP, turning_breadth_to_height, turning_pfa
 from assess.methods.proposed_or import METHOD as PROPOSED_OR
-from assess.report.working import Piece, Worked, chance, phi, show_acceleration, show_ratio
+from assess.report.working import Piece, Worked, chance, fill_in, phi, show_acceleration, show_ratio
 
 # ---------------------------------------------------------------- proposed OR
 
@@ -25,14 +24,15 @@ def work_proposed_or(piece: Piece) -> Worked:
     steps = [
         show_ratio(piece),
         show_acceleration(piece),
-        formula("a = -{a:.8f}", **put),
-        formula("b/(B/H) = {b:.8f}/{x:.5f} = {term:.4f}", **put, term=terms["b"]),
-        formula("c·PFA = {c:.10f}·{y:.6g} = {term:.4f}", **put, term=terms["c"]),
-        formula("d/(B/H)² = -{d:.9f}/{x:.5f}² = {term:.4f}", **put, term=terms["d"]),
-        formula("e·PFA² = -{e:.9f}·{y:.6g}² = {term:.4f}", **put, term=terms["e"]),
-        formula("f·PFA/(B/H) = -{f:.11f}·{y:.6g}/{x:.5f} = {term:.4f}", **put, term=terms["f"]),
-        formula("OR as printed (9) = -{a:.4f} + {b:.4f} + {c:.4f} - {d:.4f} - {e:.4f} - {f:.4f} = {raw:.4f}", **total),
-    ]
+        fill_in("a = -{a:.8f}", **put),
+        fill_in("b/(B/H) = {b:.8f}/{x:.5f} = {term:.4f}", **put, term=terms["b"]),
+        fill_in("c·PFA = {c:.10f}·{y:.6g} = {term:.4f}", **put, term=terms["c"]),
+        fill_in("d/(B/H)² = -{d:.9f}/{x:.5f}² = {term:.4f}", **put, term=terms["d"]),
+        fill_in("e·PFA² = -{e:.9f}·{y:.6g}² = {term:.4f}", **put, term=terms["e"]),
+        fill_in("f·PFA/(B/H) = -{f:.11f}·{y:.6g}/{x:.5f} = {term:.4f}", **put, term=terms["f"]),
+        fill_in("{name} = -{a:.4f} + {b:.4f} + {c:.4f} - {d:.4f} - {e:.4f} - {f:.4f} = {raw:.4f}", **total,
+                name=_("OR as printed (9)")),
+    ]  # fmt: skip
     return steps + _departures(piece), chance("OR", piece.value(PROPOSED_OR))
 
 
@@ -49,7 +49,7 @@ def _departures(piece: Piece) -> list[str]:
     k = COEFFICIENTS
     value = k.a + k.b / x + k.c * y + k.d / x**2 + k.e * y**2 + k.f * y / x
     if is_thin or is_held:
-        steps.append(formula(
+        steps.append(fill_in(
             "OR = -{a:.8f} + {b:.8f}/{x:.5f} + {c:.10f}·{y:.6g} - {d:.9f}/{x:.5f}² - {e:.9f}·{y:.6g}² "
             "- {f:.11f}·{y:.6g}/{x:.5f} = {value:.4f}", **_sizes(), x=x, y=y, value=value,
         ))  # fmt: skip
@@ -69,7 +69,7 @@ def _thin(piece: Piece, applies: bool) -> list[str]:
     y, turn = min(piece.PFA, THIN_PFA_CAP), float(turning_breadth_to_height(np.array(piece.PFA)))
     steps = [_("In B/H*, PFA counts up to {cap:g} cm/s² only.", cap=THIN_PFA_CAP)] if piece.PFA > THIN_PFA_CAP else []
     steps += [
-        formula("B/H* = -2d/(b + f·PFA) = 2·{d:.9f}/({b:.8f} - {f:.11f}·{y:.6g}) = {turn:.5f}",
+        fill_in("B/H* = -2d/(b + f·PFA) = 2·{d:.9f}/({b:.8f} - {f:.11f}·{y:.6g}) = {turn:.5f}",
                 **_sizes(), y=y, turn=turn),
         _("B/H lies below B/H*, where equation (9) would call a thinner piece safer: B/H* is put in its place.")
         if applies else _("B/H is not below B/H*: it is used as it is."),
@@ -80,7 +80,7 @@ def _thin(piece: Piece, applies: bool) -> list[str]:
 def _held(piece: Piece, applies: bool) -> list[str]:
     x, turn = _used(piece)[0], float(turning_pfa(np.array(_used(piece)[0])))
     return [
-        formula("PFA* = (c + f/(B/H))/(-2e) = ({c:.10f} - {f:.11f}/{x:.5f})/(2·{e:.9f}) = {turn:.6g} cm/s²",
+        fill_in("PFA* = (c + f/(B/H))/(-2e) = ({c:.10f} - {f:.11f}/{x:.5f})/(2·{e:.9f}) = {turn:.6g} cm/s²",
                 **_sizes(), x=x, turn=turn),
         _("PFA lies above PFA*, past which equation (9) would fall again: PFA* is put in its place.")
         if applies else _("PFA is not above PFA*: it is used as it is."),
@@ -101,7 +101,7 @@ def work_kaneko_hayashi(piece: Piece) -> Worked:
     steps = [
         show_ratio(piece),
         show_acceleration(piece),
-        formula("λ_A = ln[(B/H)·g·(1 + B/H)] = ln({x:.5f}·{g:.3f}·(1 + {x:.5f})) = {lambda_a:.5f}", **put),
+        fill_in("λ_A = ln[(B/H)·g·(1 + B/H)] = ln({x:.5f}·{g:.3f}·(1 + {x:.5f})) = {lambda_a:.5f}", **put),
     ]
     if math.isnan(piece.PFV):
         steps += _upper_bound(piece, put)
@@ -116,11 +116,11 @@ def _upper_bound(piece: Piece, put: Mapping[str, float]) -> list[str]:
     put = {**put, "k": k, "phi_a": shares["zeta_a"], "phi_v": shares["zeta_v"], "most": max(shares.values())}
     return [
         _("PFV is unknown: the largest risk that any PFV could give is taken."),
-        formula("k = PFA/exp(λ_A) = {PFA:.6g}/exp({lambda_a:.5f}) = {k:.5f}", **put),
-        formula("Φ(ln k/ζ_A) = Φ(ln({k:.5f})/{zeta_a:g}) = {phi_a:.4f}", **put),
-        formula("Φ(ln k/ζ_V) = Φ(ln({k:.5f})/{zeta_v:g}) = {phi_v:.4f}", **put),
+        fill_in("k = PFA/exp(λ_A) = {PFA:.6g}/exp({lambda_a:.5f}) = {k:.5f}", **put),
+        fill_in("Φ(ln k/ζ_A) = Φ(ln({k:.5f})/{zeta_a:g}) = {phi_a:.4f}", **put),
+        fill_in("Φ(ln k/ζ_V) = Φ(ln({k:.5f})/{zeta_v:g}) = {phi_v:.4f}", **put),
         _("The larger of the two counts, times the slide coefficient α."),
-        formula("R = {alpha:g}·{most:.4f} = {R:.4f}", **put, R=piece.value(kaneko_hayashi.METHOD)),
+        fill_in("R = {alpha:g}·{most:.4f} = {R:.4f}", **put, R=piece.value(kaneko_hayashi.METHOD)),
     ]
 
 
@@ -134,22 +134,22 @@ def _branches(piece: Piece, put: Mapping[str, float]) -> list[str]:
         "F_f": piece.detail(method, "floor_frequency_hz"), "F_b": piece.detail(method, "boundary_frequency_hz"),
     }  # fmt: skip
     steps = [
-        formula(
+        fill_in(
             "λ_V = ln[10·B/√H·(1 + B/H)^2.5] = ln(10·{B:.6g}/√({H:.6g})·(1 + {x:.5f})^2.5) = {lambda_v:.5f}", **put
         ),
-        formula("F_f = PFA/(2π·PFV) = {PFA:.6g}/(2·π·{PFV:.6g}) = {F_f:.4f} Hz", **put),
-        formula("F_b = 15.6/√H·(1 + B/H)^-1.5 = 15.6/√({H:.6g})·(1 + {x:.5f})^(-1.5) = {F_b:.4f} Hz", **put),
+        fill_in("F_f = PFA/(2π·PFV) = {PFA:.6g}/(2·π·{PFV:.6g}) = {F_f:.4f} Hz", **put),
+        fill_in("F_b = 15.6/√H·(1 + B/H)^-1.5 = 15.6/√({H:.6g})·(1 + {x:.5f})^(-1.5) = {F_b:.4f} Hz", **put),
     ]
     if piece.has(method, "pfv_estimated"):
         steps.insert(0, _("PFV = {PFV:.6g} cm/s is an estimate from PFA and the building's period T1.", PFV=piece.PFV))
     if is_velocity:
         steps += [
             _("F_f is above F_b: the second line of equation (5) applies, that of the velocity."),
-            formula("z = (ln PFV - λ_V)/ζ_V = (ln({PFV:.6g}) - {lambda_v:.5f})/{zeta_v:g} = {z:.4f}", **put),
+            fill_in("z = (ln PFV - λ_V)/ζ_V = (ln({PFV:.6g}) - {lambda_v:.5f})/{zeta_v:g} = {z:.4f}", **put),
         ]
     else:
         steps += [
             _("F_f is not above F_b: the first line of equation (5) applies, that of the acceleration."),
-            formula("z = (ln PFA - λ_A)/ζ_A = (ln({PFA:.6g}) - {lambda_a:.5f})/{zeta_a:g} = {z:.4f}", **put),
+            fill_in("z = (ln PFA - λ_A)/ζ_A = (ln({PFA:.6g}) - {lambda_a:.5f})/{zeta_a:g} = {z:.4f}", **put),
         ]
-    return [*steps, formula("R = α·Φ(z) = {alpha:g}·Φ({z:.4f}) = {R:.4f}", **put)]
+    return [*steps, fill_in("R = α·Φ(z) = {alpha:g}·Φ({z:.4f}) = {R:.4f}", **put)]

@@ -108,7 +108,7 @@ class TestDescription:
         assert method.assumptions
         assert str(method.reference).endswith(".")
         assert method.reference.title
-        assert method.reference.source
+        assert method.reference.source or method.reference.remark
 
     def test_texts_are_plain_lines(self, method):
         for text in (*method.equations, *method.assumptions, *method.departures, *method.flags.values()):

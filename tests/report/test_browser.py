@@ -249,10 +249,28 @@ def test_print_shows_the_rows_as_filtered_and_no_controls(open_page):
     assert page.locator("#pieces tbody tr:visible").count() == 3
 
 
+def test_a_browser_prints_upright_pages_and_turns_those_of_the_wide_tables(open_page, tmp_path):
+    import pypdfium2
+
+    page = open_page()
+    page.pdf(path=tmp_path / "printed.pdf", prefer_css_page_size=True)
+    document = pypdfium2.PdfDocument(tmp_path / "printed.pdf")
+    sheets = [(sheet.get_size(), sheet.get_textpage().get_text_range()) for sheet in document]
+    document.close()
+    turned = [text for (width, height), text in sheets if width > height]
+    assert 0 < len(turned) < len(sheets)
+    assert any("All pieces" in text for text in turned)
+    (floor,) = [text for _size, text in sheets if "Plan: every piece" in text and "Floor 1" in text]
+    assert "Motion of the floor" in floor
+    assert "Y [m]" in floor
+
+
 @pytest.mark.parametrize("width", [320, 375, 768, 1280, 1600])
 def test_the_page_never_scrolls_sideways(open_page, width):
     page = open_page(width=width, height=700)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+    too_wide = "heads => heads.filter(h => h.scrollWidth > h.clientWidth + 1).map(h => h.innerText)"
+    assert page.locator("thead th").evaluate_all(too_wide) == []
     for selector in ("#pieces", "svg.floor-plan", "#filter-bar"):
         assert page.locator(selector).first.is_visible()
 

@@ -209,8 +209,8 @@ class TestExampleBuilding:
     def test_by_the_formulas(self, market_street):
         found = find_disagreements(market_street)
         assert summarise_disagreements(found, len(market_street)) == (
-            "On 9 of 121 rows, methods differ by more than one class; most often Proposed OR formula lies above "
-            "Kaneko-Hayashi formula (on 9)."
+            "On 9 of 121 rows, methods differ by more than one class: in every case Proposed OR formula lies above "
+            "Kaneko-Hayashi formula."
         )
         groups = group_disagreements(found)
         assert [len(group.rows) for group in groups] == [8, 1]
@@ -245,6 +245,19 @@ def test_integration_kinds_by_made_up_verdicts(tmp_path):
     slept = Facts(found.result(1), "housner_monte_carlo", "proposed_or")
     assert "peaks_above" in find_kinds(slept)
     assert "slow" not in find_kinds(slept)
+
+
+def test_the_most_frequent_pair_is_counted_where_there_are_others(market_street):
+    found = find_disagreements(market_street)
+    other = replace(found[0], lowest=replace(found[0].lowest, title="Another"))
+    said = summarise_disagreements([*found[1:], other], 121)
+    assert said.endswith("; most often Proposed OR formula lies above Kaneko-Hayashi formula (on 8).")
+
+
+def test_a_long_group_names_some_and_counts_the_others(market_street):
+    (group, *_) = group_disagreements(find_disagreements(market_street))
+    long = replace(group, rows=group.rows * 2)
+    assert (len(group.named), group.left, len(long.named), long.left) == (8, 0, 12, 4)
 
 
 def test_no_disagreement_is_said():

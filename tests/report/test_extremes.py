@@ -22,7 +22,10 @@ def floors(count):
 
 CASES = {
     "no items": ({"items": []}, ["There are no free-standing pieces.", "There are no pieces.", "2 floors have no"]),
-    "one item on one floor": ({"items": ITEMS[:1], "floors": FLOORS[:1]}, ["Of 1 free-standing piece,", "1 floor"]),
+    "one item on one floor": (
+        {"items": ITEMS[:1], "floors": FLOORS[:1]},
+        ["The one free-standing piece has", "1 floor"],
+    ),
     "a floor without items": ({"items": ITEMS[:1]}, ["1 floor has no pieces and no page of its own."]),
     "an item with no name but its number": ({"items": [BARE]}, ["A1: no description", "no room named"]),
     "names of 300 characters": (

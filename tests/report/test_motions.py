@@ -9,8 +9,9 @@ import pytest
 import assess
 from assess.demand import FLAGS, MAY_BE_LOWER
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
+from assess.report.cautions import list_cautions, list_short_cautions
 from assess.report.data import SCHEMA
-from assess.report.motions import ENVELOPES, describe_origin, describe_source, list_cautions
+from assess.report.motions import ENVELOPES, describe_origin, describe_source, list_sources
 from assess.report.page import write_equation
 from tests.report.test_html import _read
 from tests.workbooks import UNVERIFIED as BY_FORMULA
@@ -75,8 +76,9 @@ def test_json_holds_what_was_used_on_each_floor_and_axis(mixed):
 def test_html_says_what_was_used_and_what_to_beware_of(mixed):
     text = _read(mixed["html"].read_text(encoding="utf-8"))
     assert text.count(f"Floor 4: the motion is that of ASCE 7-22. {ENVELOPES}") == 1
-    assert text.count("Floor 4: the motion is that of ASCE 7-22.") == 2  # cut on the summary, whole with the floors
-    assert text.count("Floor 2: nothing is known of the motion there, it is interpolated between the floors above") == 2
+    assert text.count("Floor 4: the motion is a code's design profile, an envelope.") == 1  # the summary
+    assert text.count("Floor 2: nothing is known of the motion there, it is interpolated between the floors above") == 1
+    assert text.count("Floor 2: interpolated between floors; it may be lower than the truth.") == 1
     assert text.count("The floors' motion comes from mixed sources") == 2
     assert "All 3 cautions on the motion of the floors" in text
     assert text.count(WORKED_OUT) == 2  # one an axis
@@ -135,7 +137,7 @@ def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
     written = _reports(tmp_path, "NTC 2018", ground_pga=0.3)
     text = _read(written["html"].read_text(encoding="utf-8"))
     assert text.count(f"the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES}") == 1
-    assert text.count(f"the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES[:40]}") == 2  # the summary cuts it
+    assert text.count("Floors 1, 2, 3, 4: the motion is a code's design profile, an envelope.") == 1
     assert {one["profile_verified"] for floor in _json(written)["floors"] for one in floor["demands"]} == {False}
     assert f"NTC 2018, Circolare 21 gennaio 2019 n. 7, C7.2.3 ({UNVERIFIED}): z/h 1.000, amplification 2.000" in text
     assert "NTC 2018 (the workbook: as filled)" in text
@@ -149,7 +151,6 @@ def _cautions(folder, floors, **building):
 def test_interpolation_is_said_to_be_possibly_too_low(mixed):
     text = _read(mixed["html"].read_text(encoding="utf-8"))
     assert text.count(f"the floors above and below. This {MAY_BE_LOWER}.") == 1
-    assert text.count("the floors above and below. This may be lower than the truth") == 2  # the summary cuts it
     assert MAY_BE_LOWER in FLAGS["interpolated"]
 
 
@@ -158,8 +159,9 @@ def test_that_more_is_known_than_is_used_stands_on_summary_and_floors(tmp_path):
     message = "the profile would give 0.250 g on floor '1', 0.300 g is known there: floors on the profile may come"
     written = _reports(tmp_path, floors=floors, ground_pga=0.25, height=20)
     text = _read(written["html"].read_text(encoding="utf-8"))
-    assert text.count(f"More is known than is used: {message[:60]}") == 2
-    assert text.count(message) >= 2  # the floors, which hold it whole, and the data-quality log
+    assert text.count(f"More is known than is used: {message[:60]}") == 1
+    assert text.count("More is known than is used: 1 warning, see the data-quality log.") == 1
+    assert text.count(message) >= 2  # the floors, and the data-quality log
     assert any(message in str(row[0]) for row in _rows(written, "Summary"))
 
 
@@ -201,3 +203,23 @@ def test_units_in_headings_do_not_break(mixed):
     html = mixed["html"].read_text(encoding="utf-8")
     assert '<th scope="col" class="num">PFV <span class="unit">[cm/s]</span></th>' in html
     assert ".unit { white-space: nowrap; }" in html
+
+
+def _many(folder, count, known):
+    floors = [{"floor": f"F{at}", "elevation": 3 * at} | ({"pfa_x": 0.2} if at in known else {})
+              for at in range(count)]  # fmt: skip
+    items = [{"item": "i", "floor": "F0", "breadth": 30, "width": 40, "height": 100}]
+    return assess.run(assess.read_inventory(write(folder / "w.xlsx", items, floors, ground_pga=0.2)), BY_FORMULA)
+
+
+def test_short_cautions_are_whole_however_many_floors_there_are(tmp_path):
+    short = list_short_cautions(_many(tmp_path, 60, known=(0, 30)))
+    told = "Floors F1, F2, F3, F4, F5, F6 and 23 more: interpolated between floors; it may be lower than the truth."
+    assert told in short
+    assert all(len(text) <= 130 and text.endswith(".") for text in short), short
+    assert len(short) == len(set(short)) >= 3
+
+
+def test_of_many_floors_with_one_source_the_first_are_named(tmp_path):
+    (given, *_) = list_sources(_many(tmp_path, 30, known=range(30)).demands)
+    assert given == f"given PFA: {', '.join(f'F{at} X' for at in range(20))} and 10 more"

@@ -7,6 +7,7 @@ import pypdfium2
 import pytest
 
 import assess
+from assess.risk import classify
 from assess.settings import Settings
 from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, assessed
 
@@ -32,20 +33,25 @@ def read_section(path, heading, following):
 
 
 def percent(value):
-    return "–" if value is None else f"{100 * value:.1f} %"
+    """As many decimals as it takes to stay below the limit of a class."""
+    if value is None:
+        return "–"
+    texts = [f"{100 * value:.{decimals}f}" for decimals in range(1, 7)]
+    return next(text for text in texts if classify(float(text) / 100) == classify(value)) + " %"
 
 
 def chance(adopted):
     if adopted["low"] is None:
         return percent(adopted["probability"])
-    return f"{percent(adopted['probability'])} ({100 * adopted['low']:.1f} to {percent(adopted['high'])})"
+    return f"{percent(adopted['probability'])} ({percent(adopted['low'])[:-2]} to {percent(adopted['high'])})"
 
 
 def of_row(item):
     """Return what the table of all pieces shows of an item, in order."""
     methods = item["methods"]
     size = " × ".join(
-        "–" if item[f"{side}_cm"] is None else f"{item[f'{side}_cm']:.4g}" for side in ("breadth", "width", "height")
+        "–" if item[f"{side}_cm"] is None else f"{round(item[f'{side}_cm'], 1):g}"
+        for side in ("breadth", "width", "height")
     )
     return [
         str(item["quantity"]), size, f"{item['breadth_to_height']:.3f}", item["axis"], f"{item['pfa_g']:.3f}",

@@ -1,5 +1,6 @@
 """The plan of a floor: geometry in metres, and the drawing made of it."""
 
+import itertools
 import re
 from xml.etree import ElementTree
 
@@ -10,6 +11,7 @@ import assess
 from assess.inventory.blank import Content, write_workbook
 from assess.report.content import build_content
 from assess.report.html import render
+from assess.report.labels import overlap, place_labels
 from assess.report.plan import build_plan, fallen, rectangle
 from tests.workbooks import FLOORS, UNVERIFIED
 
@@ -92,7 +94,7 @@ def test_pieces_with_a_position_are_drawn_and_those_that_may_fall_are_hatched(as
     _near(risky.corners, rectangle((2, 3), 90, (-0.15, 0.15), 0.8))
     assert len(risky.fallen) == 2
     assert not anchored.fallen
-    assert (anchored.class_name, anchored.symbol) == ("anchored", "")
+    assert (anchored.class_name, anchored.symbol) == ("anchored", "⚓")
     assert (low.class_name, low.fallen) == ("low", ())
     assert plan.north == 45
 
@@ -130,6 +132,38 @@ def test_names_of_places_cover_neither_pieces_nor_each_other(tmp_path):
     plan = _plans(_assess(tmp_path / "w.xlsx", PIECES, places, ()))[0]
     assert len({(spot.label, spot.is_before) for spot in plan.places}) == 3
     assert plan.ways == ()
+
+
+def test_risky_pieces_are_named_and_anchored_ones_are_not(assessment, html):
+    first, second = _plans(assessment)
+    assert [label.text for label in first.labels] == ["A1"]
+    assert [label.text for label in second.labels] == ["<b>B1 & co<…"]
+    assert [text.text for text in _drawings(html)[0].find(f"{SVG}g[@class='labels']")] == ["A1"]
+
+
+def test_labels_lie_inside_on_no_piece_and_not_on_each_other(tmp_path):
+    pieces = [
+        {"item": f"Shelf-{at}", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 0.35 * (at % 10),
+         "y": 2.0 + 2 * (at // 10)}
+        for at in range(60)
+    ]  # fmt: skip
+    (plan, _second) = _plans(_assess(tmp_path / "w.xlsx", pieces, PLACES, ()))
+    boxes = [label.box for label in plan.labels]
+    assert 10 <= len(boxes) <= 40
+    assert all(overlap(one, other) == 0 for one, other in itertools.combinations(boxes, 2))
+    for left, low, right, high in boxes:
+        assert plan.low[0] <= left < right <= plan.high[0]
+        assert plan.low[1] <= low < high <= plan.high[1]
+    assert any(label.lead for label in plan.labels)
+
+
+def test_a_label_goes_where_it_covers_nothing():
+    piece, beside = (0.0, 0.0, 1.0, 1.0), (1.0, -5.0, 9.0, 5.0)
+    (free,) = place_labels([("A1", piece)], [piece], (-9, -9, 9, 9), 0.02)
+    (moved,) = place_labels([("A1", piece)], [piece, beside], (-9, -9, 9, 9), 0.02)
+    assert free.box[0] > piece[2]
+    assert overlap(moved.box, beside) == overlap(moved.box, piece) == 0
+    assert free.lead is moved.lead is None
 
 
 def test_no_plan_without_positions(tmp_path):
@@ -179,7 +213,7 @@ def test_colours_are_those_of_the_classes_and_each_has_its_symbol(html):
     risky, anchored, low = first.iter(f"{SVG}a")
     assert risky.find(f"{SVG}path").get("fill") == assess.risk.RiskClass.HIGH.fill
     assert risky.find(f"{SVG}text").text == "▲"
-    assert anchored.find(f"{SVG}text") is None
+    assert anchored.find(f"{SVG}text").text == "⚓"
     assert low.find(f"{SVG}text").text == "○"
 
 

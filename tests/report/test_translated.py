@@ -17,6 +17,7 @@ from assess.motion.formats import read_records
 from assess.motion.scenario import PROFILES
 from assess.motion.suite import read_suite
 from assess.report import motions, trials, words
+from assess.report.cautions import list_cautions, list_short_cautions
 from assess.report.verified import build_verified, describe_verification, list_summary
 from docs.texts import collect
 from tests.report.test_verified import _assess
@@ -112,7 +113,7 @@ def test_what_shakes_the_floors_is_said(odd, spoken):
             assert not _left(motions.describe_source(demand))
             assert not _left(motions.describe_origin(demand), *_names(demand))
             assert not _left(motions.describe_treatment(demand))
-        for text in (*motions.list_sources(odd.demands), *motions.list_cautions(odd)):
+        for text in (*motions.list_sources(odd.demands), *list_cautions(odd), *list_short_cautions(odd)):
             assert text.startswith("⟦")
             assert not _left(text), text
         for line in motions.list_assumptions(odd):
@@ -143,7 +144,7 @@ def test_the_verification_is_said(peaks, more, spoken, tmp_path):
         verified = build_verified(assessment, tuple(assessment))
         section = trials.build_trials(assessment, verified)
         texts = [*verified.status, verified.footer, verified.interval, verified.adopted, *section.paragraphs]
-        texts += [*list_summary(verified), *motions.list_cautions(assessment), describe_verification(assessment)]
+        texts += [*list_summary(verified), *list_cautions(assessment), describe_verification(assessment)]
         for text in texts:
             assert text.startswith("⟦")
             assert not _left(text, "ours"), text

@@ -178,7 +178,21 @@ def test_settings_and_restitution_are_those_of_the_run(tmp_path):
 def test_numbers_are_written_as_the_language_does(tmp_path):
     one = piece(tmp_path, 50, 200, 0.4, 40)
     with speaking(load_catalogue("it")):
-        assert "B/H = 50/200 = 0,25000" in by_key(one)["proposed_or"].steps
+        worked = by_key(one)
+    assert "B/H = 50/200 = 0,25000" in worked["proposed_or"].steps
+    for method in worked.values():
+        for step in method.steps:
+            assert not re.search(r"\d\.\d", step), step
+
+
+def test_words_beside_a_formula_are_translated(tmp_path):
+    settings = Settings(verify="all", runs=20)
+    one = assessed(tmp_path / "w.xlsx", settings=settings).result(0)
+    with speaking(load_catalogue("it")):
+        steps = [step for method in by_key(one, settings).values() for step in method.steps]
+    assert any(step.startswith("OR come pubblicato (9) = ") for step in steps)
+    for step in steps:
+        assert not re.search(r"\b(as printed|low|high|above|below|is)\b", step), step
 
 
 class TestExample:

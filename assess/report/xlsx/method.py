@@ -9,6 +9,7 @@ from assess.methods._method import Range
 from assess.motion.scenario import PROFILES
 from assess.report.content import Content
 from assess.report.motions import ENVELOPES, list_clauses, profile_status
+from assess.report.provenance import say_reference
 from assess.report.xlsx.formulas import LIMITS as LIMIT_NAMES
 from assess.report.xlsx.pen import Pen
 from assess.risk import LIMITS
@@ -47,7 +48,7 @@ def _method(method: Method) -> Iterator[tuple[str, str, str]]:
     )
     for what, texts in parts:
         yield from ((title, what, _(text)) for text in texts)
-    yield title, _("Source"), str(method.reference)
+    yield title, _("Source"), say_reference(method.reference)
 
 
 def write_assumptions(pen: Pen, page: Any, content: Content) -> None:

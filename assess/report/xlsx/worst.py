@@ -120,7 +120,7 @@ def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
     heads = (_("No."), _("Item"), _("Floor"), _("Room"), _("Description"), _("Importance"), _("Route"),
              _("Class (as run)"), _("Chance"), _("Interval low"), _("Interval high"), _("Pieces"),
              _("Expected falls saved if the anchor holds"))  # fmt: skip
-    formats = dict.fromkeys((8, 9, 10), "0.0%") | {12: "0.00"}
+    formats = dict.fromkeys((8, 9, 10), "0.0%") | {12: "0.000"}
     pen.listing(page, heads, (6, 12, 9, 16, 36, 13, 12, 36, 10, 10, 10, 8, 16), rows, formats)
     if rows:
         pen.bar(page, f"I2:I{len(rows) + 1}")

@@ -1,0 +1,135 @@
+"""The PDF as it is laid out: nothing runs past the margin, no word of a head is broken, sections keep their heads."""
+
+import pytest
+
+import assess
+from assess.inventory.blank import Content, write_workbook
+from assess.report.html import render
+from assess.report.look import Look
+from assess.report.pdf import load_weasyprint
+from tests.workbooks import UNVERIFIED
+
+weasyprint = load_weasyprint()
+boxes = pytest.importorskip("weasyprint.formatting_structure.boxes")
+
+LONG = "Supercalifragilisticexpialidocious-wing"
+FLOORS = [
+    {"floor": LONG[:30], "name": f"{LONG} and annex", "pfa_x": 0.9, "pfv_x": 90.0, "pfa_y": 0.8, "pfv_y": 80.0},
+    {"floor": "2", "pfa_x": 0.5, "pfv_x": 50.0, "pfa_y": 0.5, "pfv_y": 50.0},
+]
+PIECES = [
+    {"item": f"{LONG}-{at}", "floor": FLOORS[at % 2]["floor"], "room": LONG, "description": f"{LONG} of metal",
+     "breadth": 30, "width": 80, "height": 200, "x": 2.0 + at, "y": 3.0 + at % 3,
+     "anchored": "yes" if at == 3 else "no", "notes": f"{LONG} note", "route": "R", "segment": "a"}
+    for at in range(8)
+]  # fmt: skip
+PLACES = [{"place": name, "floor": "2", "x": x, "y": 1.0} for name, x in (("Hall", 1.0), ("Stair", 6.0))]
+ROUTES = [{"route": "R", "segment": "a", "floor": "2", "start": "Hall", "end": "Stair", "clear_width": 1.2}]
+
+
+@pytest.fixture(scope="module")
+def assessment(tmp_path_factory):
+    path = tmp_path_factory.mktemp("layout") / "w.xlsx"
+    building = [{"building": f"{LONG} hall", "revision": "B", "azimuth_deg": 45, "prepared_by": LONG}]
+    rows = {"Building": building, "Floors": FLOORS, "Items": PIECES, "Places": PLACES, "Routes": ROUTES}
+    write_workbook(path, Content(rows=rows), "si")
+    return assess.run(assess.read_inventory(path), UNVERIFIED)
+
+
+@pytest.fixture(scope="module", params=["en", "it"])
+def pages(request, assessment):
+    look = Look(language=request.param)
+    with look.spoken():
+        html = render(assessment, look, for_print=True)
+    return [page._page_box for page in weasyprint.HTML(string=html).render().pages]
+
+
+def _walk(box):
+    yield box
+    for child in getattr(box, "children", ()):
+        yield from _walk(child)
+
+
+def _of(box, kind):
+    return [one for one in _walk(box) if isinstance(one, kind)]
+
+
+def _text(box):
+    return "".join(one.text for one in _of(box, boxes.TextBox))
+
+
+def _right(box):
+    return max((one.position_x + one.width for one in _of(box, boxes.TextBox)), default=0)
+
+
+def _heads(pages):
+    return [cell for page in pages for cell in _of(page, boxes.TableCellBox) if cell.element_tag == "th"]
+
+
+def test_no_table_runs_past_the_margin(pages):
+    tables = [(page, table) for page in pages for table in _of(page, boxes.TableBox)]
+    assert len(tables) > 10
+    for page, table in tables:
+        assert table.position_x + table.margin_width() <= page.content_box_x() + page.width + 0.5, _text(table)[:80]
+
+
+def test_no_text_runs_out_of_its_cell(pages):
+    for page in pages:
+        for table in _of(page, boxes.TableBox):
+            if "short" in table.element.get("class", ""):  # rows of one line, cut at the end of the cell
+                continue
+            for cell in _of(table, boxes.TableCellBox):
+                end = cell.content_box_x() + cell.width
+                assert all(_right(line) <= end + 0.5 for line in _of(cell, boxes.LineBox)), _text(cell)
+
+
+def test_words_of_a_head_are_broken_at_a_syllable_only(pages):
+    heads = [head for head in _heads(pages) if head.element.get("scope") == "col"]
+    assert len(heads) > 40
+    for head in heads:
+        whole = "".join(head.element.itertext()).split()
+        for line in _of(head, boxes.LineBox):
+            *words, last = _text(line).split() or [""]
+            assert all(any(word in one for one in whole) for word in words)
+            is_end_of_word = any(one.endswith(last) for one in whole) or last.endswith("-")
+            assert is_end_of_word or (last.endswith("‐") and len(last) > 3), whole
+
+
+def test_the_foot_of_a_page_is_one_line(pages):
+    for page in pages:
+        feet = [one for one in _of(page, boxes.MarginBox) if one.at_keyword in ("@bottom-left", "@bottom-right")]
+        assert len(feet) == 2
+        for foot in feet:
+            assert len(_of(foot, boxes.LineBox)) == 1, _text(foot)
+
+
+def test_the_running_head_is_the_section_in_force_where_the_page_begins(pages):
+    chapter = ""
+    for page in pages:
+        heads = [one for one in _of(page, boxes.BlockBox) if one.element_tag == "h2"]
+        titles = [one for one in heads if one.element.get("class") != "plain"]
+        body = next(one for one in page.children if not isinstance(one, boxes.MarginBox))
+        top = min((line.position_y for line in _of(body, boxes.LineBox)), default=0)
+        begins = bool(titles) and _of(titles[0], boxes.LineBox)[0].position_y <= top + 0.5
+        head = "".join(_text(one) for one in _of(page, boxes.MarginBox) if one.at_keyword == "@top-right")
+        expected = _text(titles[0]) if begins else chapter
+        assert head == expected
+        chapter = _text(titles[-1]) if titles else chapter
+
+
+def test_a_floor_with_its_plan_stays_on_one_page(pages):
+    floors = [
+        (at, one.element.get("id"))
+        for at, page in enumerate(pages)
+        for one in _of(page, boxes.BlockBox)
+        if one.element_tag == "article" and one.element.get("id", "").startswith("floor-")
+    ]
+    assert len(floors) == len({name for _at, name in floors}) == 2
+
+
+def test_the_approval_block_has_room_for_signatures(pages):
+    (table,) = [one for one in _of(pages[0], boxes.TableBox) if "signing" in one.element.get("class", "")]
+    rows = [row for row in _of(table, boxes.TableRowBox) if row.element.getparent().tag == "tbody"] if hasattr(
+        table.element, "getparent") else _of(table, boxes.TableRowBox)[1:]  # fmt: skip
+    assert len(rows) == 3
+    assert all(row.height >= 14 / 25.4 * 96 - 1 for row in rows)

@@ -1,0 +1,161 @@
+"""Numbers and sentences of the reports: none contradicts the class, the counts, or the other reports beside it."""
+
+from dataclasses import replace
+
+import openpyxl
+import pytest
+
+import assess
+from assess.report import words
+from assess.report.content import build_content
+from assess.report.counts import CannotRock, count, count_cannot_rock
+from assess.report.html import render
+from assess.report.statements import list_assumptions
+from assess.report.summary import describe, say_plainly
+from assess.risk import LIMITS, RiskClass, classify
+from assess.settings import Settings
+from tests.report.test_html import _read
+from tests.workbooks import ITEMS, assessed
+
+FLOORS = [{"floor": "1", "pfa_x": 0.4, "pfv_x": 40, "pfa_y": 0.4, "pfv_y": 40}]
+PIECE = {"item": "a", "floor": "1", "breadth": 30, "width": 80, "height": 200}
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.6998, "69.98 %"), (0.69996, "69.996 %"), (0.7, "70.0 %"), (0.7001, "70.0 %"), (0.2997, "29.97 %"),
+        (0.02996, "2.996 %"), (0.03, "3.0 %"), (0.0304, "3.0 %"), (0.699, "69.9 %"), (0.0, "0.0 %"), (1.0, "100.0 %"),
+        (0.9999, "100.0 %"), (0.7 - 1e-12, "69.999999 %"), (None, "–"),
+    ],
+)  # fmt: skip
+def test_a_percentage_never_contradicts_its_class(value, text):
+    assert words.percent(value) == text
+
+
+def test_that_holds_beside_every_limit():
+    for limit in LIMITS:
+        for power in range(1, 17):
+            value = limit - 10.0**-power
+            if value >= 0:
+                assert classify(float(words.percent(value)[:-2]) / 100) == classify(value), value
+
+
+@pytest.mark.parametrize(
+    ("length", "cm", "m"),
+    [
+        (0.3048, "30.5", "0.3"), (0.9144, "91.4", "0.91"), (1.8288, "182.9", "1.83"), (18.288, "1828.8", "18.29"),
+        (3.5, "350", "3.5"), (0.0, "0", "0"), (-0.001, "-0.1", "0"), (12345.678, "1234567.8", "12345.68"),
+        (None, "–", "–"),
+    ],
+)  # fmt: skip
+def test_lengths_have_no_needless_decimals(length, cm, m):
+    assert (words.in_cm(length), words.in_m(length)) == (cm, m)
+
+
+def test_an_imperial_workbook_is_shown_in_short_numbers(tmp_path):
+    items = [{"item": "a", "floor": "1", "breadth": 30.48, "width": 91.44, "height": 182.88}]
+    assessment = assessed(tmp_path / "w.xlsx", items, FLOORS, "us", height=18.288)
+    (one,) = assessment
+    assert words.size(one) == "30.5 × 91.4 × 182.9"
+    content = build_content(assessment)
+    assert content.building["height"][1] == "18.29 m"
+    assert ("Units", "Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
+            "are.") in content.assumptions  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def rocked(tmp_path_factory):
+    """Only the piece of high class was verified; one more is partly anchored."""
+    items = [PIECE | {"item": "thin", "anchored": "partly", "description": "Bookcase with a very long description"},
+             PIECE | {"item": "stout", "floor": "2", "breadth": 60, "axis": "X"}]  # fmt: skip
+    floors = [*FLOORS, {"floor": "2", "pfa_x": 0.1, "pfv_x": 20}]
+    return assessed(tmp_path_factory.mktemp("w") / "w.xlsx", items, floors, settings=Settings(runs=20))
+
+
+def test_a_chance_of_the_formula_is_marked_beside_verified_ones(rocked, tmp_path):
+    assert [one.is_verified for one in rocked] == [True, False]
+    html = render(rocked)
+    bare = [one for one in rocked if one.adopted.low is None]
+    assert html.count("<small>formula</small>") == len(bare) == 1
+    assert "<small>formula</small>" not in render(assessed(tmp_path / "w.xlsx"))
+
+
+def test_a_partly_anchored_piece_says_so_in_short_tables(rocked):
+    thin, stout = rocked
+    assert describe(thin, 28) == "Bookcase wi…, partly anchored"
+    assert "partly" not in describe(stout)
+    text = _read(render(rocked))
+    assert text.count("thin: Bookcase wi…, partly anchored") == 3  # the worst, what to fix first, the floor
+
+
+@pytest.mark.parametrize(
+    ("very_high", "high", "low", "may_be", "told"),
+    [
+        (0, 0, 1, 0, "The 1 free-standing piece has no high or very high chance of overturning in this scenario."),
+        (0, 0, 5, 2, "Of 5 free-standing pieces, none has a high or very high chance of overturning in this scenario. "
+                     "2 may have either."),
+        (1, 0, 0, 0, "The one free-standing piece has a very high chance of overturning in this scenario."),
+        (0, 1, 0, 0, "The one free-standing piece has a high chance of overturning in this scenario."),
+        (0, 1, 4, 0, "Of 5 free-standing pieces, 1 has a high chance of overturning in this scenario, none a very high "
+                     "one."),
+        (2, 0, 3, 0, "Of 5 free-standing pieces, 2 have a very high chance of overturning in this scenario, none a "
+                     "high one."),
+        (1, 3, 0, 1, "Of 4 free-standing pieces, 1 has a very high chance of overturning in this scenario and 3 a high "
+                     "one. 1 more may have either."),
+    ],
+)  # fmt: skip
+def test_the_first_sentence_for_none_one_and_many(very_high, high, low, may_be, told):
+    by_class = dict(zip(reversed(RiskClass), (very_high, high, 0, low), strict=True))
+    assert " ".join(say_plainly(replace(count("all", []), by_class=by_class), may_be, [], [])) == told
+
+
+@pytest.mark.parametrize(
+    ("counted", "told"),
+    [
+        (CannotRock(12, 1, 0, 1), "Of 12 pieces of high or very high class by formula, 1 cannot even start to rock "
+                                  "under this motion and 1 is too stocky to rock"),
+        (CannotRock(12, 3, 0, 0), "Of 12 pieces of high or very high class by formula, 3 cannot even start to rock "
+                                  "under their motions"),
+        (CannotRock(1, 0, 0, 1), "Of 1 piece of high or very high class by formula, 1 is too stocky to rock"),
+    ],
+)  # fmt: skip
+def test_what_cannot_rock_is_told_with_what_is_too_stocky(counted, told):
+    assert counted.sentence == told
+
+
+def test_pieces_that_cannot_rock_are_counted(tmp_path):
+    items = [PIECE | {"item": "stocky", "breadth": 145, "width": 145, "height": 100, "quantity": 2},
+             PIECE | {"item": "still", "breadth": 36, "height": 144, "quantity": 3},
+             PIECE | {"item": "thin"}, PIECE | {"item": "held", "anchored": "yes"}]  # fmt: skip
+    found = list(assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.24, "pfv_x": 35}]))
+    high = {one.item.item for one in found if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH}
+    counted = count_cannot_rock(found)
+    assert counted.stocky == (2 if "stocky" in high else 0)
+    assert counted.still == (3 if "still" in high else 0)
+    assert counted.risky == sum(one.item.quantity for one in found if one.item.item in high)
+    risky = [replace(one, adopted=replace(one.adopted, risk=RiskClass.HIGH)) for one in found]
+    assert count_cannot_rock(risky) == CannotRock(risky=6, still=3, kept=0, stocky=2)
+
+
+def test_without_pieces_nothing_is_said_of_them(tmp_path):
+    assessment = assessed(tmp_path / "w.xlsx", [])
+    assert not [name for name, _ in list_assumptions(assessment) if name.startswith(("Axis unknown", "Friction"))]
+    assert "K-H: Kaneko-Hayashi" not in _read(render(assessment))
+
+
+def test_long_names_are_cut_without_a_remark_where_there_is_no_room(tmp_path):
+    long = "N" * 300
+    items = [PIECE | {"item": long, "room": long, "description": long}]
+    html = render(assessed(tmp_path / "w.xlsx", items, [FLOORS[0] | {"name": long}]))
+    assert "whole in report.xlsx" not in html
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+def test_what_is_saved_is_the_same_number_in_every_report(tmp_path):
+    assessment = assessed(tmp_path / "w.xlsx", ITEMS)
+    fix = build_content(assessment).summary.fixes[0]
+    assert f" {fix.saved:.3f} " in _read(render(assessment))
+    written = assess.write_reports(assessment, tmp_path / "out", ("xlsx",))
+    cell = openpyxl.load_workbook(written["xlsx"])["Fix first"]["M2"]
+    assert (cell.number_format, cell.value) == ("0.000", pytest.approx(fix.saved))
