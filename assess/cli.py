@@ -149,7 +149,7 @@ def run(
         assessment = _assess(path, settings, motions, jobs)
         print_problems([one for one in assessment.problems if one.severity == "warning"])
         if "pdf" in wanted:
-            from assess.report.pdf import list_problems
+            from assess.report.pages.pdf import list_problems
 
             print_problems([one for one in list_problems(assessment) if one.severity == "warning"])
         written = write_reports(assessment, folder, wanted, look(assessment.inventory))
@@ -166,7 +166,7 @@ def record(
     plot: Annotated[Path | None, typer.Option(help="Draw the channels to this .png, .svg or .pdf.")] = None,
 ) -> None:
     """Tell what records hold: channels, time step, PFA, PFV, displacement and 5 % spectrum, as assess treats them."""
-    from assess.report.records import check_figure, describe, list_lines, read_channels, write_figure
+    from assess.report.commands.records import check_figure, describe, list_lines, read_channels, write_figure
 
     if plot is not None:
         with exits():
@@ -209,8 +209,8 @@ def rock(
     plot: Annotated[Path | None, typer.Option(help="Draw motion and rotation to this .png, .svg or .pdf.")] = None,
 ) -> None:
     """Rock one block under one record: whether it overturns, by direct integration of Housner's equation."""
-    from assess.report.records import check_figure
-    from assess.report.rocking import describe, list_lines, read_case, write_figure
+    from assess.report.commands.records import check_figure
+    from assess.report.commands.rocking import describe, list_lines, read_case, write_figure
 
     with exits():
         if plot is not None:

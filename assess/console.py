@@ -72,6 +72,6 @@ def print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
 def _describe_verification(assessment: "Assessment") -> str:
     if not assessment.joints:
         return "Not verified."
-    from assess.report.verified import describe_verification
+    from assess.report.findings.verified import describe_verification
 
     return describe_verification(assessment)

@@ -65,7 +65,7 @@ def _obspy() -> Finding:
 
 
 def _pdf() -> Finding:
-    from assess.report.pdf import load_weasyprint
+    from assess.report.pages.pdf import load_weasyprint
 
     try:
         weasyprint = load_weasyprint()

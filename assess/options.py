@@ -21,7 +21,7 @@ def read_look(language: str | None, template: Path | None, accessible: bool) -> 
 
     look = Look(language=find_language(language or "en"), templates=template, accessible=accessible)
     if template is not None:
-        from assess.report.html import check_look
+        from assess.report.pages.html import check_look
 
         check_look(look)
     return lambda inventory: look if language else replace(look, language=inventory.report_language)

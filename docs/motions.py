@@ -58,7 +58,7 @@ RECORDS: dict[str, tuple[Path, float, float]] = {
 
 def main() -> None:
     """Write the page and the figures."""
-    from assess.report.ensembles import draw_ensemble, draw_targets
+    from assess.report.commands.ensembles import draw_ensemble, draw_targets
 
     figures = ROOT / "docs" / "figures"
     motions = {name: treat(read_records(path)[0]) for name, (path, _, _) in RECORDS.items()}

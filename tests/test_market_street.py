@@ -27,7 +27,7 @@ from assess.inventory.workbook import read_inventory
 from assess.live_values import stored_live
 from assess.report import write_reports
 from assess.report.data import SCHEMA
-from assess.report.motions import ENVELOPES
+from assess.report.findings.motions import ENVELOPES
 from assess.risk import RiskClass
 from assess.settings import Settings
 from assess.units import GRAVITY

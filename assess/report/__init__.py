@@ -32,9 +32,9 @@ FORMATS = tuple(name for name in FILES if name != "npz")
 PLAIN = ("json", "csv", "npz")
 """Formats for programs: the same in every language."""
 _WRITERS = {
-    "pdf": ("pdf", "write_pdf"),
+    "pdf": ("pages.pdf", "write_pdf"),
     "xlsx": ("xlsx", "write_xlsx"),
-    "html": ("html", "write_html"),
+    "html": ("pages.html", "write_html"),
     "json": ("data", "write_json"),
     "csv": ("table", "write_csv"),
     "npz": ("outcomes", "write_npz"),

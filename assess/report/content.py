@@ -12,12 +12,13 @@ from assess.inventory.model import Floor
 from assess.language import gettext as _
 from assess.language import number
 from assess.methods import Method
-from assess.report import cautions, motions, statements, trials, words
+from assess.report import statements, words
 from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, count_cannot_rock, count_rooms
+from assess.report.findings import cautions, motions, trials
+from assess.report.findings.trials import Trials
+from assess.report.findings.verified import WILSON, Verified, build_verified
 from assess.report.provenance import report_time, say_date, say_reference, versions
 from assess.report.summary import FLOORS, Summary, build_summary, list_risky
-from assess.report.trials import Trials
-from assess.report.verified import WILSON, Verified, build_verified
 from assess.results import Assessment, ItemResult
 from assess.risk import LIMITS, RiskClass
 from assess.version import __version__

@@ -8,7 +8,8 @@ from assess.demand import FLAGS as DEMAND_FLAGS
 from assess.inventory.columns import ITEMS
 from assess.language import gettext as _
 from assess.language import ngettext, number
-from assess.report import motions, words
+from assess.report import words
+from assess.report.findings import motions
 from assess.results import Assessment
 from assess.units import GRAVITY
 from assess.version import __version__

@@ -27,7 +27,7 @@ PARTS = """
 import json, sys, time
 import matplotlib.figure, weasyprint
 import assess
-from assess.report import context, html
+from assess.report.pages import context, html
 from assess.report.content import build_content
 from assess.report.look import Look
 from assess.settings import Settings

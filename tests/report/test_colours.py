@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from assess import resources
-from assess.report.plan import ANCHORED
+from assess.report.figures.plan import ANCHORED
 from assess.risk import RiskClass
 
 SIGHT = {

@@ -10,10 +10,10 @@ import pytest
 from assess.language import Catalogue, speaking
 from assess.methods import Cases, all_methods
 from assess.report.content import build_content
-from assess.report.contours import build_grid, choose_contours, draw_contours, evaluate_grid
-from assess.report.figures import draw
-from assess.report.placing import GAP, LETTER, LINE, box_around, find_clearest, find_room
-from assess.report.risk_map import LINES, MOST_NAMES
+from assess.report.figures.contours import build_grid, choose_contours, draw_contours, evaluate_grid
+from assess.report.figures.draw import draw
+from assess.report.figures.placing import GAP, LETTER, LINE, box_around, find_clearest, find_room
+from assess.report.figures.risk_map import LINES, MOST_NAMES
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.workbooks import RECORDS, assessed

@@ -9,9 +9,14 @@ import pytest
 import assess
 from assess.language import load_catalogue, speaking
 from assess.methods import all_methods, fema_p58
-from assess.report.disagreements import MOST_REASONS, find_disagreements, group_disagreements, summarise_disagreements
-from assess.report.facts import Facts, span
-from assess.report.reasons import KINDS, find_kinds
+from assess.report.findings.disagreements import (
+    MOST_REASONS,
+    find_disagreements,
+    group_disagreements,
+    summarise_disagreements,
+)
+from assess.report.findings.facts import Facts, span
+from assess.report.findings.reasons import KINDS, find_kinds
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
 from assess.units import GRAVITY

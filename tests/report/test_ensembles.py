@@ -11,7 +11,7 @@ from assess.motion.formats import read_records
 from assess.motion.record import treat
 from assess.motion.spectrum import build_periods
 from assess.motion.target import generic_shape
-from assess.report.ensembles import draw_ensemble, draw_targets
+from assess.report.commands.ensembles import draw_ensemble, draw_targets
 
 ROOT = Path(__file__).parents[2]
 RECORD = "575 Market Street, 34th floor, 225°"

@@ -8,8 +8,8 @@ import pypdfium2
 import pytest
 
 from assess.language import load_catalogue, speaking
-from assess.report import glyphs, pdf
 from assess.report.look import Look
+from assess.report.pages import glyphs, pdf
 from tests.workbooks import assessed, write
 
 MEND = "Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk)."
@@ -91,7 +91,7 @@ def test_many_fields_are_counted():
 _ON_A_BARE_MACHINE = """
 import sys
 import assess
-from assess.report import pdf
+from assess.report.pages import pdf
 from assess.report.look import Look
 assessment = assess.run(assess.read_inventory(sys.argv[1]), assess.Settings(verify="none"))
 print(*pdf.list_problems(assessment), sep="\\n")

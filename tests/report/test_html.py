@@ -10,9 +10,9 @@ import pytest
 import assess
 from assess.cases import FLAGS as CASE_FLAGS
 from assess.methods import all_methods
-from assess.report.context import LIMITS
-from assess.report.html import render
-from assess.report.page import script_hash
+from assess.report.pages.context import LIMITS
+from assess.report.pages.html import render
+from assess.report.pages.parts import script_hash
 from tests.workbooks import assessed, write
 
 
@@ -129,7 +129,7 @@ def test_a_report_of_a_single_floor_without_items_renders(tmp_path):
 
 
 def test_a_long_list_is_cut_with_a_word(tmp_path, monkeypatch):
-    monkeypatch.setattr("assess.report.context.LIMITS", LIMITS | {"most_rows": 3})
+    monkeypatch.setattr("assess.report.pages.context.LIMITS", LIMITS | {"most_rows": 3})
     text = _read(render(assessed(tmp_path / "w.xlsx")))
     assert "5 rows, the first 3 of which are shown: the Excel report holds all" in text
 

@@ -4,9 +4,9 @@ import pytest
 
 import assess
 from assess.inventory.blank import Content, write_workbook
-from assess.report.html import render
 from assess.report.look import Look
-from assess.report.pdf import load_weasyprint
+from assess.report.pages.html import render
+from assess.report.pages.pdf import load_weasyprint
 from tests.workbooks import UNVERIFIED
 
 weasyprint = load_weasyprint()

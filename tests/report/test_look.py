@@ -9,8 +9,8 @@ import assess
 from assess.cli import app
 from assess.errors import InputError
 from assess.language import load_catalogue
-from assess.report.html import render
 from assess.report.look import Look
+from assess.report.pages.html import render
 from tests.workbooks import ITEMS, assessed, write
 
 HEAD = """msgid ""

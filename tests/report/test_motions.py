@@ -9,10 +9,10 @@ import pytest
 import assess
 from assess.demand import FLAGS, MAY_BE_LOWER
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
-from assess.report.cautions import list_cautions, list_short_cautions
 from assess.report.data import SCHEMA
-from assess.report.motions import ENVELOPES, describe_origin, describe_source, list_sources
-from assess.report.page import write_equation
+from assess.report.findings.cautions import list_cautions, list_short_cautions
+from assess.report.findings.motions import ENVELOPES, describe_origin, describe_source, list_sources
+from assess.report.pages.parts import write_equation
 from tests.report.test_html import _read
 from tests.workbooks import UNVERIFIED as BY_FORMULA
 from tests.workbooks import write

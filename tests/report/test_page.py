@@ -5,7 +5,7 @@ import hashlib
 
 import pytest
 
-from assess.report.page import script_hash, write_equation
+from assess.report.pages.parts import script_hash, write_equation
 
 
 @pytest.mark.parametrize(

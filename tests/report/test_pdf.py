@@ -8,9 +8,9 @@ import pypdfium2.raw as pdfium
 import pytest
 
 import assess
-from assess.report.attached import list_attached
 from assess.report.look import Look
-from assess.report.pdf import list_problems, write_pdf
+from assess.report.pages.attached import list_attached
+from assess.report.pages.pdf import list_problems, write_pdf
 from tests.workbooks import assessed
 
 EPOCH = 1_700_000_000

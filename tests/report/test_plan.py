@@ -10,9 +10,9 @@ import pytest
 import assess
 from assess.inventory.blank import Content, write_workbook
 from assess.report.content import build_content
-from assess.report.html import render
-from assess.report.labels import overlap, place_labels
-from assess.report.plan import build_plan, fallen, rectangle
+from assess.report.figures.labels import overlap, place_labels
+from assess.report.figures.plan import build_plan, fallen, rectangle
+from assess.report.pages.html import render
 from tests.workbooks import FLOORS, UNVERIFIED
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -12,7 +12,7 @@ from assess.cli import app
 from assess.errors import OutputError
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.report.records import read_channels, write_figure
+from assess.report.commands.records import read_channels, write_figure
 from tests.motion.writers import THREE, csmip_v2, zipped
 
 RECORDS = Path(__file__).parents[2] / "samples" / "records"

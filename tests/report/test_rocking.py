@@ -11,8 +11,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from assess.errors import InputError
-from assess.report import figures, rocking
-from assess.report.rocking import describe, list_lines, read_case, tell_outcome, write_figure
+from assess.report.commands import rocking
+from assess.report.commands.rocking import describe, list_lines, read_case, tell_outcome, write_figure
+from assess.report.figures import draw as figures
 
 SAMPLES = Path(__file__).parents[2] / "samples" / "records"
 FLOOR, SWEEP = str(SAMPLES / "0165a_u.smc"), str(SAMPLES / "made-up-sweep.csv")

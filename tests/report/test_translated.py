@@ -16,9 +16,10 @@ from assess.language import Catalogue, gettext, speaking
 from assess.motion.formats import read_records
 from assess.motion.scenario import PROFILES
 from assess.motion.suite import read_suite
-from assess.report import motions, trials, words
-from assess.report.cautions import list_cautions, list_short_cautions
-from assess.report.verified import build_verified, describe_verification, list_summary
+from assess.report import words
+from assess.report.findings import motions, trials
+from assess.report.findings.cautions import list_cautions, list_short_cautions
+from assess.report.findings.verified import build_verified, describe_verification, list_summary
 from docs.texts import collect
 from tests.report.test_verified import _assess
 from tests.workbooks import RECORDS, write

@@ -15,7 +15,7 @@ import pytest
 
 import assess
 from assess.report.look import Look
-from assess.report.pdf import load_weasyprint, write_pdf
+from assess.report.pages.pdf import load_weasyprint, write_pdf
 from tests.workbooks import UNVERIFIED, assessed
 
 HERE = Path(__file__).parents[1] / "verapdf"

@@ -16,11 +16,11 @@ from assess.adoption import VERIFICATION, adopt
 from assess.motion.record import Motion
 from assess.motion.suite import Suite
 from assess.report import words
-from assess.report.cautions import list_cautions
 from assess.report.content import build_content
-from assess.report.html import render
-from assess.report.rocked import choose_traced, draw_traced
-from assess.report.verified import describe_verification
+from assess.report.figures.verification import choose_traced, draw_traced
+from assess.report.findings.cautions import list_cautions
+from assess.report.findings.verified import describe_verification
+from assess.report.pages.html import render
 from assess.risk import RiskClass
 from assess.settings import Settings
 from assess.units import GRAVITY

@@ -9,7 +9,7 @@ import assess
 from assess.report import words
 from assess.report.content import build_content
 from assess.report.counts import CannotRock, count, count_cannot_rock
-from assess.report.html import render
+from assess.report.pages.html import render
 from assess.report.statements import list_assumptions
 from assess.report.summary import describe, say_plainly
 from assess.risk import LIMITS, RiskClass, classify

@@ -11,7 +11,7 @@ from assess.language import load_catalogue, speaking
 from assess.methods import all_methods
 from assess.methods._method import normal_cdf
 from assess.methods.proposed_or import COEFFICIENTS
-from assess.report.worked import WORKING, choose_example, work_example
+from assess.report.example.worked import WORKING, choose_example, work_example
 from assess.settings import Settings
 from tests.workbooks import RECORDS, UNVERIFIED, assessed
 

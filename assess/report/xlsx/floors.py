@@ -12,7 +12,7 @@ from assess.methods._method import ALIKE
 from assess.motion.estimate import HIGHEST_FLOOR_FREQUENCY
 from assess.report.content import Content
 from assess.report.data import edge
-from assess.report.motions import describe_source, factors
+from assess.report.findings.motions import describe_source, factors
 from assess.report.xlsx import charts
 from assess.report.xlsx.formulas import EDITED_LETTERS, edited_motion
 from assess.report.xlsx.items import HEAD

@@ -8,7 +8,7 @@ from assess.methods import Method
 from assess.methods._method import Range
 from assess.motion.scenario import PROFILES
 from assess.report.content import Content
-from assess.report.motions import ENVELOPES, list_clauses, profile_status
+from assess.report.findings.motions import ENVELOPES, list_clauses, profile_status
 from assess.report.provenance import say_reference
 from assess.report.xlsx.formulas import LIMITS as LIMIT_NAMES
 from assess.report.xlsx.pen import Pen

@@ -8,7 +8,7 @@ from assess.language import gettext as _
 from assess.report import words
 from assess.report.content import Content
 from assess.report.data import edge
-from assess.report.motions import describe_origin, describe_source, describe_treatment
+from assess.report.findings.motions import describe_origin, describe_source, describe_treatment
 from assess.report.xlsx.pen import Pen, with_unit
 from assess.report.xlsx.said import ANCHORED
 from assess.results import ItemResult

@@ -8,7 +8,7 @@ from xlsxwriter.utility import xl_col_to_name
 from assess.inventory.live import OUTSIDE
 from assess.language import gettext as _
 from assess.report.content import Content
-from assess.report.verified import describe_verification
+from assess.report.findings.verified import describe_verification
 from assess.report.xlsx import charts, worst
 from assess.report.xlsx.items import HEAD, item_areas
 from assess.report.xlsx.pen import LINE, Pen, clip, count_lines

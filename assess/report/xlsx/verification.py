@@ -12,7 +12,7 @@ from assess.methods._method import Joint
 from assess.report import words
 from assess.report.content import Content
 from assess.report.data import ensemble_record
-from assess.report.motions import describe_source
+from assess.report.findings.motions import describe_source
 from assess.report.xlsx.pen import Pen, with_unit
 from assess.results import Assessment
 

@@ -11,8 +11,8 @@ from assess.language import ngettext, number
 from assess.methods._method import Joint
 from assess.methods.housner_monte_carlo import LOOKS, LOOKS_Z, interval_width
 from assess.report import words
-from assess.report.motions import describe_suite
-from assess.report.verified import Verified, name_some
+from assess.report.findings.motions import describe_suite
+from assess.report.findings.verified import Verified, name_some
 from assess.results import Assessment, ItemResult
 from assess.settings import AUTO
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from assess.language import gettext as _
 from assess.methods import all_methods
-from assess.report.working import Piece, Worked
-from assess.report.working_formulas import work_kaneko_hayashi, work_proposed_or
-from assess.report.working_others import work_fema_p58, work_housner, work_ishiyama, work_japan_rule, work_static
+from assess.report.example.formulas import work_kaneko_hayashi, work_proposed_or
+from assess.report.example.others import work_fema_p58, work_housner, work_ishiyama, work_japan_rule, work_static
+from assess.report.example.steps import Piece, Worked
 from assess.results import ItemResult
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge

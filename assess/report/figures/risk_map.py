@@ -10,8 +10,8 @@ from assess.language import number
 from assess.methods import Method
 from assess.methods._method import FloatArray
 from assess.report import words
-from assess.report.figures import HATCHES, label
-from assess.report.placing import GAP, LETTER, LINE, Box, box_around, find_clearest, find_room
+from assess.report.figures.draw import HATCHES, label
+from assess.report.figures.placing import GAP, LETTER, LINE, Box, box_around, find_clearest, find_room
 from assess.results import ItemResult
 from assess.risk import LIMITS, RiskClass
 from assess.units import LENGTH, ROUNDING

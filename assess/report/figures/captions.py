@@ -7,7 +7,7 @@ from assess.language import gettext as _
 from assess.language import ngettext
 from assess.report import words
 from assess.report.content import Content
-from assess.report.rocked import Traced
+from assess.report.figures.verification import Traced
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class Caption:
 
 
 def caption_traced(content: Content, traced: Sequence[Traced]) -> list[Caption]:
-    """Return the captions of the figures that `assess.report.rocked.draw_traced` draws."""
+    """Return the captions of the figures that `assess.report.figures.verification.draw_traced` draws."""
     if not traced:
         return []
     names = ", ".join(one.name for one in traced)

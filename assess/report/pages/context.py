@@ -8,19 +8,21 @@ from typing import Any
 from assess.language import gettext as _
 from assess.language import markup, nmarkup, number
 from assess.motion.scenario import PROFILES
-from assess.report import compact, motions, summary, trials, verified, words
-from assess.report.captions import caption_traced
+from assess.report import summary, words
 from assess.report.content import Content, has_worse_motion
-from assess.report.contours import choose_contours, draw_contours
 from assess.report.counts import build_bars
-from assess.report.disagreements import find_disagreements, group_disagreements, summarise_disagreements
-from assess.report.figures import draw_motion
+from assess.report.example.worked import choose_example, work_example
+from assess.report.figures.captions import caption_traced
+from assess.report.figures.contours import choose_contours, draw_contours
+from assess.report.figures.draw import draw_motion
+from assess.report.figures.plan import build_plan
+from assess.report.figures.verification import choose_traced, draw_traced
+from assess.report.findings import motions, trials, verified
+from assess.report.findings.disagreements import find_disagreements, group_disagreements, summarise_disagreements
 from assess.report.look import Look
-from assess.report.page import read_script, script_hash, write_equation
-from assess.report.plan import build_plan
+from assess.report.pages import compact
+from assess.report.pages.parts import read_script, script_hash, write_equation
 from assess.report.provenance import say_reference
-from assess.report.rocked import choose_traced, draw_traced
-from assess.report.worked import choose_example, work_example
 from assess.results import ItemResult
 
 FULL_ROWS = 150

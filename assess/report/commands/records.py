@@ -162,7 +162,7 @@ def write_figure(channels: Sequence[Channel], path: Path) -> int:
     OutputError
         If the file cannot be written; what was there is left as it was.
     """
-    from assess.report.figures import draw
+    from assess.report.figures.draw import draw
 
     check_figure(path)
     kind = path.suffix.lower().removeprefix(".")

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from assess.errors import PdfUnavailableError, Problem
-from assess.report import glyphs
-from assess.report.attached import Attached, list_attached, list_unattached
-from assess.report.fonts import font_faces
-from assess.report.html import render
 from assess.report.look import Look
+from assess.report.pages import glyphs
+from assess.report.pages.attached import Attached, list_attached, list_unattached
+from assess.report.pages.fonts import font_faces
+from assess.report.pages.html import render
 from assess.report.provenance import report_time
 from assess.results import Assessment
 

@@ -11,7 +11,7 @@ from assess.language import gettext as _
 from assess.methods import fema_p58, proposed_or
 from assess.methods.kaneko_hayashi import NEAR_SWITCH
 from assess.report import words
-from assess.report.facts import (
+from assess.report.findings.facts import (
     FEMA,
     INTEGRATION,
     KANEKO,

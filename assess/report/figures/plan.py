@@ -12,7 +12,7 @@ from assess.inventory.model import Inventory, Item, Segment
 from assess.language import gettext as _
 from assess.report import words
 from assess.report.content import FloorPage
-from assess.report.labels import LINE, Bounds, Label, Point, overlap, place_labels, text_width
+from assess.report.figures.labels import LINE, Bounds, Label, Point, overlap, place_labels, text_width
 from assess.results import ItemResult
 from assess.risk import RiskClass
 

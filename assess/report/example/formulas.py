@@ -10,7 +10,7 @@ from assess.methods import kaneko_hayashi
 from assess.methods.kaneko_hayashi import G
 from assess.methods.proposed_or import COEFFICIENTS, THIN_PFA_CAP, turning_breadth_to_height, turning_pfa
 from assess.methods.proposed_or import METHOD as PROPOSED_OR
-from assess.report.working import Piece, Worked, chance, fill_in, phi, show_acceleration, show_ratio
+from assess.report.example.steps import Piece, Worked, chance, fill_in, phi, show_acceleration, show_ratio
 
 # ---------------------------------------------------------------- proposed OR
 

@@ -9,7 +9,7 @@ from assess.language import gettext as _
 from assess.methods import fema_p58, ishiyama, japan_rule, static
 from assess.methods._method import FloatArray
 from assess.methods.housner_monte_carlo import interval_width
-from assess.report.working import Piece, Worked, chance, fill_in, phi, show_ratio, verdict
+from assess.report.example.steps import Piece, Worked, chance, fill_in, phi, show_ratio, verdict
 from assess.units import GRAVITY, LENGTH
 
 

@@ -14,8 +14,8 @@ from assess.language import ngettext
 from assess.methods import Cases, Method
 from assess.methods._method import FloatArray
 from assess.report.content import Content
-from assess.report.figures import draw
-from assess.report.risk_map import (
+from assess.report.figures.draw import draw
+from assess.report.figures.risk_map import (
     Place,
     paint_chances,
     paint_checked,

@@ -12,8 +12,8 @@ from assess.language import gettext as _
 from assess.language import ngettext
 from assess.methods import all_methods
 from assess.report import words
-from assess.report.facts import Facts
-from assess.report.reasons import KINDS, find_kinds
+from assess.report.findings.facts import Facts
+from assess.report.findings.reasons import KINDS, find_kinds
 from assess.results import ItemResult
 from assess.risk import RiskClass, classify
 

@@ -13,7 +13,7 @@ from assess.errors import InputError
 from assess.inventory.columns import ITEMS
 from assess.motion.record import MOST_ACCELERATION, Baseline, FloatArray, Motion, treatment
 from assess.report import words
-from assess.report.records import Channel, check_figure, read_channel, save_figure
+from assess.report.commands.records import Channel, check_figure, read_channel, save_figure
 from assess.units import GRAVITY, LENGTH
 
 LIMITS = "one rigid block in plane motion: no sliding, no vertical motion, nothing beside it"
@@ -203,7 +203,7 @@ def tell_outcome(case: Case, response: Response) -> str:
 
 def write_figure(case: Case, response: Response, path: Path) -> None:
     """Draw the motion and the block's rotation over time; OutputError if `path` cannot be written."""
-    from assess.report.figures import draw
+    from assess.report.figures.draw import draw
 
     check_figure(path)
     save_figure(draw(8, 4.6, partial(_paint, case, response), path.suffix.lower().removeprefix(".")), path)
@@ -230,7 +230,7 @@ def _paint(case: Case, response: Response, figure: Any) -> None:
 
 
 def _paint_motion(axes: Any, case: Case, response: Response) -> None:
-    from assess.report.figures import thin_out
+    from assess.report.figures.draw import thin_out
 
     values = case.motion.acceleration / GRAVITY
     times, values = thin_out(np.arange(values.size) * case.motion.time_step, values)
@@ -245,7 +245,7 @@ def _paint_motion(axes: Any, case: Case, response: Response) -> None:
 
 
 def _paint_path(axes: Any, response: Response) -> None:
-    from assess.report.figures import thin_out
+    from assess.report.figures.draw import thin_out
 
     times, ratio = thin_out(response.times, response.theta / response.critical_angle, MOST_POINTS)
     axes.plot(times, ratio, color=PATH, linewidth=1.1)

@@ -9,7 +9,7 @@ import numpy as np
 from assess.motion.compatible import Generator
 from assess.motion.record import FloatArray
 from assess.motion.spectrum import build_periods, response_spectrum
-from assess.report.figures import draw
+from assess.report.figures.draw import draw
 from assess.units import GRAVITY
 
 TICKS = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)

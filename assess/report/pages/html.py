@@ -6,9 +6,9 @@ from typing import Any
 
 from assess.errors import InputError
 from assess.report.content import build_content
-from assess.report.context import FILTERS, GLOBALS, build_context
-from assess.report.fonts import font_faces
 from assess.report.look import Look
+from assess.report.pages.context import FILTERS, GLOBALS, build_context
+from assess.report.pages.fonts import font_faces
 from assess.report.words import class_name
 from assess.results import Assessment
 from assess.risk import RiskClass

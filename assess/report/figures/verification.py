@@ -18,7 +18,7 @@ from assess.motion.record import FloatArray
 from assess.motion.spectrum import pseudo_acceleration
 from assess.report import words
 from assess.report.content import Content
-from assess.report.figures import draw, label, thin_out
+from assess.report.figures.draw import draw, label, thin_out
 from assess.results import Assessment, ItemResult
 from assess.risk import LIMITS, RiskClass, wilson_interval
 from assess.settings import AUTO

@@ -9,7 +9,7 @@ from assess.language import gettext as _
 from assess.language import ngettext
 from assess.remarks import MOST, list_floors, list_too_low
 from assess.report import words
-from assess.report.motions import ENVELOPES, describe_suite, used_profiles, with_status
+from assess.report.findings.motions import ENVELOPES, describe_suite, used_profiles, with_status
 from assess.results import Assessment
 
 UNLIKE = 0.10

@@ -1,0 +1,1 @@
+"""One piece worked through: every method with its numbers put in."""
