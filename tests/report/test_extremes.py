@@ -7,7 +7,8 @@ import pypdfium2
 import pytest
 
 import assess
-from tests.workbooks import FLOORS, ITEMS, assessed
+from tests.benchmarks.report import write_thousand
+from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, assessed
 
 LONG = "N" * 299 + "Z"
 BARE = {"item": "A1", "floor": "1", "breadth": 30, "height": 200}
@@ -73,3 +74,15 @@ def test_two_hundred_floors(tmp_path):
     for floor in levels:
         assert f"{floor['floor']} – {floor['name']}" in text
     assert sum(page.lstrip().startswith("Summary") for page in pages) == 1
+
+
+@pytest.mark.slow
+def test_a_thousand_items_take_forty_pages_and_an_appendix(tmp_path):
+    book = write_thousand(tmp_path / "w.xlsx")
+    written = assess.write_reports(assess.run(assess.read_inventory(book), UNVERIFIED), tmp_path / "out", ("pdf",))
+    pages = [page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(written["pdf"])]
+    first = next(at for at, page in enumerate(pages) if page.lstrip().startswith("Appendix"))
+    assert first <= 40
+    listed = " ".join(pages[first:])
+    for at in range(1000):
+        assert listed.count(f"P{at:04d} ") == 2, at  # all pieces, and what every method says of them
