@@ -154,7 +154,8 @@ class ListsWriter:
     def _floor(self, name: str, row: int) -> str:
         """Refer to a cell of Floors so that rows inserted or sorted there do not move the reference."""
         letter = LETTERS["Floors", name]
-        return f"INDEX({gettext('Floors')}!${letter}$1:${letter}${self.last['Floors']},{row})"
+        floors = gettext("Floors")
+        return f"INDEX({floors}!${letter}$1:${letter}${self.last['Floors']},{row})"
 
     def _own_pfa(self, row: int) -> Iterator[str]:
         for axis in "xy":

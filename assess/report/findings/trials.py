@@ -145,9 +145,9 @@ def _stopping(verified: Verified) -> str:
         last=LOOKS[-1],
         z=LOOKS_Z,
     )
-    if not verified.undecided:
-        return f"{text} {_('No piece is left undecided.')}"
-    left = _("Undecided after {last:,}: {pieces}.", last=LOOKS[-1], pieces=name_some(verified.undecided))
+    left = _("No piece is left undecided.")
+    if verified.undecided:
+        left = _("Undecided after {last:,}: {pieces}.", last=LOOKS[-1], pieces=name_some(verified.undecided))
     return f"{text} {left}"
 
 

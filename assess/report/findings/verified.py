@@ -84,7 +84,8 @@ class Verified:
     def footer(self) -> str:
         """What stands at the foot of every page."""
         if not self.done:
-            return f"{_(SCENARIO)} {_('Not verified.')}"
+            status = _("Not verified.")
+            return f"{_(SCENARIO)} {status}"
         told = ngettext(
             "Verified: {done:,} of {n:,} row; {interval}.",
             "Verified: {done:,} of {n:,} rows; {interval}.",

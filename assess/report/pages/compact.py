@@ -127,5 +127,6 @@ def _line(columns: Sequence[_Column], one: ItemResult) -> Line:
     text = "  ".join(column.put(column.read(one)) for column in columns)
     marks = words.class_marks(one)
     if one.is_anchored:
-        return Line(text, None, f"⚓ {_('anchored')} ({words.risk_label(one.adopted.risk)}{marks})")
+        mark = _("anchored")
+        return Line(text, None, f"⚓ {mark} ({words.risk_label(one.adopted.risk)}{marks})")
     return Line(text, one.adopted.risk, f"{words.risk_label(one.adopted.risk)}{marks}")
