@@ -78,16 +78,6 @@ class Content:
     notes: Sequence[ItemResult]
     making: Sequence[tuple[str, str]]
 
-    @property
-    def worst(self) -> Sequence[ItemResult]:
-        """The free-standing pieces that are most likely to fall."""
-        return self.summary.worst
-
-    @property
-    def fix_first(self) -> Sequence[ItemResult]:
-        """The pieces of at least medium class, what to fix first at the top."""
-        return [fix.result for fix in self.summary.fixes]
-
     @cached_property
     def shown_floors(self) -> Sequence[FloorPage]:
         """Floors that have pieces: each has a page."""

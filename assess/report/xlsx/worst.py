@@ -114,8 +114,8 @@ def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
         (at, one.item.item, one.item.floor, one.item.room, one.item.description or one.item.type,
          _(one.item.importance) if one.item.importance else "", one.item.route,
          f"{one.adopted.risk.symbol} {words.risk_words(one)}", one.adopted.probability, one.adopted.low,
-         one.adopted.high, one.item.quantity, one.adopted.probability * one.item.quantity)
-        for at, one in enumerate(content.fix_first, 1)
+         one.adopted.high, one.item.quantity, fix.saved)
+        for at, one, fix in ((fix.place, fix.result, fix) for fix in content.summary.fixes)
     ]  # fmt: skip
     heads = (_("No."), _("Item"), _("Floor"), _("Room"), _("Description"), _("Importance"), _("Route"),
              _("Class (as run)"), _("Chance"), _("Interval low"), _("Interval high"), _("Pieces"),
