@@ -11,11 +11,15 @@ are commonly given, the records number levels up to 42) and the period stay blan
 
 The plan is a plate of 32 x 24 m with a core in the middle, a corridor around it and rooms along the windows. X runs
 along the longer side. Every piece stands with its back to a wall, or in a row parallel to one.
+
+Routes lead from every room through the corridor to a stair, and down it to the street or the yard. On the 42nd floor
+they form a ring with a stair on either side of the core, so that its offices have two ways out; the two floors below
+have one. The west stair leads from there to the ground without a door between.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from math import hypot
+from math import inf
 from pathlib import Path
 from typing import Any, Literal
 
@@ -127,7 +131,8 @@ FURNITURE: Mapping[str, tuple[Run, ...]] = {
         Run("Meeting room", "N", 2.5, "Glass cabinet with models", "Display cabinet glass", 2),
         Run("Archive", "E", 0.8, "Shelving with box files", "Steel shelving", 4, 0, _BOLTED),
         Run("Server room", "S", 2, "Server rack", "Server rack 42U", 2, 0.9, _BOLTED | {"importance": "function"}),
-        Run("North office", "N", 4, "Bookcase", "Bookcase 5 shelves", 2, 0, _SHELVES),
+        Run("North office", "N", 4, "Bookcase", "Bookcase 5 shelves", 1, 0, _SHELVES),
+        Run("North office", "S", 4, "Bookcase across the way", "Bookcase 5 shelves", 1, 0.3, _SHELVES),
         Run("North office", "N", 12, "Wardrobe", "Wardrobe 2 doors", 2, 0, {"anchored": "partly"}),
         Run("Library", "W", 1, "Bookcase", "Bookcase tall", 4, 0, {"anchored": "partly", "notes": "One bracket each"}),
         Run("Copy room", "W", 1, "Photocopier", "", 1, 0, _COPIER),
@@ -186,43 +191,140 @@ LOOSE: tuple[dict[str, Any], ...] = (
     {"floor": "25", "room": "South office", "description": "Pedestals under the desks", "quantity": 18,
      "breadth": 42, "width": 55, "height": 58, "anchored": "no"},
     {"floor": "G", "room": "Storage", "description": "Lockers of the cleaners", "quantity": 8, "axis": "Y",
-     "breadth": 50, "width": 50, "height": 180, "anchored": "no", "notes": "Backs to the wall; measured"},
+     "breadth": 50, "width": 50, "height": 180, "anchored": "no", "route": "G storage",
+     "notes": "Backs to the wall; measured. Beside the way to the door; how far from it was not noted"},
 )  # fmt: skip
 
 
 CORRIDOR, DOOR = 1.118, 0.813
 """Required widths [m]: 44 in and 32 in, as the International Building Code asks of a corridor and a door."""
 
-POINTS: Mapping[str, tuple[str, float, float, str]] = {  # of the routes: floor, x, y, kind
-    "42 South office": ("42", 22, 2.8, "room"), "42 aisle": ("42", 8.25, 2.8, "corridor"),
-    "42 office door": ("42", 8.25, 5.6, "door"), "42 corridor": ("42", 8.25, 12, "corridor"),
-    "42 stair": ("42", 11.5, 12, "stair"),
-    "34 North office": ("34", 9, 21.2, "room"), "34 aisle": ("34", 23.75, 21.2, "corridor"),
-    "34 office door": ("34", 23.75, 18.4, "door"), "34 corridor": ("34", 23.75, 12, "corridor"),
-    "34 stair": ("34", 20.5, 12, "stair"),
-    "25 South office": ("25", 3, 2.8, "room"), "25 aisle": ("25", 23.75, 2.8, "corridor"),
-    "25 office door": ("25", 23.75, 5.6, "door"), "25 corridor": ("25", 23.75, 12, "corridor"),
-    "25 stair": ("25", 20.5, 12, "stair"),
-    "G stair": ("G", 16, 9.5, "stair"), "G Lobby": ("G", 16, 6.8, "room"),
-    "G street doors": ("G", 16, 1.2, "door"), "G street": ("G", 16, 0, "exit"),
+Point = tuple[float, float, str]
+"""Of a place: x, y [m] and kind."""
+
+_ALONG = {"W": 8.25, "E": 23.75}
+_ACROSS = {"aisle S": 2.8, "door S": 5.6, "corridor S": 6.8, "corridor N": 17.2, "door N": 18.4, "aisle N": 21.2}
+_OFFICE_POINTS: Mapping[str, Point] = {
+    **{f"{what}{side}": (x, y, "door" if "door" in what else "corridor")
+       for what, y in _ACROSS.items() for side, x in _ALONG.items()},
+    "corridor W": (8.25, 12, "corridor"), "corridor E": (23.75, 12, "corridor"),
+    "west stair": (11.5, 12, "stair"), "east stair": (20.5, 12, "stair"),
+    "Copy room": (3.3, 6.8, "room"), "Library": (3.3, 17.2, "room"), "Kitchen": (3.3, 21.2, "room"),
+    "Archive": (27, 6.8, "room"), "Server room": (26.6, 17.2, "room"), "Meeting room": (28.7, 2.8, "room"),
 }  # fmt: skip
-_ROUTES = (("42 west", "South office", 60), ("34 east", "North office", 60), ("25 east", "South office", 60))
-SEGMENTS: tuple[tuple[str, str, str, str, str, float, float, int], ...] = (
-    # route, segment, room, from, to, clear width, required width, occupants
-    *(
-        (name, segment, room or office, f"{name[:2]} {start}", f"{name[:2]} {end}", clear, required, people)
-        for name, office, people in _ROUTES
-        for segment, room, start, end, clear, required in (
-            ("aisle", "", office, "aisle", 1.2, CORRIDOR),
-            ("door", "", "aisle", "office door", 0.9, DOOR),
-            ("corridor", "Corridor", "office door", "corridor", 1.5, CORRIDOR),
-            ("stair door", "Corridor", "corridor", "stair", 0.9, DOOR),
-        )
+POINTS: Mapping[str, Mapping[str, Point]] = {
+    "42": {**_OFFICE_POINTS, "South office": (22, 2.8, "room"), "North office": (22, 21.2, "room")},
+    "34": {**_OFFICE_POINTS, "South office": (12.7, 2.8, "room"), "North office": (9, 21.2, "room")},
+    "25": {**_OFFICE_POINTS, "South office": (3, 2.8, "room"), "North office": (9, 21.2, "room")},
+    "G": {
+        "east stair": (16, 9.5, "stair"), "Lobby": (16, 6.8, "room"), "street doors": (16, 1.2, "door"),
+        "street": (16, 0, "exit"), "west stair": (11.5, 12, "stair"), "corridor W": (8.25, 12, "corridor"),
+        "workshop door": (8.25, 18.4, "door"), "Workshop": (8.25, 21.2, "room"), "yard": (8.25, 24, "exit"),
+        "Mail room": (3.3, 6.8, "room"), "Cafe": (28.7, 6.8, "room"), "lobby E": (24.2, 6.8, "corridor"),
+        "Security office": (28.7, 14.7, "room"), "corridor E": (24.2, 14.7, "corridor"),
+        "Building archive": (24.2, 21.2, "room"), "Storage": (3.3, 12, "room"),
+    },
+}  # fmt: skip
+"""Places by floor."""
+
+Course = tuple[str, int, str, tuple[tuple[str, str], ...]]
+"""Name of a route, occupants, the place where it begins, and its segments, each with the place where it ends."""
+
+PATHS: Mapping[str, tuple[Course, ...]] = {
+    "42": (
+        ("west", 30, "South office", (("aisle", "aisle SW"), ("door", "door SW"), ("corner", "corridor SW"),
+                                      ("corridor", "corridor W"), ("stair door", "west stair"))),
+        ("east", 30, "South office", (("aisle", "aisle SE"), ("door", "door SE"), ("corner", "corridor SE"),
+                                      ("corridor", "corridor E"), ("stair door", "east stair"))),
+        ("north", 30, "North office", (("office", "aisle NW"), ("door", "door NW"), ("corner", "corridor NW"),
+                                       ("corridor", "corridor W"))),
+        ("ring", 30, "corridor NW", (("corridor north", "corridor NE"), ("corridor east", "corridor E"))),
     ),
-    ("Ground", "stair door", "Lobby", "G stair", "G Lobby", 0.9, DOOR, 200),
-    ("Ground", "lobby", "Lobby", "G Lobby", "G street doors", 2.4, CORRIDOR, 200),
-    ("Ground", "street doors", "Lobby", "G street doors", "G street", 1.8, CORRIDOR, 200),
+    "34": (
+        ("east", 60, "North office", (("aisle", "aisle NE"), ("door", "door NE"), ("corner", "corridor NE"),
+                                      ("corridor", "corridor E"), ("stair door", "east stair"))),
+        ("south", 30, "South office", (("aisle", "aisle SE"), ("door", "door SE"), ("corner", "corridor SE"),
+                                       ("corridor", "corridor E"))),
+        ("west", 10, "corridor NW", (("corridor", "corridor NE"),)),
+        ("west", 10, "corridor SW", (("corridor south", "corridor SE"),)),
+    ),
+    "25": (
+        ("east", 60, "South office", (("aisle", "aisle SE"), ("door", "door SE"), ("corner", "corridor SE"),
+                                      ("corridor", "corridor E"), ("stair door", "east stair"))),
+        ("north", 30, "North office", (("aisle", "aisle NE"), ("door", "door NE"), ("corner", "corridor NE"),
+                                       ("corridor", "corridor E"))),
+        ("west", 10, "corridor NW", (("corridor", "corridor NE"),)),
+        ("west", 10, "corridor SW", (("corridor south", "corridor SE"),)),
+    ),
+    "G": (
+        ("street", 150, "east stair", (("stair door", "Lobby"),)),
+        ("street", 200, "Lobby", (("lobby", "street doors"), ("street doors", "street"))),
+        ("yard", 50, "west stair", (("stair door", "corridor W"), ("corridor", "workshop door"), ("door", "Workshop"),
+                                    ("passage", "yard"))),
+        ("east", 40, "corridor E", (("corridor", "lobby E"), ("lobby side", "Lobby"))),
+        ("storage", 10, "Storage", (("aisle", "corridor W"),)),
+    ),
+}  # fmt: skip
+_OFFICE_DOORS = {
+    "Copy room": "corridor SW", "Library": "corridor NW", "Archive": "corridor SE", "Server room": "corridor NE",
+    "Meeting room": "South office",
+}  # fmt: skip
+DOORS: Mapping[str, Mapping[str, str]] = {
+    "42": {**_OFFICE_DOORS, "Kitchen": "aisle NW"},
+    "34": {**_OFFICE_DOORS, "Kitchen": "North office"},
+    "25": {**_OFFICE_DOORS, "Kitchen": "North office"},
+    "G": {"Mail room": "Lobby", "Cafe": "lobby E", "Security office": "corridor E", "Building archive": "corridor E"},
+}  # fmt: skip
+"""The other rooms of each floor, and where their doors lead: a segment each, named after the room."""
+
+STAIRS = (
+    ("West stair", "42 to G", "42 west stair", "G west stair", 30),
+    ("East stair", "42 to 34", "42 east stair", "34 east stair", 30),
+    ("East stair", "34 to 25", "34 east stair", "25 east stair", 90),
+    ("East stair", "25 to G", "25 east stair", "G east stair", 150),
 )
+
+WIDTHS: Mapping[str, tuple[float, float]] = {
+    "aisle": (1.2, CORRIDOR), "office": (3.8, CORRIDOR), "door": (0.9, DOOR), "stair door": (0.9, DOOR),
+    "stair": (1.2, CORRIDOR), "lobby": (2.4, CORRIDOR), "street doors": (1.8, CORRIDOR), "passage": (1.2, CORRIDOR),
+}  # fmt: skip
+"""Clear and required width of segments by their name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A segment of a route: in which room furniture can stand beside it, and its row without the floor."""
+
+    room: str
+    row: Mapping[str, Any]
+
+
+def _stretch(room: str, names: tuple[str, str, str, str], widths: tuple[float, float], people: int) -> Stretch:
+    row = dict(zip(("route", "segment", "start", "end"), names, strict=True))
+    return Stretch(room, row | {"clear_width": widths[0], "required_width": widths[1], "occupants": people})
+
+
+def _stretches() -> Iterator[Stretch]:
+    """Yield the segments: floor by floor the routes and the doors of the other rooms, then the stairs."""
+    for floor, paths in PATHS.items():
+        for route, people, start, steps in paths:
+            begin = start
+            for segment, end in steps:
+                room = {"aisle": start, "office": start, "door": "", "passage": "Workshop"}.get(segment, "Corridor")
+                room = "Lobby" if {"Lobby", "street doors"} & {begin, end} else room
+                names = (f"{floor} {route}", segment, f"{floor} {begin}", f"{floor} {end}")
+                yield _stretch(room, names, WIDTHS.get(segment, (1.5, CORRIDOR)), people)
+                begin = end
+        for room, end in DOORS[floor].items():
+            names = (f"{floor} rooms", room, f"{floor} {room}", f"{floor} {end}")
+            yield _stretch(room, names, WIDTHS["door"], 10)
+    for *flight, people in STAIRS:
+        route, segment, start, end = map(str, flight)
+        yield _stretch("", (route, segment, start, end), WIDTHS["stair"], int(people))
+
+
+SEGMENTS = tuple(_stretches())
+_PLACES = {f"{floor} {name}": (floor, *point) for floor, points in POINTS.items() for name, point in points.items()}
 
 _TYPES = {row["type"]: row for row in read_catalogue()}
 _FACING: Mapping[Wall, int] = {"W": 0, "S": 90, "E": 180, "N": 270}
@@ -259,20 +361,23 @@ def _pieces(floor: str, run: Run) -> Iterator[dict[str, Any]]:
         yield row | {"x": round(x, 2), "y": round(y, 2), "angle_deg": angle}
 
 
-def _distance(a: Box, b: Box) -> float:
-    """Clear distance of two boxes; 0 where they touch or overlap."""
-    return hypot(*(max(0.0, a[at] - b[at + 2], b[at] - a[at + 2]) for at in (0, 1)))
+def _distance(piece: Box, line: Box) -> float:
+    """Clear distance of a piece and a line along X or Y; endless where it does not stand beside it."""
+    gaps = [max(0.0, piece[at] - line[at + 2], line[at] - piece[at + 2]) for at in (0, 1)]
+    along, across = gaps if line[1] == line[3] else reversed(gaps)
+    return across if along == 0 else inf
 
 
 def _beside_route(row: Mapping[str, Any]) -> dict[str, Any]:
     """Name the segment that a piece can reach when it falls: its edge in the same room is nearer than its height."""
     near = []
-    for route, segment, room, start, end, clear, *_ in SEGMENTS:
-        (floor, x0, y0, _), (_, x1, y1, _) = POINTS[start], POINTS[end]
-        if (floor, room) == (row["floor"], row["room"]):
+    for one in SEGMENTS:
+        (floor, x0, y0, _), (_, x1, y1, _) = _PLACES[one.row["start"]], _PLACES[one.row["end"]]
+        if (floor, one.room) == (row["floor"], row["room"]):
             line = min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
-            near.append((round(_distance(_box(row), line) - clear / 2, 2), route, segment))
-    edge, route, segment = min(near, default=(100.0, "", ""))
+            edge = round(_distance(_box(row), line) - one.row["clear_width"] / 2, 2)
+            near.append((edge, one.row["route"], one.row["segment"]))
+    edge, route, segment = min(near, default=(inf, "", ""))
     if edge * 100 >= {**_TYPES.get(row["type"], {}), **row}["height"]:
         return {}
     return {"route": route, "segment": segment, "edge_distance": edge, "importance": "life safety"}
@@ -290,24 +395,27 @@ def item_rows() -> list[dict[str, Any]]:
 
 
 def _place_rows() -> list[dict[str, Any]]:
-    rooms = {
-        f"{floor} {name}": (floor, (west + east) / 2, (south + north) / 2, "room")
-        for floor, plan in ROOMS.items()
-        for name, (west, south, east, north) in plan.items()
-        if name != "Corridor"
-    }
+    """Return the rows of Places: those that a segment begins or ends at."""
+    used = {one.row[end] for one in SEGMENTS for end in ("start", "end")}
     return [
-        {"place": name, "floor": floor, "x": round(x, 2), "y": round(y, 2), "kind": kind}
-        for name, (floor, x, y, kind) in (rooms | dict(POINTS)).items()
+        {"place": name, "floor": floor, "x": x, "y": y, "kind": kind}
+        for name, (floor, x, y, kind) in _PLACES.items()
+        if name in used
+    ]
+
+
+def _route_rows() -> list[dict[str, Any]]:
+    """Return the rows of Routes; stairs are on no floor."""
+    floors = [{_PLACES[one.row[end]][0] for end in ("start", "end")} for one in SEGMENTS]
+    return [
+        {**one.row, **({"floor": min(own)} if len(own) == 1 else {})} for one, own in zip(SEGMENTS, floors, strict=True)
     ]
 
 
 def content() -> Content:
     """Return the whole workbook, without the results of its live columns."""
-    names = ("route", "segment", "start", "end", "clear_width", "required_width", "occupants")
-    routes = [dict(zip(names, row[:2] + row[3:], strict=True), floor=POINTS[row[3]][0]) for row in SEGMENTS]
     rows: dict[str, Rows] = {"Building": [BUILDING], "Floors": FLOORS, "Items": item_rows(), "Places": _place_rows()}
-    return Content(rows | {"Routes": routes})
+    return Content(rows | {"Routes": _route_rows()})
 
 
 def build(path: Path = PATH) -> None:

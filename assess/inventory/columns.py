@@ -112,10 +112,10 @@ def _type_size(name: str, label: str, text: str) -> Column:
     )  # fmt: skip
 
 
-def _metres(name: str, label: str, text: str, low: float = -1e5, high: float = 1e5) -> Column:
+def _metres(name: str, label: str, text: str, low: float = -1e5, high: float = 1e5, default: str = "") -> Column:
     return Column(
         name=name, label=label, kind="number", help=text, quantity="length", unit="m", imperial="ft",
-        low=low, high=high,
+        low=low, high=high, default=default,
     )  # fmt: skip
 
 
@@ -255,9 +255,18 @@ ITEMS = Sheet(
             name="angle_deg", label="Angle", kind="number", quantity="angle", unit="deg", imperial="deg",
             low=-360, high=360, help="Anticlockwise from X to Breadth; within 15 of X or Y it sets a blank Axis.",
         ),
-        Column(name="route", label="Route", kind="text", source="Routes", help="Evacuation route it may block.", width=10),
-        Column(name="segment", label="Segment", kind="text", help="Part of that route; blank: every part of it."),
-        _metres("edge_distance", "Edge distance", "From its nearest face to the edge of the route; negative if inside.", -100),
+        Column(
+            name="route", label="Route", kind="text", source="Routes", default="those that its position tells", width=10,
+            help="Evacuation route it may block.",
+        ),
+        Column(
+            name="segment", label="Segment", kind="text", default="every segment of that route on the floor",
+            help="Part of that route.",
+        ),
+        _metres(
+            "edge_distance", "Edge distance", "From its nearest face to the edge of the route; negative if inside.", -100,
+            default="as the plan has it, else 0, at the edge",
+        ),
         Column(
             name="importance", label="Importance", kind="choice", choices=IMPORTANCE, width=12,
             help="What its fall would endanger. life safety comes first in the list of what to fix.",
@@ -274,9 +283,12 @@ PLACES_SHEET = Sheet(
     (
         Column(name="place", label="Place", kind="text", required=True, help="Its own name.", width=16),
         Column(name="floor", label="Floor", kind="text", required=True, source="Floors", help="A floor of the Floors sheet."),
-        _metres("x", "X", "Position on the plan."),
+        _metres("x", "X", "Position on the plan: a segment is the straight line between those of its two places."),
         _metres("y", "Y", "Position on the plan."),
-        Column(name="kind", label="Kind", kind="choice", choices=PLACES, help="What it is."),
+        Column(
+            name="kind", label="Kind", kind="choice", choices=PLACES, default="a point that routes pass",
+            help="What it is. A room needs a way to an exit, or to a stair.",
+        ),
     ),
 )  # fmt: skip
 
@@ -288,12 +300,18 @@ ROUTES = Sheet(
     (
         Column(name="route", label="Route", kind="text", required=True, help="Name of the route; repeat it on each segment.", width=10),
         Column(name="segment", label="Segment", kind="text", required=True, help="Name of this part of it.", width=10),
-        Column(name="floor", label="Floor", kind="text", source="Floors", help="A floor of the Floors sheet."),
+        Column(
+            name="floor", label="Floor", kind="text", source="Floors", default="that of both places",
+            help="A floor of the Floors sheet; leave it blank on stairs.",
+        ),
         Column(name="start", label="From", kind="text", source="Places", help="The place where it begins.", width=16),
         Column(name="end", label="To", kind="text", source="Places", help="The place where it ends.", width=16),
-        _metres("clear_width", "Clear width", "Width without furniture in it.", 0.1, 100),
-        _metres("required_width", "Required width", "Width that must stay free.", 0.1, 100),
-        Column(name="occupants", label="Occupants", kind="count", low=0, high=100000, help="People who leave by it."),
+        _metres("clear_width", "Clear width", "Width without furniture in it.", 0.1, 100, "as Required width"),
+        _metres("required_width", "Required width", "Width that must stay free.", 0.1, 100, "0.9 m"),
+        Column(
+            name="occupants", label="Occupants", kind="count", low=0, high=100000, default="the width they need is not told",
+            help="People who leave by it.",
+        ),
         Column(name="notes", label="Notes", kind="text", help="Anything else.", width=30),
     ),
 )  # fmt: skip

@@ -67,6 +67,8 @@ _ROWS: Mapping[str, tuple[dict[str, Any], ...]] = {
     "Routes": (
         {"route": "Way out", "segment": "aisle", "floor": "2", "start": "Open office", "end": "Stair, upper end",
          "clear_width": 1.2, "required_width": 0.9, "occupants": 8},
+        {"route": "Way out", "segment": "flight", "start": "Stair, upper end", "end": "Stair, lower end",
+         "clear_width": 1.2, "required_width": 0.9, "occupants": 8},  # between floors: on none
         {"route": "Way out", "segment": "hall", "floor": "1", "start": "Stair, lower end", "end": "Street door",
          "clear_width": 1.5, "required_width": 0.9, "occupants": 14},
     ),

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from assess.inventory.axes import axis_of
-from assess.inventory.cells import shorten
+from assess.inventory.beside import check_beside
 from assess.inventory.labels import key
 from assess.inventory.model import Building, CatalogueType, Item
-from assess.inventory.names import check_references, check_unique, defined_names
+from assess.inventory.names import check_references, check_unique
 from assess.inventory.tables import Row, Table
 from assess.language import fill
 from assess.units import ROUNDING
@@ -29,7 +29,7 @@ class ItemReader:
         check_unique(table, "item")
         check_references(table, "floor", self.tables["Floors"], "floor")
         check_references(table, "type", self.tables["Catalogue"], "type")
-        _check_routes(table, self.tables["Routes"])
+        check_beside(self.tables)
         built = (self._item(table, row) for row in table.rows)
         items = tuple(item for item in built if item is not None)
         for name, rows in self.lacking.items():
@@ -118,29 +118,3 @@ def _check_position(table: Table, row: int, values: Mapping[str, Any]) -> None:
         cell = table.cell("y" if y is None else "x", row)
         message = fill("a position needs both X and Y.")
         table.report(cell, message, fill("Fill in the other, or clear both."), "warning")
-
-
-def _check_routes(table: Table, routes: Table) -> None:
-    named = [row for row in table.rows if row.values.get("route")]
-    if named and not routes.found:
-        others = len(named) - 1
-        more = f" (and {others} more row{'s' if others > 1 else ''})" if others else ""
-        message = f"Route {shorten(named[0].values['route'])}{more} is named, but there is no Routes sheet."
-        table.report(table.cell("route", named[0].number), message, "Add the sheet, or clear the column.")
-        return
-    check_references(table, "route", routes, "route")
-    known = {(key(row.values.get("route") or ""), key(row.values.get("segment") or "")) for row in routes.rows}
-    names = defined_names(routes, "route")
-    for row in table.rows:
-        _check_segment(table, row, names, known)
-
-
-def _check_segment(table: Table, row: Row, names: Mapping[str, str], known: set[tuple[str, str]]) -> None:
-    route, segment = row.values.get("route"), row.values.get("segment")
-    cell = table.cell("segment", row.number)
-    if segment and not route:
-        part, whole = table.label("segment"), table.label("route")
-        table.report(cell, f"a {part} is named without its {whole}.", f"Fill in {whole}.")
-    elif route and segment and key(route) in names and (key(route), key(segment)) not in known:
-        message = f"Route {shorten(route)} has no segment {shorten(segment)}."
-        table.report(cell, message, "Add it to Routes, or clear the cell.")

@@ -43,6 +43,28 @@ def check_wildcards(table: Table, name: str) -> None:
             table.report(table.cell(name, row.number), message, mend, "warning")
 
 
+def spell_alike(table: Table, name: str) -> None:
+    """Spell every name of a column as where it stands first."""
+    found = defined_names(table, name)
+    for row in table.rows:
+        if row.values.get(name) is not None:
+            row.values[name] = found[key(row.values[name])]
+
+
+def check_named(table: Table, name: str, source: Table, defining: str) -> None:
+    """As `check_references`; where the workbook lacks the sheet, that is said once for the whole column."""
+    named = [row for row in table.rows if row.values.get(name) is not None]
+    if source.found:
+        if defining in source.letters:  # else the missing column has been reported
+            check_references(table, name, source, defining)
+    elif named:
+        others = len(named) - 1
+        more = f" (and {others} more row{'s' if others > 1 else ''})" if others else ""
+        what = f"{table.label(name)} {shorten(named[0].values[name])}{more}"
+        message = f"{what} is named, but there is no {source.sheet.name} sheet."
+        table.report(table.cell(name, named[0].number), message, "Add the sheet, or clear the column.")
+
+
 def check_references(table: Table, name: str, source: Table, defining: str) -> None:
     """Spell every name of a column as `source` does; report those that it does not define."""
     if source.sheet.required and not (source.found and defining in source.letters):

@@ -42,6 +42,10 @@ class Row:
     values: dict[str, Any]
     extra: tuple[str, ...] = ()
 
+    def filled(self) -> dict[str, Any]:
+        """Return the values that are not blank."""
+        return {name: value for name, value in self.values.items() if value is not None}
+
 
 @dataclass(slots=True)
 class Table:
@@ -81,6 +85,14 @@ class Table:
     def spoilt(self, name: str, row: int) -> bool:
         """Tell whether a field of a row was filled in but could not be read, which has been reported."""
         return name in self.blind or (name in self.letters and self.cell(name, row) in self.failed)
+
+    def sound(self, name: str, row: Row) -> Any:
+        """Return the value of a field that is filled in and right, else None."""
+        return None if self.spoilt(name, row.number) else row.values.get(name)
+
+    def with_all(self, *names: str) -> list[Row]:
+        """Return the rows that have these fields; why others lack one has been reported."""
+        return [row for row in self.rows if all(row.values.get(name) is not None for name in names)]
 
 
 class SheetReader:

@@ -2,7 +2,6 @@
 
 import hashlib
 from pathlib import Path
-from typing import Any
 
 from assess.inventory.book import find_language, read_tables
 from assess.inventory.cells import CellError
@@ -10,10 +9,10 @@ from assess.inventory.files import find_picture
 from assess.inventory.floors import FloorReader
 from assess.inventory.items import ItemReader, check_plan_sides
 from assess.inventory.labels import key
-from assess.inventory.model import Building, CatalogueType, Inventory, Place, Segment
-from assess.inventory.names import check_references, check_unique, check_wildcards
-from assess.inventory.tables import Row, Table, raise_errors
-from assess.language import fill
+from assess.inventory.model import Building, CatalogueType, Inventory
+from assess.inventory.names import check_unique, check_wildcards
+from assess.inventory.routes import read_places, read_routes
+from assess.inventory.tables import Table, raise_errors
 
 
 def read_inventory(path: str | Path) -> Inventory:
@@ -41,8 +40,8 @@ def read_inventory(path: str | Path) -> Inventory:
     catalogue = _read_catalogue(tables["Catalogue"])
     floors = FloorReader(tables["Floors"], folder, building, _has_ground(tables["Building"]))
     found = floors.read()
-    routes = _read_routes(tables)
-    places = _read_places(tables)
+    places = read_places(tables)
+    routes = read_routes(tables)
     items = ItemReader(tables, building, {key(one.type): one for one in catalogue}).read()
     raise_errors(problems)
     return Inventory(
@@ -87,30 +86,4 @@ def _read_catalogue(table: Table) -> tuple[CatalogueType, ...]:
     check_wildcards(table, "type")
     for row in table.rows:
         check_plan_sides(table, row.number, row.values)
-    return tuple(CatalogueType(row=row.number, **_filled(row)) for row in _with(table, "type"))
-
-
-def _read_places(tables: dict[str, Table]) -> tuple[Place, ...]:
-    table = tables["Places"]
-    check_unique(table, "place")
-    check_references(table, "floor", tables["Floors"], "floor")
-    return tuple(Place(row=row.number, **_filled(row)) for row in _with(table, "place", "floor"))
-
-
-def _read_routes(tables: dict[str, Table]) -> tuple[Segment, ...]:
-    table = tables["Routes"]
-    check_references(table, "floor", tables["Floors"], "floor")
-    rows = _with(table, "route", "segment")
-    if rows:
-        message = fill("routes are kept and listed; this version does not evaluate them.")
-        table.report("", message, severity="note")
-    return tuple(Segment(row=row.number, **_filled(row)) for row in rows)
-
-
-def _with(table: Table, *names: str) -> list[Row]:
-    """Return the rows that have these fields; why others lack one has been reported."""
-    return [row for row in table.rows if all(row.values.get(name) is not None for name in names)]
-
-
-def _filled(row: Row) -> dict[str, Any]:
-    return {name: value for name, value in row.values.items() if value is not None}
+    return tuple(CatalogueType(row=row.number, **row.filled()) for row in table.with_all("type"))

@@ -38,8 +38,19 @@ def same(one: Any, other: Any) -> bool:
     return bool(one == other if isinstance(other, str) else one == pytest.approx(other, abs=1e-9, rel=0))
 
 
-def test_it_reads_without_errors_or_warnings(assessment):
-    assert not [problem for problem in assessment.problems if problem.severity != "note"]
+def test_it_warns_only_of_pieces_that_stand_nowhere(assessment):
+    warned = [problem for problem in assessment.problems if problem.severity != "note"]
+    rows = {item.row: item.item for item in assessment.inventory.items}
+    assert {rows[int(problem.cell[1:])] for problem in warned} == {"1-5", "2-6"}
+    assert all("has neither a position nor a Route" in problem.message for problem in warned)
+
+
+def test_its_routes_lead_down_a_flight_of_stairs(assessment):
+    inventory = assessment.inventory
+    assert [(one.segment, one.floor) for one in inventory.routes] == [("aisle", "2"), ("flight", ""), ("hall", "1")]
+    steps = [(one.start, one.end) for one in inventory.routes]
+    assert [end for _, end in steps[:-1]] == [start for start, _ in steps[1:]]
+    assert steps[-1][1] == "Street door"
 
 
 def test_it_says_that_it_is_an_example(assessment):

@@ -142,7 +142,8 @@ def test_places_and_routes(tmp_path: Path) -> None:
         ("R1", "a", 1.2, 40), ("R1", "b", None, None),
     ]  # fmt: skip
     assert inventory.items[0].route == "R1"
-    assert remarks(inventory, "note") == {"Routes: routes are kept and listed; this version does not evaluate them."}
+    assert inventory.items[0].segment == "a", "spelt as in Routes"
+    assert remarks(inventory, "note") == set()
 
 
 def test_names_of_places_and_routes_that_do_not_fit(tmp_path: Path) -> None:
