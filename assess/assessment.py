@@ -1,6 +1,7 @@
 """The main job: an inventory in, an assessment out."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,10 @@ from assess.inventory.model import Inventory
 from assess.methods import Cases, all_methods
 from assess.remarks import remark
 from assess.results import Assessment
-from assess.rocking.block import STOCKY
+from assess.routes.evaluate import evaluate_routes
+from assess.routes.falls import build_falls
+from assess.routes.reach import Reached, find_reached
+from assess.routes.remarks import remark_routes
 from assess.settings import SCENARIOS, Settings
 from assess.verification import Progress, choose_motions, remark_suite, verify
 
@@ -64,14 +68,15 @@ def run(
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction)
     case_item, case_demand = _pair(inventory, demands)
-    cases = _cases(inventory, case_item, case_demand)
+    cases, reached = _cases(inventory, case_item, case_demand), find_reached(inventory)
     outcomes = {one.key: one.evaluate(cases, settings) for one in all_methods() if one.tier == "screening"}
-    chosen = choose_items(settings.verify, outcomes, case_item, _has_route(inventory))
-    rocks = chosen[case_item] & (cases.breadth_to_height < STOCKY)
-    cases = choose_motions(cases, rocks, case_demand, demands, inventory.building, settings, suite)
+    chosen = choose_items(settings.verify, outcomes, case_item, _on_route(inventory, reached))
+    cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
     outcomes[VERIFICATION] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
     adoption = adopt(outcomes, cases)
-    remarks = remark(inventory, demands, scenario, settings.ductility_reduction)
+    governing = find_governing(adoption.probability, case_item, cases.pfa)
+    falls = build_falls(inventory, adoption, outcomes, case_demand, governing, is_suite=suite is not None)
+    told = (*remark(inventory, demands, scenario, settings.ductility_reduction), *remark_suite(suite, cases))
     return Assessment(
         inventory=inventory,
         settings=settings,
@@ -84,8 +89,9 @@ def run(
         case_demand=case_demand,
         outcomes=outcomes,
         adoption=adoption,
-        governing=find_governing(adoption.probability, case_item, cases.pfa),
-        problems=(*inventory.problems, *map(inventory.place, (*remarks, *remark_suite(suite, cases)))),
+        governing=governing,
+        routes=evaluate_routes(inventory, reached, falls, settings),
+        problems=(*inventory.problems, *map(inventory.place, (*told, *remark_routes(inventory, reached)))),
     )
 
 
@@ -100,8 +106,10 @@ def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tup
     return np.array([index for index, _ in pairs], dtype=np.intp), tuple(demand for _, demand in pairs)
 
 
-def _has_route(inventory: Inventory) -> NDArray[np.bool_]:
-    return np.array([bool(item.route) for item in inventory.items], dtype=np.bool_)
+def _on_route(inventory: Inventory, reached: Sequence[Reached]) -> NDArray[np.bool_]:
+    """Tell which items name a route, or can reach one by the plan."""
+    reaching = {one.item for segment in reached for one in segment.beside}
+    return np.array([bool(item.route) or at in reaching for at, item in enumerate(inventory.items)], dtype=np.bool_)
 
 
 def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]) -> Cases:

@@ -16,6 +16,7 @@ from assess.inventory.model import Axis, Inventory, Item
 from assess.methods import Cases, Method, Outcome
 from assess.methods._method import ALIKE, Joint
 from assess.risk import RiskClass, classify
+from assess.routes.model import Routes
 from assess.settings import Settings
 from assess.units import GRAVITY
 
@@ -99,6 +100,8 @@ class Assessment:
         The risk that is adopted for each case.
     governing : (items,) array
         Index of each item's governing case.
+    routes : Routes, optional
+        What may become of the evacuation routes; None where the workbook names none.
     problems : tuple of Problem
         Warnings and notes about the input.
     """
@@ -115,6 +118,7 @@ class Assessment:
     outcomes: Mapping[str, Outcome]
     adoption: Adoption
     governing: NDArray[np.intp]
+    routes: Routes | None
     problems: tuple[Problem, ...]
 
     def __len__(self) -> int:

@@ -15,6 +15,7 @@ checked range, or on a route; or all."""
 AUTO = "auto"
 RUNS, MOST_RUNS = 200, 100_000
 SEED = 1
+ROUTE_RISK = 0.03
 
 Scenario = Literal["as filled", "recorded", "given", "ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"]
 SCENARIOS: tuple[str, ...] = get_args(Scenario)
@@ -66,6 +67,10 @@ class Settings:
     ductility_reduction : float
         R_mu of ASCE 7-22 [-], at least 1: by how much the building's ductility lowers the PFA that this code's profile
         gives above the ground. 1 is no reduction.
+    route_risk : float
+        The chance [-], above 0 and below 1, under which every evacuation route is to be brought: what is to be fixed
+        for it is sought down to there, and a route is called blocked or reduced from there on. 0.03 is where the class
+        low ends.
 
     Raises
     ------
@@ -82,6 +87,7 @@ class Settings:
     zeta_velocity: float = 0.5
     slide_coefficient: float = 1.0
     ductility_reduction: float = 1.0
+    route_risk: float = ROUTE_RISK
 
     def __post_init__(self) -> None:
         if self.scenario is not None and self.scenario not in SCENARIOS:
@@ -98,3 +104,5 @@ class Settings:
             raise ValueError(f"slide_coefficient is {self.slide_coefficient}, expected 0 to 1")
         if not 1 <= self.ductility_reduction < math.inf:
             raise ValueError(f"ductility_reduction is {self.ductility_reduction}, expected at least 1, and finite")
+        if not 0 < self.route_risk < 1:
+            raise ValueError(f"route_risk is {self.route_risk}, expected above 0 and below 1")

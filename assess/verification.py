@@ -16,6 +16,7 @@ from assess.language import Text, fill, join
 from assess.methods import Cases, Outcome
 from assess.methods._method import BoolArray
 from assess.methods.housner_monte_carlo import LOOKS, Tell, evaluate
+from assess.rocking.block import STOCKY
 from assess.settings import AUTO, Settings
 from assess.units import GRAVITY
 
@@ -52,7 +53,8 @@ def choose_motions(
     settings: Settings,
     suite: "Suite | None",
 ) -> Cases:
-    """Return the cases with the motions under which those `chosen` (n,) are to be integrated."""
+    """Return the cases with the motions under which those `chosen` (n,) that can rock are to be integrated."""
+    chosen = chosen & (cases.breadth_to_height < STOCKY)
     wanted = list(dict.fromkeys(demand for demand, one in zip(case_demand, chosen, strict=True) if one))
     ensembles: tuple[FloorEnsemble, ...]
     if suite is None:

@@ -8,7 +8,10 @@ import pytest
 
 from tests.workbooks import write
 
-HEAVY = ("pandas", "matplotlib", "weasyprint", "scipy.stats", "numba", "scipy", "xlsxwriter", "jinja2", "babel")
+HEAVY = (
+    "pandas", "matplotlib", "weasyprint", "scipy.stats", "numba", "scipy", "xlsxwriter", "jinja2", "babel", "shapely",
+    "networkx",
+)  # fmt: skip
 
 
 def _child(code):

@@ -5,18 +5,18 @@ letters would be smaller than some programs can draw.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from assess.inventory.model import Inventory, Item, Segment
+from assess.inventory.model import Inventory, Place
 from assess.language import gettext as _
 from assess.report import words
 from assess.report.content import FloorPage
 from assess.report.figures.labels import LINE, Bounds, Label, Point, overlap, place_labels, text_width
+from assess.report.figures.ways import Stretch, Style, name_ways, place_signs, sign_box
 from assess.results import ItemResult
 from assess.risk import RiskClass
-
-Corners = tuple[Point, Point, Point, Point]
+from assess.routes.footprint import Corners, fallen, rectangle, turn
 
 ANCHORED, INK = "#d0d0d0", "#1c1c1c"
 """Fill of an anchored piece, which stands outside the classes, and the colour of its symbol."""
@@ -32,6 +32,8 @@ NAMED = 24
 """Characters of a place's name that are drawn."""
 SHORT = 12
 """Characters of a piece's name that are drawn."""
+KINDS = ("exit", "stair", "door", "room")
+"""Kinds of places, each with a sign of its own."""
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 _TICKS = 12
 
@@ -62,6 +64,7 @@ class Spot:
     """A place with its name, which begins or, `is_before`, ends at `label`; `box` is the room that it takes."""
 
     name: str
+    kind: str
     at: Point
     label: Point
     is_before: bool
@@ -78,7 +81,10 @@ class Plan:
     pieces: tuple[Piece, ...]
     places: tuple[Spot, ...]
     labels: tuple[Label, ...]
-    ways: tuple[tuple[Point, Point], ...]
+    ways: tuple[Stretch, ...]
+    """Segments, those with most to warn of first."""
+    names: tuple[Label, ...]
+    """Names of segments."""
     low: Point
     high: Point
     unit: float
@@ -109,8 +115,18 @@ class Plan:
 
     @property
     def boxes(self) -> tuple[Bounds, ...]:
-        """What is taken by the names, of places and of pieces."""
-        return (*(spot.box for spot in self.places), *(label.box for label in self.labels))
+        """What is taken by the names, of places, pieces and segments."""
+        return (*(spot.box for spot in self.places), *(label.box for label in (*self.labels, *self.names)))
+
+    @property
+    def styles(self) -> Sequence[Style]:
+        """How the states that occur are drawn, the worst first."""
+        return list(dict.fromkeys(one.style for one in self.ways))
+
+    @property
+    def kinds(self) -> Sequence[str]:
+        """Kinds of the places that have a sign of their own."""
+        return [kind for kind in KINDS if any(spot.kind == kind for spot in self.places)]
 
     @property
     def ticks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -138,31 +154,32 @@ class Plan:
         return self.x(max(x for x, _y in piece.corners))
 
 
-def build_plan(page: FloorPage, inventory: Inventory) -> Plan | None:
-    """Return the plan of a floor, or None where no piece of it has a position."""
+def build_plan(page: FloorPage, inventory: Inventory, ways: Sequence[Stretch] = ()) -> Plan | None:
+    """Return the plan of a floor with its segments, or None where neither a piece nor a segment has a position."""
     numbers = {item.row: at for at, item in enumerate(inventory.items, start=1)}
     pieces = tuple(
         _piece(one, (one.item.x, one.item.y), numbers[one.item.row])
         for one in page.results
         if one.item.x is not None and one.item.y is not None
     )
-    if not pieces:
+    if not pieces and not ways:
         return None
-    places = {
-        place.place: (place.x, place.y)
-        for place in inventory.places
-        if place.floor == page.floor.floor and place.x is not None and place.y is not None
-    }
-    low, high = _frame(pieces, places.values())
-    unit = _unit(low, high)
-    spots = tuple(_spots(places, pieces, high, unit))
+    places = [(place, at) for place in inventory.places if (at := _position(place, page.floor.floor))]
+    low, high = _frame(pieces, ways, [at for _place, at in places])
+    unit, frame = _unit(low, high), (*low, *high)
+    signed = tuple(place_signs(ways, [_bounds(one.corners) for one in pieces], unit))
+    signs = [sign_box(one.sign, unit) for one in signed if one.sign is not None]
+    spots = tuple(_spots(places, pieces, signs, high, unit))
+    labels = tuple(_labels(pieces, [*(spot.box for spot in spots), *signs], frame, unit))
+    taken = [*(_bounds(one.corners) for one in pieces), *(spot.box for spot in spots), *(one.box for one in labels)]
     return Plan(
         key=f"plan-{[floor.floor for floor in inventory.floors].index(page.floor.floor) + 1}",
         title=page.title,
         pieces=pieces,
         places=spots,
-        labels=tuple(_labels(pieces, spots, (*low, *high), unit)),
-        ways=tuple(_ways(inventory.routes, places)),
+        labels=labels,
+        ways=signed,
+        names=tuple(name_ways(signed, taken, frame, unit)),
         low=low,
         high=high,
         unit=unit,
@@ -170,10 +187,8 @@ def build_plan(page: FloorPage, inventory: Inventory) -> Plan | None:
     )
 
 
-def _ways(routes: Sequence[Segment], places: Mapping[str, Point]) -> Iterator[tuple[Point, Point]]:
-    for segment in routes:
-        if segment.start in places and segment.end in places:
-            yield places[segment.start], places[segment.end]
+def _position(place: Place, floor: str) -> Point | None:
+    return None if place.floor != floor or place.x is None or place.y is None else (place.x, place.y)
 
 
 def _piece(one: ItemResult, at: Point, number: int) -> Piece:
@@ -203,47 +218,10 @@ def _title(one: ItemResult) -> str:
     return _("{item}: {risk}; chance {chance}", item=described, risk=words.risk_words(one), chance=words.chance(one))
 
 
-def turn(item: Item) -> float:
-    """Return the direction of Breadth [deg], anticlockwise from X: that of the axis where no angle is given."""
-    if item.angle_deg is not None:
-        return item.angle_deg
-    return 90.0 if item.axis == "Y" else 0.0
-
-
-def rectangle(at: Point, angle: float, along: tuple[float, float], across: float) -> Corners:
-    """Return the corners of a rectangle, anticlockwise.
-
-    Parameters
-    ----------
-    at : (2,) floats
-        Centre of the piece [m].
-    angle : float
-        Direction of Breadth, anticlockwise from X [deg].
-    along : (2,) floats
-        Where it begins and ends along Breadth, from the centre [m].
-    across : float
-        Its width across Breadth [m], half of it on each side.
-    """
-    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    (x, y), (near, far), half = at, along, across / 2
-    local = ((near, -half), (far, -half), (far, half), (near, half))
-    one, two, three, four = ((x + u * cos - v * sin, y + u * sin + v * cos) for u, v in local)
-    return one, two, three, four
-
-
-def fallen(at: Point, angle: float, breadth: float, width: float, height: float) -> tuple[Corners, Corners]:
-    """Return what a piece covers beyond its footprint if it falls over either of its edges across Breadth.
-
-    Either, as the sign of a motion says nothing of the way in which a piece falls.
-    """
-    edge = breadth / 2
-    return rectangle(at, angle, (edge, edge + height), width), rectangle(at, angle, (-edge - height, -edge), width)
-
-
-def _frame(pieces: Sequence[Piece], places: Iterable[Point]) -> tuple[Point, Point]:
+def _frame(pieces: Sequence[Piece], ways: Sequence[Stretch], places: Iterable[Point]) -> tuple[Point, Point]:
     """Return the lower left and the upper right corner of what is drawn."""
-    points = [point for one in pieces for corners in (one.corners, *one.fallen) for point in corners]
-    xs, ys = zip(*points, *places, strict=True)
+    drawn = [corners for one in pieces for corners in (one.corners, *one.fallen)] + [one.corners for one in ways]
+    xs, ys = zip(*(point for corners in drawn for point in corners), *places, strict=True)
     return (min(xs) - BORDER, min(ys) - BORDER), (max(xs) + BORDER, max(ys) + BORDER)
 
 
@@ -251,25 +229,27 @@ def _unit(low: Point, high: Point) -> float:
     return max((high[0] - low[0]) / (WIDE - BESIDE), (high[1] - low[1]) / (HIGH - BELOW), 1 / LARGEST)
 
 
-def _spots(places: Mapping[str, Point], pieces: Sequence[Piece], high: Point, unit: float) -> Iterator[Spot]:
+def _spots(
+    places: Sequence[tuple[Place, Point]], pieces: Sequence[Piece], signs: Sequence[Bounds], high: Point, unit: float
+) -> Iterator[Spot]:
     """Place the name of each place above or below it, right or left, where it covers least of what is drawn already."""
-    taken = [_bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)]
-    for name, (x, y) in places.items():
-        shown = words.cut(name, NAMED)
+    taken = [*(_bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)), *signs]
+    for place, (x, y) in places:
+        shown = words.cut(place.place, NAMED)
         wide, tall, off = text_width(shown) * unit, LINE * unit, 4 * unit
         tried = [(x0, y0, x0 + wide, y0 + tall) for y0 in (y + off, y - off - tall) for x0 in (x + off, x - off - wide)]
         box = min(tried, key=lambda one: _cost(one, taken, high))
         taken.append(box)
         is_before = box[0] < x
-        yield Spot(shown, (x, y), (box[2 if is_before else 0], box[1] + 0.2 * tall), is_before, box)
+        yield Spot(shown, place.kind, (x, y), (box[2 if is_before else 0], box[1] + 0.2 * tall), is_before, box)
 
 
-def _labels(pieces: Sequence[Piece], spots: Sequence[Spot], frame: Bounds, unit: float) -> Iterator[Label]:
+def _labels(pieces: Sequence[Piece], others: Sequence[Bounds], frame: Bounds, unit: float) -> Iterator[Label]:
     """Name the pieces that are or may be of high or very high class; without one, those of medium class."""
     risky = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
     least = RiskClass.HIGH if any(upper >= RiskClass.HIGH for upper, _one in risky) else RiskClass.MEDIUM
     named = sorted((pair for pair in risky if pair[0] >= least), key=lambda pair: -pair[0])
-    taken = [*(_bounds(one.corners) for one in pieces), *(spot.box for spot in spots)]
+    taken = [*(_bounds(one.corners) for one in pieces), *others]
     return place_labels([(one.name, _bounds(one.corners)) for _upper, one in named], taken, frame, unit)
 
 

@@ -1,0 +1,144 @@
+"""The evacuation routes of a building: what may be blocked, by what, and how likely."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from assess.inventory.model import Inventory
+from assess.methods._method import BoolArray
+from assess.methods.housner_monte_carlo import interval_width
+from assess.routes.couplings import DRAWS, Happens
+from assess.routes.falls import Falls
+from assess.routes.fixes import find_fixes
+from assess.routes.gaps import Key
+from assess.routes.model import Beside, Chance, RouteResult, Routes, SegmentResult
+from assess.routes.network import build_course
+from assess.routes.reach import Reached
+from assess.routes.rooms import evaluate_floors, evaluate_rooms
+from assess.routes.scene import Scene
+from assess.routes.widths import NARROWER, kinds_of, needed_width
+from assess.settings import Settings
+
+
+def evaluate_routes(
+    inventory: Inventory, reached: Sequence[Reached], falls: Falls, settings: Settings
+) -> Routes | None:
+    """Evaluate the routes of an inventory.
+
+    Parameters
+    ----------
+    inventory : Inventory
+        The building.
+    reached : sequence of Reached
+        Its segments, from `assess.routes.reach.find_reached`.
+    falls : Falls
+        How its pieces fall.
+    settings : Settings
+        The chosen risk, the seed of draws where pieces are too many to go through all that may fall together, and the
+        runs, by which the width of intervals goes.
+
+    Returns
+    -------
+    Routes or None
+        None where the inventory has no routes.
+    """
+    if not reached:
+        return None
+    scene = Scene(inventory, reached, falls, settings.route_risk, settings.seed, interval_width(settings))
+    segments = tuple(_segment(scene, at) for at in range(len(reached)))
+    chance = {at: one.outlook.blocked.probability for at, one in enumerate(segments)}
+    routes = tuple(_route(scene, name) for name in dict.fromkeys(one.segment.route for one in reached))
+    rooms = evaluate_rooms(scene, chance)
+    return Routes(
+        risk=settings.route_risk,
+        segments=segments,
+        routes=routes,
+        rooms=rooms,
+        floors=evaluate_floors(scene, chance, rooms),
+        blocked_routes=sum(one.outlook.blocked.probability for one in routes),
+        cut_off_rooms=sum(one.loses.probability for one in rooms),
+        draws=DRAWS,
+    )
+
+
+def _segment(scene: Scene, at: int) -> SegmentResult:
+    one = scene.reached[at]
+    needed = needed_width(one.segment, kinds_of(scene.inventory.places))
+    standing = one.standing
+    return SegmentResult(
+        segment=one.segment,
+        outlook=scene.outlook([at], lambda blocked: blocked[:, at]),
+        clear=one.clear,
+        required=one.required,
+        standing=standing,
+        least=_least(scene, at),
+        needed=needed,
+        is_short=needed is not None and standing < needed - NARROWER,
+        crowded=None if needed is None else _crowded(scene, at, needed),
+        length=one.band.length if one.band else None,
+        beside=tuple(_beside(scene, at)),
+        flags=one.flags,
+    )
+
+
+def _least(scene: Scene, at: int) -> float:
+    """Return the width that is left with every free-standing piece fallen [m]."""
+    one = scene.reached[at]
+    free = np.array([not scene.falls.anchored[item] for item, _ in one.gaps.keys], dtype=np.bool_)
+    return float(one.gaps.residual(free[np.newaxis])[0])
+
+
+def _crowded(scene: Scene, at: int, needed: float) -> Chance:
+    one = scene.reached[at]
+
+    def happens(keys: tuple[Key, ...]) -> Happens:
+        pick = scene.picking(at, keys)
+        return lambda fell: one.narrows(pick(fell), needed)
+
+    return scene.chances([at], happens)[0]
+
+
+def _beside(scene: Scene, at: int) -> list[Beside]:
+    """Return the pieces beside a segment with the chance that each falls while it is blocked, the likeliest first.
+
+    That of an anchored piece is the one with anchored pieces taken as free-standing.
+    """
+    found: dict[int, float] = {}
+    for fail in (True, False):
+        keys = scene.keys([at], anchors_fail=fail)
+        blocking = scene.blocking([at], keys)
+        together = scene.together(keys, lambda fell, blocking=blocking: blocking(fell)[:, at])  # type: ignore[misc]
+        found |= {item: together.get(item, 0.0) for item, _ in keys}
+    beside = [replace(one, together=found.get(one.item, 0.0)) for one in scene.reached[at].beside]
+    falls = scene.falls
+    return sorted(
+        beside,
+        key=lambda one: (
+            bool(falls.anchored[one.item]),
+            -one.together,
+            one.left,
+            -falls.probability[one.item],
+            one.item,
+        ),
+    )
+
+
+def _route(scene: Scene, name: str) -> RouteResult:
+    segments = scene.segments_of(name)
+    course = build_course(segments, kinds_of(scene.inventory.places))
+    keys = scene.keys(segments)
+    blocking = scene.blocking(segments, keys)
+
+    def is_blocked(fell: BoolArray) -> BoolArray:
+        return course.is_blocked(blocking(fell))
+
+    fixes, is_mended = find_fixes(scene.couplings(keys), is_blocked, scene.risk)
+    return RouteResult(
+        route=name,
+        outlook=scene.outlook(tuple(segments), course.is_blocked),
+        segments=tuple(segments),
+        floors=tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor)),
+        fixes=tuple(fixes),
+        is_mended=is_mended,
+    )

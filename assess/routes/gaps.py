@@ -1,0 +1,148 @@
+"""The gaps between fallen pieces and the walls of a segment, and the clear width that they leave.
+
+A person of a given width passes unless a chain of pieces leads from one wall to the other with every gap on the way
+narrower. The residual clear width is the smallest width that some chain cuts off: over all chains, the least of their
+widest gaps. So pieces that face each other count together, and pieces far apart along the segment do not.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.methods._method import BoolArray, FloatArray
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+Key = tuple[int, int]
+"""A piece that may fall: its index in the inventory, and 0, or 1 for a second piece of the same row."""
+MOST = 4_000_000
+"""Gaps that are worked on at once."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Obstacle:
+    """Something that lies in a segment: a piece on the plan, or one that takes `depth` from a side.
+
+    Parameters
+    ----------
+    item : int
+        Index of the piece in the inventory.
+    number : int
+        0, or 1 for a second piece of the same row.
+    falls : bool
+        Whether the piece has to fall for it to be there; else it stands there anyway.
+    left, right : float
+        Gaps to the two walls [m].
+    shape : shapely geometry, optional
+        What it covers, in the band's own coordinates; None where its place along the segment is not known.
+    side : "left" or "right", optional
+        From which wall it reaches in, where its place is not known.
+    """
+
+    item: int
+    number: int = 0
+    falls: bool
+    left: float
+    right: float
+    shape: "BaseGeometry | None" = None
+    side: Literal["left", "right"] | None = None
+
+    @property
+    def key(self) -> Key:
+        """The piece."""
+        return self.item, self.number
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Gaps:
+    """All obstacles of a segment.
+
+    Parameters
+    ----------
+    keys : tuple of n keys
+        The pieces that may fall.
+    column : (m,) integer array
+        Which of `keys` each obstacle needs; -1 where it stands there anyway.
+    left, right : (m,) arrays
+        Gaps to the walls [m].
+    between : (m, m) array
+        Gaps between two obstacles [m]; inf where the two cannot be there together.
+    clear : float
+        Width with no obstacle [m].
+    """
+
+    keys: tuple[Key, ...]
+    column: NDArray[np.intp]
+    left: FloatArray
+    right: FloatArray
+    between: FloatArray
+    clear: float
+
+    def residual(self, fell: BoolArray) -> FloatArray:
+        """Return the clear width left (k,) [m] where the pieces `fell` (k, n)."""
+        distinct, back = _distinct(fell)
+        size = max(1, MOST // max(1, self.column.size**2))
+        parts = [self._residual(distinct[at : at + size]) for at in range(0, len(distinct), size)]
+        return np.asarray(np.concatenate(parts)[back], dtype=np.float64)
+
+    def _residual(self, fell: BoolArray) -> FloatArray:
+        """Find the least widest gap of all chains from the left wall, obstacle by obstacle until nothing changes."""
+        there = np.column_stack((fell, np.ones(len(fell), dtype=np.bool_)))[:, self.column]
+        widest: FloatArray = np.where(there, self.left, np.inf)
+        while widest.size:
+            nearer = np.maximum(widest[:, :, np.newaxis], self.between).min(axis=1)
+            nearer = np.where(there, np.minimum(widest, nearer), np.inf)
+            if np.array_equal(nearer, widest):
+                break
+            widest = nearer
+        return np.asarray(np.maximum(widest, self.right).min(axis=1, initial=self.clear), dtype=np.float64)
+
+
+def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
+    """Return the gaps between obstacles, of which `clear` [m] is the width of the segment."""
+    keys = tuple(sorted({one.key for one in obstacles if one.falls}))
+    place = {key: at for at, key in enumerate(keys)}
+    between = np.full((len(obstacles), len(obstacles)), math.inf)
+    for at, one in enumerate(obstacles):
+        for other_at, other in enumerate(obstacles[:at]):
+            between[at, other_at] = between[other_at, at] = _gap(one, other, clear)
+    return Gaps(
+        keys=keys,
+        column=np.array([place[one.key] if one.falls else -1 for one in obstacles], dtype=np.intp),
+        left=np.array([one.left for one in obstacles], dtype=np.float64),
+        right=np.array([one.right for one in obstacles], dtype=np.float64),
+        between=between,
+        clear=clear,
+    )
+
+
+def _gap(one: Obstacle, other: Obstacle, clear: float) -> float:
+    """Return the gap between two obstacles [m]; those whose place along the segment is not known may be abreast."""
+    if one.shape is not None and other.shape is not None:
+        return float(one.shape.distance(other.shape))
+    if one.shape is not None:
+        one, other = other, one
+    if other.shape is not None:
+        depth = clear - (one.right if one.side == "left" else one.left)
+        return max(0.0, (other.left if one.side == "left" else other.right) - depth)
+    if one.side == other.side or one.key == other.key:
+        return math.inf  # on one side, or one and the same piece
+    left, right = (one, other) if one.side == "left" else (other, one)
+    return max(0.0, left.right + right.left - clear)
+
+
+def _distinct(fell: BoolArray) -> tuple[BoolArray, NDArray[np.intp]]:
+    """Return the distinct rows of an array (k, n), and for each row which of them it is."""
+    if not fell.shape[1]:
+        return fell[:1], np.zeros(len(fell), dtype=np.intp)
+    packed = np.packbits(fell, axis=1)
+    words = np.zeros((len(fell), -(-packed.shape[1] // 8) * 8), dtype=np.uint8)
+    words[:, : packed.shape[1]] = packed
+    as_one = words.view(np.uint64) if words.shape[1] == 8 else words.view(np.dtype((np.void, words.shape[1])))
+    _, first, back = np.unique(as_one.ravel(), return_index=True, return_inverse=True)
+    return fell[first], back

@@ -1,0 +1,188 @@
+"""The network of places that segments join: what a blockage cuts off, and the ways that are left."""
+
+import math
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from assess.inventory.model import Place, Segment
+from assess.methods._method import BoolArray
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+MOST_WAYS = 3
+"""Ways out of a room that are listed."""
+EACH = 1e-6
+"""What every segment adds to the cost of a way, so that of two that are as safe the shorter is taken."""
+BEYOND = "\0"
+"""Stands for all the ways out together, where they are taken as one place."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A connected part of the network: its edges (place, place, segment), and the places that count as ways out.
+
+    `by_stairs` tells that those are stairs, as no exit can be reached.
+    """
+
+    edges: tuple[tuple[str, str, int], ...]
+    targets: frozenset[str]
+    by_stairs: bool
+
+    @property
+    def segments(self) -> tuple[int, ...]:
+        """Its segments."""
+        return tuple(sorted(at for _, _, at in self.edges))
+
+    def cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
+        """Tell which of `sources` (r,) reach none of the targets where segments are `blocked` (m, all segments)."""
+        places = sorted({place for one, other, _ in self.edges for place in (one, other)} | self.targets)
+        at = {place: number for number, place in enumerate(places)}
+        reached = np.zeros((len(blocked), len(places)), dtype=np.bool_)
+        reached[:, [at[place] for place in self.targets]] = True
+        changed = True
+        while changed:
+            before = int(reached.sum())
+            for one, other, segment in self.edges:
+                passable = (reached[:, at[one]] | reached[:, at[other]]) & ~blocked[:, segment]
+                reached[:, at[one]] |= passable
+                reached[:, at[other]] |= passable
+            changed = int(reached.sum()) > before
+        return ~reached[:, [at[place] for place in sources]]
+
+
+def build_graph(segments: Mapping[int, Segment]) -> "nx.MultiGraph[str]":
+    """Return the graph of the segments that join two places; the key of an edge is the segment's number."""
+    import networkx as nx
+
+    graph: nx.MultiGraph[str] = nx.MultiGraph()
+    for at, one in segments.items():
+        if one.start and one.end:
+            graph.add_edge(one.start, one.end, key=at)
+    return graph
+
+
+def find_parts(graph: "nx.MultiGraph[str]", kinds: Mapping[str, str]) -> Iterator[Part]:
+    """Yield the connected parts with what counts as their ways out: exits, else stairs, else nothing."""
+    import networkx as nx
+
+    for places in sorted(nx.connected_components(graph), key=min):
+        exits = frozenset(place for place in places if kinds.get(place) == "exit")
+        stairs = frozenset(place for place in places if kinds.get(place) == "stair")
+        targets = exits or (stairs if len(stairs) < len(places) else frozenset[str]())
+        yield Part(_outward(graph.subgraph(places), targets), targets, by_stairs=bool(targets) and not exits)
+
+
+def _outward(graph: "nx.MultiGraph[str]", targets: Collection[str]) -> tuple[tuple[str, str, int], ...]:
+    """Return the edges, the nearest to the ways out first, so that what can be reached is found in few rounds."""
+    import networkx as nx
+
+    far = nx.multi_source_dijkstra_path_length(graph, set(targets)) if targets else {}
+    edges = [(one, other, int(at)) for one, other, at in graph.edges(keys=True)]
+    return tuple(sorted(edges, key=lambda edge: (min(far.get(edge[0], 0), far.get(edge[1], 0)), edge[2])))
+
+
+# ---------------------------------------------------------------- one route
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """When a route counts as blocked: where a place that it serves is cut off, or a segment that joins nothing is."""
+
+    parts: tuple[tuple[Part, tuple[str, ...]], ...]
+    loose: tuple[int, ...]
+
+    def is_blocked(self, blocked: BoolArray) -> BoolArray:
+        """Tell for each of m draws whether it is, where segments are `blocked` (m, all segments)."""
+        found = blocked[:, list(self.loose)].any(axis=1)
+        for part, sources in self.parts:
+            found |= part.cut_off(blocked, sources).any(axis=1)
+        return np.asarray(found, dtype=np.bool_)
+
+
+def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Course:
+    """Return the course of a route: it serves its rooms and its open ends, and leads to its exits.
+
+    Without an exit it leads to its stairs; without stairs, or where it is all stairs, to where its last segment ends.
+    """
+    graph = build_graph(segments)
+    parts = []
+    for part in find_parts(graph, kinds):
+        led = part if part.targets else Part(part.edges, frozenset({_last_end(part, segments)}), by_stairs=False)
+        served = sorted(set(_served(graph.subgraph({p for edge in led.edges for p in edge[:2]}), kinds, led.targets)))
+        parts.append((led, tuple(served)))
+    loose = tuple(at for at, one in segments.items() if not (one.start and one.end))
+    return Course(tuple(parts), loose)
+
+
+def _last_end(part: Part, segments: Mapping[int, Segment]) -> str:
+    """Return the end from which no segment goes on; where they go round, that of the last segment."""
+    starts = {segments[at].start for at in part.segments}
+    ends = [segments[at].end for at in part.segments]
+    return next((end for end in reversed(ends) if end not in starts), ends[-1])
+
+
+def _served(graph: "nx.MultiGraph[str]", kinds: Mapping[str, str], targets: Collection[str]) -> Iterable[str]:
+    others = [place for place in graph if place not in targets]
+    served = [place for place in others if kinds.get(place) == "room" or graph.degree(place) == 1]
+    return served or others
+
+
+# ---------------------------------------------------------------- one room
+
+
+def find_rooms(places: Sequence[Place], parts: Sequence[Part]) -> Iterator[tuple[Place, Part]]:
+    """Yield every room that a part with a way out joins, with as much of that part as lies on any of its ways out."""
+    for place in places:
+        part = next((one for one in parts if any(place.place in edge[:2] for edge in one.edges)), None)
+        if place.kind == "room" and part is not None and part.targets:
+            yield place, _ways_part(part, place.place)
+
+
+def _ways_part(part: Part, room: str) -> Part:
+    """Keep the segments on simple ways from a room to a way out: those in one ring with an edge that joins the two."""
+    import networkx as nx
+
+    graph: nx.Graph[str] = nx.Graph([(room, BEYOND)])
+    joining: dict[frozenset[str], list[tuple[str, str, int]]] = {}
+    for edge in part.edges:
+        one, other = (BEYOND if place in part.targets else place for place in edge[:2])
+        if one != other:
+            graph.add_edge(one, other)
+            joining.setdefault(frozenset((one, other)), []).append(edge)
+    rings = ({frozenset(pair) for pair in ring} for ring in nx.biconnected_component_edges(graph))
+    ring = next(pairs for pairs in rings if frozenset((room, BEYOND)) in pairs)
+    own = {edge for pair in ring for edge in joining.get(pair, ())}
+    return Part(tuple(edge for edge in part.edges if edge in own), part.targets, part.by_stairs)
+
+
+def find_ways(part: Part, room: str, chance: Mapping[int, float]) -> Iterator[tuple[tuple[int, ...], str]]:
+    """Yield ways out of a room that share no segment, the least likely to be blocked first, and where each ends.
+
+    `chance` is that of a blockage by segment; those of a way are taken as independent for the choice.
+    """
+    import networkx as nx
+
+    graph: nx.MultiGraph[str] = nx.MultiGraph()
+    graph.add_node(room)
+    for one, other, at in part.edges:
+        graph.add_edge(one, other, key=at, cost=EACH - math.log(max(1 - chance[at], 1e-9)))
+    for _ in range(MOST_WAYS):
+        costs = nx.single_source_dijkstra_path_length(graph, room, weight="cost")
+        ends = sorted((cost, place) for place, cost in costs.items() if place in part.targets)
+        if not ends:
+            return
+        path = nx.dijkstra_path(graph, room, ends[0][1], weight="cost")
+        keys = [_cheapest(graph, one, other) for one, other in pairwise(path)]
+        for (one, other), at in zip(pairwise(path), keys, strict=True):
+            graph.remove_edge(one, other, key=at)
+        yield tuple(keys), ends[0][1]
+
+
+def _cheapest(graph: "nx.MultiGraph[str]", one: str, other: str) -> int:
+    costs = {int(at): edge["cost"] for at, edge in graph[one][other].items()}
+    return min(costs, key=lambda at: (costs[at], at))

@@ -1,0 +1,218 @@
+"""Which pieces can lie on which segment once they have fallen, and the gaps that they leave.
+
+No publication gives a closed rule for this; ours is for screening. A fallen piece covers Height x Width outward from
+its tipping edge, and where it stood. Where the plan tells the place of piece and segment, what is covered follows from
+it, and a piece that may fall either way covers whatever of both ways lies in the segment. Else the Edge distance d
+tells that it covers Height - d of the width, on a side and at a place along the segment that are not known: it may face
+any other.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from assess.inventory.model import Inventory, Item, Segment
+from assess.inventory.routes import DEFAULT_WIDTH
+from assess.methods._method import BoolArray
+from assess.routes.band import Band, build_bands
+from assess.routes.gaps import Gaps, Obstacle, build_gaps
+from assess.routes.model import Beside
+from assess.routes.shapes import Shape, build_shapes
+from assess.routes.widths import NARROWER
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+TELLING = 0.1
+"""By how much [m] a given Edge distance must be nearer than the plan says for it to count instead."""
+TOUCH = 1e-6
+"""Area [m2] up to which two shapes only touch."""
+
+SIDES: tuple[Literal["left", "right"], ...] = ("left", "right")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reached:
+    """One segment with the pieces that reach it, before anything is known of their chances.
+
+    `clear` and `required` are the widths used [m], `standing` and `least` those left with nothing and with everything
+    fallen; `flags` are keys of `assess.routes.model.FLAGS`.
+    """
+
+    segment: Segment
+    clear: float
+    required: float
+    band: Band | None
+    flags: tuple[str, ...]
+    beside: tuple[Beside, ...]
+    gaps: Gaps
+
+    @property
+    def standing(self) -> float:
+        """Width left with nothing fallen [m]."""
+        return float(self.gaps.residual(self._all(False))[0])
+
+    def narrows(self, fell: BoolArray, width: float) -> BoolArray:
+        """Tell whether the width left (k,) where the pieces of `gaps.keys` `fell` (k, n) is under a width [m]."""
+        return np.asarray(self.gaps.residual(fell) < width - NARROWER, dtype=np.bool_)
+
+    def _all(self, fell: bool) -> BoolArray:
+        return np.full((1, len(self.gaps.keys)), fell, dtype=np.bool_)
+
+
+@dataclass(frozen=True, slots=True)
+class _Told:
+    """What is told of one piece beside one segment."""
+
+    distance: float
+    obstacles: Sequence[Obstacle]
+    flags: tuple[str, ...]
+
+
+def find_reached(inventory: Inventory) -> tuple[Reached, ...]:
+    """Return every segment of the inventory with the pieces that reach it."""
+    if not inventory.routes:
+        return ()
+    clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
+    bands = build_bands(inventory, dict(enumerate(clear)))
+    shapes = build_shapes(inventory.items) if bands else {}
+    named, near = _named(inventory), _near(inventory, shapes, bands)
+    found = []
+    for at, segment in enumerate(inventory.routes):
+        told: dict[int, _Told] = {}
+        for index in near.get(at, ()):
+            told |= _by_plan(index, shapes[index], bands[at])
+        for index in named.get(at, ()):
+            told |= _by_distance(index, inventory.items[index], clear[at], bands.get(at), shapes.get(index))
+        found.append(_reach(segment, clear[at], bands.get(at), told))
+    return tuple(found)
+
+
+def _reach(segment: Segment, clear: float, band: Band | None, told: Mapping[int, _Told]) -> Reached:
+    required = segment.required_width or DEFAULT_WIDTH
+    obstacles = [obstacle for index in sorted(told) for obstacle in told[index].obstacles]
+    flags = {
+        "clear_assumed": segment.clear_width is None,
+        "required_assumed": segment.required_width is None,
+        "no_plan": band is None,
+    }
+    return Reached(
+        segment=segment,
+        clear=clear,
+        required=required,
+        band=band,
+        flags=tuple(flag for flag, holds in flags.items() if holds),
+        beside=tuple(_beside(index, told[index], clear, required) for index in sorted(told)),
+        gaps=build_gaps(obstacles, clear),
+    )
+
+
+def _beside(index: int, told: _Told, clear: float, required: float) -> Beside:
+    gaps = build_gaps([one for one in told.obstacles if one.number == 0], clear)
+    left = float(gaps.residual(np.ones((1, len(gaps.keys)), dtype=np.bool_))[0])
+    stands = any(not one.falls for one in told.obstacles)
+    return Beside(
+        item=index,
+        by_plan=told.obstacles[0].shape is not None,
+        distance=told.distance,
+        reach=clear - left,
+        left=left,
+        blocks_alone=left < required - NARROWER,
+        flags=(*told.flags, *(["standing_inside"] if stands else [])),
+    )
+
+
+def _named(inventory: Inventory) -> dict[int, list[int]]:
+    """Return for each segment the pieces that name it, or its route alone, on its floor."""
+    by_route: dict[str, list[int]] = {}
+    for at, segment in enumerate(inventory.routes):
+        by_route.setdefault(segment.route, []).append(at)
+    found: dict[int, list[int]] = {}
+    for index, item in enumerate(inventory.items):
+        own = [at for at in by_route.get(item.route, ()) if item.segment in ("", inventory.routes[at].segment)]
+        here = [at for at in own if inventory.routes[at].floor == item.floor]
+        for at in here or [at for at in own if not inventory.routes[at].floor]:
+            found.setdefault(at, []).append(index)
+    return found
+
+
+def _near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping[int, Band]) -> dict[int, list[int]]:
+    """Return for each band the placed pieces of its floor that lie near enough to cover some of it."""
+    if not shapes:
+        return {}
+    from shapely import STRtree
+
+    on_floor: dict[str, list[int]] = {}
+    for index in shapes:
+        on_floor.setdefault(inventory.items[index].floor, []).append(index)
+    trees = {floor: STRtree([shapes[index].everything for index in own]) for floor, own in on_floor.items()}
+    found = {}
+    for at, band in bands.items():
+        floor = inventory.routes[at].floor
+        hits = trees[floor].query(band.ground()) if floor in trees else ()
+        found[at] = [on_floor[floor][hit] for hit in sorted(hits)]
+    return found
+
+
+# ---------------------------------------------------------------- by the plan
+
+
+def _by_plan(index: int, shape: Shape, band: Band) -> dict[int, _Told]:
+    """Return what a placed piece covers of a band: nothing where the plan shows that it cannot reach it."""
+    outline = band.outline()
+    standing = _clip(band.turn_in(shape.standing), outline)
+    ways = [one for fall in shape.falls if (one := _clip(band.turn_in(fall), outline)) is not None]
+    obstacles = [] if standing is None else [_placed(index, standing, band, falls=False)]
+    if ways:
+        from shapely import union_all
+
+        covered = union_all([*ways, *([] if standing is None else [standing])])
+        obstacles.append(_placed(index, covered, band, falls=True))
+    if not obstacles:
+        return {}
+    distance = band.turn_in(shape.standing).distance(outline)
+    depth = 0.0 if standing is None else band.width - max(obstacles[0].left, obstacles[0].right)
+    return {index: _Told(distance - depth, obstacles, shape.flags)}
+
+
+def _clip(shape: "BaseGeometry", outline: "BaseGeometry") -> "BaseGeometry | None":
+    inside = shape.intersection(outline)
+    return inside if inside.area > TOUCH else None
+
+
+def _placed(index: int, shape: "BaseGeometry", band: Band, *, falls: bool) -> Obstacle:
+    _, low, _, high = shape.bounds
+    left, right = max(0.0, band.width / 2 - high), max(0.0, low + band.width / 2)
+    return Obstacle(item=index, falls=falls, left=left, right=right, shape=shape)
+
+
+# ---------------------------------------------------------------- by the Edge distance
+
+
+def _by_distance(index: int, item: Item, clear: float, band: Band | None, shape: Shape | None) -> dict[int, _Told]:
+    """Return what a piece covers by its Edge distance; nothing where the plan tells it, and no nearer one is given."""
+    distance, flags = item.edge_distance, []
+    if band is not None and shape is not None:
+        by_plan = float(band.turn_in(shape.standing).distance(band.outline()))
+        if distance is None or distance > by_plan - TELLING or by_plan <= 0:
+            return {}
+        flags.append("nearer_than_plan")
+    if distance is None:
+        distance = 0.0
+        flags.append("edge_assumed")
+    if not item.segment:
+        flags.append("segment_assumed")
+    obstacles = list(_from_sides(index, item, distance, clear))
+    return {index: _Told(distance, obstacles, (*flags, "side_unknown"))} if obstacles else {}
+
+
+def _from_sides(index: int, item: Item, distance: float, clear: float) -> Iterator[Obstacle]:
+    """Yield what reaches in from either side: where it stands inside already, the first and a second piece fallen."""
+    for number in range(min(item.quantity, 2)):
+        for falls, reach in ((False, -distance), (True, item.height - distance)):
+            depth = min(max(reach, 0.0), clear)
+            for side in SIDES if depth > 0 else ():
+                left, right = (0.0, clear - depth) if side == "left" else (clear - depth, 0.0)
+                yield Obstacle(item=index, number=number, falls=falls, left=left, right=right, side=side)

@@ -1,0 +1,115 @@
+"""Rooms and floors: which rooms lose every exit, the ways that are left, and what is to be expected floor by floor."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from assess.inventory.model import Place
+from assess.methods._method import BoolArray
+from assess.routes.couplings import Happens
+from assess.routes.gaps import Key
+from assess.routes.model import Chance, FloorRoutes, RoomResult, Way
+from assess.routes.network import Part, build_course, build_graph, find_parts, find_rooms, find_ways
+from assess.routes.scene import Scene
+from assess.routes.widths import kinds_of
+
+
+def evaluate_rooms(scene: Scene, chance: Mapping[int, float]) -> tuple[RoomResult, ...]:
+    """Return every room that the network joins to a way out; `chance` is that of a blockage by segment."""
+    return tuple(_room(scene, place, part, chance) for place, part in list_rooms(scene))
+
+
+def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
+    """Return every such room, and the part of the network that lies on its ways out."""
+    segments = {at: one.segment for at, one in enumerate(scene.reached)}
+    parts = list(find_parts(build_graph(segments), kinds_of(scene.inventory.places)))
+    return list(find_rooms(scene.inventory.places, parts))
+
+
+def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> RoomResult:
+    def happens(keys: tuple[Key, ...]) -> Happens:
+        blocking = scene.blocking(part.segments, keys)
+        return lambda fell: part.cut_off(blocking(fell), [place.place])
+
+    loses = scene.chances(part.segments, happens)[0]
+    unanchored = scene.chances_unanchored(part.segments, happens)
+    keys = scene.keys(part.segments)
+    together = scene.together(keys, happens(keys))
+    return RoomResult(
+        place=place,
+        exits=tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets)),
+        by_stairs=part.by_stairs,
+        loses=loses,
+        if_anchors_fail=unanchored[0] if unanchored else None,
+        blocker=max(together, key=lambda item: (together[item], -item), default=None),
+        ways=tuple(_ways(scene, place, part, chance)),
+    )
+
+
+def _ways(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> Iterator[Way]:
+    for segments, end in find_ways(part, place.place, chance):
+        yield Way(segments=segments, end=end, blocked=any_blocked(scene, segments))
+
+
+def any_blocked(scene: Scene, segments: Sequence[int]) -> Chance:
+    """Return the chance that any of some segments is blocked."""
+
+    def happens(keys: tuple[Key, ...]) -> Happens:
+        blocking = scene.blocking(segments, keys)
+        return lambda fell: np.asarray(blocking(fell).any(axis=1), dtype=np.bool_)
+
+    return scene.chances(segments, happens)[0]
+
+
+def evaluate_floors(scene: Scene, chance: Mapping[int, float], rooms: Sequence[RoomResult]) -> tuple[FloorRoutes, ...]:
+    """Return what is to be expected on every floor that has segments or rooms."""
+    parts = list_rooms(scene)
+    found = []
+    for floor in scene.inventory.floors:
+        segments = [at for at, one in enumerate(scene.reached) if one.segment.floor == floor.floor]
+        here = [(place, part) for place, part in parts if place.floor == floor.floor]
+        if segments or here:
+            routes = sorted({scene.reached[at].segment.route for at in segments})
+            own = [room for room in rooms if room.place.floor == floor.floor]
+            found.append(
+                FloorRoutes(
+                    floor=floor.floor,
+                    segments=len(segments),
+                    blocked_segments=sum(chance[at] for at in segments),
+                    routes=len(routes),
+                    blocked_routes=sum(_blocked_here(scene, route, segments) for route in routes),
+                    rooms=len(own),
+                    cut_off_rooms=sum(room.loses.probability for room in own),
+                    any_room=_any_room(scene, here) if here else None,
+                )
+            )
+    return tuple(found)
+
+
+def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float:
+    """Return the chance that a route is blocked by its segments on one floor."""
+    own = {at: one for at, one in scene.segments_of(route).items() if at in segments}
+    course = build_course(own, kinds_of(scene.inventory.places))
+
+    def happens(keys: tuple[Key, ...]) -> Happens:
+        blocking = scene.blocking(own, keys)
+        return lambda fell: course.is_blocked(blocking(fell))
+
+    return scene.chances(own, happens)[0].probability
+
+
+def _any_room(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance:
+    segments = sorted({at for _, part in rooms for at in part.segments})
+
+    def happens(keys: tuple[Key, ...]) -> Happens:
+        blocking = scene.blocking(segments, keys)
+
+        def any_cut_off(fell: BoolArray) -> BoolArray:
+            blocked, lost = blocking(fell), np.zeros(len(fell), dtype=np.bool_)
+            for place, part in rooms:
+                lost |= part.cut_off(blocked, [place.place])[:, 0]
+            return lost
+
+        return any_cut_off
+
+    return scene.chances(segments, happens)[0]
