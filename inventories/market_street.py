@@ -299,8 +299,11 @@ class Stretch:
     row: Mapping[str, Any]
 
 
-def _stretch(room: str, names: tuple[str, str, str, str], widths: tuple[float, float], people: int) -> Stretch:
-    row = dict(zip(("route", "segment", "start", "end"), names, strict=True))
+def _stretch(
+    room: str, names: tuple[str, str, str, str], widths: tuple[float, float], people: int, *through: str
+) -> Stretch:
+    row: dict[str, Any] = dict(zip(("route", "segment", "start", "end"), names, strict=True))
+    row["room"] = "; ".join(dict.fromkeys(one for one in (room, *through) if one)) or None
     return Stretch(room, row | {"clear_width": widths[0], "required_width": widths[1], "occupants": people})
 
 
@@ -313,11 +316,13 @@ def _stretches() -> Iterator[Stretch]:
                 room = {"aisle": start, "office": start, "door": "", "passage": "Workshop"}.get(segment, "Corridor")
                 room = "Lobby" if {"Lobby", "street doors"} & {begin, end} else room
                 names = (f"{floor} {route}", segment, f"{floor} {begin}", f"{floor} {end}")
-                yield _stretch(room, names, WIDTHS.get(segment, (1.5, CORRIDOR)), people)
+                through = (start, "Corridor") if segment == "door" and start != "west stair" else ()
+                yield _stretch(room, names, WIDTHS.get(segment, (1.5, CORRIDOR)), people, *through)
                 begin = end
         for room, end in DOORS[floor].items():
             names = (f"{floor} rooms", room, f"{floor} {room}", f"{floor} {end}")
-            yield _stretch(room, names, WIDTHS["door"], 10)
+            beyond = {"aisle NW": "North office", "lobby E": "Lobby"}.get(end, "Corridor")
+            yield _stretch(room, names, WIDTHS["door"], 10, end if end in ROOMS[floor] else beyond)
     for *flight, people in STAIRS:
         route, segment, start, end = map(str, flight)
         yield _stretch("", (route, segment, start, end), WIDTHS["stair"], int(people))

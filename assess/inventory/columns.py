@@ -306,6 +306,10 @@ ROUTES = Sheet(
         ),
         Column(name="start", label="From", kind="text", source="Places", help="The place where it begins.", width=16),
         Column(name="end", label="To", kind="text", source="Places", help="The place where it ends.", width=16),
+        Column(
+            name="room", label="Room", kind="text", default="pieces of every room count, through walls as well", width=16,
+            help="The Room of Items that it runs through, several split by ; Placed pieces of other rooms do not count.",
+        ),
         _metres("clear_width", "Clear width", "Width without furniture in it.", 0.1, 100, "as Required width"),
         _metres("required_width", "Required width", "Width that must stay free.", 0.1, 100, "0.9 m"),
         Column(

@@ -129,7 +129,10 @@ class Place:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Segment:
-    """One segment of an evacuation route; widths in m."""
+    """One segment of an evacuation route; widths in m.
+
+    `room` names the rooms that it runs through, split by ;: walls keep pieces of others away. Blank: not known.
+    """
 
     row: int
     route: str
@@ -137,10 +140,16 @@ class Segment:
     floor: str = ""
     start: str = ""
     end: str = ""
+    room: str = ""
     clear_width: float | None = None
     required_width: float | None = None
     occupants: int | None = None
     notes: str = ""
+
+    @property
+    def rooms(self) -> tuple[str, ...]:
+        """The rooms that it runs through, each by its name."""
+        return tuple(name for part in self.room.split(";") if (name := part.strip()))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

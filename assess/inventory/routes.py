@@ -1,5 +1,6 @@
 """Evacuation routes and the places that they join: read, and what in them does not fit together."""
 
+import difflib
 from collections.abc import Mapping
 from math import hypot
 
@@ -46,6 +47,7 @@ def read_routes(tables: Mapping[str, Table]) -> tuple[Segment, ...]:
         if start and end:
             _check_length(table, row, start, end)
             _check_floor(table, row, (places.sound("floor", start), places.sound("floor", end)))
+    _check_rooms(table, tables["Items"], places)
     check_network(table, places)
     return tuple(Segment(row=row.number, **row.filled()) for row in table.with_all("route", "segment"))
 
@@ -122,6 +124,26 @@ def _check_length(table: Table, row: Row, start: Row, end: Row) -> None:
     elif start.values.get("floor") == end.values.get("floor") and hypot(x, y) <= SAME_POINT:
         message = f"{one} and {other} are at the same point of the plan: the segment has no length."
         table.report(cell, message, "Correct their positions in Places, or choose another place.")
+
+
+def _check_rooms(table: Table, items: Table, places: Table) -> None:
+    """Warn of a room that neither a piece nor a place has: a slip there would leave out the pieces of the right one."""
+    known = {
+        key(value): value
+        for source, name in ((places, "place"), (items, "room"))
+        for row in source.rows
+        if (value := row.values.get(name)) is not None
+    }
+    for row in table.rows:
+        for room in (part.strip() for part in (row.values.get("room") or "").split(";")):
+            near = difflib.get_close_matches(key(room), known, 1, 0.75)
+            if room and key(room) not in known and near:
+                message = fill(
+                    "no piece is in room {room}, so none counts beside this segment unless it names it.",
+                    room=shorten(room),
+                )
+                mend = fill("Did you mean {room}?", room=known[near[0]])
+                table.report(table.cell("room", row.number), message, mend, "warning")
 
 
 def _apart(start: Row, end: Row, name: str) -> float:

@@ -17,6 +17,8 @@ FLAGS: Mapping[str, str] = {
     "standing_inside": "it stands in the route with nothing fallen",
     "clear_assumed": "no Clear width is given: it is taken as the required width, so whatever reaches in blocks it",
     "required_assumed": "no Required width is given: 0.9 m is taken",
+    "walls_unknown": "no Room is given: placed pieces behind a wall count as well",
+    "own_rooms": "placed pieces of other rooms than its own do not count, unless they name it",
     "no_plan": "its places have no positions: only pieces that name it count",
 }
 """Cautions on a piece beside a segment and on a segment, by flag."""

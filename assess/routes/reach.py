@@ -4,15 +4,16 @@ No publication gives a closed rule for this; ours is for screening. A fallen pie
 its tipping edge, and where it stood. Where the plan tells the place of piece and segment, what is covered follows from
 it, and a piece that may fall either way covers whatever of both ways lies in the segment. Else the Edge distance d
 tells that it covers Height - d of the width, on a side and at a place along the segment that are not known: it may face
-any other.
+any other. Walls are known only where Routes names the Room: placed pieces of other rooms cannot reach the segment then.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from assess.inventory.labels import key
 from assess.inventory.model import Inventory, Item, Segment
 from assess.inventory.routes import DEFAULT_WIDTH
 from assess.methods._method import BoolArray
@@ -97,6 +98,8 @@ def _reach(segment: Segment, clear: float, band: Band | None, told: Mapping[int,
         "clear_assumed": segment.clear_width is None,
         "required_assumed": segment.required_width is None,
         "no_plan": band is None,
+        "walls_unknown": band is not None and not segment.rooms,
+        "own_rooms": band is not None and bool(segment.rooms),
     }
     return Reached(
         segment=segment,
@@ -152,8 +155,16 @@ def _near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping[int,
     for at, band in bands.items():
         floor = inventory.routes[at].floor
         hits = trees[floor].query(band.ground()) if floor in trees else ()
-        found[at] = [on_floor[floor][hit] for hit in sorted(hits)]
+        rooms = {key(room) for room in inventory.routes[at].rooms}
+        near = (on_floor[floor][hit] for hit in sorted(hits))
+        found[at] = [index for index in near if _may_stand(inventory.items[index], inventory.routes[at], rooms)]
     return found
+
+
+def _may_stand(item: Item, segment: Segment, rooms: Collection[str]) -> bool:
+    """Tell whether no wall stands between: the rooms are the same or not known, or the piece names the segment."""
+    is_named = item.route == segment.route and item.segment in ("", segment.segment)
+    return is_named or not rooms or not item.room or key(item.room) in rooms
 
 
 # ---------------------------------------------------------------- by the plan

@@ -32,6 +32,7 @@ HEADS: Mapping[str, list[str]] = {
     "Items": ["Item", "Floor", "Breadth [cm]", "Height [cm]", "X [m]", "Y [m]", "Angle [deg]", "Route", "Segment",
               "Edge distance [m]"],
 }  # fmt: skip
+ITEMS_HEAD_ROOM = [["Item", "Floor", "Room", "Breadth [cm]", "Height [cm]"]]
 SOUND = {"Places": PLACES, "Routes": ROUTES, "Items": ITEMS}
 
 
@@ -296,3 +297,15 @@ def test_a_cell_that_cannot_be_read_is_told_once(tmp_path: Path, row: str, heade
         assert [problem.place for problem in problems] == ["Places!A2", "Routes!D2"]
     else:
         assert len(problems) == 1, [str(problem) for problem in problems]
+
+
+def test_rooms_of_a_segment_are_split_and_a_slip_is_told(tmp_path):
+    items = [*ITEMS_HEAD_ROOM, ["B1", "2", "Open office", 40, 180]]
+    routes = [[*HEADS["Routes"], "Room"], ["Way", "aisle", "2", "Office", "Upper", 1.2, 0.9, "Open ofice; Upper"]]
+    places = [HEADS["Places"], PLACES["Office"], PLACES["Upper"]]
+    found = read_inventory(write(tmp_path, items, TWO_FLOORS, Places=places, Routes=routes))
+    assert found.routes[0].rooms == ("Open ofice", "Upper")  # a place may be named as well: it has no pieces
+    told = [one for one in found.problems if one.cell == "H2"]
+    assert [one.severity for one in told] == ["warning"]
+    assert "no piece is in room 'Open ofice'" in str(told[0])
+    assert "Did you mean Open office?" in str(told[0])
