@@ -78,7 +78,7 @@ def find_reached(inventory: Inventory) -> tuple[Reached, ...]:
         return ()
     clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
     bands = build_bands(inventory, dict(enumerate(clear)))
-    shapes = build_shapes(inventory.items) if bands else {}
+    shapes = build_shapes(inventory.items, {inventory.routes[at].floor for at in bands})
     named, near = _named(inventory), _near(inventory, shapes, bands)
     found = []
     for at, segment in enumerate(inventory.routes):

@@ -1,6 +1,6 @@
 """What placed pieces cover on the plan: standing, and fallen one way or another."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -21,9 +21,9 @@ class Shape:
     flags: tuple[str, ...]
 
 
-def build_shapes(items: Sequence[Item]) -> dict[int, Shape]:
-    """Return the shapes of the pieces that have a position, by their index."""
-    placed = ((at, item, item.x, item.y) for at, item in enumerate(items))
+def build_shapes(items: Sequence[Item], floors: Collection[str]) -> dict[int, Shape]:
+    """Return the shapes of the pieces on some floors that have a position, by their index."""
+    placed = ((at, item, item.x, item.y) for at, item in enumerate(items) if item.floor in floors)
     return {at: _shape(item, (x, y)) for at, item, x, y in placed if x is not None and y is not None}
 
 
