@@ -4,17 +4,19 @@ Exit status: 0 done; 1 done, but something could not be assessed or written (nam
 written. Messages go to standard error, what was asked for to standard output.
 """
 
-import json
 from enum import Enum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from assess.cli_motion import record, rock
 from assess.console import exits, print_problems, print_result
 from assess.errors import InputError
-from assess.options import read_formats, read_look, read_settings
-from assess.settings import SCENARIOS, Settings
+from assess.options import check_run, read_fixed_settings, read_formats, read_look, read_pfa, read_settings
+from assess.settings import ROUTE_RISK, SCENARIOS, Settings
+from assess.units import GRAVITY
 from assess.version import __version__
 
 if TYPE_CHECKING:
@@ -39,6 +41,12 @@ class UnitSystem(str, Enum):
 
 
 Workbook = Annotated[Path, typer.Argument(help="The inventory, an .xlsx workbook.", show_default=False)]
+Seed = Annotated[int | None, typer.Option(min=0, help="Of the generated motions.", show_default="1")]
+Scenario = Annotated[
+    str | None,
+    typer.Option(help=f"Source of the floor motion: {', '.join(SCENARIOS)}.", show_default="the workbook's"),
+]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Threads.", show_default="one a processor")]
 
 
 def main() -> None:
@@ -103,20 +111,20 @@ def run(
         str | None,
         typer.Option(help="Motions of each floor and axis; auto: until each class is sure.", show_default="200"),
     ] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Of the generated motions.", show_default="1")] = None,
+    seed: Seed = None,
     motions: Annotated[
         Path | None,
         typer.Option(help="Folder of your own floor records, in place of generated ones.", show_default=False),
     ] = None,
     scale_motions: Annotated[bool, typer.Option("--scale-motions", help="Scale them to each floor's PFA.")] = False,
-    scenario: Annotated[
-        str | None,
-        typer.Option(help=f"Source of the floor motion: {', '.join(SCENARIOS)}.", show_default="the workbook's"),
-    ] = None,
+    scenario: Scenario = None,
+    route_risk: Annotated[
+        float, typer.Option(help="Chance under which every evacuation route is to be brought, above 0 and below 1.")
+    ] = ROUTE_RISK,
     formats: Annotated[
         str, typer.Option(help="Files to write, split by commas; also npz, the outcome of every motion.")
     ] = "pdf,xlsx,html,json,csv",
-    jobs: Annotated[int | None, typer.Option(min=1, help="Threads.", show_default="one a processor")] = None,
+    jobs: Jobs = None,
     language: Annotated[
         str | None, typer.Option(help="Language of the reports: en, it.", show_default="the workbook's")
     ] = None,
@@ -133,16 +141,8 @@ def run(
 
     wanted = read_formats(formats, verify)
     folder = out or Path(f"{path.stem}-report")
-    if folder.exists() and not folder.is_dir():
-        raise typer.BadParameter(f"{folder} is a file; name a folder.", param_hint="--out")
-    if motions is not None and (verify == "none" or runs is not None or seed is not None):
-        message = "your own motions are all taken, in a verification: leave out --verify none, --runs and --seed."
-        raise typer.BadParameter(message, param_hint="--motions")
-    if scale_motions and motions is None:
-        raise typer.BadParameter(
-            "there are no motions to scale: name their folder by --motions.", param_hint="--scale-motions"
-        )
-    settings = read_settings(verify, runs, seed, scale_motions, scenario)
+    check_run(folder, verify, runs, seed, motions, scale_motions)
+    settings = read_settings(verify, runs, seed, scenario, scale_motions=scale_motions, route_risk=route_risk)
     with exits():
         check_folder(folder)
         look = read_look(language, template, accessible)
@@ -157,80 +157,49 @@ def run(
 
 
 @app.command()
-def record(
-    files: Annotated[list[str], typer.Argument(help="Records: FILE or FILE#channel.", show_default=False)],
-    as_json: Annotated[
-        bool,
-        typer.Option("--json", help="Print one JSON document instead: an object for one file, a list for several."),
-    ] = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw the channels to this .png, .svg or .pdf.")] = None,
-) -> None:
-    """Tell what records hold: channels, time step, PFA, PFV, displacement and 5 % spectrum, as assess treats them."""
-    from assess.report.commands.records import check_figure, describe, list_lines, read_channels, write_figure
-
-    if plot is not None:
-        with exits():
-            check_figure(plot)
-    found, failed = [], 0
-    for name in files:
-        try:
-            found.append(read_channels(name))
-        except InputError as error:
-            typer.echo(f"error  {error}", err=True)
-            failed += 1
-    if not found:
-        raise typer.Exit(2)
-    documents = [describe(channels) for channels in found]
-    if as_json:
-        typer.echo(json.dumps(documents[0] if len(files) == 1 else documents, ensure_ascii=False, indent=1))
-    else:
-        typer.echo("\n\n".join("\n".join(list_lines(document)) for document in documents))
-    if plot is not None:
-        with exits():
-            channels = [channel for ones in found for channel in ones]
-            drawn = write_figure(channels, plot)
-        left = f"; {len(channels) - drawn} more channels are not drawn" if drawn < len(channels) else ""
-        typer.echo(f"wrote {plot}{left}", err=True)
-    if failed:
-        raise typer.Exit(1)
-
-
-@app.command()
-def rock(
-    breadth: Annotated[float, typer.Option(help="Side parallel to the motion [cm].", show_default=False)],
-    height: Annotated[float, typer.Option(help="[cm]", show_default=False)],
-    record: Annotated[str, typer.Option(help="The motion: FILE or FILE#channel.", show_default=False)],
-    pfa: Annotated[float | None, typer.Option(help="Scale it to this peak [g].", show_default="not scaled")] = None,
-    restitution: Annotated[
-        float | None, typer.Option(help="Angular velocity after an impact over before.", show_default="Housner's")
-    ] = None,
-    baseline: Annotated[str, typer.Option(help="Treatment of an uncorrected record: standard, none.")] = "standard",
+def routes(
+    path: Workbook,
+    pfa: Annotated[
+        str, typer.Option(metavar="LOW:HIGH[:STEP]", help="PFA on the routes' floors [g]: both ends, steps of 0.1.")
+    ] = "0.1:1.0",
+    runs: Annotated[str | None, typer.Option(help="Motions of each floor and axis.", show_default="200")] = None,
+    seed: Seed = None,
+    scenario: Scenario = None,
+    jobs: Jobs = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON document instead.")] = False,
-    plot: Annotated[Path | None, typer.Option(help="Draw motion and rotation to this .png, .svg or .pdf.")] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write the table to this .csv, a line a route and PFA.")] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw the chances to this .png, .svg or .pdf.")] = None,
 ) -> None:
-    """Rock one block under one record: whether it overturns, by direct integration of Housner's equation."""
-    from assess.report.commands.records import check_figure
-    from assess.report.commands.rocking import describe, list_lines, read_case, write_figure
+    """Tell how likely each evacuation route is blocked, against the peak acceleration (PFA) of its floors.
+
+    At each value every floor of a route shakes with that PFA along both axes: by the floor's own motions, each scaled
+    by value / the floor's PFA. The same motions serve at every value; the spectrum keeps its shape, PFV scales along.
+
+    Rocking is not monotone: a stronger motion may spare a piece that a weaker one overturns, so a chance may fall.
+    """
+    values, settings = read_pfa(pfa), read_fixed_settings(runs, seed, scenario)
+    from assess.report.commands.routes import Sweep, check_files, write_files
 
     with exits():
-        if plot is not None:
-            check_figure(plot)
-        case = read_case(breadth, height, record, pfa, restitution, baseline)
-        from assess.rocking.response import follow_block
+        check_files(csv, plot)
+        assessment = _assess(path, settings)
+        if not assessment.inventory.routes:
+            sheet = assessment.inventory.sheets.get("Routes", "Routes")
+            raise InputError(f"{path.name} names no routes: fill in the sheet {sheet}.")
+        print_problems([one for one in assessment.problems if one.severity == "warning"])
+        from assess.routes.fragility import find_fragility
 
-        try:
-            response = follow_block(
-                case.breadth, case.height, case.motion.acceleration, case.motion.time_step, restitution=case.restitution
-            )
-        except ValueError as error:  # how stocky a block may be, only the integration knows
-            raise InputError(f"--breadth and --height: {error}") from None
-        if as_json:
-            typer.echo(json.dumps(describe(case, response), indent=1))
-        else:
-            typer.echo("\n".join(list_lines(case, response)))
-        if plot is not None:
-            write_figure(case, response, plot)
-            typer.echo(f"wrote {plot}", err=True)
+        fragility = find_fragility(
+            assessment, [one * GRAVITY for one in values], jobs=jobs, progress=partial(_progress, doing="Rocking")
+        )
+        sweep = Sweep(assessment, fragility)
+        typer.echo(sweep.to_json() if as_json else sweep.to_text())
+        for told in write_files(sweep, csv, plot):
+            typer.echo(told, err=True)
+
+
+app.command()(record)
+app.command()(rock)
 
 
 @app.command()
@@ -272,7 +241,7 @@ def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: i
     return run_assessment(inventory, settings, suite=suite, jobs=jobs, progress=_progress)
 
 
-def _progress(work: "Work") -> "Progress":
+def _progress(work: "Work", doing: str = "Verifying") -> "Progress":
     from assess.progress import Progress
 
-    return Progress(work)
+    return Progress(work, doing=doing)

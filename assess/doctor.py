@@ -18,6 +18,8 @@ _PACKAGES = (
     "jinja2",
     "matplotlib",
     "weasyprint",
+    "shapely",
+    "networkx",
     "typer",
     "pandas",
 )

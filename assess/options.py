@@ -1,17 +1,37 @@
-"""What the options of `assess run` mean, checked before the work."""
+"""What the options of `assess run` and `assess routes` mean, checked before the work."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
-from assess.settings import AUTO, MOST_RUNS, SCENARIOS, SEED, VERIFY, Settings, match_choice, read_runs
+from assess.settings import AUTO, MOST_RUNS, ROUTE_RISK, SCENARIOS, SEED, VERIFY, Settings, match_choice, read_runs
 
 if TYPE_CHECKING:
     from assess.inventory.model import Inventory
     from assess.report.look import Look
+
+MOST_PFA, STEP, MOST_VALUES = Decimal(5), "0.1", 50
+"""Largest PFA [g] of a fragility, the usual step [g], and how many values it may have."""
+NUMBER = r"(\d{1,4}(?:\.\d{0,12})?|\.\d{1,12})"
+PFA = re.compile(rf"{NUMBER}:{NUMBER}(?::{NUMBER})?", re.ASCII)
+
+
+def check_run(out: Path, verify: str, runs: str | None, seed: int | None, motions: Path | None, scale: bool) -> None:
+    """Raise BadParameter where the folder of the reports is a file, or options of one's own motions contradict."""
+    if out.exists() and not out.is_dir():
+        raise typer.BadParameter(f"{out} is a file; name a folder.", param_hint="--out")
+    if motions is not None and (verify == "none" or runs is not None or seed is not None):
+        message = "your own motions are all taken, in a verification: leave out --verify none, --runs and --seed."
+        raise typer.BadParameter(message, param_hint="--motions")
+    if scale and motions is None:
+        raise typer.BadParameter(
+            "there are no motions to scale: name their folder by --motions.", param_hint="--scale-motions"
+        )
 
 
 def read_look(language: str | None, template: Path | None, accessible: bool) -> "Callable[[Inventory], Look]":
@@ -40,7 +60,13 @@ def read_formats(formats: str, verify: str) -> list[str]:
 
 
 def read_settings(
-    verify: str, runs: str | None, seed: int | None, scale_motions: bool, scenario: str | None
+    verify: str,
+    runs: str | None,
+    seed: int | None,
+    scenario: str | None,
+    *,
+    scale_motions: bool = False,
+    route_risk: float = ROUTE_RISK,
 ) -> Settings:
     """Return the settings of a run."""
     if verify not in VERIFY:
@@ -48,6 +74,9 @@ def read_settings(
     count = read_runs(runs)
     if count is None:
         raise typer.BadParameter(f"{runs!r} is not a number from 1 to {MOST_RUNS:,}, nor {AUTO}.", param_hint="--runs")
+    if not 0 < route_risk < 1:
+        message = f"{route_risk:g} is no chance above 0 and below 1: write 3 % as 0.03."
+        raise typer.BadParameter(message, param_hint="--route-risk")
     kind = None if scenario is None else match_choice(scenario, SCENARIOS)
     if scenario is not None and kind is None:
         raise typer.BadParameter(f"{scenario!r} is not one of: {', '.join(SCENARIOS)}.", param_hint="--scenario")
@@ -57,4 +86,36 @@ def read_settings(
         seed=SEED if seed is None else seed,
         scale_motions=scale_motions,
         scenario=kind,  # type: ignore[arg-type]
+        route_risk=route_risk,
     )
+
+
+def read_fixed_settings(runs: str | None, seed: int | None, scenario: str | None) -> Settings:
+    """Return the settings of a fragility, which has as many motions at every value."""
+    settings = read_settings("none", runs, seed, scenario)
+    if settings.runs == AUTO:
+        message = f"{AUTO} is for assess run: every value takes the same motions. Give their number."
+        raise typer.BadParameter(message, param_hint="--runs")
+    return settings
+
+
+def read_pfa(text: str) -> list[float]:
+    """Return the values of PFA [g] that ``LOW:HIGH`` or ``LOW:HIGH:STEP`` means: both ends, and every step between."""
+    found = PFA.fullmatch(text.strip())
+    if found is None:
+        raise _bad_pfa(f"{text[:40]!r} is not LOW:HIGH or LOW:HIGH:STEP in g, as 0.1:1.0 or 0.1:1.0:0.05.")
+    low, high, step = (Decimal(part) for part in (found[1], found[2], found[3] or STEP))
+    if not 0 < low <= high <= MOST_PFA:
+        raise _bad_pfa(f"it goes from {low} to {high} g, expected above 0, LOW first, and at most {MOST_PFA} g.")
+    if step == 0:
+        raise _bad_pfa("the step is 0 g, expected above 0.")
+    steps = int((high - low) / step)
+    values = [low + step * at for at in range(min(steps, MOST_VALUES) + 1)]
+    values += [high] if values[-1] < high else []
+    if len(values) > MOST_VALUES:
+        raise _bad_pfa(f"{text.strip()} are over {MOST_VALUES} values. Take a larger step.")
+    return [float(one) for one in values]
+
+
+def _bad_pfa(message: str) -> typer.BadParameter:
+    return typer.BadParameter(message, param_hint="--pfa")

@@ -1,4 +1,4 @@
-"""Tells on standard error how far the verification is: pieces, floors and the time that is left."""
+"""Tells on standard error how far the verification is, or another rocking: pieces, floors and the time left."""
 
 import sys
 import threading
@@ -18,15 +18,16 @@ TOLD_FROM = 0.02
 class Progress:
     """Writes one line that keeps changing on a terminal; elsewhere one line, once, that says what is begun."""
 
-    def __init__(self, work: Work, stream: TextIO | None = None) -> None:
+    def __init__(self, work: Work, stream: TextIO | None = None, doing: str = "Verifying") -> None:
         self._work = work
+        self._doing = doing
         self._stream = stream or sys.stderr
         self._shares = np.zeros(len(work.items))
         self._start = self._written = time.monotonic()
         self._lock = threading.Lock()  # ensembles are worked on side by side
         self._is_terminal = self._stream.isatty()
         if not self._is_terminal:
-            self._stream.write(f"Verifying {self._describe(work.pieces, len(set(work.floors)))}.\n")
+            self._stream.write(f"{doing} {self._describe(work.pieces, len(set(work.floors)))}.\n")
 
     def __call__(self, what: str, number: int, share: float) -> None:
         """Note that a share of ensemble `number` is done."""
@@ -46,7 +47,7 @@ class Progress:
         waiting = [items for items, one in zip(self._work.items, finished, strict=True) if not one]
         pieces = self._work.pieces - len(np.unique(np.concatenate(waiting))) if waiting else self._work.pieces
         total = self._describe(self._work.pieces, len(set(self._work.floors)))
-        return f"Verifying: {self._describe(pieces, len(floors))} done of {total}{left}"
+        return f"{self._doing}: {self._describe(pieces, len(floors))} done of {total}{left}"
 
     @staticmethod
     def _describe(pieces: int, floors: int) -> str:

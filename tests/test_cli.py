@@ -15,7 +15,7 @@ RUN = ("run", "--verify", "none")
 
 def test_help_names_every_command():
     text = run(app, ["--help"]).output
-    for command in ("new", "check", "run", "methods", "doctor"):
+    for command in ("new", "check", "run", "routes", "record", "rock", "methods", "doctor"):
         assert re.search(rf"^\s+{command}\b", text, re.MULTILINE)
 
 
@@ -149,7 +149,7 @@ def test_doctor_finds_all_that_is_installed_here():
     done = run(app, ["doctor"])
     assert f"assess: {assess.__version__}" in done.output
     assert done.exit_code == (1 if "missing" in done.output else 0)
-    for name in ("numpy", "openpyxl", "templates", "fonts", "PDF"):
+    for name in ("numpy", "openpyxl", "shapely", "networkx", "templates", "fonts", "PDF"):
         assert re.search(rf"^(ok|missing)\s+{name}:", done.output, re.MULTILINE)
 
 

@@ -61,6 +61,17 @@ def test_one_piece_on_one_floor():
     assert stream.getvalue() == "Verifying 1 piece on 1 floor.\n"
 
 
+def test_what_is_done_can_be_something_else(clock):
+    stream = io.StringIO()
+    Progress(work(), stream, doing="Rocking")
+    assert stream.getvalue() == "Rocking 5 pieces on 2 floors.\n"
+    stream = Terminal()
+    tell = Progress(work(), stream, "Rocking")
+    clock.now = 1.0
+    tell("motions", 0, 0.01)
+    assert shown(stream)[0].startswith("Rocking: 0 pieces on 0 floors done of 5 pieces")
+
+
 def test_on_a_terminal_the_line_has_pieces_floors_and_the_time_left(clock):
     stream = Terminal()
     tell = Progress(work(), stream)

@@ -67,7 +67,7 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, tell: Tell |
         return joint, _under_record(cases, own, ensemble, inner)
 
     joints = []
-    for joint, record in _side_by_side(work, owns, side_by_side):
+    for joint, record in run_side_by_side(work, owns, side_by_side):
         found.take(joint, record, cases.ensembles[joint.ensemble])
         joints.append(joint)
     return _summarise(found, cases, settings, joints)
@@ -96,7 +96,7 @@ def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[J
     return Outcome(np.where(done, found.overturned / runs, np.nan), detail, flags, tuple(joints))
 
 
-def _side_by_side(work: Callable[..., _Result], tasks: list[Any], threads: int) -> Iterator[_Result]:
+def run_side_by_side(work: Callable[..., _Result], tasks: list[Any], threads: int) -> Iterator[_Result]:
     """Yield the results of `work` in the order of `tasks`, several of which are worked on at once.
 
     Never in the thread that called: a Ctrl-C that meets a compilation there would be lost.
@@ -151,9 +151,9 @@ def _integrate(
     for first, last in zip((0, *looks), looks, strict=False):
         wider = ((0, 0), (0, last - first))
         fell, rotation = np.pad(fell, wider), np.pad(rotation, wider)
-        for at, batch, time_step in _batches(motions, first, last, size):
+        for at, batch, time_step in make_batches(motions, first, last, size):
             tell("rocking", number, at / looks[-1])
-            one = _rock(cases, own[going], batch, time_step, threads)
+            one = rock_cases(cases, own[going], batch, time_step, threads)
             fell[going, at : at + len(batch)], rotation[going, at : at + len(batch)] = one
             tell("motions", number, (at + len(batch)) / looks[-1])
         runs[going] = last
@@ -168,7 +168,7 @@ def _integrate(
     )  # fmt: skip
 
 
-def _batches(motions: Motions, first: int, last: int, size: int) -> Iterator[tuple[int, FloatArray, float]]:
+def make_batches(motions: Motions, first: int, last: int, size: int) -> Iterator[tuple[int, FloatArray, float]]:
     """Yield motions `first` to `last` - 1: the number of the first of a batch, the batch, its time step."""
     at = first
     for start in range(first, last, size):
@@ -188,9 +188,10 @@ def _is_open(fell: BoolArray, settings: Settings) -> BoolArray:
     return np.asarray(classify_all(low) != classify_all(high), dtype=np.bool_)
 
 
-def _rock(
+def rock_cases(
     cases: Cases, own: NDArray[np.intp], motions: FloatArray, time_step: float, threads: int
 ) -> tuple[BoolArray, FloatArray]:
+    """Return whether each of the cases `own` overturns under each motion, and how far it turns: (m, k) each."""
     from assess.rocking.ensemble import rock_blocks
 
     found = rock_blocks(
@@ -206,7 +207,7 @@ def _under_record(
     if ensemble.record is None:
         return np.full(own.size, np.nan), np.full(own.size, np.nan)
     motion, time_step = ensemble.record
-    fell, rotation = _rock(cases, own, motion[np.newaxis], time_step, threads)
+    fell, rotation = rock_cases(cases, own, motion[np.newaxis], time_step, threads)
     return fell[:, 0].astype(np.float64), rotation[:, 0]
 
 

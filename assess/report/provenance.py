@@ -39,8 +39,10 @@ def say_reference(reference: Reference) -> str:
 
 
 @cache
-def versions(*, has_rocked: bool = False) -> Mapping[str, str]:
+def versions(*, has_rocked: bool = False, has_routes: bool = False) -> Mapping[str, str]:
     """Return what the numbers were computed with; the verification also depends on the kind of processor."""
+    from importlib.metadata import version
+
     import numpy as np
 
     found = {
@@ -50,11 +52,11 @@ def versions(*, has_rocked: bool = False) -> Mapping[str, str]:
         "machine": platform.machine(),
     }
     if has_rocked:
-        from importlib.metadata import version
-
         from llvmlite.binding import get_host_cpu_name
         from numba import config
 
         processor = getattr(config, "CPU_NAME", None) or get_host_cpu_name()
         found |= {"scipy": version("scipy"), "numba": version("numba"), "processor": processor}
+    if has_routes:
+        found |= {name: version(name) for name in ("shapely", "networkx")}
     return found

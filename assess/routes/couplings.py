@@ -18,6 +18,9 @@ EXACT = 4096
 DRAWS = 4000
 """Draws where they are more: the 95 % interval of a chance of 0.5 is then 0.5 +- 0.016."""
 
+ROUNDED = 12
+"""Decimals that chances keep: sums of weights leave a hair."""
+
 Happens = Callable[[BoolArray], BoolArray]
 """Tells for each of m draws (m, n) of which pieces fell whether something happens: (m,), or (m, r) for r things."""
 
@@ -147,7 +150,7 @@ def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chanc
     n = len(couplings.keys)
     ends = _rows(happens(np.array([[False] * n, [True] * n], dtype=np.bool_).reshape(2, n)))
     ways = (couplings.joint, couplings.independent, couplings.correlated)
-    shares = np.minimum([one.weight @ _rows(happens(one.fell)) for one in ways], 1.0)
+    shares = np.round([one.weight @ _rows(happens(one.fell)) for one in ways], ROUNDED)
     return [
         _chance(couplings, share, z, is_certain=bool(none) or not every)
         for share, (none, every) in zip(shares.T, ends.T, strict=True)

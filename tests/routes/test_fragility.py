@@ -1,0 +1,190 @@
+"""The chances of blockage against PFA: the same motions scaled, held against blocks rocked one by one, and a run."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import assess
+from assess.inventory.blank import Content, write_workbook
+from assess.methods import Cases, proposed_or
+from assess.results import Assessment
+from assess.rocking.ensemble import rock_blocks
+from assess.routes.fragility import find_fragility, find_passing
+from assess.settings import Settings
+from assess.units import GRAVITY
+from assess.verification import choose_motions
+from tests.shaking import write_records
+
+RUNS = 20
+SETTINGS = Settings(verify="none", runs=RUNS, seed=4)
+CORRIDOR = {"route": "A", "segment": "corridor", "floor": "1", "clear_width": 1.5, "required_width": 0.9}
+CABINET = {
+    "item": "a1", "floor": "1", "breadth": 40, "width": 80, "height": 180, "axis": "X", "route": "A", "edge_distance": 0
+}  # fmt: skip
+"""It leaves nothing of the corridor once it has fallen."""
+
+
+def assessed(
+    folder: Path, *items: dict[str, Any], settings: Settings = SETTINGS, floor: dict[str, Any] | None = None
+) -> Assessment:
+    rows = {
+        "Building": [{}],
+        "Floors": [{"floor": "1", **(floor or {"record_x": "pulse.csv"})}],
+        "Items": list(items) or [CABINET],
+        "Routes": [CORRIDOR, {**CORRIDOR, "route": "B"}],
+    }
+    write_records(folder, "pulse")
+    path = folder / "w.xlsx"
+    write_workbook(path, Content(rows=rows), "si")
+    return assess.run(assess.read_inventory(path), settings)
+
+
+def fragility(assessment: Assessment, *pfa_g: float, **named: Any):
+    return find_fragility(assessment, [one * GRAVITY for one in pfa_g], **named)
+
+
+def chances(found, route: str = "A") -> list[float]:
+    (own,) = (one for one in found.routes if one.route == route)
+    return [chance.probability for chance in own.blocked]
+
+
+def share(assessment: Assessment, pfa_g: float) -> list[float]:
+    """Rock every piece alone, under the motions of each axis scaled to a PFA: the shares that overturn."""
+    every = np.ones(len(assessment.case_item), dtype=np.bool_)
+    building, settings = assessment.inventory.building, assessment.settings
+    cases = choose_motions(
+        assessment.cases, every, assessment.case_demand, assessment.demands, building, settings, None
+    )
+    found = []
+    for at, demand in enumerate(assessment.case_demand):
+        ((motions, step),) = cases.ensembles[cases.ensemble[at]].open(1).realise(0, settings.runs)
+        scaled = motions * (pfa_g * GRAVITY / demand.pfa)
+        found.append(float(rock_blocks(cases.breadth[at], cases.height[at], scaled, step).overturned.mean()))
+    return found
+
+
+# --- one piece ---
+
+
+def test_one_piece_falls_as_often_as_it_does_alone(tmp_path):
+    assessment = assessed(tmp_path, floor={"pfa_x": 0.3, "pfa_y": 0.2})
+    found = fragility(assessment, 0.3, 0.45, 0.9)
+    assert chances(found) == [pytest.approx(share(assessment, pfa)[0]) for pfa in (0.3, 0.45, 0.9)]
+    assert 0 < chances(found)[1] < 1
+    one = found.routes[0].blocked[0]
+    assert (one.pieces, one.unverified, one.runs, one.is_joint) == (1, 0, RUNS, True)
+    assert chances(found, "B") == [0, 0, 0]
+    assert found.generic == ("1",)
+    assert found.routes[0].scenario_pfa == (pytest.approx(0.2 * GRAVITY), pytest.approx(0.3 * GRAVITY))
+    assert found.routes[0].floors == ("1",)
+
+
+def test_below_the_threshold_of_every_piece_nothing_falls(tmp_path):
+    """It rocks above B/H = 0.22 g; the peaks of the motions scatter, by less than 2."""
+    found = fragility(assessed(tmp_path), 0.05, 0.11)
+    assert chances(found) == [0, 0]
+    assert found.routes[0].blocked[0].high > 0, "as only so many motions were tried"
+
+
+def test_a_blank_axis_takes_the_worse_at_each_value(tmp_path):
+    assessment = assessed(tmp_path, {**CABINET, "axis": None})
+    values = (0.3, 0.4, 0.5, 0.6)
+    along = [share(assessment, pfa) for pfa in values]
+    assert chances(fragility(assessment, *values)) == [pytest.approx(max(both)) for both in along]
+    assert any(one != other for one, other in along)
+
+
+def test_a_piece_too_stocky_to_rock_falls_by_the_formula(tmp_path):
+    assessment = assessed(tmp_path, {**CABINET, "breadth": 160, "width": 160, "height": 110, "quantity": 2})
+    found = fragility(assessment, 0.3, 0.9)
+    formula = proposed_or.evaluate(Cases.of(breadth=1.6, height=1.1, pfa=[0.3 * GRAVITY, 0.9 * GRAVITY]), SETTINGS)
+    first = found.routes[0].blocked
+    assert [one.correlated for one in first] == pytest.approx(formula.value.tolist())
+    assert [(one.is_joint, one.unverified, one.runs) for one in first] == [(False, 2, 0)] * 2
+    assert (found.stocky, found.generic) == (2, ())
+
+
+def test_anchored_pieces_stand_beside(tmp_path):
+    found = fragility(assessed(tmp_path, {**CABINET, "anchored": "yes"}), 0.6).routes[0]
+    assert (found.blocked[0].probability, found.blocked[0].pieces) == (0, 0)
+    assert found.if_anchors_fail is not None
+    assert found.if_anchors_fail[0].probability == chances(fragility(assessed(tmp_path), 0.6))[0] > 0
+
+
+# --- beside a run ---
+
+
+ITEMS = [
+    CABINET,
+    {**CABINET, "item": "a2", "breadth": 30, "height": 170, "edge_distance": 0.4, "axis": None},
+    {**CABINET, "item": "a3", "breadth": 35, "height": 170, "edge_distance": 0.2, "anchored": "yes"},
+    {**CABINET, "item": "a4", "breadth": 60, "height": 180, "edge_distance": 1.0, "quantity": 3, "axis": "Y"},
+]
+
+
+def test_at_the_workbooks_own_pfa_it_is_what_a_run_finds(tmp_path):
+    ran = assessed(tmp_path, *ITEMS, settings=replace(SETTINGS, verify="high"))
+    (pfa,) = {demand.pfa for demand in ran.case_demand}
+    found = find_fragility(ran, [pfa])
+    assert ran.routes is not None
+    for one, other in zip(found.routes, ran.routes.routes, strict=True):
+        assert one.blocked == (other.outlook.blocked,)
+        assert (one.if_anchors_fail or (None,)) == (other.outlook.if_anchors_fail,)
+    assert 0 < chances(found)[0] < 1
+    assert found.generic == ()
+    assert found == find_fragility(assessed(tmp_path, *ITEMS), [pfa]), "verified or not"
+
+
+def test_values_and_threads_change_nothing(tmp_path):
+    assessment = assessed(tmp_path, *ITEMS)
+    several = fragility(assessment, 0.2, 0.4, 0.6, jobs=1)
+    assert fragility(assessment, 0.2, 0.4, 0.6, jobs=3) == several
+    assert chances(fragility(assessment, 0.4)) == chances(several)[1:2]
+
+
+def test_progress_is_told(tmp_path):
+    told: list[tuple[str, int, float]] = []
+
+    def begin(work):
+        assert (work.pieces, set(work.floors)) == (4, {"1"})
+        return lambda *what: told.append(what)
+
+    fragility(assessed(tmp_path, *ITEMS), 0.2, jobs=1, progress=begin)
+    assert [what for what in told if what[0] == "done"] == [("done", 0, 1.0), ("done", 1, 1.0)]
+
+
+def test_nothing_to_rock(tmp_path):
+    found = fragility(assessed(tmp_path, {**CABINET, "route": None}), 0.5, progress=lambda _: pytest.fail("told"))
+    assert chances(found) == chances(found, "B") == [0]
+
+
+def test_what_it_cannot_do(tmp_path):
+    assessment = assessed(tmp_path, settings=replace(SETTINGS, runs="auto"))
+    with pytest.raises(ValueError, match="a fixed number of generated motions"):
+        fragility(assessment, 0.3)
+    many = assessed(tmp_path, settings=replace(SETTINGS, runs=100_000))
+    with pytest.raises(assess.InputError, match=r"--runs: 100,000 motions at 5000 values of --pfa are 500,000,000 res"):
+        fragility(many, *np.linspace(0.1, 1, 5000))
+
+
+# --- where it passes a level ---
+
+
+@pytest.mark.parametrize(
+    ("chances", "level", "pfa"),
+    [
+        ([0.0, 0.2, 0.6], 0.1, 0.15),
+        ([0.0, 0.2, 0.6], 0.2, 0.2),
+        ([0.0, 0.2, 0.6], 0.5, 0.275),
+        ([0.0, 0.2, 0.6], 0.7, math.inf),
+        ([0.3, 0.2, 0.6], 0.25, -math.inf),
+        ([0.3, 0.2, 0.6], 0.3, 0.1),
+        ([0.0, 0.4, 0.2], 0.3, 0.175),
+    ],
+)
+def test_where_a_chance_reaches_a_level(chances, level, pfa):
+    assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx(pfa)

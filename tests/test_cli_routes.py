@@ -1,0 +1,316 @@
+"""`assess routes`: the table, the document, the CSV and the figure of one sweep, and what it says of bad input."""
+
+import csv
+import io
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+import assess
+from assess.cli import app
+from assess.inventory.blank import Content, write_workbook
+from assess.options import read_pfa
+from assess.report.commands.fragility_figure import A_PANEL, MOST_PANELS, choose_drawn
+from assess.routes.fragility import RouteFragility
+from assess.routes.model import Chance
+from assess.units import GRAVITY
+from tests.shaking import write_records
+
+ROOT = Path(__file__).parents[1]
+CORRIDOR = {"segment": "corridor", "clear_width": 1.5, "required_width": 0.9}
+ROUTES = [
+    {"route": "Aula", "floor": "1", **CORRIDOR},
+    {"route": "=Bar", "floor": "2", **CORRIDOR},
+    {"route": "Closet", "floor": "2", **CORRIDOR},
+]
+SHAPE = {"width": 80, "axis": "X", "edge_distance": 0}
+ITEMS = [
+    {"item": "a1", "floor": "1", "breadth": 40, "height": 180, "route": "Aula", **SHAPE},
+    {"item": "a2", "floor": "1", "breadth": 30, "height": 170, "route": "Aula", "anchored": "yes", **SHAPE},
+    {"item": "b1", "floor": "2", "breadth": 50, "height": 180, "route": "=Bar", "quantity": 2, **SHAPE},
+]
+FLOORS = [{"floor": "1", "record_x": "pulse.csv"}, {"floor": "2", "pfa_x": 0.5}]
+SWEEP = ("--pfa", "0.1:0.9:0.2", "--runs", "20", "--seed", "3")
+HEADS = "route,floors,pfa_g,blocked,low,high,independent,correlated,if_anchors_fail,pieces,unverified,runs"
+
+
+def write(folder: Path, **rows: Any) -> Path:
+    write_records(folder, "pulse")
+    path = folder / "w.xlsx"
+    content = {"Building": [{}], "Floors": FLOORS, "Items": ITEMS, "Routes": ROUTES, **rows}
+    write_workbook(path, Content(rows=content), "si")
+    return path
+
+
+def run(*words: object):
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def error(done):
+    """The message of a run that failed as it should: status 2, nothing printed, no traceback."""
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.exception is None or isinstance(done.exception, SystemExit)
+    return " ".join(re.sub(r"[│╭╮╰╯─\n]", " ", done.stderr).split())
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    """One sweep with everything that it can write, and the same as text."""
+    folder = tmp_path_factory.mktemp("sweep")
+    path, plot, table = write(folder), folder / "f.png", folder / "t.csv"
+    done = run("routes", path, *SWEEP, "--json", "--plot", plot, "--csv", table)
+    assert (done.exit_code, done.exception) == (0, None)
+    assert done.stderr.splitlines()[-3:] == ["Rocking 3 pieces on 2 floors.", f"wrote {table}", f"wrote {plot}"]
+    text = run("routes", path, *SWEEP)
+    assert text.exit_code == 0
+    assert sorted(one.name for one in folder.iterdir()) == ["f.png", "pulse.csv", "t.csv", "w.xlsx"]
+    return folder, json.loads(done.stdout), text.stdout
+
+
+# --- what comes out ---
+
+
+def test_the_document(swept):
+    folder, document, _ = swept
+    assert document["workbook"]["file"] == "w.xlsx"
+    assert document["workbook"]["sha256"] == assess.read_inventory(folder / "w.xlsx").sha256
+    assert {"shapely", "networkx", "numba"} <= set(document["assess"]["platform"])
+    assert (document["runs"], document["seed"], document["scenario"]) == (20, 3, "as filled")
+    assert document["pfa_g"] == [0.1, 0.3, 0.5, 0.7, 0.9]
+    assert "Rocking is not monotone" in document["meaning"]
+    aula, bar, closet = document["routes"]
+    assert [one["route"] for one in (aula, bar, closet)] == ["Aula", "=Bar", "Closet"]
+    assert (bar["floors"], bar["scenario_pfa_g"]) == (["2"], [0.5, 0.5])
+    for one in (aula, bar, closet):
+        assert [at["pfa_g"] for at in one["chances"]] == document["pfa_g"]
+        assert all(at["low"] <= at["blocked"] <= at["high"] for at in one["chances"])
+    assert [at["blocked"] for at in closet["chances"]] == [0] * 5
+    assert aula["chances"][0]["blocked"] == bar["chances"][0]["blocked"] == 0, "0.1 g lies below B/H"
+    assert aula["chances"][-1]["blocked"] > 0.5
+    assert all(at["if_anchors_fail"]["blocked"] >= at["blocked"] for at in aula["chances"])
+    assert [at["if_anchors_fail"] for at in bar["chances"]] == [None] * 5
+    assert (aula["chances"][0]["pieces"], bar["chances"][0]["pieces"], closet["chances"][0]["pieces"]) == (1, 2, 0)
+    (caution,) = document["cautions"]
+    assert caution.startswith("Only peaks are known of floor '2': the motions follow a generic spectrum.")
+
+
+def test_the_pfa_at_which_levels_are_passed(swept):
+    _, document, text = swept
+    aula, _, closet = document["routes"]
+    for at in aula["passes"]:
+        chances = [one["blocked"] for one in aula["chances"]]
+        after = next(number for number, chance in enumerate(chances) if chance >= at["chance"])
+        (x0, y0), (x1, y1) = ((document["pfa_g"][number], chances[number]) for number in (after - 1, after))
+        assert at["pfa_g"] == pytest.approx(x0 + (at["chance"] - y0) / (y1 - y0) * (x1 - x0))
+        assert (at["earliest_g"] or 0) <= at["pfa_g"] <= (at["latest_g"] or 1)
+        assert f"{100 * at['chance']:g} % at {at['pfa_g']:.2f} g" in text
+    assert [(at["where"], at["pfa_g"]) for at in closet["passes"]] == [("above", None)] * 3
+    assert closet["passes_if_anchors_fail"] is None
+
+
+def test_the_csv_is_the_document(swept):
+    folder, document, _ = swept
+    data = (folder / "t.csv").read_bytes()
+    assert data.startswith(b"\xef\xbb\xbf" + HEADS.encode() + b"\r\n")
+    rows = list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
+    assert [row["route"] for row in rows] == ["Aula"] * 5 + ["'=Bar"] * 5 + ["Closet"] * 5
+    assert [row["floors"] for row in rows] == ["1"] * 5 + ["2"] * 10
+    every = [at for one in document["routes"] for at in one["chances"]]
+    for row, at in zip(rows, every, strict=True):
+        for name in HEADS.split(",")[2:]:
+            value = at[name]["blocked"] if isinstance(at[name], dict) else at[name]
+            assert row[name] == ("" if value is None else str(value)), name
+
+
+def test_the_text_is_the_document(swept):
+    _, document, text = swept
+    assert "Chance that each evacuation route is blocked, if every floor of it shakes with the PFA along both" in text
+    assert "w.xlsx: scenario as filled, 20 motions of each floor and axis, seed 3\n" in text
+    assert "\nAula (floor 1): 1 piece; 20 motions, all together\n" in text
+    assert "\n=Bar (floor 2): 2 pieces; 20 motions, all together\n" in text
+    assert "\nCloset (floor 2): 0 %: no piece reaches it\n" in text
+    blocks = {block.split(" (")[0]: block for block in text.split("\n\n")[1:]}
+    for one in document["routes"][:2]:
+        for label, name in (("chance [%]", "blocked"), ("  from", "low"), ("  to", "high")):
+            (line,) = re.findall(rf"^  {re.escape(label)} +(.*)$", blocks[one["route"]], re.MULTILINE)
+            assert line.split() == [f"{100 * at[name]:.1f}" for at in one["chances"]]
+    (line,) = re.findall(r"^  if anchors fail +([\d. ]+)$", text, re.MULTILINE)
+    fails = [at["if_anchors_fail"]["blocked"] for at in document["routes"][0]["chances"]]
+    assert line.split() == [f"{100 * one:.1f}" for one in fails]
+
+
+def test_it_is_what_a_run_finds_at_the_floors_own_pfa(swept):
+    folder, _, _ = swept
+    path, settings = folder / "w.xlsx", assess.Settings(verify="high", runs=20, seed=3)
+    ran = assess.run(assess.read_inventory(path), settings)
+    pfa = ran.demands["1", "X"][0].pfa / GRAVITY
+    done = run("routes", path, "--pfa", f"{pfa:.12f}:{pfa:.12f}", "--runs", 20, "--seed", 3, "--json")
+    (at,) = json.loads(done.stdout)["routes"][0]["chances"]
+    assert ran.routes is not None
+    outlook = ran.routes.routes[0].outlook
+    assert (at["blocked"], at["low"], at["high"]) == (
+        outlook.blocked.probability, outlook.blocked.low, outlook.blocked.high,
+    )  # fmt: skip
+    assert outlook.if_anchors_fail is not None
+    assert at["if_anchors_fail"]["blocked"] == outlook.if_anchors_fail.probability
+    assert 0 < at["blocked"] < 1
+
+
+@pytest.mark.parametrize(("kind", "magic"), [("svg", b"<?xml"), ("pdf", b"%PDF"), ("png", b"\x89PNG")])
+def test_the_figure_is_the_same_twice(tmp_path, kind, magic):
+    path = write(tmp_path, Items=ITEMS[:1])
+    files = [tmp_path / f"{name}.{kind}" for name in "ab"]
+    for file in files:
+        done = run("routes", path, "--pfa", "0.3:0.5", "--runs", 5, "--plot", file)
+        assert done.exit_code == 0
+    data = files[0].read_bytes()
+    assert data.startswith(magic)
+    assert len(data) > 10_000
+    assert data == files[1].read_bytes()
+
+
+def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
+    def route(name: str, high: float) -> RouteFragility:
+        chance = Chance(
+            probability=0, low=0, high=high, joint=0, independent=0, correlated=0, runs=1, is_joint=True, pieces=1,
+            unverified=0,
+        )  # fmt: skip
+        return RouteFragility(route=name, floors=(), blocked=(chance,), if_anchors_fail=None, scenario_pfa=None)
+
+    live, still = [route(str(at), 0.1) for at in range(70)], [route("still", 0.0)]
+    panels, left = choose_drawn([*still, *live[:20]])
+    assert ([len(one) for one in panels], left) == ([7, 7, 6], [])
+    panels, left = choose_drawn(live)
+    assert [len(one) for one in panels] == [A_PANEL] * MOST_PANELS
+    assert len(left) == 70 - A_PANEL * MOST_PANELS
+    assert choose_drawn(still) == ([still], [])
+
+
+# --- what is wrong ---
+
+
+@pytest.mark.parametrize(
+    ("pfa", "message"),
+    [
+        ("0.1", "--pfa: '0.1' is not LOW:HIGH or LOW:HIGH:STEP in g, as 0.1:1.0 or 0.1:1.0:0.05."),
+        ("a:b", "--pfa: 'a:b' is not LOW:HIGH"),
+        ("0,1:1,0", "--pfa: '0,1:1,0' is not LOW:HIGH"),
+        ("0.1:nan", "--pfa: '0.1:nan' is not LOW:HIGH"),
+        ("-0.1:0.5", "--pfa: '-0.1:0.5' is not LOW:HIGH"),
+        ("0.1:1:0.1:2", "is not LOW:HIGH"),
+        ("0:1", "--pfa: it goes from 0 to 1 g, expected above 0, LOW first, and at most 5 g."),
+        ("0.8:0.2", "--pfa: it goes from 0.8 to 0.2 g, expected above 0, LOW first, and at most 5 g."),
+        ("0.1:5.1", "--pfa: it goes from 0.1 to 5.1 g, expected above 0"),
+        ("0.1:1:0", "--pfa: the step is 0 g, expected above 0."),
+        ("0.1:1.0:0.01", "--pfa: 0.1:1.0:0.01 are over 50 values. Take a larger step."),
+        ("0.1:1.0:0.000000000001", "are over 50 values"),
+    ],
+)
+def test_values_that_are_none(tmp_path, pfa, message):
+    assert message in error(run("routes", write(tmp_path), f"--pfa={pfa}"))
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("0.1:1.0", [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]),
+        ("0.3:0.3", [0.3]),
+        (" .1:0.35 ", [0.1, 0.2, 0.3, 0.35]),
+        ("0.30:0.32:1", [0.3, 0.32]),
+        ("0.1:5:0.1", [round(0.1 * at, 1) for at in range(1, 51)]),
+    ],
+)
+def test_values(text, values):
+    assert read_pfa(text) == values
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--runs", "auto"), "--runs: auto is for assess run: every value takes the same motions. Give their number."),
+        (("--runs", "0"), "--runs: '0' is not a number from 1 to 100,000"),
+        (("--seed", "-1"), "'--seed'"),
+        (("--scenario", "ASCE 7-10"), "'ASCE 7-10' is not one of: as filled"),
+        (("--scenario", "recorded"), "Floors!H3: floor '2' has no record"),
+        (("--plot", "x.gif"), "the figure x.gif is of no known kind: end its name in .png, .svg or .pdf"),
+        (("--plot", "none/x.png"), "cannot be written there: name a file in a folder that exists"),
+        (("--csv", "x.txt"), "the table x.txt is of no known kind: end its name in .csv"),
+        (("--csv", "none/x.csv"), "the table none/x.csv cannot be written there: name a file in a folder that exists"),
+        (("--csv", "n" * 300 + "/x.csv"), "cannot be written there"),
+    ],
+)
+def test_bad_options_are_named(tmp_path, monkeypatch, words, message):
+    path = write(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert message in error(run("routes", path, *words))
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_workbook_without_routes(tmp_path):
+    items = [{"item": "a", "floor": "1", "breadth": 40, "height": 180}]
+    path = write(tmp_path, Items=items, Routes=[])
+    assert "w.xlsx names no routes: fill in the sheet Routes." in error(run("routes", path))
+
+
+def test_a_file_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
+    def forbid(*_):
+        raise PermissionError(13, "Permission denied")
+
+    path = write(tmp_path, Items=[{"item": "a", "floor": "1", "breadth": 40, "height": 180}])
+    monkeypatch.setattr(Path, "replace", forbid)
+    done = run("routes", path, "--json", "--csv", tmp_path / "t.csv")
+    assert done.exit_code == 1
+    assert "t.csv could not be written: Permission denied. Name another file." in done.stderr
+    assert len(json.loads(done.stdout)["routes"]) == 3
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["pulse.csv", "w.xlsx"]
+
+
+# --- the option of assess run, and the help ---
+
+
+@pytest.mark.parametrize("text", ["0", "1", "-0.1", "3", "nan"])
+def test_a_risk_of_routes_that_is_none(tmp_path, text):
+    done = run("run", write(tmp_path), "--route-risk", text, "--out", tmp_path / "out")
+    message = f"--route-risk: {float(text):g} is no chance above 0 and below 1: write 3 % as 0.03."
+    assert message in error(done)
+
+
+def test_a_risk_of_routes_is_used(tmp_path, monkeypatch):
+    used = []
+
+    def note(assessment, *_):
+        used.append(assessment.settings.route_risk)
+        return {}
+
+    monkeypatch.setattr("assess.report.write_reports", note)
+    path = write(tmp_path, Items=ITEMS[:1])
+    for words in ((), ("--route-risk", 0.2)):
+        assert run("run", path, "--verify", "none", "--out", tmp_path / "out", *words).exit_code == 0
+    assert used == [0.03, 0.2]
+
+
+def test_help_tells_the_meaning():
+    text = " ".join(run("routes", "--help").output.split())
+    assert (
+        "Tell how likely each evacuation route is blocked, against the peak acceleration (PFA) of its floors." in text
+    )
+    for words in ("LOW:HIGH[:STEP]", "[default: 0.1:1.0]", "--csv", "--json", "--plot", "along both axes", "monotone"):
+        assert words in text
+
+
+def test_help_and_bad_values_load_nothing_heavy():
+    heavy = ("numpy", "scipy", "numba", "shapely", "networkx", "matplotlib", "openpyxl", "jinja2")
+    for words, status in ((["--help"], 0), (["w.xlsx", "--pfa", "1:0"], 2)):
+        code = (
+            f"import sys\nsys.argv = {['assess', 'routes', *words]!r}\nfrom assess.cli import main\n"
+            f"try:\n    main()\nexcept SystemExit as stop:\n    assert stop.code == {status}\n"
+            f"print([name for name in {heavy!r} if name in sys.modules])"
+        )
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+        assert done.stdout.splitlines()[-1] == "[]", done.stderr
