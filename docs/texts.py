@@ -63,6 +63,8 @@ def _of_methods() -> Iterator[tuple[str, str]]:
     from assess.methods import all_methods
     from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
     from assess.risk import RiskClass
+    from assess.routes.model import FLAGS as ROUTE_FLAGS
+    from assess.routes.widths import RULES
 
     for method in all_methods():
         texts = (method.title, method.predicts, *method.assumptions, *method.departures, *method.flags.values())
@@ -70,7 +72,10 @@ def _of_methods() -> Iterator[tuple[str, str]]:
         for text in (*texts, *marks, *method.equations, *method.words, method.reference.remark):
             if any(character.isalpha() for character in text):
                 yield text, f"assess/methods/{method.key}.py"
-    for flags, name in ((ITEM_FLAGS, "cases"), (DEMAND_FLAGS, "demand")):
+    for rule in RULES:
+        yield rule.holds, "assess/routes/widths.py"
+        yield rule.reference.remark, "assess/routes/widths.py"
+    for flags, name in ((ITEM_FLAGS, "cases"), (DEMAND_FLAGS, "demand"), (ROUTE_FLAGS, "routes/model")):
         for flag, text in flags.items():
             yield flag.replace("_", " "), f"assess/{name}.py"
             yield text, f"assess/{name}.py"

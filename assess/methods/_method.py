@@ -154,7 +154,8 @@ class Reference:
     @property
     def bibliographic(self) -> str:
         """The reference without its remark: the same in every language."""
-        lead = f"{self.authors} ({self.year}). " if self.authors else ""
+        year = f" ({self.year})" if self.year else ""
+        lead = f"{self.authors}{year}. " if self.authors else ""
         source = f" {self.source}." if self.source else ""
         return f"{lead}{self.title}.{source}" + (f" doi:{self.doi}" if self.doi else "")
 

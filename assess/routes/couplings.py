@@ -18,6 +18,8 @@ EXACT = 4096
 DRAWS = 4000
 """Draws where they are more: the 95 % interval of a chance of 0.5 is then 0.5 +- 0.016."""
 
+MOST_PATTERNS = 20_000
+"""Motions up to which pieces of different numbers of motions are made to meet evenly."""
 ROUNDED = 12
 """Decimals that chances keep: sums of weights leave a hair."""
 
@@ -62,14 +64,14 @@ def build_couplings(falls: Falls, keys: Sequence[Key], seed: int) -> Couplings:
     single = {item: _row_unit(falls, keys, item) for item in rows}
     joint = _combine([*units, *(single[item] for item in alone)], len(keys), seed)
     independent = _combine(list(single.values()), len(keys), seed)
-    sizes = [unit.fell.shape[0] for unit in units]
+    runs = [falls.fell[item].size for item in rows if falls.group[item] >= 0]
     return Couplings(
         keys=keys,
         joint=joint,
         independent=independent,
         correlated=_correlate(falls.probability[np.array([item for item, _ in keys], dtype=np.intp)]),
         is_joint=not alone and len(groups) <= 1,
-        runs=min(sizes, default=0),
+        runs=min(runs, default=0),
         is_drawn=bool(alone or len(groups) > 1) and DRAWS in (len(joint.weight), len(independent.weight)),
         pieces=int(falls.quantity[rows].sum()),
         unverified=int(falls.quantity[alone].sum()),
@@ -90,11 +92,16 @@ class _Unit:
 
 
 def _group_unit(falls: Falls, keys: Sequence[Key], items: Sequence[int]) -> _Unit:
-    """Return the outcomes of verified pieces, motion by motion, as far as all of them were integrated."""
+    """Return the outcomes of verified pieces, motion by motion.
+
+    A piece that was decided after fewer motions than another repeats its own, so that its chance stays what it is.
+    """
     members = set(items)
     columns = [at for at, (item, _) in enumerate(keys) if item in members]
-    runs = min(falls.fell[item].size for item in items)
-    fell = np.column_stack([falls.fell[keys[at][0]][:runs] for at in columns])
+    sizes = [falls.fell[item].size for item in items]
+    runs = math.lcm(*sizes)
+    runs = runs if runs <= MOST_PATTERNS else max(sizes)
+    fell = np.column_stack([np.resize(falls.fell[keys[at][0]], runs) for at in columns])
     return _Unit(min(members), columns, fell, np.full(runs, 1.0 / runs))
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from assess.methods._method import BoolArray
-from assess.routes.couplings import Couplings, Draws
+from assess.routes.couplings import ROUNDED, Couplings, Draws
 from assess.routes.gaps import Key
 from assess.routes.model import RouteFix
 
@@ -29,11 +29,11 @@ class _Trial:
 
     def score(self, fixed: frozenset[int]) -> tuple[float, float]:
         """Return that chance, and the one where every piece falls independently, which shows every gain."""
-        return round(self.chance(fixed), 9), round(self._share(self.independent, fixed), 9)
+        return self.chance(fixed), self._share(self.independent, fixed)
 
     def _share(self, draws: Draws, fixed: frozenset[int]) -> float:
         free = np.array([item not in fixed for item, _ in self.keys], dtype=np.bool_)
-        return float(draws.weight @ self.is_blocked(draws.fell & free)) if len(draws.weight) else 0.0
+        return round(float(draws.weight @ self.is_blocked(draws.fell & free)), ROUNDED) if len(draws.weight) else 0.0
 
 
 def find_fixes(couplings: Couplings, is_blocked: Blocked, risk: float) -> tuple[list[RouteFix], bool]:

@@ -72,6 +72,9 @@ class Gaps:
         Gaps to the walls [m].
     between : (m, m) array
         Gaps between two obstacles [m]; inf where the two cannot be there together.
+    sided : (m,) integer array
+        Number of the piece, from 1, of an obstacle that reaches in from the left, and its negative from the right; 0
+        for one on the plan.
     clear : float
         Width with no obstacle [m].
     """
@@ -81,6 +84,7 @@ class Gaps:
     left: FloatArray
     right: FloatArray
     between: FloatArray
+    sided: NDArray[np.intp]
     clear: float
 
     def residual(self, fell: BoolArray) -> FloatArray:
@@ -91,8 +95,23 @@ class Gaps:
         return np.asarray(np.concatenate(parts)[back], dtype=np.float64)
 
     def _residual(self, fell: BoolArray) -> FloatArray:
-        """Find the least widest gap of all chains from the left wall, obstacle by obstacle until nothing changes."""
         there = np.column_stack((fell, np.ones(len(fell), dtype=np.bool_)))[:, self.column]
+        return np.asarray(np.min([self._narrowest(there & one) for one in self._sides()], axis=0), dtype=np.float64)
+
+    def _sides(self) -> list[BoolArray]:
+        """Return which obstacles (m,) are looked at together: never one piece on both sides.
+
+        A chain takes at most one piece from either wall. The numbers of two pieces differ in some bit; by that bit, one
+        is on the left and the other on the right, or the reverse.
+        """
+        if not self.sided.any() or (self.sided != 0).all():
+            return [np.ones(self.sided.size, dtype=np.bool_)]  # on the plan all, or none of them: a pair is kept apart
+        bits = range(max(1, int(np.abs(self.sided).max()).bit_length()))
+        lefts = [(np.abs(self.sided) >> bit) & 1 == one for bit in bits for one in (0, 1)]
+        return [(self.sided == 0) | ((self.sided > 0) == left) for left in lefts]
+
+    def _narrowest(self, there: BoolArray) -> FloatArray:
+        """Find the least widest gap of all chains from the left wall, obstacle by obstacle until nothing changes."""
         widest: FloatArray = np.where(there, self.left, np.inf)
         while widest.size:
             nearer = np.maximum(widest[:, :, np.newaxis], self.between).min(axis=1)
@@ -107,6 +126,7 @@ def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
     """Return the gaps between obstacles, of which `clear` [m] is the width of the segment."""
     keys = tuple(sorted({one.key for one in obstacles if one.falls}))
     place = {key: at for at, key in enumerate(keys)}
+    pieces = sorted({one.key for one in obstacles})
     between = np.full((len(obstacles), len(obstacles)), math.inf)
     for at, one in enumerate(obstacles):
         for other_at, other in enumerate(obstacles[:at]):
@@ -117,8 +137,13 @@ def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
         left=np.array([one.left for one in obstacles], dtype=np.float64),
         right=np.array([one.right for one in obstacles], dtype=np.float64),
         between=between,
+        sided=np.array([_side(one, pieces) for one in obstacles], dtype=np.intp),
         clear=clear,
     )
+
+
+def _side(one: Obstacle, pieces: Sequence[Key]) -> int:
+    return {"left": 1, "right": -1, None: 0}[one.side] * (pieces.index(one.key) + 1)
 
 
 def _gap(one: Obstacle, other: Obstacle, clear: float) -> float:

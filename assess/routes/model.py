@@ -6,6 +6,7 @@ from enum import IntEnum
 
 from assess.inventory.model import Place, Segment
 from assess.risk import RiskClass, classify
+from assess.routes.widths import NARROWER
 
 FLAGS: Mapping[str, str] = {
     "segment_assumed": "the workbook names no segment: it counts beside every segment of its route on its floor",
@@ -194,7 +195,7 @@ class SegmentResult:
     @property
     def is_blocked_standing(self) -> bool:
         """Whether it is under the required width with nothing fallen."""
-        return self.standing < self.required
+        return self.standing < self.required - NARROWER
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,8 +214,8 @@ class RouteFix:
 class RouteResult:
     """One route.
 
-    `segments` are places in `Routes.segments`. `fixes` is the smallest set found that brings it under the chosen risk;
-    `is_mended` tells whether it does.
+    `segments` are places in `Routes.segments`; `fixes` the smallest set found that brings it under the chosen risk, and
+    `is_mended` whether it does.
     """
 
     route: str
@@ -236,7 +237,7 @@ class Way:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoomResult:
-    """One room that the network joins.
+    """One room of the network.
 
     Parameters
     ----------
@@ -265,10 +266,7 @@ class RoomResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FloorRoutes:
-    """One floor: its segments, routes and rooms, and how many are expected to be blocked or cut off.
-
-    A route counts on every floor that it has segments on, by those alone.
-    """
+    """One floor: its segments, routes (by those alone), rooms, and how many are expected to be blocked or cut off."""
 
     floor: str
     segments: int

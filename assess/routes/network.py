@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -110,13 +110,15 @@ def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> C
     Without an exit it leads to its stairs; without stairs, or where it is all stairs, to where its last segment ends.
     """
     graph = build_graph(segments)
-    parts = []
+    parts, loose = [], [at for at, one in segments.items() if not (one.start and one.end)]
     for part in find_parts(graph, kinds):
         led = part if part.targets else Part(part.edges, frozenset({_last_end(part, segments)}), by_stairs=False)
         served = sorted(set(_served(graph.subgraph({p for edge in led.edges for p in edge[:2]}), kinds, led.targets)))
-        parts.append((led, tuple(served)))
-    loose = tuple(at for at, one in segments.items() if not (one.start and one.end))
-    return Course(tuple(parts), loose)
+        if served:
+            parts.append((led, tuple(served)))
+        else:  # it is all ways out, and serves itself
+            loose += part.segments
+    return Course(tuple(parts), tuple(loose))
 
 
 def _last_end(part: Part, segments: Mapping[int, Segment]) -> str:
@@ -135,16 +137,35 @@ def _served(graph: "nx.MultiGraph[str]", kinds: Mapping[str, str], targets: Coll
 # ---------------------------------------------------------------- one room
 
 
-def find_rooms(places: Sequence[Place], parts: Sequence[Part]) -> Iterator[tuple[Place, Part]]:
-    """Yield every room that a part with a way out joins, with as much of that part as lies on any of its ways out."""
+def find_rooms(
+    places: Sequence[Place], parts: Sequence[Part], heights: Mapping[str, float] | None = None
+) -> Iterator[tuple[Place, Part]]:
+    """Yield every room that a part with a way out joins, with as much of that part as lies on any of its ways out.
+
+    `heights` are the elevations of places, where known [m]: a way out does not climb above both the room and the exits,
+    unless there is no other.
+    """
+    of_place = {place: part for part in parts for edge in part.edges for place in edge[:2]}
     for place in places:
-        part = next((one for one in parts if any(place.place in edge[:2] for edge in one.edges)), None)
+        part = of_place.get(place.place)
         if place.kind == "room" and part is not None and part.targets:
-            yield place, _ways_part(part, place.place)
+            low = _below(part, place.place, heights or {})
+            yield place, _ways_part(low, place.place) or _ways_part(part, place.place) or low
 
 
-def _ways_part(part: Part, room: str) -> Part:
-    """Keep the segments on simple ways from a room to a way out: those in one ring with an edge that joins the two."""
+def _below(part: Part, room: str, heights: Mapping[str, float]) -> Part:
+    """Leave out what lies above a room and above all ways out."""
+    ends = [heights[place] for place in (room, *part.targets) if place in heights]
+    roof = max(ends, default=math.inf)
+    edges = (edge for edge in part.edges if all(heights.get(place, roof) <= roof for place in edge[:2]))
+    return replace(part, edges=tuple(edges))
+
+
+def _ways_part(part: Part, room: str) -> Part | None:
+    """Keep the segments on simple ways from a room to a way out: those in one ring with an edge that joins the two.
+
+    None where there is no way.
+    """
     import networkx as nx
 
     graph: nx.Graph[str] = nx.Graph([(room, BEYOND)])
@@ -157,7 +178,7 @@ def _ways_part(part: Part, room: str) -> Part:
     rings = ({frozenset(pair) for pair in ring} for ring in nx.biconnected_component_edges(graph))
     ring = next(pairs for pairs in rings if frozenset((room, BEYOND)) in pairs)
     own = {edge for pair in ring for edge in joining.get(pair, ())}
-    return Part(tuple(edge for edge in part.edges if edge in own), part.targets, part.by_stairs)
+    return replace(part, edges=tuple(edge for edge in part.edges if edge in own)) if own else None
 
 
 def find_ways(part: Part, room: str, chance: Mapping[int, float]) -> Iterator[tuple[tuple[int, ...], str]]:

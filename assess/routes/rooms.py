@@ -22,8 +22,11 @@ def evaluate_rooms(scene: Scene, chance: Mapping[int, float]) -> tuple[RoomResul
 def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
     """Return every such room, and the part of the network that lies on its ways out."""
     segments = {at: one.segment for at, one in enumerate(scene.reached)}
-    parts = list(find_parts(build_graph(segments), kinds_of(scene.inventory.places)))
-    return list(find_rooms(scene.inventory.places, parts))
+    places = scene.inventory.places
+    parts = list(find_parts(build_graph(segments), kinds_of(places)))
+    floors = {floor.floor: floor.elevation for floor in scene.inventory.floors}
+    heights = {place.place: z for place in places if (z := floors.get(place.floor)) is not None}
+    return list(find_rooms(places, parts, heights))
 
 
 def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> RoomResult:
@@ -47,8 +50,9 @@ def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -
 
 
 def _ways(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> Iterator[Way]:
-    for segments, end in find_ways(part, place.place, chance):
-        yield Way(segments=segments, end=end, blocked=any_blocked(scene, segments))
+    ways = find_ways(part, place.place, chance)
+    found = [Way(segments=segments, end=end, blocked=any_blocked(scene, segments)) for segments, end in ways]
+    yield from sorted(found, key=lambda way: way.blocked.probability)
 
 
 def any_blocked(scene: Scene, segments: Sequence[int]) -> Chance:

@@ -20,11 +20,18 @@ FLOORS = [
 PIECES = [
     {"item": f"{LONG}-{at}", "floor": FLOORS[at % 2]["floor"], "room": LONG, "description": f"{LONG} of metal",
      "breadth": 30, "width": 80, "height": 200, "x": 2.0 + at, "y": 3.0 + at % 3,
-     "anchored": "yes" if at == 3 else "no", "notes": f"{LONG} note", "route": "R", "segment": "a"}
+     "anchored": "yes" if at == 3 else "no", "notes": f"{LONG} note"}
+    | ({"route": f"{LONG} route", "segment": f"{LONG} segment"} if at % 2 else {})
     for at in range(8)
 ]  # fmt: skip
-PLACES = [{"place": name, "floor": "2", "x": x, "y": 1.0} for name, x in (("Hall", 1.0), ("Stair", 6.0))]
-ROUTES = [{"route": "R", "segment": "a", "floor": "2", "start": "Hall", "end": "Stair", "clear_width": 1.2}]
+PLACES = [
+    {"place": f"{LONG} {name}", "floor": "2", "x": x, "y": 1.0, "kind": kind}
+    for name, x, kind in (("hall", 1.0, "room"), ("stair", 6.0, "stair"))
+]
+ROUTES = [
+    {"route": f"{LONG} route", "segment": f"{LONG} segment", "floor": "2", "start": f"{LONG} hall",
+     "end": f"{LONG} stair", "clear_width": 1.2, "occupants": 900, "notes": f"{LONG} note"},
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

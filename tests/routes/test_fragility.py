@@ -72,8 +72,8 @@ def share(assessment: Assessment, pfa_g: float) -> list[float]:
 
 def test_one_piece_falls_as_often_as_it_does_alone(tmp_path):
     assessment = assessed(tmp_path, floor={"pfa_x": 0.3, "pfa_y": 0.2})
-    found = fragility(assessment, 0.3, 0.45, 0.9)
-    assert chances(found) == [pytest.approx(share(assessment, pfa)[0]) for pfa in (0.3, 0.45, 0.9)]
+    found = fragility(assessment, 0.2, 0.3, 0.9)
+    assert chances(found) == [pytest.approx(share(assessment, pfa)[0]) for pfa in (0.2, 0.3, 0.9)]
     assert 0 < chances(found)[1] < 1
     one = found.routes[0].blocked[0]
     assert (one.pieces, one.unverified, one.runs, one.is_joint) == (1, 0, RUNS, True)
