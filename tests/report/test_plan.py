@@ -2,6 +2,7 @@
 
 import itertools
 import re
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pypdfium2
@@ -11,8 +12,11 @@ import assess
 from assess.inventory.blank import Content, write_workbook
 from assess.report.content import build_content
 from assess.report.figures.labels import overlap, place_labels
-from assess.report.figures.plan import build_plan, fallen, rectangle
+from assess.report.figures.plan import build_plan
+from assess.report.figures.ways import build_stretches, list_styles
 from assess.report.pages.html import render
+from assess.routes.footprint import fallen, rectangle
+from assess.routes.model import RouteState
 from tests.workbooks import FLOORS, UNVERIFIED
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -45,7 +49,9 @@ def html(assessment):
 
 
 def _plans(assessment):
-    return [build_plan(page, assessment.inventory) for page in build_content(assessment).floors]
+    ways = build_stretches(assessment.inventory, assessment.routes)
+    pages = build_content(assessment).floors
+    return [build_plan(page, assessment.inventory, ways.get(page.floor.floor, ())) for page in pages]
 
 
 @pytest.fixture(scope="module")
@@ -178,6 +184,10 @@ def test_a_floor_with_one_piece_is_drawn_at_a_sensible_scale(assessment):
     assert 50 < plan.size[1] <= 780
 
 
+def _links(drawing, name):
+    return [link for link in drawing.iter(f"{SVG}a") if link.get("class").split()[0] == name]
+
+
 def _drawings(html):
     return [ElementTree.fromstring(text) for text in re.findall(r'<svg[^>]*class="floor-plan".*?</svg>', html, re.S)]
 
@@ -196,7 +206,7 @@ def test_the_drawing_is_named_and_every_piece_says_what_it_is(html):
     title = first.find(f"{SVG}title")
     assert title.text == "Plan of Floor 1"
     assert title.get("id") == first.get("aria-labelledby")
-    titles = [link.find(f"{SVG}title").text for link in first.iter(f"{SVG}a")]
+    titles = [link.find(f"{SVG}title").text for link in _links(first, "piece")]
     assert len(titles) == 3
     assert re.fullmatch(r"A1: high; chance \d+\.\d %", titles[0])
     assert titles[1].startswith("A2: depends on its anchor")
@@ -210,7 +220,7 @@ def test_names_with_markup_stay_text(html):
 
 def test_colours_are_those_of_the_classes_and_each_has_its_symbol(html):
     first, _second = _drawings(html)
-    risky, anchored, low = first.iter(f"{SVG}a")
+    risky, anchored, low = _links(first, "piece")
     assert risky.find(f"{SVG}path").get("fill") == assess.risk.RiskClass.HIGH.fill
     assert risky.find(f"{SVG}text").text == "▲"
     assert anchored.find(f"{SVG}text").text == "⚓"
@@ -239,3 +249,131 @@ def test_hundreds_of_pieces_stay_small(tmp_path):
     assessment = _assess(tmp_path / "w.xlsx", pieces, (), ())
     (drawing,) = re.findall(r'<svg[^>]*class="floor-plan".*?</svg>', render(assessment), re.S)
     assert len(drawing) < 600 * 600
+
+
+# ---------------------------------------------------------------- routes
+
+CORRIDOR = [
+    {"place": "Office", "floor": "1", "x": 0.0, "y": 0.0, "kind": "room"},
+    {"place": "Corner", "floor": "1", "x": 10.0, "y": 0.0, "kind": "door"},
+    {"place": "Landing", "floor": "1", "x": 10.0, "y": 8.0, "kind": "stair"},
+    {"place": "Balcony", "floor": "1", "x": 0.0, "y": 8.0, "kind": "exit"},
+    {"place": "Foot", "floor": "2", "x": 10.0, "y": 8.0, "kind": "stair"},
+    {"place": "Roof", "floor": "2", "x": 0.0, "y": 8.0, "kind": "exit"},
+]
+WAYS = [
+    {"route": "R & S", "segment": "<i>aisle</i>", "floor": "1", "start": "Office", "end": "Corner", "clear_width": 1.2},
+    {"route": "R & S", "segment": "hall", "floor": "1", "start": "Corner", "end": "Landing", "clear_width": 3.0},
+    {"route": "R & S", "segment": "gap", "floor": "1", "start": "Landing", "end": "Balcony", "clear_width": 0.6},
+    {"route": "R & S", "segment": "lane", "floor": "1", "start": "Office", "end": "Balcony", "clear_width": 1.5},
+    {"route": "R & S", "segment": "flight", "start": "Landing", "end": "Foot"},
+    {"route": "Up", "segment": "roof", "floor": "2", "start": "Foot", "end": "Roof", "clear_width": 1.0},
+]
+BESIDE = [
+    {"item": "tall", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 5.0, "y": 0.9, "axis": "Y"},
+    {"item": "low", "floor": "1", "breadth": 15, "width": 50, "height": 90, "x": 11.6, "y": 4.0, "axis": "X"},
+    {"item": "loose", "floor": "2", "breadth": 30, "height": 200},
+]
+
+
+@pytest.fixture(scope="module")
+def routed(tmp_path_factory):
+    return _assess(tmp_path_factory.mktemp("routed") / "w.xlsx", BESIDE, CORRIDOR, WAYS)
+
+
+def _ways(plan):
+    return {one.name: one for one in plan.ways}
+
+
+def test_segments_are_bands_to_scale_that_go_on_round_a_bend(routed):
+    plan, _second = _plans(routed)
+    ways = _ways(plan)
+    assert set(ways) == {"<i>aisle</i>", "hall", "gap", "lane"}
+    _near(ways["<i>aisle</i>"].corners, [(-0.75, -0.6), (11.5, -0.6), (11.5, 0.6), (-0.75, 0.6)])
+    _near(ways["hall"].corners, [(11.5, -0.6), (11.5, 8.3), (8.5, 8.3), (8.5, -0.6)])
+    for one in plan.ways:
+        assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in one.corners)
+
+
+def test_states_are_told_by_colour_line_and_sign(routed):
+    ways = _ways(_plans(routed)[0])
+    assert {name: one.style.name for name, one in ways.items()} == {
+        "<i>aisle</i>": "blocked", "hall": "reduced", "gap": "standing", "lane": "open"
+    }  # fmt: skip
+    styles = list(list_styles().values())
+    assert len({(one.symbol, one.ground) for one in styles}) == len({(one.dash, one.width) for one in styles}) == 4
+    assert len({one.dash for one in styles}) == 3
+    assert {one.fill for one in styles} == {state.fill for state in RouteState}
+    greys = sorted(sum(int(state.fill[at : at + 2], 16) for at in (1, 3, 5)) for state in RouteState)
+    assert all(darker + 90 < lighter for darker, lighter in itertools.pairwise(greys))
+
+
+def test_the_drawing_shows_each_state_with_its_sign_and_dash(routed):
+    drawing = _drawings(render(routed))[0]
+    links = {link.get("class"): link for link in _links(drawing, "way")}
+    assert set(links) == {"way blocked", "way reduced", "way standing", "way open"}
+    assert links["way blocked"].get("href") == "#segment-1"
+    assert links["way blocked"].find(f"{SVG}path").get("fill") == RouteState.BLOCKED.fill
+    assert float(drawing.find(f"{SVG}g[@class='ways']").get("opacity")) < 1
+    titles = {name: link.find(f"{SVG}title").text for name, link in links.items()}
+    assert re.fullmatch(r"R & S: <i>aisle</i>: ✕ may be blocked; chance of blockage \d+\.\d %", titles["way blocked"])
+    assert titles["way standing"] == "R & S: gap: ✕ blocked as it stands; chance of blockage 100.0 %"
+    lines = drawing.find(f"{SVG}g[@class='way-lines']")
+    dashes = {one.get("class"): one.get("stroke-dasharray") for one in lines if one.get("class")}
+    assert dashes == {"blocked": "2 2.5", "reduced": "8 3", "standing": None, "open": None}
+    signs = [text.text for text in drawing.find(f"{SVG}g[@class='signs']").iter(f"{SVG}text")]
+    assert sorted(signs) == sorted(["✕", "✕", "≈", "✓"])
+
+
+def test_a_worse_state_that_is_not_excluded_has_a_mark(routed):
+    *others, lane, flight, roof = routed.routes.segments
+    assert lane.segment.segment == "lane"
+    unsure = replace(lane, outlook=replace(lane.outlook, upper=RouteState.REDUCED))
+    changed = replace(routed, routes=replace(routed.routes, segments=(*others, unsure, flight, roof)))
+    assert [one.name for one in _plans(changed)[0].ways if one.may_be] == ["lane"]
+    for assessment, marks in ((routed, 0), (changed, 1)):
+        signs = _drawings(render(assessment))[0].find(f"{SVG}g[@class='signs']")
+        assert [text.text for text in signs.iter(f"{SVG}text")].count("?") == marks
+
+
+def test_the_legend_names_the_states_and_kinds_that_occur(routed):
+    html = render(routed)
+    legends = re.findall(r'<p class="small legend ways">(.*?)</p>', html, re.S)
+    texts = [re.sub(r"<title>.*?</title>|<[^>]*>", " ", legend).split() for legend in legends]
+    assert " ".join(texts[0]) == (
+        "✕ blocked as it stands ✕ may be blocked ≈ may be reduced ✓ open exit stair door room"
+    )
+    assert " ".join(texts[1]) == "✓ open exit stair"
+    assert "Bands: segments of evacuation routes, as wide as they are clear" in html
+
+
+def test_names_of_segments_cover_neither_pieces_nor_signs(routed):
+    plan, _second = _plans(routed)
+    assert {label.text for label in plan.names} <= set(_ways(plan))
+    assert "lane" in {label.text for label in plan.names}
+    boxes = [label.box for label in (*plan.names, *plan.labels)]
+    assert all(overlap(one, other) < 0.01 for one, other in itertools.combinations(boxes, 2))
+
+
+def test_a_floor_without_placed_pieces_shows_its_segments_and_its_rooms(routed):
+    _first, plan = _plans(routed)
+    assert plan.pieces == plan.labels == ()
+    assert [one.name for one in plan.ways] == ["roof"]
+    article = re.search(r'<article class="floor[^"]*" id="floor-2">.*?</article>', render(routed), re.S)[0]
+    assert "Plan: no piece of this floor has a position." in article
+    assert "Pieces by class and room; no piece of this floor has a position on the plan." in article
+
+
+def test_segments_without_positions_are_not_drawn(tmp_path):
+    places = [{"place": one["place"], "floor": one["floor"], "kind": one["kind"]} for one in CORRIDOR]
+    plan, second = _plans(_assess(tmp_path / "w.xlsx", BESIDE, places, WAYS))
+    assert plan.ways == ()
+    assert second is None
+
+
+def test_kinds_of_places_have_signs_of_their_own(routed):
+    plan, _second = _plans(routed)
+    assert {spot.name: spot.kind for spot in plan.places} == {
+        "Office": "room", "Corner": "door", "Landing": "stair", "Balcony": "exit"
+    }  # fmt: skip
+    assert plan.kinds == ["exit", "stair", "door", "room"]

@@ -34,6 +34,8 @@ SHORT = 12
 """Characters of a piece's name that are drawn."""
 KINDS = ("exit", "stair", "door", "room")
 """Kinds of places, each with a sign of its own."""
+LARGE = ("exit", "stair")
+"""Those whose sign is a large one."""
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 _TICKS = 12
 
@@ -236,7 +238,7 @@ def _spots(
     taken = [*(_bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)), *signs]
     for place, (x, y) in places:
         shown = words.cut(place.place, NAMED)
-        wide, tall, off = text_width(shown) * unit, LINE * unit, 4 * unit
+        wide, tall, off = text_width(shown) * unit, LINE * unit, (8 if place.kind in LARGE else 4) * unit
         tried = [(x0, y0, x0 + wide, y0 + tall) for y0 in (y + off, y - off - tall) for x0 in (x + off, x - off - wide)]
         box = min(tried, key=lambda one: _cost(one, taken, high))
         taken.append(box)

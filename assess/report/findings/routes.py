@@ -8,7 +8,18 @@ from assess.language import gettext as _
 from assess.language import ngettext
 from assess.report import words
 from assess.report.provenance import say_reference
-from assess.routes.model import FLAGS, Beside, Chance, Outlook, RouteResult, Routes, RouteState, SegmentResult, Way
+from assess.routes.model import (
+    FLAGS,
+    Beside,
+    Chance,
+    Outlook,
+    RouteFix,
+    RouteResult,
+    Routes,
+    RouteState,
+    SegmentResult,
+    Way,
+)
 from assess.routes.widths import LEVEL, RULES, STAIR
 from assess.units import LENGTH
 
@@ -72,7 +83,7 @@ def say_chance(chance: Chance) -> str:
 def say_basis(chance: Chance) -> str:
     """Return what a chance rests on: the motions of a joint outcome, or the pieces that enter by their bounds."""
     if not chance.pieces:
-        return _("no piece reaches it")
+        return _("no free-standing piece reaches it")
     if chance.is_joint:
         return ngettext("{n:,} motion, all together", "{n:,} motions, all together", chance.runs)
     if chance.unverified:
@@ -129,7 +140,7 @@ def describe_routes(routes: Routes) -> list[str]:
         if routes.rooms
         else _("No room is joined to a way out, so none is evaluated."),
         _("These are chances in this scenario, not per year."),
-        _("A route may be blocked, or reduced, from a chance of {risk}, the chosen risk.", risk=words.percent(routes.risk)),
+        _("A route may be blocked, or reduced, from a chance of {risk} on.", risk=words.percent(routes.risk)),
     ]
 
 
@@ -138,25 +149,26 @@ def list_cautions(routes: Routes) -> list[str]:
     return [
         _("This is screening: no closed rule is published for what a fallen piece takes from a route; ours is this."),
         _(
-            "A piece counts as falling toward the route unless the plan shows that it cannot reach it. Fallen, it covers "
-            "Height × Width from its edge on, and where it stood."
+            "A piece counts as falling toward the route unless the plan shows that it cannot reach it. Fallen, it "
+            "covers Height × Width from its edge on, and where it stood."
         ),
         _(
-            "The width left is the smallest that some chain of fallen pieces cuts off. A piece known by its Edge distance "
-            "alone may stand at any place and face any other."
+            "The width left is the smallest that some chain of fallen pieces cuts off. A piece known by its Edge "
+            "distance alone may stand at any place and face any other."
         ),
         _(
-            "A segment is blocked where the width left is under the required one, reduced where pieces take width and it "
-            "is not; a route is blocked where a room or an open end that it serves is cut off from its way out."
+            "A segment is blocked where the width left is under the required one, reduced where pieces take width and "
+            "it is not; a route is blocked where a room or an open end that it serves is cut off from its way out."
         ),
         _("Not counted: pieces that slide or roll on castors, spilt contents, doors that jam or are shut, and people."),
         _(
-            "Chances hold if all anchors do. Pieces that were verified together fall as they did motion by motion, others "
-            "independently; what full independence and full correlation give stands beside, as equal pieces fall together."
+            "Chances hold if all anchors do. Pieces that were verified together fall as they did motion by motion, "
+            "others independently; what full independence and full correlation give stands beside, as equal pieces "
+            "fall together."
         ),
         _(
-            "Where not all pieces of a route were verified together, the largest of the three is its chance, in brackets "
-            "their range. Where outcomes are too many to go through, {n:,} are drawn.",
+            "Where not all pieces of a route were verified together, the largest of the three is its chance, in "
+            "brackets their range. Where outcomes are too many to go through, {n:,} are drawn.",
             n=routes.draws,
         ),
     ]
@@ -164,7 +176,8 @@ def list_cautions(routes: Routes) -> list[str]:
 
 def list_flags(routes: Routes) -> dict[str, str]:
     """Return the marks that occur, and what each means."""
-    found = {flag for one in routes.segments for flag in (*one.flags, *(key for near in one.beside for key in near.flags))}
+    raised = [one.flags for one in routes.segments] + [near.flags for one in routes.segments for near in one.beside]
+    found = {flag for flags in raised for flag in flags}
     return {flag: _(text) for flag, text in FLAGS.items() if flag in found}
 
 
@@ -175,6 +188,8 @@ def say_occupants(one: SegmentResult) -> str:
     needed = words.in_m(one.needed)
     if one.is_short:
         return _("{width} m: insufficient for occupants", width=needed)
+    if one.crowded.high == 0:
+        return _("{width} m", width=needed)
     return _("{width} m: less in {chance}", width=needed, chance=say_chance(one.crowded))
 
 
@@ -195,11 +210,16 @@ def list_segments(routes: Routes, most: int) -> list[tuple[int, SegmentResult]]:
 def list_beside(routes: Routes) -> list[tuple[SegmentResult, Beside | None]]:
     """Return the pieces beside each segment, the segments most likely to be blocked first.
 
-    A segment without one is there only if it has a mark.
+    A segment that no piece reaches is there only if it is too narrow as it stands.
     """
     likeliest = sorted(routes.segments, key=lambda one: -one.outlook.blocked.probability)
-    told = [one for one in likeliest if one.beside or one.flags or one.is_short or one.is_blocked_standing]
+    told = [one for one in likeliest if one.beside or one.is_short or one.is_blocked_standing]
     return [(one, near) for one in told for near in (one.beside or (None,))]
+
+
+def list_steps(routes: Routes) -> list[tuple[RouteResult, int, RouteFix]]:
+    """Return what to fix for each route, step by step: the route, the number of the step from 1, and the step."""
+    return [(one, at, step) for one in routes.routes for at, step in enumerate(one.fixes, start=1)]
 
 
 def list_unmended(routes: Routes) -> list[tuple[RouteResult, str]]:
@@ -207,8 +227,7 @@ def list_unmended(routes: Routes) -> list[tuple[RouteResult, str]]:
     found = [one for one in routes.routes if is_blocked_standing(one)]
     narrow = [[routes.segments[at] for at in one.segments if routes.segments[at].is_blocked_standing] for one in found]
     return [
-        (one, words.name_first([words.cut(segment.segment.segment, 40) for segment in own], MOST_NAMED))
-        for one, own in zip(found, narrow, strict=True)
+        (one, name_few([segment.segment.segment for segment in own])) for one, own in zip(found, narrow, strict=True)
     ]
 
 
@@ -216,6 +235,11 @@ def name_untouched(routes: Routes) -> tuple[int, str]:
     """Return how many routes are under the chosen risk as they are, and their names."""
     names = [words.cut(one.route, 40) for one in routes.routes if one.is_mended and not one.fixes]
     return len(names), words.name_first(names, 12)
+
+
+def name_few(names: Sequence[str]) -> str:
+    """Return the first of some names of the workbook, cut, and how many more there are."""
+    return words.name_first([words.cut(name, 40) for name in names], MOST_NAMED)
 
 
 def say_way(way: Way, routes: Routes) -> str:
@@ -241,8 +265,8 @@ def list_widths() -> list[tuple[str, list[str]]]:
 def say_default_width() -> str:
     """Return the width that counts where the workbook gives none, and what an occupant needs."""
     return _(
-        "Where the workbook gives no Required width, {default:g} m is taken. Occupants need {level:g} mm each, on stairs "
-        "{stair:g} mm (0.2 and 0.3 in, International Building Code, section 1005.3).",
+        "Where the workbook gives no Required width, {default:g} m is taken. Occupants need {level:g} mm each, on "
+        "stairs {stair:g} mm (0.2 and 0.3 in, International Building Code, section 1005.3).",
         default=DEFAULT_WIDTH,
         level=LEVEL / LENGTH["mm"],
         stair=STAIR / LENGTH["mm"],

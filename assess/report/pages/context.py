@@ -17,18 +17,19 @@ from assess.report.figures.contours import choose_contours, draw_contours
 from assess.report.figures.draw import draw_motion
 from assess.report.figures.plan import build_plan
 from assess.report.figures.verification import choose_traced, draw_traced
-from assess.report.findings import motions, trials, verified
+from assess.report.figures.ways import build_stretches
+from assess.report.findings import motions, routes, trials, verified
 from assess.report.findings.disagreements import find_disagreements, group_disagreements, summarise_disagreements
 from assess.report.look import Look
 from assess.report.pages import compact
 from assess.report.pages.parts import read_script, script_hash, write_equation
 from assess.report.provenance import say_reference
-from assess.results import ItemResult
 
 FULL_ROWS = 150
 """Rows up to which a PDF shows whole tables of all pieces; longer ones go to the appendix in a compact form."""
 LIMITS: Mapping[str, int] = {
-    "most_rows": 5000, "most_lines": compact.MOST_LINES, "most_routes": 150, "most_problems": 120, "most_notes": 150,
+    "most_rows": 5000, "most_lines": compact.MOST_LINES, "most_routes": 100, "most_segments": 150,
+    "most_rooms": 150, "most_beside": 300, "most_steps": 120, "most_problems": 120, "most_notes": 150,
     "most_motions": 60, "most_groups": 15, "most_risky": 60, "listed": trials.LISTED,
     "most_fixes": summary.FIXES, "most_cautions": summary.CAUTIONS, "most_at_risk": summary.ROUTES,
 }  # fmt: skip
@@ -55,7 +56,8 @@ def build_context(content: Content, look: Look, *, for_print: bool) -> dict[str,
         "script": script,
         "script_hash": script_hash(script),
     }
-    return context | _of_summary(content) | _of_floors(content) | _of_methods(content) | _of_figures(content)
+    parts = (_of_summary(content), _of_floors(content), _of_routes(content), _of_methods(content), _of_figures(content))
+    return context | {name: value for part in parts for name, value in part.items()}
 
 
 def _parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
@@ -102,17 +104,38 @@ def _of_summary(content: Content) -> dict[str, Any]:
 
 def _of_floors(content: Content) -> dict[str, Any]:
     inventory = content.assessment.inventory
-    on_route: dict[str, list[ItemResult]] = {}
-    for one in content.results:
-        on_route.setdefault(one.item.route, []).append(one)
-    beside = {
-        (segment.route, segment.segment): [
-            one for one in on_route.get(segment.route, ()) if one.item.segment in ("", segment.segment)
-        ]
-        for segment in inventory.routes
+    ways = build_stretches(inventory, content.assessment.routes)
+    plans = {
+        page.floor.floor: build_plan(page, inventory, ways.get(page.floor.floor, ())) for page in content.shown_floors
     }
-    plans = {page.floor.floor: build_plan(page, inventory) for page in content.shown_floors}
-    return {"plans": plans, "beside": beside, "source": motions.describe_source, "origin": motions.describe_origin}
+    return {"plans": plans, "source": motions.describe_source, "origin": motions.describe_origin}
+
+
+def _of_routes(content: Content) -> dict[str, Any]:
+    """Return the evacuation routes, and the rows of each of their tables as far as they are shown."""
+    found = content.assessment.routes
+    if found is None:
+        return {"routes": None, "segment_rows": ()}
+    segments = routes.list_segments(found, LIMITS["most_segments"])
+    return {
+        "routes": found,
+        "shown_routes": routes.choose_rows(
+            found.routes, LIMITS["most_routes"], lambda one: one.outlook.blocked.probability
+        ),
+        "shown_segments": segments,
+        "segment_rows": {number for number, _segment in segments},
+        "shown_rooms": routes.choose_rows(found.rooms, LIMITS["most_rooms"], lambda one: one.loses.probability),
+        "beside": routes.list_beside(found),
+        "steps": routes.list_steps(found),
+        "unmended": routes.list_unmended(found),
+        "untouched": routes.name_untouched(found),
+        "route_lines": routes.describe_routes(found),
+        "route_cautions": routes.list_cautions(found),
+        "route_flags": routes.list_flags(found),
+        "floor_names": {page.floor.floor: page.title for page in content.floors},
+        "widths": routes.list_widths(),
+        "default_width": routes.say_default_width(),
+    }
 
 
 def _of_methods(content: Content) -> dict[str, Any]:
@@ -194,6 +217,7 @@ FILTERS: Mapping[str, Any] = {
     "cut": words.cut,
     "equation": write_equation,
     "described": summary.describe,
+    "first_names": routes.name_few,
     "fixed": words.fixed,
     "flag_name": lambda flag: _(flag.replace("_", " ")),
     "in_cm_s": words.in_cm_s,
@@ -207,6 +231,15 @@ FILTERS: Mapping[str, Any] = {
     "risk_notes": words.risk_notes,
     "risk_word": words.risk_word,
     "say": _,
+    "say_basis": routes.say_basis,
+    "say_bounds": routes.say_bounds,
+    "say_chance": routes.say_chance,
+    "say_occupants": routes.say_occupants,
+    "say_recorded": routes.say_recorded,
+    "say_route_state": routes.say_route_state,
+    "say_segment": routes.say_segment,
+    "say_segment_state": routes.say_segment_state,
+    "say_way": routes.say_way,
     "share": _share,
     "size": words.size,
     "under_record": words.under_record,

@@ -1,0 +1,157 @@
+"""The evacuation routes on a plan: every segment as a band, with its state in colour, line and sign."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from assess.inventory.model import Inventory
+from assess.language import gettext as _
+from assess.report import words
+from assess.report.figures.labels import LINE, Bounds, Label, Point, overlap, place_labels
+from assess.report.findings.routes import say_chance, say_segment, say_segment_state
+from assess.routes.band import Band, build_bands
+from assess.routes.footprint import Corners
+from assess.routes.model import Routes, RouteState, SegmentResult
+
+NAMED = 20
+"""Characters of a segment's name that are drawn."""
+SIGN = 6.0
+"""Radius of a sign [px]."""
+_ALONG = (0.5, 0.35, 0.65, 0.2, 0.8)
+"""Where along a band its sign is tried."""
+_GROWN = 1.2
+"""Room that a sign takes over its own size, with the mark beside it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """How a state is drawn: its name, words, sign, colours, and the dashes and width [px] of its lines."""
+
+    name: str
+    words: str
+    symbol: str
+    fill: str
+    ground: str
+    ink: str
+    dash: str
+    width: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A segment as it is drawn; `number` is that of its row among all segments, from 1.
+
+    `sign` is where its sign stands: None where there is no room and nothing to warn of. `may_be` tells that a worse
+    state is not excluded.
+    """
+
+    number: int
+    name: str
+    title: str
+    style: Style
+    start: Point
+    end: Point
+    corners: Corners
+    may_be: bool
+    sign: Point | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is nothing to warn of."""
+        return self.style.name == "open" and not self.may_be
+
+
+def list_styles() -> dict[str, Style]:
+    """Return how each state is drawn, the best first; none is told by colour alone."""
+    white, dark = "#ffffff", "#1c1c1c"
+    fills = {state: state.fill for state in RouteState}
+    drawn = (
+        ("open", _("open"), RouteState.OPEN, white, dark, "", 0.8),
+        ("reduced", _("may be reduced"), RouteState.REDUCED, white, dark, "8 3", 1.2),
+        ("blocked", _("may be blocked"), RouteState.BLOCKED, white, dark, "2 2.5", 2.0),
+        ("standing", _("blocked as it stands"), RouteState.BLOCKED, dark, white, "", 2.6),
+    )
+    return {
+        name: Style(name, said, state.symbol, fills[state], ground, ink, dash, width)
+        for name, said, state, ground, ink, dash, width in drawn
+    }
+
+
+def build_stretches(inventory: Inventory, routes: Routes | None) -> Mapping[str, Sequence[Stretch]]:
+    """Return by floor the segments whose places both have a position on it, those with most to warn of last."""
+    found: dict[str, list[Stretch]] = {}
+    if routes is None:
+        return found
+    styles, order = list_styles(), list(list_styles())
+    bands = build_bands(inventory, {at: one.clear for at, one in enumerate(routes.segments)})
+    for at, band in bands.items():
+        if band.length > 0:
+            one = routes.segments[at]
+            found.setdefault(one.segment.floor, []).append(_stretch(at + 1, one, band, styles[_style_name(one)]))
+    return {floor: sorted(own, key=lambda one: order.index(one.style.name)) for floor, own in found.items()}
+
+
+def _stretch(number: int, one: SegmentResult, band: Band, style: Style) -> Stretch:
+    return Stretch(
+        number=number,
+        name=words.cut(one.segment.segment, NAMED),
+        title=_(
+            "{segment}: {state}; chance of blockage {chance}",
+            segment=say_segment(one),
+            state=say_segment_state(one),
+            chance=say_chance(one.outlook.blocked),
+        ),
+        style=style,
+        start=band.start,
+        end=band.end,
+        corners=_outline(band),
+        may_be=one.outlook.upper > one.outlook.state,
+    )
+
+
+def _style_name(one: SegmentResult) -> str:
+    return "standing" if one.is_blocked_standing else one.outlook.state.word
+
+
+def _outline(band: Band) -> Corners:
+    """Return the corners of a band on the plan, as far as it goes on round a bend."""
+    (x0, y0), (x1, y1), long, half = band.start, band.end, band.length, band.width / 2
+    along, across = ((x1 - x0) / long, (y1 - y0) / long), (-(y1 - y0) / long, (x1 - x0) / long)
+    local = ((-band.before, -half), (long + band.behind, -half), (long + band.behind, half), (-band.before, half))
+    one, two, three, four = ((x0 + u * along[0] + v * across[0], y0 + u * along[1] + v * across[1]) for u, v in local)
+    return one, two, three, four
+
+
+def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -> Iterator[Stretch]:
+    """Place the sign of each segment on its centre line, where it covers least; an open one may go without."""
+    held: list[Bounds] = []
+    for one in reversed(ways):
+        tried = [sign_box(_point(one, share), unit) for share in _ALONG]
+        best = min(tried, key=lambda box: (_covered(box, held), _covered(box, taken)))
+        if one.is_open and _covered(best, (*held, *taken)) > 0:
+            yield one
+            continue
+        held.append(best)
+        yield replace(one, sign=((best[0] + best[2]) / 2, (best[1] + best[3]) / 2))
+
+
+def sign_box(at: Point, unit: float) -> Bounds:
+    """Return the room that a sign takes [m]."""
+    off = _GROWN * SIGN * unit
+    return at[0] - off, at[1] - off, at[0] + off, at[1] + off
+
+
+def name_ways(ways: Sequence[Stretch], taken: Sequence[Bounds], frame: Bounds, unit: float) -> list[Label]:
+    """Name the segments beside their signs, those with most to warn of first, where a name covers nothing else."""
+    signed = [(one.name, sign_box(one.sign, unit)) for one in ways if one.sign is not None]
+    blocked = [*taken, *(box for _name, box in signed)]
+    found = place_labels(signed, blocked, frame, unit)
+    small = LINE * LINE * unit * unit / 20
+    return [one for one in found if one.lead is None and _covered(one.box, blocked) < small]
+
+
+def _point(one: Stretch, share: float) -> Point:
+    return tuple(start + share * (end - start) for start, end in zip(one.start, one.end, strict=True))  # type: ignore[return-value]
+
+
+def _covered(box: Bounds, others: Sequence[Bounds]) -> float:
+    return sum(overlap(box, other) for other in others)

@@ -1,0 +1,53 @@
+"""A building with evacuation routes for tests of reports: one is blocked, one open, one is short of width, one held."""
+
+from pathlib import Path
+from typing import Any
+
+import assess
+from assess.inventory.blank import Content, write_workbook
+from assess.results import Assessment
+from tests.workbooks import UNVERIFIED
+
+FLOORS: list[dict[str, Any]] = [
+    {"floor": "1", "name": "First", "elevation": 4.0, "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0},
+    {"floor": "G", "name": "Ground", "elevation": 0.0, "pfa_x": 0.1, "pfa_y": 0.1},
+]
+PLACES: list[dict[str, Any]] = [
+    {"place": "Office", "floor": "1", "x": 0.0, "y": 0.0, "kind": "room"},
+    {"place": "Archive", "floor": "1", "x": 0.0, "y": 8.0, "kind": "room"},
+    {"place": "Landing", "floor": "1", "x": 10.0, "y": 0.0, "kind": "stair"},
+    {"place": "Foot", "floor": "G", "x": 10.0, "y": 0.0, "kind": "stair"},
+    {"place": "Street", "floor": "G", "x": 20.0, "y": 0.0, "kind": "exit"},
+]
+ROUTES: list[dict[str, Any]] = [
+    {"route": "West", "segment": "aisle", "floor": "1", "start": "Office", "end": "Landing", "clear_width": 1.2,
+     "required_width": 0.9, "occupants": 30, "notes": "=1+1"},
+    {"route": "West", "segment": "flight", "start": "Landing", "end": "Foot", "clear_width": 1.2,
+     "required_width": 0.9, "occupants": 200},
+    {"route": "West", "segment": "hall", "floor": "G", "start": "Foot", "end": "Street", "clear_width": 2.0,
+     "required_width": 1.2},
+    {"route": "Back", "segment": "corridor", "floor": "1", "start": "Archive", "end": "Landing"},
+    {"route": "Yard", "segment": "lane", "floor": "G", "clear_width": 1.5},
+]  # fmt: skip
+ITEMS: list[dict[str, Any]] = [
+    {"item": "tall", "floor": "1", "description": "Bookcase", "breadth": 30, "width": 80, "height": 200, "x": 5.0,
+     "y": 0.9, "axis": "Y", "angle_deg": 90, "anchored": "no"},
+    {"item": "calm", "floor": "1", "breadth": 80, "width": 80, "height": 110, "quantity": 2, "anchored": "no",
+     "route": "Back", "edge_distance": 0.1},
+    {"item": "held", "floor": "G", "breadth": 30, "width": 80, "height": 200, "anchored": "yes", "route": "Yard",
+     "segment": "lane", "edge_distance": 0.0},
+    {"item": "=apart", "floor": "1", "breadth": 28, "height": 210, "anchored": "no", "description": "=cmd()"},
+]  # fmt: skip
+
+
+def write_routed(path: Path, **sheets: Any) -> Path:
+    """Write the building; `sheets` take the place of its own by their names."""
+    rows = {"Building": [{"building": "Routed hall"}], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES,
+            "Routes": ROUTES}  # fmt: skip
+    write_workbook(path, Content(rows=rows | sheets), "si")
+    return path
+
+
+def assess_routed(path: Path, settings: assess.Settings = UNVERIFIED, **sheets: Any) -> Assessment:
+    """Write the building and assess it, by the formulas alone where no settings are given."""
+    return assess.run(assess.read_inventory(write_routed(path, **sheets)), settings)

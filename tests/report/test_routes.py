@@ -1,0 +1,334 @@
+"""The pages on evacuation routes: every number that was found, in words, bounded, and escaped."""
+
+import html as entities
+import re
+from dataclasses import replace
+
+import pytest
+
+import assess
+from assess.inventory.blank import Content, write_workbook
+from assess.report import words
+from assess.report.findings import routes as said
+from assess.report.pages.context import LIMITS
+from assess.report.pages.html import render
+from assess.report.pages.pdf import load_weasyprint
+from assess.routes.model import FLAGS, RouteState
+from assess.routes.widths import RULES
+from tests.workbooks import UNVERIFIED
+
+FLOORS = [
+    {"floor": "1", "name": "First", "pfa_x": 0.25, "pfv_x": 40.0, "pfa_y": 0.25, "pfv_y": 40.0},
+    {"floor": "G", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.3, "pfv_y": 30.0},
+]
+PLACES = [
+    {"place": "Office <1>", "floor": "1", "x": 0.0, "y": 0.0, "kind": "room"},
+    {"place": "Archive", "floor": "1", "x": -10.0, "y": 8.0, "kind": "room"},
+    {"place": "Landing", "floor": "1", "x": 10.0, "y": 0.0, "kind": "stair"},
+    {"place": "Balcony", "floor": "1", "x": -10.0, "y": 0.0, "kind": "exit"},
+    {"place": "Foot", "floor": "G", "kind": "stair"},
+    {"place": "Street", "floor": "G", "kind": "exit"},
+]
+ROUTES = [
+    {"route": "<b>West</b>", "segment": "aisle", "floor": "1", "start": "Office <1>", "end": "Landing",
+     "clear_width": 1.2, "required_width": 0.85, "occupants": 30, "notes": "<i>wet</i>"},
+    {"route": "<b>West</b>", "segment": "flight", "start": "Landing", "end": "Foot", "clear_width": 1.2,
+     "required_width": 0.95, "occupants": 200},
+    {"route": "<b>West</b>", "segment": "hall", "floor": "G", "start": "Foot", "end": "Street", "clear_width": 2.15},
+    {"route": "Balcony", "segment": "gallery", "floor": "1", "start": "Office <1>", "end": "Balcony",
+     "clear_width": 3.0},
+    {"route": "Back", "segment": "gap", "floor": "1", "start": "Archive", "end": "Balcony", "clear_width": 0.7},
+    {"route": "Yard", "segment": "lane", "floor": "G", "clear_width": 1.5},
+]  # fmt: skip
+ITEMS = [
+    {"item": "tall & thin", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 5.0, "y": 0.9, "axis": "Y",
+     "angle_deg": 90, "anchored": "no"},
+    {"item": "low", "floor": "1", "breadth": 20, "width": 50, "height": 100, "quantity": 2, "anchored": "no",
+     "route": "Balcony", "segment": "gallery", "edge_distance": 0.1},
+    {"item": "held", "floor": "G", "breadth": 30, "width": 80, "height": 200, "anchored": "yes", "route": "Yard",
+     "segment": "lane", "edge_distance": 0.05},
+    {"item": "away", "floor": "G", "breadth": 30, "width": 80, "height": 200, "x": 90.0, "y": 90.0},
+]  # fmt: skip
+
+
+def _assess(path, settings=UNVERIFIED, **sheets):
+    rows = {"Building": [{}], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES, "Routes": ROUTES} | sheets
+    write_workbook(path, Content(rows=rows), "si")
+    return assess.run(assess.read_inventory(path), settings)
+
+
+@pytest.fixture(scope="module")
+def assessment(tmp_path_factory):
+    return _assess(tmp_path_factory.mktemp("routes") / "w.xlsx")
+
+
+@pytest.fixture(scope="module")
+def verified(tmp_path_factory):
+    return _assess(tmp_path_factory.mktemp("routes") / "w.xlsx", assess.Settings(runs=20))
+
+
+@pytest.fixture(scope="module")
+def html(assessment):
+    return render(assessment)
+
+
+def _text(markup):
+    return " ".join(entities.unescape(re.sub(r"<[^>]*>", " ", markup)).replace(words.NO_BREAK, " ").split())
+
+
+def _section(html):
+    return re.search(r'<section id="routes".*?(?=<section id="items")', html, re.S)[0]
+
+
+def _rows(html, table):
+    """The cells of every row of a table, as texts."""
+    (body,) = re.findall(rf'<table class="{table}[^"]*">.*?<tbody>(.*?)</tbody>', _section(html), re.S)
+    return [
+        [_text(cell) for cell in re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.S)]
+        for row in re.findall(r"<tr[^>]*>(.*?)</tr>", body, re.S)
+    ]
+
+
+def _chance(chance):
+    return "–" if chance is None else said.say_chance(chance).replace(words.NO_BREAK, " ")
+
+
+def _bounds(chance):
+    return said.say_bounds(chance).replace(words.NO_BREAK, " ")
+
+
+def _item(assessment, at):
+    return "–" if at is None else assessment.inventory.items[at].item
+
+
+def test_the_building_has_every_state(assessment):
+    west, balcony, back, yard = assessment.routes.routes
+    assert west.outlook.state == RouteState.BLOCKED
+    assert balcony.outlook.state == RouteState.REDUCED
+    assert not back.is_mended
+    assert yard.outlook.state == RouteState.OPEN
+    assert yard.outlook.if_anchors_fail.probability > 0.1
+
+
+@pytest.mark.parametrize("name", ["assessment", "verified"])
+def test_every_number_of_a_route_is_shown(name, request):
+    assessment = request.getfixturevalue(name)
+    rows = _rows(render(assessment), "routes")
+    assert len(rows) == len(assessment.routes.routes) == 4
+    for row, one in zip(rows, assessment.routes.routes, strict=True):
+        outlook = one.outlook
+        route, _floors, state, *numbers, rests, unanchored, piece = row
+        assert route == one.route
+        assert said.say_route_state(one) in state
+        assert numbers == [_chance(outlook.blocked), _chance(outlook.taken)]
+        bounds = f"{_bounds(outlook.blocked)} " if outlook.blocked.pieces else ""
+        assert rests == f"{bounds}{said.say_basis(outlook.blocked)}"
+        assert unanchored == _chance(outlook.if_anchors_fail)
+        assert piece == _item(assessment, outlook.blocker)
+
+
+def test_a_verified_route_rests_on_its_motions(verified):
+    (row, *_others) = _rows(render(verified), "routes")
+    assert row[5] == f"{_bounds(verified.routes.routes[0].outlook.blocked)} 20 motions, all together"
+    assert re.fullmatch(r"[\d.]+ % \([\d.]+ to [\d.]+ %\)", row[3])
+    assert verified.routes.routes[0].outlook.blocked.is_joint
+
+
+def test_what_is_blocked_as_it_stands_is_told_from_what_may_be(html, assessment):
+    states = {row[0]: row[2] for row in _rows(html, "routes")}
+    assert states == {
+        "<b>West</b>": "✕ may be blocked",
+        "Balcony": "≈ may be reduced",
+        "Back": "✕ blocked as it stands",
+        "Yard": "✓ open",
+    }
+    assert "widen them, or move what stands inside. Back: gap" in _text(_section(html))
+    certain = replace(assessment.routes.routes[2], is_mended=True)
+    assert said.say_route_state(certain) == "✕ blocked"
+
+
+@pytest.mark.parametrize("name", ["assessment", "verified"])
+def test_every_number_of_a_segment_is_shown(name, request):
+    assessment = request.getfixturevalue(name)
+    rows = _rows(render(assessment), "segments")
+    assert len(rows) == len(ROUTES)
+    for row, one in zip(rows, assessment.routes.segments, strict=True):
+        assert row[0] == f"{one.segment.route}: {one.segment.segment}"
+        assert row[1] == (one.segment.floor or "–")
+        assert row[2] == f"{one.segment.start} – {one.segment.end}".strip()
+        assert row[3:7] == [words.in_m(width) for width in (one.clear, one.required, one.standing, one.least)]
+        assert said.say_segment_state(one) in row[7]
+        assert row[8:11] == [_chance(one.outlook.blocked), _bounds(one.outlook.blocked), _chance(one.outlook.taken)]
+        for flag in one.flags:
+            assert flag.replace("_", " ") in row[11]
+        if one.outlook.if_anchors_fail:
+            assert f"if anchors fail: blocked in {_chance(one.outlook.if_anchors_fail)}" in row[11]
+
+
+def test_a_segment_that_is_too_narrow_for_its_occupants_says_so(html, assessment):
+    aisle, flight = _rows(html, "segments")[:2]
+    first, second = assessment.routes.segments[:2]
+    assert second.is_short
+    assert "1.52 m: insufficient for occupants" in flight[11]
+    assert f"0.15 m: less in {_chance(first.crowded)}" in aisle[11]
+    assert "<i>wet</i>" in aisle[11]
+
+
+@pytest.mark.parametrize("name", ["assessment", "verified"])
+def test_every_piece_beside_a_segment_is_shown(name, request):
+    assessment = request.getfixturevalue(name)
+    found = [(one, near) for one, near in said.list_beside(assessment.routes) if near]
+    rows = [row for row in _rows(render(assessment), "beside") if "no piece reaches it" not in row]
+    assert {assessment.inventory.items[near.item].item for _one, near in found} == {"tall & thin", "low", "held"}
+    assert len(rows) == len(found) == sum(len(one.beside) for one in assessment.routes.segments)
+    for row, (one, near) in zip(rows, found, strict=True):
+        result = assessment.result(near.item)
+        assert row[0] == f"{one.segment.route}: {one.segment.segment}"
+        assert row[2].startswith(result.item.item)
+        assert row[3] == ("the plan" if near.by_plan else "Edge distance")
+        assert row[4:7] == [words.in_m(value) for value in (near.distance, near.reach, near.left)]
+        assert row[7] == ("yes" if near.blocks_alone else "no")
+        assert row[8] == words.percent(near.together)
+        assert row[9].startswith(words.chance(result).replace(words.NO_BREAK, " "))
+        assert ("⚓ anchored" in row[10]) == result.is_anchored
+        assert all(flag.replace("_", " ") in row[10] for flag in near.flags)
+
+
+def test_segments_with_nothing_beside_them_are_listed_where_they_are_too_narrow(html):
+    alone = [row[0] for row in _rows(html, "beside") if "no piece reaches it" in row]
+    assert alone == ["Back: gap", "<b>West</b>: flight"]
+
+
+def test_marks_are_explained_where_they_occur(html, assessment):
+    text = _text(_section(html))
+    told = said.list_flags(assessment.routes)
+    assert {"side_unknown", "no_plan", "required_assumed"} <= told.keys() < FLAGS.keys()
+    for flag, meaning in FLAGS.items():
+        assert (f"{flag.replace('_', ' ')} {meaning}" in text) == (flag in told)
+
+
+@pytest.mark.parametrize("name", ["assessment", "verified"])
+def test_every_room_says_how_it_may_lose_its_exits_and_its_ways(name, request):
+    assessment = request.getfixturevalue(name)
+    rows, rooms = _rows(render(assessment), "rooms"), assessment.routes.rooms
+    assert [row[0] for row in rows] == [one.place.place for one in rooms] == ["Office <1>", "Archive"]
+    for row, one in zip(rows, rooms, strict=True):
+        assert row[2] == ", ".join(one.exits)
+        assert row[3:5] == [_chance(one.loses), _chance(one.if_anchors_fail)]
+        assert row[5] == _item(assessment, one.blocker)
+        assert one.ways[0].end in row[6]
+        for way in one.ways:
+            assert said.say_way(way, assessment.routes).replace(words.NO_BREAK, " ") in row[6]
+        assert ("no other way" in row[6]) == (len(one.ways) == 1)
+
+
+def test_floors_say_what_is_to_be_expected(html, assessment):
+    for row, one in zip(_rows(html, "route-floors"), assessment.routes.floors, strict=True):
+        counted = (one.segments, one.blocked_segments, one.routes, one.blocked_routes, one.rooms, one.cut_off_rooms)
+        shown = [f"{value:.2f}" if isinstance(value, float) else str(value) for value in counted]
+        assert row[1:7] == [*shown[:5], f"{one.cut_off_rooms:.2f}"]
+        assert row[7] == _chance(one.any_room)
+
+
+def test_the_lead_counts_routes_and_rooms(html, assessment):
+    text, routes = _text(_section(html)), assessment.routes
+    assert "4 evacuation routes: 2 may be blocked, 1 may be reduced, 1 stay open." in text
+    assert f"To be expected: {routes.blocked_routes:.2f} blocked routes." in text
+    assert f"Of 2 rooms, {routes.cut_off_rooms:.2f} are expected to lose every exit." in text
+    assert "in this scenario, not per year" in text
+    for sentence in said.list_cautions(routes):
+        assert sentence in text
+    assert "not evaluated by this version" not in text
+
+
+@pytest.mark.parametrize("name", ["assessment", "verified"])
+def test_every_step_of_what_to_fix_is_shown(name, request):
+    assessment = request.getfixturevalue(name)
+    steps = said.list_steps(assessment.routes)
+    assert steps
+    rows = _rows(render(assessment), "steps")
+    assert len(rows) == len(steps)
+    for row, (one, number, step) in zip(rows, steps, strict=True):
+        assert row[:3] == [one.route, str(number), _item(assessment, step.item)]
+        assert row[3:5] == [words.percent(step.gain), words.percent(step.left)]
+        assert row[5] == ("under the chosen risk" if number == len(one.fixes) else "")
+        assert not one.is_mended or one.fixes[-1].left < assessment.routes.risk
+
+
+def test_routes_that_need_nothing_are_named(html):
+    assert "As they are, 2 routes are blocked with less than the chosen risk: Balcony, Yard." in _text(_section(html))
+
+
+def test_widths_are_given_with_their_publications(html):
+    text = _text(_section(html))
+    for rule in RULES:
+        assert f"{rule.width:g} m: {rule.holds}" in text
+        assert rule.reference.title in text
+        assert rule.reference.remark in text
+    assert "Where the workbook gives no Required width, 0.9 m is taken." in text
+
+
+def test_names_with_markup_stay_text(html):
+    assert "<b>West" not in html
+    assert "<i>wet" not in html
+    assert "Office <1>" not in html
+    assert "&lt;b&gt;West&lt;/b&gt;" in html
+
+
+def test_links_lead_somewhere(html):
+    ids = re.findall(r'\bid="([^"]+)"', html)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
+    assert {"segment-1", "segment-6", "way-1"} <= set(ids)
+
+
+def test_a_workbook_without_routes_says_so(tmp_path):
+    html = render(_assess(tmp_path / "w.xlsx", Routes=[], Items=ITEMS[3:]))
+    section = _section(html)
+    assert _text(section) == "Evacuation routes The workbook names no routes."
+    assert "<table" not in section
+
+
+def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
+    count = 180
+    places = [{"place": f"Room {at}", "floor": "1", "kind": "room"} for at in range(count)]
+    routes = [
+        {"route": f"Route {at}", "segment": "s", "floor": "1", "start": f"Room {at}", "end": "Exit", "clear_width": 1.5}
+        for at in range(count)
+    ]
+    items = [{"item": f"A{at}", "floor": "1", "breadth": 30, "height": 200, "route": f"Route {at}", "segment": "s",
+              "edge_distance": 0.1} for at in range(count - 20, count)]  # fmt: skip
+    settings = replace(UNVERIFIED, route_risk=0.02)
+    places.append({"place": "Exit", "floor": "1", "kind": "exit"})
+    html = render(_assess(tmp_path / "w.xlsx", settings, Places=places, Routes=routes, Items=items))
+    text = _text(_section(html))
+    assert len(_rows(html, "routes")) == LIMITS["most_routes"]
+    assert len(_rows(html, "segments")) == LIMITS["most_segments"]
+    assert len(_rows(html, "rooms")) == LIMITS["most_rooms"]
+    assert len(_rows(html, "beside")) == len(_rows(html, "steps")) == 20
+    assert [row[0] for row in _rows(html, "routes")[:20]] == [f"Route {at}" for at in range(count - 20, count)]
+    assert "80 more routes, less likely to be blocked, are in the Excel report." in text
+    assert "30 more segments, less likely to be blocked, are in the Excel report." in text
+    assert "30 more rooms, less likely to be cut off, are in the Excel report." in text
+    assert "As they are, 160 routes are blocked with less than the chosen risk: Route 0, " in text
+    assert "and 148 more." in text
+
+
+def test_the_section_prints_on_the_page(verified):
+    boxes = pytest.importorskip("weasyprint.formatting_structure.boxes")
+
+    def walk(box):
+        yield box
+        for child in getattr(box, "children", ()):
+            yield from walk(child)
+
+    tables = 0
+    for page in load_weasyprint().HTML(string=render(verified, for_print=True)).render().pages:
+        for table in (one for one in walk(page._page_box) if isinstance(one, boxes.TableBox)):
+            tables += table.element.get("class", "") in ("routes", "segments", "beside", "rooms", "steps")
+            assert table.position_x + table.margin_width() <= page._page_box.content_box_x() + page._page_box.width + 1
+            for cell in (one for one in walk(table) if isinstance(one, boxes.TableCellBox)):
+                for text in (one for one in walk(cell) if isinstance(one, boxes.TextBox)):
+                    if table.element.get("class") != "short":
+                        assert text.position_x + text.width <= cell.content_box_x() + cell.width + 0.5, text.text
+    assert tables >= 5
