@@ -13,6 +13,7 @@ from assess.errors import InputError, OutputError, Problem, WorkbookError
 
 if TYPE_CHECKING:
     from assess.results import Assessment
+    from assess.routes.model import Routes
 
 MOST_PRINTED = 200
 """Problems printed in one run; the rest are counted."""
@@ -55,7 +56,7 @@ def print_problems(problems: Sequence[Problem]) -> None:
 
 
 def print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
-    """Print the pieces of each class, and name the files."""
+    """Print the pieces of each class and how many routes are at risk, and name the files."""
     from assess.ranking import count_pieces
     from assess.risk import RiskClass
 
@@ -64,9 +65,25 @@ def print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
         typer.echo(f"{risk.label:<13} {counts[risk]:>6,} {'piece' if counts[risk] == 1 else 'pieces'}")
     if anchored:
         typer.echo(f"{'  anchored':<13} {anchored:>6,}, only as safe as the anchors")
+    if assessment.routes:
+        typer.echo(_describe_routes(assessment.routes))
     typer.echo(f"Chance of overturning in this scenario, not per year. {_describe_verification(assessment)}")
     for file in files:
         typer.echo(f"wrote {file}", err=True)
+
+
+def _describe_routes(routes: "Routes") -> str:
+    from assess.routes.model import RouteState
+
+    outlooks = [one.outlook for one in routes.routes]
+    states = [one.state for one in outlooks]
+    doubtful = sum(one.state == RouteState.OPEN < one.upper for one in outlooks)
+    return (
+        f"Evacuation routes: of {len(states):,}, {states.count(RouteState.BLOCKED):,} may be blocked and "
+        f"{states.count(RouteState.REDUCED):,} reduced at a risk of {100 * routes.risk:g} %"
+        + (f", of {doubtful:,} more that is not excluded" if doubtful else "")
+        + f"; {routes.blocked_routes:.2f} are expected to be blocked."
+    )
 
 
 def _describe_verification(assessment: "Assessment") -> str:

@@ -1,9 +1,37 @@
 """Pieces counted by class, and put in the order in which they are to be fixed."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 
 from assess.results import ItemResult
 from assess.risk import RiskClass
+from assess.routes.model import Routes
+
+
+@dataclass(frozen=True, slots=True)
+class RouteStep:
+    """One step of what to fix for a route: step `place` of `steps`, of which the first is 1.
+
+    `item` is the index of the piece in the inventory. The chance [-] that the route is blocked is `before` before this
+    step, `after` once this step and those before it are taken, `at_last` once all are.
+    """
+
+    route: str
+    item: int
+    place: int
+    steps: int
+    before: float
+    after: float
+    at_last: float
+
+
+def list_steps(routes: Routes | None) -> list[RouteStep]:
+    """Return what to fix for every route, step by step."""
+    return [
+        RouteStep(one.route, fix.item, place, len(one.fixes), fix.left + fix.gain, fix.left, one.fixes[-1].left)
+        for one in (routes.routes if routes else ())
+        for place, fix in enumerate(one.fixes, 1)
+    ]
 
 
 def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
@@ -17,13 +45,25 @@ def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], i
     return by_class, anchored
 
 
-def fix_first(results: Iterator[ItemResult]) -> list[ItemResult]:
-    """Return the free-standing pieces of at least medium class, what to fix first at the top.
+def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:
+    """Return the free-standing pieces of at least medium class and those that a route needs fixed, what first on top.
 
     Those of high or very high class, or that may be, come before all others; among both, life safety and routes first;
-    then the upper class; then probability times quantity; then name.
+    then the upper class; then probability times quantity; then name. So what a route needs of low class comes behind
+    the urgent pieces of medium class, and before those of it that are not urgent.
+
+    Parameters
+    ----------
+    results : iterable of ItemResult
+        All pieces, in the order of the inventory.
+    needed : collection of int
+        The pieces that are to be fixed for a route whatever their class, by their index.
     """
-    chosen = [one for one in results if not one.is_anchored and one.adopted.upper >= RiskClass.MEDIUM]
+    chosen = [
+        one
+        for at, one in enumerate(results)
+        if not one.is_anchored and (one.adopted.upper >= RiskClass.MEDIUM or at in needed)
+    ]
     return sorted(
         chosen,
         key=lambda one: (

@@ -31,12 +31,16 @@ MOST_KEPT = 2000
 
 @dataclass(frozen=True, slots=True)
 class ItemResult:
-    """One row of furniture with its governing case, the risk adopted from it, and all its cases."""
+    """One row of furniture with its governing case, the risk adopted from it, and all its cases.
+
+    `routes` are those that it names, or has a segment of which it can reach.
+    """
 
     item: Item
     governing: CaseResult
     adopted: Adopted
     cases: tuple[CaseResult, ...]
+    routes: tuple[str, ...] = ()
 
     @property
     def by_formula(self) -> CaseResult:
@@ -61,7 +65,7 @@ class ItemResult:
     @property
     def is_urgent(self) -> bool:
         """Whether its fall endangers life or a route, which comes first in the list of what to fix."""
-        return self.item.importance == "life safety" or bool(self.item.route)
+        return self.item.importance == "life safety" or bool(self.routes)
 
     def worst(self, key: str) -> float | None:
         """Return the largest value of a method over all motions, which may be above that of the governing one."""
@@ -142,7 +146,19 @@ class Assessment:
         cases = {case: self._read(case) for case in own}
         governing = cases[int(self.governing[index])]
         adopted = _adopt_worst(governing, cases.values())
-        return ItemResult(self.inventory.items[index], governing, adopted, tuple(cases.values()))
+        item = self.inventory.items[index]
+        routes = self._reached.get(index, (item.route,) if item.route else ())
+        return ItemResult(item, governing, adopted, tuple(cases.values()), routes)
+
+    @cached_property
+    def _reached(self) -> Mapping[int, tuple[str, ...]]:
+        """The routes of which a piece reaches a segment, by its index: that which it names first."""
+        found: dict[int, dict[str, None]] = {}
+        for one in self.routes.segments if self.routes else ():
+            for near in one.beside:
+                named = self.inventory.items[near.item].route
+                found.setdefault(near.item, {named: None} if named else {})[one.segment.route] = None
+        return {index: tuple(names) for index, names in found.items()}
 
     @cached_property
     def _first(self) -> list[int]:

@@ -118,7 +118,7 @@ def build_content(assessment: Assessment) -> Content:
     """Gather the content of a report, in the language in use."""
     results = tuple(assessment)
     floors, verified = _floors(assessment, results), build_verified(assessment, results)
-    platform = versions(has_rocked=bool(assessment.joints))
+    platform = versions(has_rocked=bool(assessment.joints), has_routes=assessment.routes is not None)
     total = count(_("All floors"), results)
     return Content(
         assessment=assessment,
@@ -138,7 +138,7 @@ def build_content(assessment: Assessment) -> Content:
         methods=assessment.methods,
         flags=statements.list_flags(assessment),
         assumptions=[*statements.list_assumptions(assessment), *trials.list_assumptions(assessment, verified)],
-        limits=statements.list_limits(has_verified=bool(verified.done)),
+        limits=statements.list_limits(has_verified=bool(verified.done), has_routes=assessment.routes is not None),
         problems=assessment.problems,
         verified=verified,
         trials=trials.build_trials(assessment, verified),

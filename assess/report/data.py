@@ -15,6 +15,7 @@ from assess.demand import Demand
 from assess.errors import Problem
 from assess.inventory.columns import BUILDING
 from assess.report.provenance import versions
+from assess.report.routes_data import routes_record
 from assess.results import Assessment, ItemResult
 from assess.risk import RiskClass
 from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
@@ -23,7 +24,7 @@ from assess.version import __version__
 if TYPE_CHECKING:
     from assess.motion.fit import Fit
 
-SCHEMA_VERSION = "1.1"
+SCHEMA_VERSION = "2.0"
 SCHEMA = Path(__file__).with_name("results.schema.json")
 """JSON Schema of results.json."""
 
@@ -37,17 +38,29 @@ def write_json(assessment: Assessment, path: Path) -> None:
             file.write(f" {json.dumps(name)}: {_dump(value)},\n")
         _write_list(file, "items", (item_record(one, sheet) for one in assessment))
         file.write(",\n")
-        _write_list(file, "routes", (route_record(one) for one in assessment.inventory.routes))
+        _write_routes(file, routes_record(assessment))
         file.write(",\n")
         _write_list(file, "problems", (problem_record(one) for one in assessment.problems))
         file.write("\n}\n")
 
 
-def _write_list(file: TextIO, name: str, records: Iterator[Mapping[str, Any]]) -> None:
-    file.write(f" {json.dumps(name)}: [")
+def _write_routes(file: TextIO, record: Mapping[str, Any]) -> None:
+    """Write the routes: a line a segment, a route, a room and a floor."""
+    file.write(' "routes": {\n')
+    for at, (name, value) in enumerate(record.items()):
+        file.write(",\n" if at else "")
+        if isinstance(value, list):
+            _write_list(file, name, iter(value), " ")
+        else:
+            file.write(f"  {json.dumps(name)}: {_dump(value)}")
+    file.write("\n }")
+
+
+def _write_list(file: TextIO, name: str, records: Iterator[Mapping[str, Any]], indent: str = "") -> None:
+    file.write(f"{indent} {json.dumps(name)}: [")
     for at, record in enumerate(records):
-        file.write((",\n  " if at else "\n  ") + _dump(record))
-    file.write("\n ]")
+        file.write(f"{',' if at else ''}\n{indent}  {_dump(record)}")
+    file.write(f"\n{indent} ]")
 
 
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
@@ -62,7 +75,7 @@ def describe_run(assessment: Assessment) -> dict[str, Any]:
             "version": __version__,
             "seed": assessment.settings.seed,
             "settings": asdict(assessment.settings) | {"scenario": assessment.scenario},
-            "platform": versions(has_rocked=bool(assessment.joints)),
+            "platform": versions(has_rocked=bool(assessment.joints), has_routes=assessment.routes is not None),
             "inputs": {
                 "workbook": inventory.source.name,
                 "sha256": inventory.sha256,
@@ -250,21 +263,6 @@ def axis_record(case: CaseResult) -> dict[str, Any]:
         "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
         "methods": {key: method.value for key, method in case.methods.items()},
         "verification": verification_record(case.verification),
-    }
-
-
-def route_record(segment: Any) -> dict[str, Any]:
-    """Return one segment of a route as the workbook has it."""
-    return {
-        "route": segment.route,
-        "segment": segment.segment,
-        "floor": segment.floor or None,
-        "from": segment.start or None,
-        "to": segment.end or None,
-        "clear_width_m": segment.clear_width,
-        "required_width_m": segment.required_width,
-        "occupants": segment.occupants,
-        "notes": segment.notes,
     }
 
 

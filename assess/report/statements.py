@@ -10,7 +10,11 @@ from assess.language import gettext as _
 from assess.language import ngettext, number
 from assess.report import words
 from assess.report.findings import motions
+from assess.report.findings.at_risk import say_risk
 from assess.results import Assessment
+from assess.routes.couplings import EXACT
+from assess.routes.model import FLAGS as ROUTE_FLAGS
+from assess.routes.model import Routes
 from assess.units import GRAVITY
 from assess.version import __version__
 
@@ -51,7 +55,57 @@ def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
     if frictions:
         lines.append((ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions),
                       _("no sliding, as the paper assumes")))  # fmt: skip
-    return lines + _list_constants(assessment)
+    of_routes = _list_for_routes(assessment.routes, assessment) if assessment.routes else []
+    return lines + of_routes + _list_constants(assessment)
+
+
+FOUND = ("standing_inside",)
+"""Flags of routes that tell what was found, not what was assumed."""
+
+
+def _list_for_routes(routes: Routes, assessment: Assessment) -> list[tuple[str, str]]:
+    """Return what was assumed of the evacuation routes."""
+    segments = Counter(flag for one in routes.segments for flag in one.flags)
+    pieces = Counter(flag for flags in _flags_beside(routes) for flag in flags)
+    lines = [(_("Routes: the chosen risk"), say_risk(routes.risk))]
+    for flag, text in ROUTE_FLAGS.items():
+        if flag in FOUND:
+            continue
+        if segments[flag]:
+            where = ngettext("Routes: {n:,} segment", "Routes: {n:,} segments", segments[flag])
+            lines.append((where, _(text)))
+        if pieces[flag]:
+            where = ngettext("Routes: {n:,} row of pieces", "Routes: {n:,} rows of pieces", pieces[flag])
+            lines.append((where, _(text)))
+    return lines + _list_couplings(routes, assessment)
+
+
+def _flags_beside(routes: Routes) -> list[set[str]]:
+    """Return the flags of every row of pieces beside a segment, each once."""
+    found: dict[int, set[str]] = {}
+    for one in routes.segments:
+        for near in one.beside:
+            found.setdefault(near.item, set()).update(near.flags)
+    return list(found.values())
+
+
+def _list_couplings(routes: Routes, assessment: Assessment) -> list[tuple[str, str]]:
+    """Return what was assumed of pieces that fall together; nothing where none reaches a route."""
+    outlooks = [*(one.outlook for one in routes.segments), *(one.outlook for one in routes.routes)]
+    chances = [outlook.blocked for outlook in outlooks]
+    if not any(chance.pieces for chance in chances):
+        return []
+    lines = [(_("Routes: more outcomes than {exact:,} of the pieces together", exact=EXACT),
+              _("{draws:,} draws with seed {seed}", draws=routes.draws, seed=assessment.settings.seed))]  # fmt: skip
+    if any(chance.unverified for chance in chances):
+        lines.append((_("Routes: pieces that are not verified"),
+                      _("fall independently of all others, each with its adopted chance; the largest of the joint, the "
+                        "independent and the fully correlated chance counts")))  # fmt: skip
+    if any(chance.pieces > chance.unverified and not chance.is_joint for chance in chances):
+        lines.append((_("Routes: pieces on floors whose motions come from different sources"),
+                      _("fall independently of each other; the largest of the joint, the independent and the fully "
+                        "correlated chance counts")))  # fmt: skip
+    return lines
 
 
 def _list_constants(assessment: Assessment) -> list[tuple[str, str]]:
@@ -81,9 +135,23 @@ def _assumed() -> Mapping[str, str]:
     }
 
 
-def list_limits(*, has_verified: bool) -> Sequence[str]:
+def list_limits(*, has_verified: bool, has_routes: bool = True) -> Sequence[str]:
     """Return where the methods end, in plain words."""
-    return _of_the_block() + _of_the_formulas() + (_of_verification() if has_verified else ())
+    verified, routes = _of_verification() if has_verified else (), _of_routes() if has_routes else ()
+    return _of_the_block() + _of_the_formulas() + verified + routes
+
+
+def _of_routes() -> tuple[str, ...]:
+    return (
+        _(
+            "Evacuation routes are screened, by a rule of ours, as none is published in closed form. Only what "
+            "overturns counts: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
+        ),
+        _(
+            "A route that stays open is one whose chance is below the chosen risk in this scenario; it is not shown to "
+            "be safe. The direction of a recorded motion is not used: a piece may fall either way."
+        ),
+    )
 
 
 def _of_the_block() -> tuple[str, ...]:
@@ -150,6 +218,8 @@ def list_making(assessment: Assessment, platform: Mapping[str, str]) -> list[tup
     ]
     if assessment.joints and assessment.suite is None:
         lines += [(_("Motions of each floor and axis"), f"{settings.runs}"), (_("Seed"), f"{settings.seed}")]
+    if assessment.routes:
+        lines.append((_("Routes: the chosen risk"), say_risk(settings.route_risk)))
     lines.append((_("Workbook"), f"{words.cut(inventory.source.name, 80)}, SHA-256 {inventory.sha256}"))
     files = list(inventory.files.items())
     lines += [(_("File"), f"{words.cut(name, 80)}, SHA-256 {digest}") for name, digest in files[:MOST_FILES]]

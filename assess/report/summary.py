@@ -3,17 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from assess.inventory.model import Segment
 from assess.language import gettext as _
 from assess.language import ngettext
-from assess.ranking import fix_first
+from assess.ranking import RouteStep, fix_first, list_steps
 from assess.report import words
 from assess.report.counts import Counts
+from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes, say_step
 from assess.results import Assessment, ItemResult
 from assess.risk import RiskClass
 
-WORST, FIXES, FLOORS, ROUTES, CAUTIONS = 10, 6, 8, 4, 3
+WORST, FIXES, FLOORS, ROUTES, CAUTIONS = 6, 4, 6, 4, 3
 """Pieces, fixes, floors, routes and cautions that the page has room for."""
+NAMED = 2
+"""Routes that a reason names; of more it is said how many there are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,84 +23,60 @@ class Fix:
     """One line of what to fix first: its place in the list, what it saves, and what all up to it save together.
 
     `saved` are the falls that are expected of this row and no longer happen if the anchor holds; `together` is the
-    share of all expected falls that this line and those above it save.
+    share of all expected falls that this line and those above it save. `steps` are those of a route that it is.
     """
 
     place: int
     result: ItemResult
     saved: float
     together: float
+    steps: Sequence[RouteStep] = ()
 
     @property
     def reason(self) -> str:
-        """Why it comes first, as far as more than its chance tells."""
-        item = self.result.item
-        route = _("route {route}", route=words.cut(item.route, 30)) if item.route else ""
-        return ", ".join(part for part in (_(item.importance), route) if part) or words.DASH
-
-
-@dataclass(frozen=True, slots=True)
-class RouteAtRisk:
-    """A route with pieces of high or very high class beside it, or that may be of such a class."""
-
-    route: str
-    floors: str
-    pieces: int
-    worst: RiskClass
+        """Why it comes first, as far as more than its chance tells: for a route with what that gains."""
+        item, told = self.result.item, {one.route for one in self.steps}
+        others = [words.cut(route, 30) for route in self.result.routes if route not in told]
+        beside = ngettext("route {routes}", "routes {routes}", len(others), routes=words.name_first(others, NAMED))
+        parts = [_(item.importance), *map(say_step, self.steps), beside if others and not told else ""]
+        return ", ".join(part for part in parts if part) or words.DASH
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What the page says: a paragraph in plain words, the worst pieces, what to fix first, and routes at risk."""
+    """What the page says: a paragraph in plain words, the worst pieces, what to fix first, and routes at risk.
+
+    `of_routes` are sentences on the routes, none where the workbook names none.
+    """
 
     plainly: Sequence[str]
     worst: Sequence[ItemResult]
     fixes: Sequence[Fix]
     routes: Sequence[RouteAtRisk]
+    of_routes: Sequence[str]
 
 
 def build_summary(assessment: Assessment, results: Sequence[ItemResult], total: Counts) -> Summary:
     """Gather the summary."""
-    worst, fixes = list_worst(results), list_fixes(results, total)
+    worst, fixes = list_worst(results), list_fixes(assessment, results, total)
     may_be = sum(one.item.quantity for one in list_risky(results) if one.adopted.risk < RiskClass.HIGH)
-    return Summary(say_plainly(total, may_be, worst, fixes), worst, fixes, list_routes_at_risk(assessment, results))
+    plainly = say_plainly(total, may_be, worst, fixes)
+    return Summary(plainly, worst, fixes, list_routes_at_risk(assessment), say_routes(assessment))
 
 
-def list_fixes(results: Sequence[ItemResult], total: Counts) -> list[Fix]:
-    """Return the pieces of at least medium class, what to fix first at the top."""
+def list_fixes(assessment: Assessment, results: Sequence[ItemResult], total: Counts) -> list[Fix]:
+    """Return the pieces of at least medium class and those that a route needs fixed, what first at the top."""
+    steps: dict[str, list[RouteStep]] = {}
+    for step in list_steps(assessment.routes):
+        steps.setdefault(assessment.inventory.items[step.item].item, []).append(step)
+    needed = {step.item for own in steps.values() for step in own}
     fixes, sum_saved = [], 0.0
-    for place, one in enumerate(fix_first(iter(results)), 1):
+    for place, one in enumerate(fix_first(results, needed), 1):
         saved = one.adopted.probability * one.item.quantity
         sum_saved += saved
-        fixes.append(Fix(place, one, saved, sum_saved / total.expected if total.expected else 0.0))
+        together = sum_saved / total.expected if total.expected else 0.0
+        fixes.append(Fix(place, one, saved, together, tuple(steps.get(one.item.item, ()))))
     return fixes
-
-
-def list_routes_at_risk(assessment: Assessment, results: Sequence[ItemResult]) -> list[RouteAtRisk]:
-    """Return the routes that the workbook ties risky pieces to, the worst first."""
-    beside: dict[str, list[ItemResult]] = {}
-    for one in results:
-        if one.item.route and not one.is_anchored and one.adopted.upper >= RiskClass.HIGH:
-            beside.setdefault(one.item.route, []).append(one)
-    floors = _floors_of(assessment.inventory.routes)
-    found = [
-        RouteAtRisk(
-            route,
-            ", ".join(floors.get(route, ())),
-            sum(one.item.quantity for one in own),
-            max(one.adopted.upper for one in own),
-        )
-        for route, own in beside.items()
-    ]
-    return sorted(found, key=lambda one: (-one.worst, -one.pieces, one.route))
-
-
-def _floors_of(routes: Sequence[Segment]) -> dict[str, list[str]]:
-    floors: dict[str, list[str]] = {}
-    for segment in routes:
-        if segment.floor and segment.floor not in floors.setdefault(segment.route, []):
-            floors[segment.route].append(segment.floor)
-    return floors
 
 
 def list_worst(results: Sequence[ItemResult]) -> list[ItemResult]:

@@ -12,7 +12,7 @@ import pytest
 
 from assess.report.xlsx import write_xlsx
 from tests.recalculate import compare_formulas, stored_cells
-from tests.workbooks import FLOORS, ITEMS, assessed, write
+from tests.workbooks import ITEMS, assessed, write
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -128,29 +128,11 @@ def test_methods_tell_limits_classes_and_sources(tmp_path):
     assert any(row[0] == "References" for row in rows)
 
 
-def test_routes_list_the_pieces_beside_them(tmp_path):
-    from assess import read_inventory, run
-    from assess.inventory.blank import Content, write_workbook
-    from tests.workbooks import UNVERIFIED
-
-    items = [ITEMS[0] | {"route": "R", "segment": "1"}, ITEMS[3] | {"route": "R"}, *ITEMS[1:3]]
-    routes = [
-        {"route": "R", "segment": "1", "clear_width": 1.2},
-        {"route": "R", "segment": "2"},
-        {"route": "S", "segment": "1"},
-    ]
-    rows = {"Building": [{}], "Floors": FLOORS, "Items": items, "Routes": routes}
-    write_workbook(tmp_path / "w.xlsx", Content(rows=rows))
-    assessment = run(read_inventory(tmp_path / "w.xlsx"), UNVERIFIED)
-    write_xlsx(assessment, tmp_path / "r.xlsx")
-    found = list(openpyxl.load_workbook(tmp_path / "r.xlsx")["Routes"].iter_rows(min_row=2, values_only=True))
-    label = next(one for one in assessment if one.item.item == "A1").adopted.risk.label
-    assert [(row[0], row[1], row[8]) for row in found[:4]] == [
-        ("R", "1", "A1"), ("R", "1", "A4"), ("R", "2", "A4"), ("S", "1", "none"),
-    ]  # fmt: skip
-    assert found[0][11].startswith(label)
-    assert found[1][11].startswith("⚓ depends on its anchor")
-    assert any("not evaluated by this version" in str(row[0]) for row in found)
+def test_without_routes_there_is_one_sheet_that_says_so(tmp_path):
+    book = openpyxl.load_workbook(_report(tmp_path))
+    assert not {"Route pieces", "Route rooms"} & set(book.sheetnames)
+    said = [row[0] for row in book["Routes"].iter_rows(min_row=2, values_only=True)]
+    assert said == ["The workbook names no routes."]
 
 
 def test_two_processes_write_the_same_bytes(tmp_path):

@@ -15,6 +15,7 @@ from tests.workbooks import assessed
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 CLASSES = {"Class low", "Class medium", "Class high", "Class very high"}
+STATES = {"Route open", "Route reduced", "Route blocked"}
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +31,7 @@ def _styles(sheet):
 
 def test_styles_have_names_and_cells_belong_to_them(path):
     book = openpyxl.load_workbook(path)
-    assert {"Normal", *LOOKS, *CLASSES} == set(book.named_styles)
+    assert {"Normal", *LOOKS, *CLASSES, *STATES} == set(book.named_styles)
     items = book["Items"]
     heads = {str(cell.value): cell.column for cell in items[1]}
     for label, style in (("Height [cm]", "Input"), ("OR", "Percent"), ("PFA used [g]", "Calculation")):

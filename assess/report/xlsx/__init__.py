@@ -18,7 +18,19 @@ from assess.inventory.writer import write_book
 from assess.language import gettext as _
 from assess.report.content import Content, build_content, report_date
 from assess.report.look import Look
-from assess.report.xlsx import floors, items, method, quality, sheets, summary, verification, worst
+from assess.report.xlsx import (
+    floors,
+    items,
+    method,
+    quality,
+    route_pieces,
+    route_rooms,
+    routes,
+    sheets,
+    summary,
+    verification,
+    worst,
+)
 from assess.report.xlsx.pen import Pen
 from assess.report.xlsx.printing import set_print
 from assess.report.xlsx.said import name_sheets
@@ -31,7 +43,9 @@ SHEETS: Mapping[str, Callable[[Pen, Any, Content], None]] = {
     "Items": items.write_items,
     "Motions": sheets.write_motions,
     "Verification": verification.write_verification,
-    "Routes": sheets.write_routes,
+    "Routes": routes.write_routes,
+    "Route pieces": route_pieces.write_route_pieces,
+    "Route rooms": route_rooms.write_route_rooms,
     "Methods": method.write_methods,
     "Assumptions": method.write_assumptions,
     "Quality log": quality.write_quality,
@@ -60,7 +74,7 @@ def write_xlsx(assessment: Assessment, path: Path, look: Look | None = None) -> 
 
 
 def _names(content: Content) -> dict[str, str]:
-    """Return the names of the sheets by their keys; two are left out where they would be empty."""
+    """Return the names of the sheets by their keys; some are left out where they would be empty."""
     titles = {
         "Summary": _("Summary"),
         "Fix first": _("Fix first"),
@@ -69,15 +83,20 @@ def _names(content: Content) -> dict[str, str]:
         "Motions": _("Motions"),
         "Verification": _("Verification"),
         "Routes": _("Routes"),
+        "Route pieces": _("Route pieces"),
+        "Route rooms": _("Route rooms"),
         "Methods": _("Methods"),
         "Assumptions": _("Assumptions"),
         "Quality log": _("Quality log"),
         "Notes": _("Notes"),
     }
-    if not content.assessment.joints:
-        del titles["Verification"]
-    if not quality.has_notes(content):
-        del titles["Notes"]
+    there = {
+        "Verification": bool(content.assessment.joints),
+        "Route pieces": route_pieces.has_pieces(content),
+        "Route rooms": route_rooms.has_rooms(content),
+        "Notes": quality.has_notes(content),
+    }
+    titles = {key: title for key, title in titles.items() if there.get(key, True)}
     return name_sheets(titles)
 
 

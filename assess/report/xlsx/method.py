@@ -9,6 +9,7 @@ from assess.methods._method import Range
 from assess.motion.scenario import PROFILES
 from assess.report.content import Content
 from assess.report.findings.motions import ENVELOPES, list_clauses, profile_status
+from assess.report.findings.routes import list_cautions, list_widths, say_default_width
 from assess.report.provenance import say_reference
 from assess.report.xlsx.formulas import LIMITS as LIMIT_NAMES
 from assess.report.xlsx.pen import Pen
@@ -32,9 +33,18 @@ def write_methods(pen: Pen, page: Any, content: Content) -> None:
     rows += [(_("Verification"), _("What was done"), text) for text in content.trials.paragraphs]
     rows += [(_("Verification"), _("Beware"), text) for text in content.trials.misfits]
     rows += [(_("Marks"), _(flag.replace("_", " ")), meaning) for flag, meaning in content.flags.items()]
+    routes = content.assessment.routes
+    if routes:
+        rows += [(_("Evacuation routes"), _("What was done"), text) for text in list_cautions(routes)]
+        rows += [(_("Evacuation routes"), _("Required width"), text) for text in (say_default_width(), *_widths())]
     rows += [(_("Limits of the method"), _("Limit"), text) for text in content.limits]
     rows += [(_("References"), "", text) for text in content.references]
     pen.listing(page, (_("Method"), _("What"), _("Text")), (28, 26, 110), rows)
+
+
+def _widths() -> Iterator[str]:
+    for source, asked in list_widths():
+        yield from (_("{asked} ({source})", asked=text, source=source) for text in asked)
 
 
 def _method(method: Method) -> Iterator[tuple[str, str, str]]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from assess.report import words
 from assess.report.xlsx.said import Terms, refer, say_terms
-from assess.report.xlsx.styles import LOOKS, Style, class_looks, write_names
+from assess.report.xlsx.styles import LOOKS, Style, class_looks, state_looks, write_names
 from assess.risk import RiskClass
 
 LONGEST = 32_000
@@ -35,6 +35,9 @@ class Pen:
         self.heading, self.total, self.input = map(self.style, ("Heading 2", "Total", "Input"))
         self.percent, self.live = self.style("Percent"), self.style("Calculation")
         self.classes = {risk: self._name(name, None, look) for risk, (name, look) in class_looks().items()}
+        self.states = {state: self._name(name, None, look) for state, (name, look) in state_looks().items()}
+        self._marked: dict[str, Any] = {risk.symbol: form for risk, form in self.classes.items()}
+        self._marked |= {state.symbol: form for state, form in self.states.items()}
         self.warning = self.style("Warning Text")
         self.top, self.void = self.format(valign="top"), self.format(**ITALIC)
         write_names(book, self._styles)
@@ -104,25 +107,43 @@ class Pen:
         `formats` are the number formats of columns that need one. A class stands in the style of the class.
         """
         self.heads(page, heads, widths)
-        shown = {at: self._format(code) for at, code in (formats or {}).items()}
-        for number, row in enumerate(rows, 1):
-            lines = max(count_lines(value, width) for value, width in zip(row, widths, strict=True))
-            page.set_row(number, LINE * lines)
-            for at, value in enumerate(row):
-                text = self._class(value) if isinstance(value, str) else None
-                self.put(page, number, at, value, text or shown.get(at, self.top))
+        self._rows(page, 1, widths, rows, formats or {})
         page.freeze_panes(1, 0)
         page.repeat_rows(0)
         if rows:
             page.autofilter(0, 0, len(rows), len(heads) - 1)
 
+    def below(
+        self, page: Any, row: int, title: str, heads: Mapping[str, str], widths: Sequence[int],
+        rows: Sequence[Sequence[Any]],
+    ) -> int:  # fmt: skip
+        """Write a further table below the first of a sheet, whose columns have `widths`; return the row below it.
+
+        `heads` holds the number formats by the headings.
+        """
+        widths = widths[: len(heads)]
+        page.write_string(row, 0, title, self.heading)
+        self.heads(page, tuple(heads), widths, row + 1)
+        self._rows(page, row + 2, widths, rows, {at: code for at, code in enumerate(heads.values()) if code})
+        return row + 2 + len(rows)
+
+    def _rows(
+        self, page: Any, top: int, widths: Sequence[int], rows: Sequence[Sequence[Any]], formats: Mapping[int, str]
+    ) -> None:
+        shown = {at: self._format(code) for at, code in formats.items()}
+        for number, row in enumerate(rows, top):
+            lines = max(count_lines(value, width) for value, width in zip(row, widths, strict=True))
+            page.set_row(number, LINE * lines)
+            for at, value in enumerate(row):
+                text = self._class(value) if isinstance(value, str) else None
+                self.put(page, number, at, value, text or shown.get(at, self.top))
+
     def _format(self, code: str) -> Any:
         return self.percent if code == "0.0%" else self.format(code, valign="top")
 
     def _class(self, text: str) -> Any:
-        """Return the style of a text: that of a class where it begins with the symbol of one."""
-        risk = next((risk for risk in RiskClass if text.startswith(f"{risk.symbol} ")), None)
-        return self.wrap if risk is None else self.classes[risk]
+        """Return the style of a text: that of a class or state where it begins with the symbol of one."""
+        return self._marked.get(text[0], self.wrap) if text[1:2] == " " else self.wrap
 
     def colour(self, page: Any, area: str) -> None:
         """Colour the cells of an area by the symbol of the class that they begin with."""

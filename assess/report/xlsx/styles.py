@@ -15,6 +15,7 @@ from xml.sax.saxutils import quoteattr
 
 from assess.language import gettext as _
 from assess.risk import RiskClass
+from assess.routes.model import RouteState
 
 PART = "xl/styles.xml"
 _FORMAT = re.compile(r"<xf [^>]*?(?:/>|(?<!/)>.*?</xf>)")
@@ -50,6 +51,17 @@ def class_looks() -> dict[RiskClass, tuple[str, dict[str, Any]]]:
     names = (_("Class low"), _("Class medium"), _("Class high"), _("Class very high"))
     looks = ({"bg_color": risk.fill, "font_color": risk.ink, "text_wrap": True, "valign": "top"} for risk in RiskClass)
     return dict(zip(RiskClass, zip(names, looks, strict=True), strict=True))
+
+
+def state_looks() -> dict[RouteState, tuple[str, dict[str, Any]]]:
+    """Return the name and the look of the style of each state of a route: bold, so that none is that of a class."""
+    names = (_("Route open"), _("Route reduced"), _("Route blocked"))
+    inks = ("#1a1a1a", "#1a1a1a", "#ffffff")
+    looks = (
+        {"bold": True, "bg_color": state.fill, "font_color": ink, "text_wrap": True, "valign": "top"}
+        for state, ink in zip(RouteState, inks, strict=True)
+    )
+    return dict(zip(RouteState, zip(names, looks, strict=True), strict=True))
 
 
 def write_names(book: Any, styles: Callable[[], Sequence[Style]]) -> None:

@@ -7,8 +7,11 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.inventory.live import OUTSIDE
 from assess.language import gettext as _
+from assess.language import ngettext
 from assess.report.content import Content
+from assess.report.findings.at_risk import describe_at_risk
 from assess.report.findings.verified import describe_verification
+from assess.report.summary import ROUTES
 from assess.report.xlsx import charts, worst
 from assess.report.xlsx.items import HEAD, item_areas
 from assess.report.xlsx.pen import LINE, Pen, clip, count_lines
@@ -52,7 +55,8 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
 
 def _write_lines(pen: Pen, page: Any, content: Content, areas: Mapping[str, str]) -> int:
     """Write the sentences below the title and return the row below them."""
-    lines = [*_lines(pen, content, areas), *((text, "") for text in content.cautions)]
+    lines = [(text, "") for text in (*content.cautions, *_say_routes(content))]
+    lines = [*_lines(pen, content, areas), *lines]
     width = NAME_WIDTH + COUNT_WIDTH * (LAST - 1) + CLASS_WIDTH
     for row, (text, formula) in enumerate(lines, 1):
         page.merge_range(row, 0, row, LAST, "", pen.wrap)
@@ -62,6 +66,20 @@ def _write_lines(pen: Pen, page: Any, content: Content, areas: Mapping[str, str]
         else:
             pen.put(page, row, 0, text, pen.wrap)
     return len(lines) + 1
+
+
+def _say_routes(content: Content) -> list[str]:
+    """Return what the summary says of the routes, and a line for each of those at risk that it names."""
+    said, found = content.summary, content.summary.routes[:ROUTES]
+    if not said.of_routes:
+        return []
+    more = len(said.routes) - len(found)
+    texts = [_("Evacuation routes: {text}", text=" ".join(said.of_routes)), *map(describe_at_risk, found)]
+    if more:
+        texts.append(ngettext("{n:,} more route at risk stands in the sheet Routes.",
+                              "{n:,} more routes at risk stand in the sheet Routes.", more))  # fmt: skip
+    texts.append(_("What is said of routes is as run: it does not follow when a cell is edited."))
+    return texts
 
 
 def _lines(pen: Pen, content: Content, areas: Mapping[str, str]) -> list[tuple[str, str]]:

@@ -109,18 +109,24 @@ def _formulas(areas: Mapping[str, str], cell: str) -> list[str]:
 
 
 def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
-    """Write the pieces of at least medium class, what to fix first at the top."""
+    """Write the pieces of at least medium class and those that a route needs fixed, what to fix first at the top."""
     rows = [
         (at, one.item.item, one.item.floor, one.item.room, one.item.description or one.item.type,
-         _(one.item.importance) if one.item.importance else "", one.item.route,
+         _(one.item.importance) if one.item.importance else "", ", ".join(one.routes),
          f"{one.adopted.risk.symbol} {words.risk_words(one)}", one.adopted.probability, one.adopted.low,
-         one.adopted.high, one.item.quantity, fix.saved)
+         one.adopted.high, one.item.quantity, fix.saved, fix.reason)
         for at, one, fix in ((fix.place, fix.result, fix) for fix in content.summary.fixes)
     ]  # fmt: skip
     heads = (_("No."), _("Item"), _("Floor"), _("Room"), _("Description"), _("Importance"), _("Route"),
              _("Class (as run)"), _("Chance"), _("Interval low"), _("Interval high"), _("Pieces"),
-             _("Expected falls saved if the anchor holds"))  # fmt: skip
+             _("Expected falls saved if the anchor holds"), _("Why first"))  # fmt: skip
+    order = _(
+        "High and very high classes come first, or what may be; among them and among the others life safety and "
+        "routes, then the class, then chance times number. Behind a route stands the chance that it is blocked, before "
+        "and after."
+    )
+    page.write_comment(0, len(heads) - 1, order, {"x_scale": 3, "y_scale": 2})  # now, as the rows below follow
     formats = dict.fromkeys((8, 9, 10), "0.0%") | {12: "0.000"}
-    pen.listing(page, heads, (6, 12, 9, 16, 36, 13, 12, 36, 10, 10, 10, 8, 16), rows, formats)
+    pen.listing(page, heads, (6, 12, 9, 16, 36, 13, 12, 36, 10, 10, 10, 8, 16, 60), rows, formats)
     if rows:
         pen.bar(page, f"I2:I{len(rows) + 1}")

@@ -1,0 +1,210 @@
+"""The sheets of the routes in the Excel report: every number is that of the assessment, and cells are texts."""
+
+from typing import Any
+
+import openpyxl
+import pytest
+
+from assess.language import Catalogue, load_catalogue, speaking
+from assess.report.findings import at_risk
+from assess.report.findings.routes import say_basis, say_segment_state
+from assess.report.summary import ROUTES as MOST
+from assess.report.xlsx import write_xlsx
+from assess.routes.model import RouteState
+from assess.settings import Settings
+from tests.recalculate import compare_formulas
+from tests.report.routed import ITEMS, assess_routed
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+
+@pytest.fixture(scope="module", params=["formulas", "verified"])
+def written(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("routes")
+    more = {"settings": Settings(verify="all", runs=20)} if request.param == "verified" else {}
+    assessment = assess_routed(folder / "w.xlsx", **more)
+    write_xlsx(assessment, folder / "r.xlsx")
+    return assessment, openpyxl.load_workbook(folder / "r.xlsx"), folder / "r.xlsx"
+
+
+def _is(value):
+    return pytest.approx(value) if isinstance(value, float) else (value or None if value != 0 else 0)
+
+
+def _tables(sheet):
+    """Return the tables of a sheet, by the title above each: rows by heading; "" is the first."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    title, heads = "", None
+    for row in sheet.iter_rows(values_only=True):
+        cells = list(row)
+        while cells and cells[-1] is None:
+            cells.pop()
+        if not cells:
+            heads = None
+        elif heads is None and len(cells) == 1:
+            title = cells[0]
+        elif heads is None:
+            heads = cells
+            found[title] = []
+        else:
+            found[title].append(dict(zip(heads, [*cells, *[None] * len(heads)], strict=False)))
+    return found
+
+
+def test_a_row_a_segment(written):
+    assessment, book, _ = written
+    rows = _tables(book["Routes"])[""]
+    assert len(rows) == len(assessment.routes.segments)
+    items = assessment.inventory.items
+    for row, one in zip(rows, assessment.routes.segments, strict=True):
+        segment, outlook = one.segment, one.outlook
+        assert [row[name] for name in ("Route", "Segment", "Floor", "From", "To", "Notes")] == [
+            text or None
+            for text in (segment.route, segment.segment, segment.floor, segment.start, segment.end, segment.notes)
+        ]
+        assert row["State"] == say_segment_state(one)
+        blocked = outlook.blocked
+        for name, value in {
+            "Chance blocked": blocked.probability, "Interval low": blocked.low, "Interval high": blocked.high,
+            "Chance blocked or reduced": outlook.taken.probability, "Blocked, all independent": blocked.independent,
+            "Blocked, fully correlated": blocked.correlated, "Clear width [m]": one.clear,
+            "Required width [m]": one.required, "Width with nothing fallen [m]": one.standing,
+            "Least width left [m]": one.least, "Width that they need [m]": one.needed, "Pieces": blocked.pieces,
+            "Not verified": blocked.unverified, "Occupants": segment.occupants,
+        }.items():  # fmt: skip
+            assert row[name] == _is(value), name
+        anchors = outlook.if_anchors_fail
+        assert row["Blocked if anchors fail"] == _is(anchors.probability if anchors else None)
+        assert row["Most likely piece"] == (None if outlook.blocker is None else items[outlook.blocker].item)
+        assert row["Basis"] == say_basis(blocked)
+        assert row["Insufficient for occupants"] == (None if one.needed is None else "yes" if one.is_short else "no")
+    assert [row["Insufficient for occupants"] for row in rows] == ["no", "yes", None, None, None]
+    assert "0.9 m is taken" in rows[3]["Remarks"]
+
+
+def test_routes_and_floors_below(written):
+    assessment, book, _ = written
+    tables = _tables(book["Routes"])
+    for row, one in zip(tables["Routes"], assessment.routes.routes, strict=True):
+        assert (row["Route"], row["Segments"]) == (one.route, len(one.segments))
+        assert row["Chance blocked"] == _is(one.outlook.blocked.probability)
+        fixed = ", ".join(assessment.inventory.items[fix.item].item for fix in one.fixes)
+        assert row["Pieces to anchor or move"] == (fixed or None)
+        assert row["Chance left then"] == _is(one.fixes[-1].left if one.fixes else None)
+    for row, floor in zip(tables["To be expected floor by floor"], assessment.routes.floors, strict=True):
+        assert row["Blocked routes expected"] == _is(floor.blocked_routes)
+        assert row["Rooms expected to lose every exit"] == _is(floor.cut_off_rooms)
+        assert row["Chance that any room does"] == _is(floor.any_room.probability if floor.any_room else None)
+
+
+def test_pieces_beside_and_steps(written):
+    assessment, book, _ = written
+    tables = _tables(book["Route pieces"])
+    expected = [(one, near) for one in assessment.routes.segments for near in one.beside]
+    assert len(tables[""]) == len(expected) == 3
+    for row, (one, near) in zip(tables[""], expected, strict=True):
+        result = assessment.result(near.item)
+        assert (row["Segment"], row["Item"], row["Pieces"]) == (
+            one.segment.segment, result.item.item, result.item.quantity,
+        )  # fmt: skip
+        assert row["Chance of overturning"] == _is(result.adopted.probability)
+        assert row["Chance that it falls while the segment is blocked"] == _is(near.together)
+        assert row["Width left beside it alone [m]"] == _is(near.left)
+        assert row["Known by"] == ("plan" if near.by_plan else "Edge distance")
+    assert tables[""][2]["Class (as run)"].startswith("⚓ depends on its anchor")
+    assert tables[""][2]["Remarks"].startswith("anchored: its chances are those without the anchor")
+    steps = tables["What to anchor or move for each route, step by step"]
+    given = [(one, fix) for one in assessment.routes.routes for fix in one.fixes]
+    for row, (one, fix) in zip(steps, given, strict=True):
+        assert (row["Route"], row["Item"]) == (one.route, assessment.inventory.items[fix.item].item)
+        assert row["Chance blocked before"] == _is(fix.left + fix.gain)
+        assert row["Chance blocked after"] == _is(fix.left)
+
+
+def test_rooms_with_their_ways(written):
+    assessment, book, _ = written
+    rows = _tables(book["Route rooms"])[""]
+    for row, one in zip(rows, assessment.routes.rooms, strict=True):
+        assert (row["Room"], row["Exits that can be reached"]) == (one.place.place, "Street")
+        assert row["Chance of losing every exit"] == _is(one.loses.probability)
+        assert (row["Interval low"], row["Interval high"]) == (_is(one.loses.low), _is(one.loses.high))
+        assert row["Safest way: chance of a blockage"] == _is(one.ways[0].blocked.probability)
+        assert row["Ways out"] == 1
+    assert rows[0]["Safest way: by"] == "West: aisle, West: flight, West: hall"
+    assert rows[0].get("Alternative: to") is None
+
+
+def test_states_have_sign_and_named_style(written):
+    assessment, book, _ = written
+    styles = {RouteState.OPEN: "Route open", RouteState.REDUCED: "Route reduced", RouteState.BLOCKED: "Route blocked"}
+    for at, one in enumerate(assessment.routes.segments, 2):
+        cell = book["Routes"].cell(at, 6)
+        assert cell.value.startswith(f"{one.outlook.state.symbol} ")
+        assert cell.style == styles[one.outlook.state]
+    assert "Route blocked" in {cell.style for row in book["Routes"].iter_rows() for cell in row}
+
+
+def test_the_sheets_are_set_up(written):
+    _, book, _ = written
+    for name, frozen, area in (("Routes", "C2", "A1:AC6"), ("Route pieces", "A2", "A1:O4"),
+                               ("Route rooms", "B2", "A1:R3")):  # fmt: skip
+        sheet = book[name]
+        assert sheet.freeze_panes == frozen
+        assert sheet.auto_filter.ref == area
+        assert sheet.print_title_rows == "$1:$1"
+        assert sheet.page_setup.orientation == "landscape"
+        assert sheet["A1"].style == "Heading 1"
+    assert book["Routes"]["G2"].number_format == "0.0%"
+    assert book["Routes"]["S2"].number_format == "0.00"
+
+
+def test_no_text_is_a_formula(written):
+    _, book, path = written
+    for name in ("Routes", "Route pieces", "Route rooms", "Fix first"):
+        for row in book[name].iter_rows():
+            assert all(cell.data_type != "f" and cell.hyperlink is None for cell in row)
+    assert book["Routes"]["AC2"].value == "=1+1"
+    assert not [sheet for sheet in book for row in sheet.iter_rows(values_only=True) for cell in row
+                if "not evaluated by this version" in str(cell)]  # fmt: skip
+    assert compare_formulas(path) > len(ITEMS)
+
+
+def test_the_summary_sheet_says_what_the_page_says(written):
+    assessment, book, _ = written
+    lines = [str(row[0]) for row in book["Summary"].iter_rows(max_row=20, max_col=1, values_only=True)]
+    text = next(line for line in lines if line.startswith("Evacuation routes: "))
+    for said in at_risk.say_routes(assessment):
+        assert said in text
+    for one in at_risk.list_routes_at_risk(assessment)[:MOST]:
+        assert at_risk.describe_at_risk(one) in lines
+
+
+def test_what_to_fix_first_says_for_which_route(written):
+    assessment, book, _ = written
+    rows = {row[1]: row for row in book["Fix first"].iter_rows(min_row=2, values_only=True)}
+    before = assessment.routes.routes[0].outlook.blocked.probability
+    assert book["Fix first"]["N1"].comment.text.startswith("High and very high classes come first")
+    assert rows["tall"][13] == f"route West: {100 * before:.1f} % → 0.0 % (step 1 of 1)"
+
+
+def test_methods_tell_the_rule_and_the_widths_that_codes_ask_for(written):
+    _, book, _ = written
+    rows = [row for row in book["Methods"].values if row[0] == "Evacuation routes"]
+    assert any(row[1] == "What was done" and "screening" in row[2] for row in rows)
+    assert any(row[1] == "Required width" and "1.2 m: main evacuation route of an office" in row[2] for row in rows)
+    assert any("0.9 m is taken" in row[2] for row in rows)
+
+
+@pytest.mark.parametrize("language", ["it", "marked"])
+def test_headings_in_another_language_stay_apart(written, language, tmp_path):
+    """Columns are told apart by their headings: two with the same translation would be one."""
+    texts = {"Clear width": ("Larghezza",), "Route": ("Via",)}
+    with speaking(load_catalogue("it") if language == "it" else Catalogue("xx", texts)):
+        write_xlsx(written[0], tmp_path / "r.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "r.xlsx")
+    own = [sheet for sheet in book.worksheets if sheet.title not in written[1].sheetnames] or book.worksheets
+    for sheet in own:
+        heads = [cell.value for cell in sheet[1] if cell.value]
+        assert len(heads) == len(set(heads)), sheet.title
+    widths = {len([cell for cell in sheet[1] if cell.value]) for sheet in book.worksheets}
+    assert {29, 15, 18} <= widths

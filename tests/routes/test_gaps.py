@@ -1,0 +1,122 @@
+"""The width left between fallen pieces, against every chain of them and against a person who walks through."""
+
+import math
+from itertools import pairwise, permutations
+
+import numpy as np
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from assess.routes.gaps import MOST, Gaps
+from assess.routes.reach import find_reached
+from tests.routes.buildings import CORRIDOR, building, corridor, piece
+
+QUICK = settings(max_examples=40, deadline=None)
+WIDTHS = st.sampled_from([0.0, 0.1, 0.25, 0.5, 0.9, 1.0, 1.3, 2.0, math.inf])
+
+
+@st.composite
+def gaps(draw, most=5):
+    """Draw obstacles with any gaps: some stand there anyway, some reach in from a wall, as one of three pieces."""
+    m = draw(st.integers(1, most))
+    sided = np.array([draw(st.sampled_from([0, 0, 1, -1, 2, -2, 3, -3])) for _ in range(m)], dtype=np.intp)
+    between = np.full((m, m), math.inf)
+    for at in range(m):
+        for other in range(at):
+            one, two = sided[at], sided[other]
+            if not (one and two) or (one * two < 0 and one != -two):
+                between[at, other] = between[other, at] = draw(WIDTHS)
+    column = np.array([draw(st.sampled_from([-1, at, at, at])) for at in range(m)], dtype=np.intp)
+    left, right = (np.array([draw(WIDTHS) for _ in range(m)]) for _ in range(2))
+    left[sided > 0], right[sided < 0] = 0.0, 0.0
+    clear = draw(st.sampled_from([0.9, 1.5, 3.0]))
+    return Gaps(tuple((at, 0) for at in range(m)), column, left, right, between, sided, clear)
+
+
+def by_every_chain(one, fell):
+    """Return the least of the widest gaps of all chains from wall to wall in which no piece is on both sides."""
+    there = [at for at, needs in enumerate(one.column) if needs < 0 or fell[needs]]
+    least = one.clear
+    for size in range(1, len(there) + 1):
+        for chain in permutations(there, size):
+            own = {int(one.sided[at]) for at in chain}
+            if not any(-number in own for number in own - {0}):
+                steps = [one.between[pair] for pair in pairwise(chain)]
+                least = min(least, max(one.left[chain[0]], *steps, one.right[chain[-1]]))
+    return least
+
+
+def patterns(n):
+    return np.array([[(at >> bit) & 1 for bit in range(n)] for at in range(2**n)], dtype=np.bool_)
+
+
+@QUICK
+@given(gaps())
+def test_against_every_chain(one):
+    fell = patterns(len(one.keys))
+    assert one.residual(fell).tolist() == [by_every_chain(one, row) for row in fell]
+
+
+@QUICK
+@given(gaps(most=8), st.data())
+def test_more_fallen_pieces_never_widen(one, data):
+    fell = np.array(data.draw(st.lists(st.booleans(), min_size=len(one.keys), max_size=len(one.keys))), dtype=np.bool_)
+    more = fell | np.array(data.draw(st.lists(st.booleans(), min_size=fell.size, max_size=fell.size)), dtype=np.bool_)
+    less, wide = one.residual(np.stack((more, fell)))
+    assert less <= wide <= one.clear
+
+
+def test_many_at_once_are_those_one_by_one(monkeypatch):
+    """Patterns are taken once each, over 64 pieces too, and in parts where they are many."""
+    rng = np.random.default_rng(1)
+    for m in (3, 64, 70):
+        between = rng.uniform(0.3, 3, (m, m))
+        left, right = rng.uniform(0.3, 3, (2, m))
+        keys, between = tuple((at, 0) for at in range(m)), np.maximum(between, between.T)
+        one = Gaps(keys, np.arange(m), left, right, between, np.zeros(m, dtype=np.intp), 2.0)
+        fell = rng.random((50, m)) < 0.2
+        fell = np.concatenate((fell, fell[::-1]))
+        alone = [float(one.residual(row[np.newaxis])[0]) for row in fell]
+        assert one.residual(fell).tolist() == alone
+        monkeypatch.setattr("assess.routes.gaps.MOST", 7 * m * m)
+        assert one.residual(fell).tolist() == alone
+        monkeypatch.setattr("assess.routes.gaps.MOST", MOST)
+
+
+def passes(width, obstacles):
+    """Tell whether a person of a width walks from end to end of the corridor between obstacles."""
+    half = width / 2
+    room = shapely.box(-3, -0.9 + half, 13, 0.9 - half)
+    free = room.difference(shapely.union_all([one.buffer(half, quad_segs=64) for one in obstacles]))
+    return any(part.bounds[0] < -2.9 and part.bounds[2] > 12.9 for part in getattr(free, "geoms", [free]))
+
+
+placed = st.builds(
+    lambda x, y, angle, height: piece(height, x=x, y=y, angle_deg=angle, breadth=0.3, width=0.6),
+    st.floats(4, 6), st.floats(-1.5, 1.5), st.floats(0, 180), st.floats(0.2, 0.9),
+)  # fmt: skip
+
+
+@QUICK
+@given(st.lists(placed, min_size=1, max_size=5))
+def test_as_wide_as_a_person_can_be(items):
+    """On the plan: somewhat less than what is left passes, somewhat more does not."""
+    (one,) = find_reached(building(items, [corridor()], CORRIDOR))
+    inside = shapely.box(-1, -0.9, 11, 0.9)
+    shapes = [_everywhere(item).intersection(inside) for item in items]
+    left = float(one.gaps.residual(np.ones((1, len(one.gaps.keys)), dtype=np.bool_))[0])
+    shapes = [shape for shape in shapes if shape.area > 1e-6]
+    if left > 0.05:
+        assert passes(left - 0.02, shapes)
+    if left < 1.75:
+        assert not passes(left + 0.02, shapes)
+
+
+def _everywhere(item):
+    """Return what a piece may cover, standing and fallen either way, worked out from its corners."""
+    along = np.array([math.cos(math.radians(item.angle_deg)), math.sin(math.radians(item.angle_deg))])
+    across = np.array([-along[1], along[0]]) * 0.3
+    reach = along * (0.15 + item.height)
+    corners = [(item.x, item.y) + sign * reach + side * across for sign, side in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
+    return shapely.Polygon(corners)
