@@ -8,10 +8,9 @@ import numpy as np
 from assess.inventory.model import Inventory
 from assess.methods._method import BoolArray
 from assess.methods.housner_monte_carlo import interval_width
-from assess.routes.couplings import DRAWS, Happens
+from assess.routes.couplings import DRAWS, Draws
 from assess.routes.falls import Falls
 from assess.routes.fixes import find_fixes
-from assess.routes.gaps import Key
 from assess.routes.model import Beside, Chance, RouteResult, Routes, SegmentResult
 from assess.routes.network import build_course
 from assess.routes.reach import Reached
@@ -90,13 +89,7 @@ def _least(scene: Scene, at: int) -> float:
 
 
 def _crowded(scene: Scene, at: int, needed: float) -> Chance:
-    one = scene.reached[at]
-
-    def happens(keys: tuple[Key, ...]) -> Happens:
-        pick = scene.picking(at, keys)
-        return lambda fell: one.narrows(pick(fell), needed)
-
-    return scene.chances([at], happens)[0]
+    return scene.chances([at], lambda draws: scene.narrower(draws, at, needed))[0]
 
 
 def _beside(scene: Scene, at: int) -> list[Beside]:
@@ -106,10 +99,8 @@ def _beside(scene: Scene, at: int) -> list[Beside]:
     """
     found: dict[int, float] = {}
     for fail in (True, False):
-        keys = scene.keys([at], anchors_fail=fail)
-        blocking = scene.blocking([at], keys)
-        together = scene.together(keys, lambda fell, blocking=blocking: blocking(fell)[:, at])  # type: ignore[misc]
-        found |= {item: together.get(item, 0.0) for item, _ in keys}
+        together = scene.together([at], lambda draws: scene.blocked(draws, [at])[:, at], anchors_fail=fail)
+        found |= {item: together.get(item, 0.0) for item, _ in scene.keys([at], anchors_fail=fail)}
     beside = [replace(one, together=found.get(one.item, 0.0)) for one in scene.reached[at].beside]
     falls = scene.falls
     return sorted(
@@ -127,13 +118,12 @@ def _beside(scene: Scene, at: int) -> list[Beside]:
 def _route(scene: Scene, name: str) -> RouteResult:
     segments = scene.segments_of(name)
     course = build_course(segments, kinds_of(scene.inventory.places))
-    keys = scene.keys(segments)
-    blocking = scene.blocking(segments, keys)
+    reaching = {at: {item for item, _ in scene.reached[at].gaps.keys} for at in segments}
 
-    def is_blocked(fell: BoolArray) -> BoolArray:
-        return course.is_blocked(blocking(fell))
+    def is_blocked(draws: Draws) -> BoolArray:
+        return course.is_blocked(scene.blocked(draws, segments))
 
-    fixes, is_mended = find_fixes(scene.couplings(keys), is_blocked, scene.risk)
+    fixes, is_mended = find_fixes(scene.couplings(segments), is_blocked, scene.risk, reaching)
     return RouteResult(
         route=name,
         outlook=scene.outlook(tuple(segments), course.is_blocked),

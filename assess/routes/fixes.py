@@ -1,74 +1,140 @@
 """The smallest set of pieces to anchor or move that brings a route under the chosen risk."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.methods._method import BoolArray
 from assess.routes.couplings import ROUNDED, Couplings, Draws
-from assess.routes.gaps import Key
+from assess.routes.gaps import Key, find_distinct
 from assess.routes.model import RouteFix
 
-Blocked = Callable[[BoolArray], BoolArray]
-"""Tells for each of m draws (m, n) of which pieces fell whether the route is blocked (m,)."""
+Blocked = Callable[[Draws], BoolArray]
+"""Tells for each of m draws whether the route is blocked (m,)."""
+NOTHING: Mapping[int, Set[int]] = {}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Trial:
-    """A route with some of its pieces fixed: draws in which it is blocked with nothing fixed, and what tells more."""
-
-    keys: tuple[Key, ...]
-    draws: Sequence[Draws]
-    independent: Draws
-    is_blocked: Blocked
-
-    def chance(self, fixed: frozenset[int]) -> float:
-        """Return the chance that a report goes by: the joint one, or the largest of the three [-]."""
-        return max(self._share(one, fixed) for one in self.draws)
-
-    def score(self, fixed: frozenset[int]) -> tuple[float, float]:
-        """Return that chance, and the one where every piece falls independently, which shows every gain."""
-        return self.chance(fixed), self._share(self.independent, fixed)
-
-    def _share(self, draws: Draws, fixed: frozenset[int]) -> float:
-        free = np.array([item not in fixed for item, _ in self.keys], dtype=np.bool_)
-        return round(float(draws.weight @ self.is_blocked(draws.fell & free)), ROUNDED) if len(draws.weight) else 0.0
-
-
-def find_fixes(couplings: Couplings, is_blocked: Blocked, risk: float) -> tuple[list[RouteFix], bool]:
+def find_fixes(
+    couplings: Couplings, is_blocked: Blocked, risk: float, reaching: Mapping[int, Set[int]] = NOTHING
+) -> tuple[list[RouteFix], bool]:
     """Return the pieces to fix, in the order in which they gain most, and whether they bring a route under `risk` [-].
 
     At every step the piece is taken that lowers the chance most; where pieces fall together and no single one lowers
     it, the one that would most if they fell independently. What turns out not to be needed is left out again.
+
+    Parameters
+    ----------
+    couplings : Couplings
+        How the pieces that reach the route fall together.
+    is_blocked : callable
+        Tells from draws whether the route is blocked.
+    risk : float
+        The chosen risk [-].
+    reaching : mapping of int to set of int
+        The pieces that reach each of the segments that `is_blocked` looks at, by the segments' numbers.
     """
-    ways = (couplings.joint,) if couplings.is_joint else (couplings.joint, couplings.independent, couplings.correlated)
-    kept = [_keep(one, is_blocked) for one in (*ways, couplings.independent)]
-    trial = _Trial(couplings.keys, kept[:-1], kept[-1], is_blocked)
-    open_items = {item for item, _ in couplings.keys}
-    if trial.chance(frozenset()) < risk or trial.chance(frozenset(open_items)) >= risk:
-        return [], trial.chance(frozenset()) < risk
+    begin = trial = _Trial.begin(couplings, is_blocked, reaching)
+    if begin.chance < risk or begin.fix(*begin.items).chance >= risk:
+        return [], begin.chance < risk
     fixed: list[int] = []
-    while trial.chance(frozenset(fixed)) >= risk:
-        left = sorted(open_items.difference(fixed))
-        fixed.append(min(left, key=lambda item: (trial.score(frozenset((*fixed, item))), item)))
+    while trial.chance >= risk:
+        fixed.append(trial.best())
+        trial = trial.fix(fixed[-1])
     for item in tuple(fixed):
-        if trial.chance(frozenset(fixed) - {item}) < risk:
-            fixed.remove(item)
-    return list(_steps(trial, fixed)), True
+        rest = [other for other in fixed if other != item]
+        if begin.fix(*rest).chance < risk:
+            fixed = rest
+    return list(_steps(begin, fixed)), True
 
 
-def _steps(trial: _Trial, fixed: Sequence[int]) -> list[RouteFix]:
-    left = [trial.chance(frozenset(fixed[:count])) for count in range(len(fixed) + 1)]
-    pairs = zip(fixed, left, left[1:], strict=False)
-    return [RouteFix(item=item, gain=max(0.0, before - after), left=after) for item, before, after in pairs]
+def _steps(trial: "_Trial", fixed: Sequence[int]) -> Iterator[RouteFix]:
+    for item in fixed:
+        after = trial.fix(item)
+        yield RouteFix(item=item, gain=max(0.0, trial.chance - after.chance), left=after.chance)
+        trial = after
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Trial:
+    """A route with some of its pieces fixed, and the draws in which it is blocked all the same.
+
+    `draws` are those that the chance of a report goes by, the joint ones, or all three of which the largest counts;
+    `independent` those in which every piece falls independently, which show every gain.
+    """
+
+    draws: Sequence[Draws]
+    independent: Draws
+    is_blocked: Blocked
+    reaching: Mapping[int, Set[int]]
+
+    @classmethod
+    def begin(cls, couplings: Couplings, is_blocked: Blocked, reaching: Mapping[int, Set[int]]) -> "_Trial":
+        every = (couplings.joint, couplings.independent, couplings.correlated)
+        ways = (couplings.joint,) if couplings.is_joint else tuple({id(one): one for one in every}.values())
+        kept = {
+            id(one): _keep(_narrow(one, couplings.keys, reaching), is_blocked) for one in (*ways, couplings.independent)
+        }
+        return cls([kept[id(one)] for one in ways], kept[id(couplings.independent)], is_blocked, reaching)
+
+    @property
+    def chance(self) -> float:
+        """The chance that the route is blocked [-]."""
+        return max(_round(one.weight.sum()) for one in self.draws)
+
+    @property
+    def items(self) -> list[int]:
+        """The pieces that fall in any of the draws."""
+        there = np.any([one.fell.any(axis=0) for one in (*self.draws, self.independent)], axis=0)
+        return sorted({item for (item, _), one in zip(self.independent.keys, there, strict=True) if one})
+
+    def fix(self, *items: int) -> "_Trial":
+        """Return the trial with more pieces fixed."""
+        every = (*self.draws, self.independent)
+        of = {id(one): _keep(self._without(one, items), self.is_blocked) for one in every}
+        return replace(self, draws=[of[id(one)] for one in self.draws], independent=of[id(self.independent)])
+
+    def best(self) -> int:
+        """Return the piece whose fixing lowers the chance most; among equals, if pieces fell independently."""
+        scores = {item: max(self._left(one, item) for one in self.draws) for item in self.items}
+        least = [item for item, score in scores.items() if score == min(scores.values())]
+        return least[0] if len(least) == 1 else min(least, key=lambda item: (self._left(self.independent, item), item))
+
+    def _left(self, draws: Draws, item: int) -> float:
+        """Return the chance left with one more piece fixed: it can open the route only where it falls."""
+        own = [at for at, key in enumerate(draws.keys) if key[0] == item]
+        at = np.flatnonzero(draws.fell[:, own].any(axis=1))
+        if not len(at):
+            return _round(draws.weight.sum())
+        opened = ~self.is_blocked(self._without(_pick(draws, at), (item,)))
+        return _round(draws.weight.sum() - draws.weight[at][opened].sum())
+
+    def _without(self, draws: Draws, items: Collection[int]) -> Draws:
+        """Return draws in which some pieces stand; the widths of segments that they do not reach stay known."""
+        free = np.array([item not in items for item, _ in draws.keys], dtype=np.bool_)
+        known = {at: width for at, width in draws.widths.items() if self.reaching[at].isdisjoint(items)}
+        return Draws(draws.keys, draws.fell & free, draws.weight, known)
 
 
 def _keep(draws: Draws, is_blocked: Blocked) -> Draws:
     """Keep the draws in which a route is blocked, each pattern once: fixing more can only open it."""
-    at = np.flatnonzero(is_blocked(draws.fell))
-    fell, weight = draws.fell[at], draws.weight[at]
-    if not len(at):
-        return Draws(fell, weight)
-    distinct, back = np.unique(fell, axis=0, return_inverse=True)
-    return Draws(distinct, np.bincount(back.ravel(), weights=weight).astype(np.float64))
+    kept = _pick(draws, np.flatnonzero(is_blocked(draws)) if len(draws.weight) else np.zeros(0, dtype=np.intp))
+    first, back = find_distinct(kept.fell)
+    weight = np.bincount(back, weights=kept.weight, minlength=len(first)).astype(np.float64)
+    return replace(_pick(kept, first), weight=weight)
+
+
+def _pick(draws: Draws, at: NDArray[np.intp]) -> Draws:
+    """Return some of the draws."""
+    return Draws(draws.keys, draws.fell[at], draws.weight[at], {one: wide[at] for one, wide in draws.widths.items()})
+
+
+def _narrow(draws: Draws, keys: tuple[Key, ...], segments: Collection[int]) -> Draws:
+    """Return the draws of some pieces and segments only."""
+    fell = draws.fell[:, [draws.place[key] for key in keys]]
+    return Draws(keys, fell, draws.weight, {at: width for at, width in draws.widths.items() if at in segments})
+
+
+def _round(chance: float) -> float:
+    return round(float(chance), ROUNDED)

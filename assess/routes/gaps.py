@@ -7,7 +7,7 @@ widest gaps. So pieces that face each other count together, and pieces far apart
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -22,6 +22,8 @@ Key = tuple[int, int]
 """A piece that may fall: its index in the inventory, and 0, or 1 for a second piece of the same row."""
 MOST = 4_000_000
 """Gaps that are worked on at once."""
+MOST_KNOWN = 16
+"""Pieces beside a segment up to which the widths of all that may fall together are kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -86,13 +88,27 @@ class Gaps:
     between: FloatArray
     sided: NDArray[np.intp]
     clear: float
+    _known: list[FloatArray] = field(default_factory=list)
+    """What has been worked out already, where the pieces are few: by the number whose bits are the fallen ones."""
 
     def residual(self, fell: BoolArray) -> FloatArray:
         """Return the clear width left (k,) [m] where the pieces `fell` (k, n)."""
-        distinct, back = _distinct(fell)
+        if len(self.keys) > MOST_KNOWN:
+            first, back = find_distinct(fell)
+            return self._compute(fell[first])[back]
+        if not self._known:
+            self._known.append(np.full(2 ** len(self.keys), np.nan))
+        known, code = self._known[0], _encode(fell)
+        lacking = np.unique(code[np.isnan(known[code])])
+        if lacking.size:
+            bits = (lacking[:, np.newaxis] >> np.arange(len(self.keys))) & 1
+            known[lacking] = self._compute(bits.astype(np.bool_))
+        return np.asarray(known[code], dtype=np.float64)
+
+    def _compute(self, fell: BoolArray) -> FloatArray:
         size = max(1, MOST // max(1, self.column.size**2))
-        parts = [self._residual(distinct[at : at + size]) for at in range(0, len(distinct), size)]
-        return np.asarray(np.concatenate(parts)[back], dtype=np.float64)
+        parts = [self._residual(fell[at : at + size]) for at in range(0, len(fell), size)]
+        return np.concatenate(parts) if parts else np.zeros(0)
 
     def _residual(self, fell: BoolArray) -> FloatArray:
         there = np.column_stack((fell, np.ones(len(fell), dtype=np.bool_)))[:, self.column]
@@ -161,13 +177,22 @@ def _gap(one: Obstacle, other: Obstacle, clear: float) -> float:
     return max(0.0, left.right + right.left - clear)
 
 
-def _distinct(fell: BoolArray) -> tuple[BoolArray, NDArray[np.intp]]:
-    """Return the distinct rows of an array (k, n), and for each row which of them it is."""
-    if not fell.shape[1]:
-        return fell[:1], np.zeros(len(fell), dtype=np.intp)
+def _encode(fell: BoolArray) -> NDArray[np.intp]:
+    """Return for each row of an array (k, n), of at most 16 columns, the number of which its values are the bits."""
+    packed = np.packbits(fell, axis=1, bitorder="little")
+    code = np.zeros(len(fell), dtype=np.intp)
+    for at in range(packed.shape[1]):
+        code |= packed[:, at].astype(np.intp) << 8 * at
+    return code
+
+
+def find_distinct(fell: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return where each distinct row of an array (k, n) stands first, and for each row which of those it is."""
+    if not fell.size:
+        return np.arange(min(len(fell), 1)), np.zeros(len(fell), dtype=np.intp)
     packed = np.packbits(fell, axis=1)
     words = np.zeros((len(fell), -(-packed.shape[1] // 8) * 8), dtype=np.uint8)
     words[:, : packed.shape[1]] = packed
     as_one = words.view(np.uint64) if words.shape[1] == 8 else words.view(np.dtype((np.void, words.shape[1])))
     _, first, back = np.unique(as_one.ravel(), return_index=True, return_inverse=True)
-    return fell[first], back
+    return first, back

@@ -10,6 +10,7 @@ import numpy as np
 
 from assess.inventory.model import Place, Segment
 from assess.methods._method import BoolArray
+from assess.routes.gaps import find_distinct
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -40,6 +41,11 @@ class Part:
 
     def cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
         """Tell which of `sources` (r,) reach none of the targets where segments are `blocked` (m, all segments)."""
+        own = list(self.segments)
+        first, back = find_distinct(blocked[:, own])
+        return self._cut_off(blocked[first], sources)[back]
+
+    def _cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
         places = sorted({place for one, other, _ in self.edges for place in (one, other)} | self.targets)
         at = {place: number for number, place in enumerate(places)}
         reached = np.zeros((len(blocked), len(places)), dtype=np.bool_)

@@ -55,10 +55,6 @@ class Reached:
         """Width left with nothing fallen [m]."""
         return float(self.gaps.residual(self._all(False))[0])
 
-    def narrows(self, fell: BoolArray, width: float) -> BoolArray:
-        """Tell whether the width left (k,) where the pieces of `gaps.keys` `fell` (k, n) is under a width [m]."""
-        return np.asarray(self.gaps.residual(fell) < width - NARROWER, dtype=np.bool_)
-
     def _all(self, fell: bool) -> BoolArray:
         return np.full((1, len(self.gaps.keys)), fell, dtype=np.bool_)
 

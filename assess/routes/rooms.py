@@ -6,8 +6,7 @@ import numpy as np
 
 from assess.inventory.model import Place
 from assess.methods._method import BoolArray
-from assess.routes.couplings import Happens
-from assess.routes.gaps import Key
+from assess.routes.couplings import Draws
 from assess.routes.model import Chance, FloorRoutes, RoomResult, Way
 from assess.routes.network import Part, build_course, build_graph, find_parts, find_rooms, find_ways
 from assess.routes.scene import Scene
@@ -30,14 +29,12 @@ def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
 
 
 def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> RoomResult:
-    def happens(keys: tuple[Key, ...]) -> Happens:
-        blocking = scene.blocking(part.segments, keys)
-        return lambda fell: part.cut_off(blocking(fell), [place.place])
+    def happens(draws: Draws) -> BoolArray:
+        return part.cut_off(scene.blocked(draws, part.segments), [place.place])
 
     loses = scene.chances(part.segments, happens)[0]
     unanchored = scene.chances_unanchored(part.segments, happens)
-    keys = scene.keys(part.segments)
-    together = scene.together(keys, happens(keys))
+    together = scene.together(part.segments, happens)
     return RoomResult(
         place=place,
         exits=tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets)),
@@ -57,12 +54,7 @@ def _ways(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -
 
 def any_blocked(scene: Scene, segments: Sequence[int]) -> Chance:
     """Return the chance that any of some segments is blocked."""
-
-    def happens(keys: tuple[Key, ...]) -> Happens:
-        blocking = scene.blocking(segments, keys)
-        return lambda fell: np.asarray(blocking(fell).any(axis=1), dtype=np.bool_)
-
-    return scene.chances(segments, happens)[0]
+    return scene.chances(segments, lambda draws: _any(scene.blocked(draws, segments)))[0]
 
 
 def evaluate_floors(scene: Scene, chance: Mapping[int, float], rooms: Sequence[RoomResult]) -> tuple[FloorRoutes, ...]:
@@ -95,25 +87,19 @@ def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float:
     own = {at: one for at, one in scene.segments_of(route).items() if at in segments}
     course = build_course(own, kinds_of(scene.inventory.places))
 
-    def happens(keys: tuple[Key, ...]) -> Happens:
-        blocking = scene.blocking(own, keys)
-        return lambda fell: course.is_blocked(blocking(fell))
+    return scene.chances(own, lambda draws: course.is_blocked(scene.blocked(draws, own)))[0].probability
 
-    return scene.chances(own, happens)[0].probability
+
+def _any(happened: BoolArray) -> BoolArray:
+    return np.asarray(happened.any(axis=1), dtype=np.bool_)
 
 
 def _any_room(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance:
     segments = sorted({at for _, part in rooms for at in part.segments})
 
-    def happens(keys: tuple[Key, ...]) -> Happens:
-        blocking = scene.blocking(segments, keys)
-
-        def any_cut_off(fell: BoolArray) -> BoolArray:
-            blocked, lost = blocking(fell), np.zeros(len(fell), dtype=np.bool_)
-            for place, part in rooms:
-                lost |= part.cut_off(blocked, [place.place])[:, 0]
-            return lost
-
-        return any_cut_off
+    def happens(draws: Draws) -> BoolArray:
+        blocked = scene.blocked(draws, segments)
+        every = [part.cut_off(blocked, [place.place])[:, 0] for place, part in rooms]
+        return np.asarray(np.any(every, axis=0), dtype=np.bool_)
 
     return scene.chances(segments, happens)[0]

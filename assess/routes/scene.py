@@ -1,20 +1,18 @@
 """What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from assess.inventory.model import Inventory, Segment
-from assess.methods._method import BoolArray
-from assess.routes.couplings import Couplings, Happens, build_couplings, find_chances
+from assess.methods._method import BoolArray, FloatArray
+from assess.routes.couplings import Couplings, Draws, Happens, build_couplings, find_chances
 from assess.routes.falls import Falls
 from assess.routes.gaps import Key
 from assess.routes.model import Chance, Outlook, RouteState
 from assess.routes.reach import Reached
-
-Blocking = Callable[[BoolArray], BoolArray]
-"""Tells for each of m draws (m, n) of which pieces fell which of all segments are blocked (m, all)."""
+from assess.routes.widths import NARROWER
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,6 +29,8 @@ class Scene:
     seed: int
     z: float
     _couplings: dict[tuple[Key, ...], Couplings] = field(default_factory=dict)
+    _of_all: dict[bool, Couplings] = field(default_factory=dict)
+    """Of all pieces, by whether anchors fail: those of pieces that are too many to go through take theirs from it."""
 
     def segments_of(self, route: str) -> Mapping[int, Segment]:
         """Return the segments of a route by their number."""
@@ -41,67 +41,69 @@ class Scene:
         found = {key for at in segments for key in self.reached[at].gaps.keys}
         return tuple(sorted(key for key in found if anchors_fail or not self.falls.anchored[key[0]]))
 
-    def couplings(self, keys: tuple[Key, ...]) -> Couplings:
-        """Return how pieces fall together."""
+    def couplings(self, segments: Iterable[int], *, anchors_fail: bool = False) -> Couplings:
+        """Return how the pieces that reach any of some segments fall together."""
+        keys = self.keys(segments, anchors_fail=anchors_fail)
         if keys not in self._couplings:
-            self._couplings[keys] = build_couplings(self.falls, keys, self.seed)
+            self._couplings[keys] = build_couplings(self.falls, keys, self.seed, lambda: self._all(anchors_fail))
         return self._couplings[keys]
 
-    def blocking(self, segments: Iterable[int], keys: tuple[Key, ...]) -> Blocking:
-        """Return what tells which of some segments are blocked where pieces `keys` fell; the others count as open."""
-        own = {at: self.picking(at, keys) for at in segments}
+    def _all(self, anchors_fail: bool) -> Couplings:
+        if anchors_fail not in self._of_all:
+            keys = self.keys(range(len(self.reached)), anchors_fail=anchors_fail)
+            self._of_all[anchors_fail] = build_couplings(self.falls, keys, self.seed)
+        return self._of_all[anchors_fail]
 
-        def blocked(fell: BoolArray) -> BoolArray:
-            found = np.zeros((len(fell), len(self.reached)), dtype=np.bool_)
-            for at, pick in own.items():
-                one = self.reached[at]
-                found[:, at] = one.narrows(pick(fell), one.required)
-            return found
+    # ------------------------------------------------------------ what happens in draws
 
-        return blocked
+    def width(self, draws: Draws, segment: int) -> FloatArray:
+        """Return the clear width left of a segment (m,) [m]; pieces that the draws do not know of stand."""
+        if segment not in draws.widths:
+            gaps = self.reached[segment].gaps
+            columns = [draws.place.get(key, -1) for key in gaps.keys]
+            fell = draws.fell[:, columns] & (np.array(columns, dtype=np.intp) >= 0) if draws.place else None
+            nothing = np.zeros((len(draws.weight), len(columns)), dtype=np.bool_)
+            draws.widths[segment] = gaps.residual(nothing if fell is None else fell)
+        return draws.widths[segment]
 
-    def taking(self, segments: Iterable[int], keys: tuple[Key, ...]) -> Happens:
-        """Return what tells whether any of some segments is narrowed at all (m,) where pieces `keys` fell."""
-        own = [(self.reached[at], self.picking(at, keys)) for at in segments]
+    def narrower(self, draws: Draws, segment: int, width: float) -> BoolArray:
+        """Tell whether what is left of a segment (m,) is under a width [m]."""
+        return np.asarray(self.width(draws, segment) < width - NARROWER, dtype=np.bool_)
 
-        def taken(fell: BoolArray) -> BoolArray:
-            found = np.zeros(len(fell), dtype=np.bool_)
-            for one, pick in own:
-                found |= one.narrows(pick(fell), one.standing)
-            return found
+    def blocked(self, draws: Draws, segments: Collection[int]) -> BoolArray:
+        """Tell which of some segments are blocked (m, all segments); the others count as open."""
+        found = np.zeros((len(draws.weight), len(self.reached)), dtype=np.bool_)
+        for at in segments:
+            found[:, at] = self.narrower(draws, at, self.reached[at].required)
+        return found
 
-        return taken
+    def taken(self, draws: Draws, segments: Collection[int]) -> BoolArray:
+        """Tell whether any of some segments is narrowed at all (m,)."""
+        every = [self.narrower(draws, at, self.reached[at].standing) for at in segments]
+        return np.asarray(np.any(every, axis=0), dtype=np.bool_)
 
-    def chances(self, segments: Iterable[int], happens: Callable[[tuple[Key, ...]], Happens]) -> list[Chance]:
-        """Return the chances of what `happens` with the pieces that it is given, if all anchors hold."""
-        keys = self.keys(segments)
-        return find_chances(self.couplings(keys), happens(keys), self.z)
+    # ------------------------------------------------------------ chances
 
-    def chances_unanchored(
-        self, segments: Iterable[int], happens: Callable[[tuple[Key, ...]], Happens]
-    ) -> list[Chance] | None:
+    def chances(self, segments: Collection[int], happens: Happens) -> list[Chance]:
+        """Return the chances of what happens on some segments, if all anchors hold."""
+        return find_chances(self.couplings(segments), happens, self.z)
+
+    def chances_unanchored(self, segments: Collection[int], happens: Happens) -> list[Chance] | None:
         """Return the same with anchored pieces taken as free-standing; None where there are none."""
-        segments = tuple(segments)
-        keys = self.keys(segments, anchors_fail=True)
-        if not any(self.falls.anchored[item] for item, _ in keys):
+        if not any(self.falls.anchored[item] for item, _ in self.keys(segments, anchors_fail=True)):
             return None
-        return find_chances(self.couplings(keys), happens(keys), self.z)
+        return find_chances(self.couplings(segments, anchors_fail=True), happens, self.z)
 
-    def outlook(self, segments: Sequence[int], is_blocked: Callable[[BoolArray], BoolArray]) -> Outlook:
+    def outlook(self, segments: Collection[int], is_blocked: Callable[[BoolArray], BoolArray]) -> Outlook:
         """Return the outlook of some segments together; `is_blocked` (m,) tells from those that are (m, all)."""
 
-        def happens(keys: tuple[Key, ...]) -> Happens:
-            blocking, taking = self.blocking(segments, keys), self.taking(segments, keys)
-
-            def both(fell: BoolArray) -> BoolArray:
-                blocked = is_blocked(blocking(fell))
-                return np.column_stack((blocked, blocked | taking(fell)))
-
-            return both
+        def happens(draws: Draws) -> BoolArray:
+            blocked = is_blocked(self.blocked(draws, segments))
+            return np.column_stack((blocked, blocked | self.taken(draws, segments)))
 
         blocked, taken = self.chances(segments, happens)
-        unanchored, keys = self.chances_unanchored(segments, happens), self.keys(segments)
-        in_record, together = self._in_record(keys, happens(keys)), self.together(keys, happens(keys))
+        unanchored, together = self.chances_unanchored(segments, happens), self.together(segments, happens)
+        in_record = self._in_record(segments, happens)
         least = in_record or RouteState.OPEN
         return Outlook(
             state=max(self._state(blocked.probability, taken.probability), least),
@@ -113,13 +115,15 @@ class Scene:
             blocker=max(together, key=lambda item: (together[item], -item), default=None),
         )
 
-    def together(self, keys: tuple[Key, ...], happens: Happens) -> dict[int, float]:
-        """Return for each piece the chance that it falls while the first of what `happens` does, where there is any."""
-        draws = self.couplings(keys).joint
-        happened = happens(draws.fell)
-        share = (draws.weight * (happened[:, 0] if happened.ndim == 2 else happened)) @ draws.fell
+    def together(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> dict[int, float]:
+        """Return for each piece the chance that it falls while the first of what happens does, where there is any."""
+        couplings = self.couplings(segments, anchors_fail=anchors_fail)
+        draws, happened = couplings.joint, happens(couplings.joint)
+        at = np.flatnonzero(happened[:, 0] if happened.ndim == 2 else happened)
+        columns = [draws.place[key] for key in couplings.keys]
+        share = draws.weight[at] @ draws.fell[np.ix_(at, np.array(columns, dtype=np.intp))]
         found: dict[int, float] = {}
-        for (item, _), value in zip(keys, share, strict=True):
+        for (item, _), value in zip(couplings.keys, share, strict=True):
             found[item] = max(found.get(item, 0.0), float(value))
         return {item: value for item, value in found.items() if value > 0}
 
@@ -128,21 +132,11 @@ class Scene:
             return RouteState.BLOCKED
         return RouteState.REDUCED if taken >= self.risk else RouteState.OPEN
 
-    def _in_record(self, keys: tuple[Key, ...], happens: Happens) -> RouteState | None:
+    def _in_record(self, segments: Collection[int], happens: Happens) -> RouteState | None:
         """Return the state under the recorded motion itself; a piece of which that is not known counts as standing."""
+        keys = self.keys(segments)
         known = self.falls.in_record[np.array([item for item, _ in keys], dtype=np.intp)]
         if not keys or np.isnan(known).all():
             return None
-        blocked, taken = happens(known[np.newaxis] == 1)[0]
+        blocked, taken = happens(Draws(keys, known[np.newaxis] == 1, np.ones(1)))[0]
         return RouteState.BLOCKED if blocked else RouteState.REDUCED if taken else RouteState.OPEN
-
-    def picking(self, segment: int, keys: tuple[Key, ...]) -> Happens:
-        """Return what picks the pieces of a segment (m, c) from `keys` (m, n); those that are not among them stand."""
-        place = {key: at for at, key in enumerate(keys)}
-        columns = np.array([place.get(key, len(keys)) for key in self.reached[segment].gaps.keys], dtype=np.intp)
-
-        def pick(fell: BoolArray) -> BoolArray:
-            widened = np.column_stack((fell, np.zeros(len(fell), dtype=np.bool_)))
-            return np.asarray(widened[:, columns], dtype=np.bool_)
-
-        return pick

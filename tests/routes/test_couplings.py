@@ -130,7 +130,7 @@ def test_rows_against_every_outcome_of_every_piece(rows):
     falls = Falls.of([p for p, _ in rows], quantity=[q for _, q in rows])
     keys = [(at, number) for at, (_, q) in enumerate(rows) for number in range(min(q, 2))]
     chances = find_chances(
-        build_couplings(falls, keys, 1), lambda fell: np.column_stack((fell.any(axis=1), fell)), 1.96
+        build_couplings(falls, keys, 1), lambda draws: np.column_stack((draws.fell.any(axis=1), draws.fell)), 1.96
     )
     none = np.prod([(1 - p) ** q for p, q in rows])
     assert chances[0].independent == pytest.approx(1 - none)

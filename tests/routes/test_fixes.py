@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.routes.couplings import build_couplings
+from assess.routes.couplings import Draws, build_couplings
 from assess.routes.falls import Falls
 from assess.routes.fixes import find_fixes
 
@@ -29,14 +29,14 @@ def routes(draw):
 
 
 def blocked_by(sets):
-    return lambda fell: np.any([fell[:, one].all(axis=1) for one in sets], axis=0)
+    return lambda draws: np.any([draws.fell[:, one].all(axis=1) for one in sets], axis=0)
 
 
 def chance(couplings, is_blocked, fixed):
     """Return the chance that a report goes by once these pieces are fixed."""
     free = np.array([item not in fixed for item, _ in couplings.keys])
     ways = [couplings.joint] if couplings.is_joint else [couplings.joint, couplings.independent, couplings.correlated]
-    return max(float(one.weight @ is_blocked(one.fell & free)) for one in ways)
+    return max(float(one.weight @ is_blocked(Draws(one.keys, one.fell & free, one.weight))) for one in ways)
 
 
 @QUICK
@@ -64,4 +64,4 @@ def test_enough_and_none_too_many(drawn, risk):
 @given(routes())
 def test_what_no_piece_blocks_cannot_be_mended(drawn):
     couplings, _ = drawn
-    assert find_fixes(couplings, lambda fell: np.ones(len(fell), dtype=np.bool_), 0.03) == ([], False)
+    assert find_fixes(couplings, lambda draws: np.ones(len(draws.fell), dtype=np.bool_), 0.03) == ([], False)
