@@ -10,7 +10,7 @@ from assess.language import gettext as _
 from assess.language import ngettext, number
 from assess.report import words
 from assess.report.findings import motions
-from assess.report.findings.at_risk import say_risk
+from assess.report.findings.routes import say_risk
 from assess.results import Assessment
 from assess.routes.couplings import EXACT
 from assess.routes.model import FLAGS as ROUTE_FLAGS

@@ -36,7 +36,7 @@ def find_fixes(
         The pieces that reach each of the segments that `is_blocked` looks at, by the segments' numbers.
     """
     begin = trial = _Trial.begin(couplings, is_blocked, reaching)
-    if begin.chance < risk or begin.fix(*begin.items).chance >= risk:
+    if begin.chance < risk or not begin.is_mended(begin.items, risk):
         return [], begin.chance < risk
     fixed: list[int] = []
     while trial.chance >= risk:
@@ -44,16 +44,17 @@ def find_fixes(
         trial = trial.fix(fixed[-1])
     for item in tuple(fixed):
         rest = [other for other in fixed if other != item]
-        if begin.fix(*rest).chance < risk:
+        if begin.is_mended(rest, risk):
             fixed = rest
     return list(_steps(begin, fixed)), True
 
 
 def _steps(trial: "_Trial", fixed: Sequence[int]) -> Iterator[RouteFix]:
-    for item in fixed:
-        after = trial.fix(item)
-        yield RouteFix(item=item, gain=max(0.0, trial.chance - after.chance), left=after.chance)
-        trial = after
+    before = trial.chance
+    for count, item in enumerate(fixed, 1):
+        left = trial.left(fixed[:count])
+        yield RouteFix(item=item, gain=max(0.0, before - left), left=left)
+        before = left
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,6 +90,14 @@ class _Trial:
         there = np.any([one.fell.any(axis=0) for one in (*self.draws, self.independent)], axis=0)
         return sorted({item for (item, _), one in zip(self.independent.keys, there, strict=True) if one})
 
+    def left(self, items: Collection[int]) -> float:
+        """Return the chance with more pieces fixed [-]."""
+        return max(self._with(one, items) for one in self.draws)
+
+    def is_mended(self, items: Collection[int], risk: float) -> bool:
+        """Tell whether more pieces fixed bring the chance under a risk [-]."""
+        return all(self._with(one, items) < risk for one in self.draws)
+
     def fix(self, *items: int) -> "_Trial":
         """Return the trial with more pieces fixed."""
         every = (*self.draws, self.independent)
@@ -96,15 +105,36 @@ class _Trial:
         return replace(self, draws=[of[id(one)] for one in self.draws], independent=of[id(self.independent)])
 
     def best(self) -> int:
-        """Return the piece whose fixing lowers the chance most; among equals, if pieces fell independently."""
-        scores = {item: max(self._left(one, item) for one in self.draws) for item in self.items}
-        least = [item for item, score in scores.items() if score == min(scores.values())]
-        return least[0] if len(least) == 1 else min(least, key=lambda item: (self._left(self.independent, item), item))
+        """Return the piece whose fixing lowers the chance most, the largest of the three; else the independent one."""
+        least = self.items
+        for draws in (max(self.draws, key=lambda one: float(one.weight.sum())), self.independent):
+            scores = self._scores(draws, least)
+            lowest = min(scores.values())
+            least = [item for item, score in scores.items() if score == lowest]
+            if len(least) == 1:
+                break
+        return least[0]
 
-    def _left(self, draws: Draws, item: int) -> float:
+    def _scores(self, draws: Draws, items: Sequence[int]) -> dict[int, float]:
+        """Return the chance left with each of some pieces fixed."""
+        beside = {item: frozenset(at for at, own in self.reaching.items() if item in own) for item in items}
+        can_open = {segments: self._can_open(draws, segments) for segments in set(beside.values())}
+        return {item: self._left(draws, item, can_open[beside[item]]) for item in items}
+
+    def _can_open(self, draws: Draws, segments: Set[int]) -> BoolArray:
+        """Tell in which draws the route would be open were nothing at all on some segments."""
+        if not segments:
+            return np.ones(len(draws.weight), dtype=np.bool_)  # which those are is not known
+        free = dict.fromkeys(segments, np.full(len(draws.weight), np.inf))
+        return ~self.is_blocked(replace(draws, widths=draws.widths | free))
+
+    def _with(self, draws: Draws, items: Collection[int]) -> float:
+        return _round(float(draws.weight @ self.is_blocked(self._without(draws, items)))) if len(draws.weight) else 0.0
+
+    def _left(self, draws: Draws, item: int, can_open: BoolArray) -> float:
         """Return the chance left with one more piece fixed: it can open the route only where it falls."""
         own = [at for at, key in enumerate(draws.keys) if key[0] == item]
-        at = np.flatnonzero(draws.fell[:, own].any(axis=1))
+        at = np.flatnonzero(draws.fell[:, own].any(axis=1) & can_open)
         if not len(at):
             return _round(draws.weight.sum())
         opened = ~self.is_blocked(self._without(_pick(draws, at), (item,)))

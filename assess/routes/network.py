@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 MOST_WAYS = 3
 """Ways out of a room that are listed."""
+FEW = 1000
+"""Draws below which it does not pay to look for those that are alike."""
 EACH = 1e-6
 """What every segment adds to the cost of a way, so that of two that are as safe the shorter is taken."""
 BEYOND = "\0"
@@ -41,24 +43,38 @@ class Part:
 
     def cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
         """Tell which of `sources` (r,) reach none of the targets where segments are `blocked` (m, all segments)."""
-        own = list(self.segments)
-        first, back = find_distinct(blocked[:, own])
+        if len(blocked) < FEW:
+            return self._cut_off(blocked, sources)
+        first, back = find_distinct(blocked[:, list(self.segments)])
         return self._cut_off(blocked[first], sources)[back]
 
     def _cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
-        places = sorted({place for one, other, _ in self.edges for place in (one, other)} | self.targets)
-        at = {place: number for number, place in enumerate(places)}
-        reached = np.zeros((len(blocked), len(places)), dtype=np.bool_)
+        ever = blocked.any(axis=0)
+        doubtful = [edge for edge in self.edges if ever[edge[2]]]
+        at = self._join(edge for edge in self.edges if not ever[edge[2]])
+        reached = np.zeros((len(blocked), len(at)), dtype=np.bool_, order="F")  # column by column
         reached[:, [at[place] for place in self.targets]] = True
         changed = True
         while changed:
             before = int(reached.sum())
-            for one, other, segment in self.edges:
+            for one, other, segment in doubtful:
                 passable = (reached[:, at[one]] | reached[:, at[other]]) & ~blocked[:, segment]
                 reached[:, at[one]] |= passable
                 reached[:, at[other]] |= passable
             changed = int(reached.sum()) > before
         return ~reached[:, [at[place] for place in sources]]
+
+    def _join(self, edges: Iterable[tuple[str, str, int]]) -> dict[str, int]:
+        """Number the places; those that such edges join have one number."""
+        places = sorted({place for one, other, _ in self.edges for place in (one, other)} | self.targets)
+        at = {place: number for number, place in enumerate(places)}
+        joined: dict[int, list[str]] = {number: [place] for place, number in at.items()}
+        for one, other, _ in edges:
+            less, more = sorted((at[one], at[other]))
+            if less != more:
+                joined[less] += joined[more]
+                at |= dict.fromkeys(joined.pop(more), less)
+        return at
 
 
 def build_graph(segments: Mapping[int, Segment]) -> "nx.MultiGraph[str]":
@@ -119,10 +135,12 @@ def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> C
     parts, loose = [], [at for at, one in segments.items() if not (one.start and one.end)]
     for part in find_parts(graph, kinds):
         led = part if part.targets else Part(part.edges, frozenset({_last_end(part, segments)}), by_stairs=False)
-        served = sorted(set(_served(graph.subgraph({p for edge in led.edges for p in edge[:2]}), kinds, led.targets)))
-        if served:
+        places = {place for edge in led.edges for place in edge[:2]}
+        served = sorted(_served(graph.subgraph(places), kinds, led.targets))
+        is_chain = len(led.targets) == 1 and len(led.edges) == len(places) - 1  # every segment is on the only way
+        if served and not is_chain:
             parts.append((led, tuple(served)))
-        else:  # it is all ways out, and serves itself
+        else:  # without any that it serves, it is all ways out
             loose += part.segments
     return Course(tuple(parts), tuple(loose))
 

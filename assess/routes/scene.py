@@ -72,7 +72,7 @@ class Scene:
 
     def blocked(self, draws: Draws, segments: Collection[int]) -> BoolArray:
         """Tell which of some segments are blocked (m, all segments); the others count as open."""
-        found = np.zeros((len(draws.weight), len(self.reached)), dtype=np.bool_)
+        found = np.zeros((len(draws.weight), len(self.reached)), dtype=np.bool_, order="F")  # column by column
         for at in segments:
             found[:, at] = self.narrower(draws, at, self.reached[at].required)
         return found

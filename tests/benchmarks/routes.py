@@ -55,14 +55,17 @@ def rows(folder: Path) -> Iterator[str]:
 
 
 def write_tower(path: Path) -> Path:
-    """Write the workbook of a tower: on every floor an office with two stairs, which lead down to two exits."""
+    """Write the workbook of a tower that shakes with 0.1 g at its foot and 0.34 g at its top.
+
+    On every floor there is an office with two stairs, which lead down to two exits.
+    """
     rng = np.random.default_rng(1)
     floors = [str(at) for at in range(1, FLOORS + 1)]
     rows = {
         "Building": [{"building": "Tower"}],
         "Floors": [
-            {"floor": floor, "elevation": 3.5 * at, "pfa_x": 0.15 + 0.008 * at, "pfv_x": 20.0 + at,
-             "pfa_y": 0.12 + 0.008 * at, "pfv_y": 18.0 + at}
+            {"floor": floor, "elevation": 3.5 * at, "pfa_x": 0.1 + 0.004 * at, "pfv_x": 12.0 + at / 2,
+             "pfa_y": 0.08 + 0.004 * at, "pfv_y": 10.0 + at / 2}
             for at, floor in enumerate(floors)
         ],
         "Items": [_piece(rng, at, floors[at % FLOORS], at // FLOORS) for at in range(ITEMS)],

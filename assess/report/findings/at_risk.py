@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from assess.language import gettext as _
-from assess.language import ngettext, number
+from assess.language import ngettext
 from assess.ranking import RouteStep
 from assess.report import words
-from assess.report.findings.routes import say_chance, say_route_state
+from assess.report.findings.routes import say_chance, say_risk, say_route_state
 from assess.results import Assessment
 from assess.routes.model import Chance, RoomResult, RouteResult, Routes, RouteState
 
@@ -76,11 +76,6 @@ def list_rooms_at_risk(routes: Routes) -> list[RoomResult]:
     """Return the rooms that may lose every exit, or of which that is not excluded, the worst first."""
     found = [one for one in routes.rooms if one.loses.high >= routes.risk]
     return sorted(found, key=lambda one: (-one.loses.probability, -one.loses.high, one.place.place.casefold()))
-
-
-def say_risk(risk: float) -> str:
-    """Return the chosen risk, ``3 %``."""
-    return f"{number(100 * risk, 'g')} %"
 
 
 def say_step(step: RouteStep) -> str:

@@ -5,7 +5,7 @@ from typing import TypeVar
 
 from assess.inventory.routes import DEFAULT_WIDTH
 from assess.language import gettext as _
-from assess.language import ngettext
+from assess.language import ngettext, number
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.routes.model import (
@@ -108,6 +108,11 @@ def say_segment(one: SegmentResult) -> str:
     return f"{words.cut(one.segment.route, 40)}: {words.cut(one.segment.segment, 40)}"
 
 
+def say_risk(risk: float) -> str:
+    """Return the chosen risk, ``3 %``."""
+    return f"{number(100 * risk, 'g')} %"
+
+
 def say_bounds(chance: Chance) -> str:
     """Return the bounds beside a chance, independent and fully correlated, ``58.1 / 34.0 %``."""
     independent, correlated = words.in_percent(chance.independent), words.in_percent(chance.correlated)
@@ -140,7 +145,7 @@ def describe_routes(routes: Routes) -> list[str]:
         if routes.rooms
         else _("No room is joined to a way out, so none is evaluated."),
         _("These are chances in this scenario, not per year."),
-        _("A route may be blocked, or reduced, from a chance of {risk} on.", risk=words.percent(routes.risk)),
+        _("A route may be blocked, or reduced, from a chance of {risk} on.", risk=say_risk(routes.risk)),
     ]
 
 
@@ -151,6 +156,10 @@ def list_cautions(routes: Routes) -> list[str]:
         _(
             "A piece counts as falling toward the route unless the plan shows that it cannot reach it. Fallen, it "
             "covers Height × Width from its edge on, and where it stood."
+        ),
+        _(
+            "Walls are known only where Routes names the Room of a segment: placed pieces of other rooms do not count "
+            "there. Where it is blank, they count through a wall as well."
         ),
         _(
             "The width left is the smallest that some chain of fallen pieces cuts off. A piece known by its Edge "
@@ -175,9 +184,9 @@ def list_cautions(routes: Routes) -> list[str]:
 
 
 def list_flags(routes: Routes) -> dict[str, str]:
-    """Return the marks that occur, and what each means."""
+    """Return the marks that occur, and what each means; where its own rooms count, they are named instead."""
     raised = [one.flags for one in routes.segments] + [near.flags for one in routes.segments for near in one.beside]
-    found = {flag for flags in raised for flag in flags}
+    found = {flag for flags in raised for flag in flags if flag != "own_rooms"}
     return {flag: _(text) for flag, text in FLAGS.items() if flag in found}
 
 

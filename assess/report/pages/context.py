@@ -234,6 +234,7 @@ FILTERS: Mapping[str, Any] = {
     "say_basis": routes.say_basis,
     "say_bounds": routes.say_bounds,
     "say_chance": routes.say_chance,
+    "say_risk": routes.say_risk,
     "say_occupants": routes.say_occupants,
     "say_recorded": routes.say_recorded,
     "say_route_state": routes.say_route_state,
