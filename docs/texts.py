@@ -63,7 +63,7 @@ def _of_methods() -> Iterator[tuple[str, str]]:
     from assess.methods import all_methods
     from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
     from assess.risk import RiskClass
-    from assess.routes.model import FLAGS as ROUTE_FLAGS
+    from assess.routes.flags import FLAGS as ROUTE_FLAGS
     from assess.routes.widths import RULES
 
     for method in all_methods():

@@ -16,8 +16,8 @@ from assess.routes.model import Chance
 
 EXACT = 4096
 """Outcomes of all pieces together up to which every one is gone through; above, they are drawn."""
-DRAWS = 4000
-"""Draws where they are more: the 95 % interval of a chance of 0.5 is then 0.5 +- 0.016."""
+DRAWS = 2000
+"""Draws where they are more: the 95 % interval of a chance of 0.5 is then 0.5 +- 0.022."""
 
 MOST_PATTERNS = 20_000
 """Motions up to which pieces of different numbers of motions are made to meet evenly."""
@@ -29,13 +29,15 @@ ROUNDED = 12
 class Draws:
     """m draws of which of n pieces fall (m, n), with their weights (m,), which add up to 1.
 
-    `widths` keeps what has been worked out for them: the clear width left of a segment (m,) [m], by its number.
+    `widths` and `blocked` keep what has been worked out for them, by the number of a segment: the clear width left (m,)
+    [m], and a column of the array that tells which segments are blocked (m, all segments).
     """
 
     keys: tuple[Key, ...]
     fell: BoolArray
     weight: FloatArray
     widths: dict[int, FloatArray] = field(default_factory=dict)
+    blocked: dict[int, BoolArray] = field(default_factory=dict)
     place: dict[Key, int] = field(init=False)
     """Where each piece stands among the columns."""
 

@@ -1,6 +1,6 @@
 """The evacuation routes of a building: what may be blocked, by what, and how likely."""
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import replace
 
 import numpy as np
@@ -47,8 +47,9 @@ def evaluate_routes(
     scene = Scene(inventory, reached, falls, settings.route_risk, settings.seed, interval_width(settings))
     segments = tuple(_segment(scene, at) for at in range(len(reached)))
     chance = {at: one.outlook.blocked.probability for at, one in enumerate(segments)}
-    routes = tuple(_route(scene, name) for name in dict.fromkeys(one.segment.route for one in reached))
-    rooms = evaluate_rooms(scene, chance)
+    blind = frozenset(at for at, one in enumerate(segments) if not one.is_evaluated)
+    routes = tuple(_route(scene, name, blind) for name in dict.fromkeys(one.segment.route for one in reached))
+    rooms = evaluate_rooms(scene, chance, blind)
     return Routes(
         risk=settings.route_risk,
         segments=segments,
@@ -78,6 +79,7 @@ def _segment(scene: Scene, at: int) -> SegmentResult:
         length=one.band.length if one.band else None,
         beside=tuple(_beside(scene, at)),
         flags=one.flags,
+        other_rooms=one.other_rooms,
     )
 
 
@@ -115,7 +117,7 @@ def _beside(scene: Scene, at: int) -> list[Beside]:
     )
 
 
-def _route(scene: Scene, name: str) -> RouteResult:
+def _route(scene: Scene, name: str, blind: Set[int]) -> RouteResult:
     segments = scene.segments_of(name)
     course = build_course(segments, kinds_of(scene.inventory.places))
     reaching = {at: {item for item, _ in scene.reached[at].gaps.keys} for at in segments}
@@ -131,4 +133,5 @@ def _route(scene: Scene, name: str) -> RouteResult:
         floors=tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor)),
         fixes=tuple(fixes),
         is_mended=is_mended,
+        unevaluated=tuple(at for at in segments if at in blind),
     )

@@ -126,7 +126,7 @@ class _Trial:
         if not segments:
             return np.ones(len(draws.weight), dtype=np.bool_)  # which those are is not known
         free = dict.fromkeys(segments, np.full(len(draws.weight), np.inf))
-        return ~self.is_blocked(replace(draws, widths=draws.widths | free))
+        return ~self.is_blocked(Draws(draws.keys, draws.fell, draws.weight, draws.widths | free))
 
     def _with(self, draws: Draws, items: Collection[int]) -> float:
         return _round(float(draws.weight @ self.is_blocked(self._without(draws, items)))) if len(draws.weight) else 0.0

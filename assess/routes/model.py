@@ -1,28 +1,12 @@
 """What the evaluation of the evacuation routes found, for the scenario; pieces go by their index in the inventory."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 
 from assess.inventory.model import Place, Segment
 from assess.risk import RiskClass, classify
+from assess.routes.flags import BLIND
 from assess.routes.widths import NARROWER
-
-FLAGS: Mapping[str, str] = {
-    "segment_assumed": "the workbook names no segment: it counts beside every segment of its route on its floor",
-    "edge_assumed": "no Edge distance is given: it is taken to stand at the edge of the route",
-    "side_unknown": "named by its Edge distance alone: on which side it stands is not known, so it may face any other",
-    "direction_unknown": "neither Axis nor Angle is given: it is taken to fall any way",
-    "width_assumed": "no Width is given: its Breadth is taken",
-    "nearer_than_plan": "its Edge distance is nearer than its position on the plan says: the distance counts",
-    "standing_inside": "it stands in the route with nothing fallen",
-    "clear_assumed": "no Clear width is given: it is taken as the required width, so whatever reaches in blocks it",
-    "required_assumed": "no Required width is given: 0.9 m is taken",
-    "walls_unknown": "no Room is given: placed pieces behind a wall count as well",
-    "own_rooms": "placed pieces of other rooms than its own do not count, unless they name it",
-    "no_plan": "its places have no positions: only pieces that name it count",
-}
-"""Cautions on a piece beside a segment and on a segment, by flag."""
 
 
 class RouteState(IntEnum):
@@ -177,6 +161,8 @@ class SegmentResult:
         The pieces that reach it, the one most likely to block it first.
     flags : tuple of str
         Keys of `FLAGS`.
+    other_rooms : tuple of int
+        Pieces that would reach it, were they not in another room than those that its Room names.
     """
 
     segment: Segment
@@ -191,6 +177,12 @@ class SegmentResult:
     length: float | None
     beside: tuple[Beside, ...]
     flags: tuple[str, ...]
+    other_rooms: tuple[int, ...]
+
+    @property
+    def is_evaluated(self) -> bool:
+        """Whether anything tells which pieces can reach it: the plan, or a piece that names it."""
+        return bool(self.beside) or self.is_blocked_standing or BLIND.isdisjoint(self.flags)
 
     @property
     def is_blocked_standing(self) -> bool:
@@ -200,10 +192,7 @@ class SegmentResult:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RouteFix:
-    """One step of what to anchor or move for a route: the piece, its gain, and the chance left after it [-].
-
-    The gain is 0 where pieces that fall together must all be fixed before any of it shows.
-    """
+    """One step of what to fix for a route: the piece, its gain, 0 where others must follow, and the chance left [-]."""
 
     item: int
     gain: float
@@ -214,8 +203,8 @@ class RouteFix:
 class RouteResult:
     """One route.
 
-    `segments` are places in `Routes.segments`; `fixes` the smallest set found that brings it under the chosen risk, and
-    `is_mended` whether it does.
+    `segments` are places in `Routes.segments`, `unevaluated` those of which nothing tells what can reach them; `fixes`
+    is the smallest set found that brings it under the chosen risk, and `is_mended` whether it does.
     """
 
     route: str
@@ -224,15 +213,22 @@ class RouteResult:
     floors: tuple[str, ...]
     fixes: tuple[RouteFix, ...]
     is_mended: bool
+    unevaluated: tuple[int, ...]
+
+    @property
+    def is_evaluated(self) -> bool:
+        """Whether any of its segments is."""
+        return len(self.unevaluated) < len(self.segments)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Way:
-    """A way out: places in `Routes.segments` in order, the place where it ends, and the chance of a blockage."""
+    """A way out: its segments in order, its end, the chance of a blockage, and the segments that the safest has too."""
 
     segments: tuple[int, ...]
     end: str
     blocked: Chance
+    shared: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -252,7 +248,9 @@ class RoomResult:
     blocker : int, optional
         The free-standing piece that most likely falls while it loses every exit.
     ways : tuple of Way
-        Ways out that share no segment, the safest first: the second is the alternative of the first.
+        Ways out, the safest first: others share as few segments with those before them as may be.
+    unevaluated : tuple of int
+        Segments on any of its ways out of which nothing tells what can reach them.
     """
 
     place: Place
@@ -262,6 +260,7 @@ class RoomResult:
     if_anchors_fail: Chance | None
     blocker: int | None
     ways: tuple[Way, ...]
+    unevaluated: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -277,6 +276,8 @@ class FloorRoutes:
     cut_off_rooms: float
     any_room: Chance | None
     """Chance that at least one of its rooms loses every exit."""
+    uncounted: int
+    """Pieces of which neither the plan nor a Route tells whether they fall onto a segment."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,10 +17,12 @@ if TYPE_CHECKING:
 
 MOST_WAYS = 3
 """Ways out of a room that are listed."""
-FEW = 1000
-"""Draws below which it does not pay to look for those that are alike."""
+FEW, MOST_TOGETHER = 1000, 12
+"""Draws below which, and segments above which, it does not pay to look for draws that are alike."""
 EACH = 1e-6
 """What every segment adds to the cost of a way, so that of two that are as safe the shorter is taken."""
+AGAIN = 100.0
+"""What a segment costs more once a way has taken it: another shares it only where it must."""
 BEYOND = "\0"
 """Stands for all the ways out together, where they are taken as one place."""
 
@@ -43,15 +45,17 @@ class Part:
 
     def cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
         """Tell which of `sources` (r,) reach none of the targets where segments are `blocked` (m, all segments)."""
-        if len(blocked) < FEW:
-            return self._cut_off(blocked, sources)
-        first, back = find_distinct(blocked[:, list(self.segments)])
-        return self._cut_off(blocked[first], sources)[back]
+        doubtful = [edge for edge in self.edges if blocked[:, edge[2]].any()]
+        if len(blocked) < FEW or len(doubtful) > MOST_TOGETHER:
+            return self._cut_off(blocked, sources, doubtful)
+        first, back = find_distinct(blocked[:, [segment for _, _, segment in doubtful]])
+        return self._cut_off(blocked[first], sources, doubtful)[back]
 
-    def _cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
-        ever = blocked.any(axis=0)
-        doubtful = [edge for edge in self.edges if ever[edge[2]]]
-        at = self._join(edge for edge in self.edges if not ever[edge[2]])
+    def _cut_off(
+        self, blocked: BoolArray, sources: Sequence[str], doubtful: Sequence[tuple[str, str, int]]
+    ) -> BoolArray:
+        is_doubtful = {segment for _, _, segment in doubtful}
+        at = self._join(edge for edge in self.edges if edge[2] not in is_doubtful)
         reached = np.zeros((len(blocked), len(at)), dtype=np.bool_, order="F")  # column by column
         reached[:, [at[place] for place in self.targets]] = True
         changed = True
@@ -206,9 +210,10 @@ def _ways_part(part: Part, room: str) -> Part | None:
 
 
 def find_ways(part: Part, room: str, chance: Mapping[int, float]) -> Iterator[tuple[tuple[int, ...], str]]:
-    """Yield ways out of a room that share no segment, the least likely to be blocked first, and where each ends.
+    """Yield ways out of a room, the least likely to be blocked first, and where each ends.
 
-    `chance` is that of a blockage by segment; those of a way are taken as independent for the choice.
+    Others share as few segments with those before as may be. `chance` is that of a blockage by segment; those of a way
+    are taken as independent for the choice.
     """
     import networkx as nx
 
@@ -216,16 +221,18 @@ def find_ways(part: Part, room: str, chance: Mapping[int, float]) -> Iterator[tu
     graph.add_node(room)
     for one, other, at in part.edges:
         graph.add_edge(one, other, key=at, cost=EACH - math.log(max(1 - chance[at], 1e-9)))
+    found: set[tuple[int, ...]] = set()
     for _ in range(MOST_WAYS):
         costs = nx.single_source_dijkstra_path_length(graph, room, weight="cost")
-        ends = sorted((cost, place) for place, cost in costs.items() if place in part.targets)
-        if not ends:
+        end = min((cost, place) for place, cost in costs.items() if place in part.targets)[1]
+        path = nx.dijkstra_path(graph, room, end, weight="cost")
+        keys = tuple(_cheapest(graph, one, other) for one, other in pairwise(path))
+        if keys in found:
             return
-        path = nx.dijkstra_path(graph, room, ends[0][1], weight="cost")
-        keys = [_cheapest(graph, one, other) for one, other in pairwise(path)]
+        found.add(keys)
         for (one, other), at in zip(pairwise(path), keys, strict=True):
-            graph.remove_edge(one, other, key=at)
-        yield tuple(keys), ends[0][1]
+            graph.edges[one, other, at]["cost"] += AGAIN
+        yield keys, end
 
 
 def _cheapest(graph: "nx.MultiGraph[str]", one: str, other: str) -> int:

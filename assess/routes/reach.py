@@ -7,7 +7,7 @@ tells that it covers Height - d of the width, on a side and at a place along the
 any other. Walls are known only where Routes names the Room: placed pieces of other rooms cannot reach the segment then.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -39,7 +39,7 @@ class Reached:
     """One segment with the pieces that reach it, before anything is known of their chances.
 
     `clear` and `required` are the widths used [m], `standing` and `least` those left with nothing and with everything
-    fallen; `flags` are keys of `assess.routes.model.FLAGS`.
+    fallen; `flags` are keys of `assess.routes.flags.FLAGS`. `other_rooms` are pieces that only their Room keeps away.
     """
 
     segment: Segment
@@ -49,6 +49,7 @@ class Reached:
     flags: tuple[str, ...]
     beside: tuple[Beside, ...]
     gaps: Gaps
+    other_rooms: tuple[int, ...]
 
     @property
     def standing(self) -> float:
@@ -76,24 +77,44 @@ def find_reached(inventory: Inventory) -> tuple[Reached, ...]:
     bands = build_bands(inventory, dict(enumerate(clear)))
     shapes = build_shapes(inventory.items, {inventory.routes[at].floor for at in bands})
     named, near = _named(inventory), _near(inventory, shapes, bands)
+    floors = {place.place: place.floor for place in inventory.places}
     found = []
     for at, segment in enumerate(inventory.routes):
         told: dict[int, _Told] = {}
         for index in near.get(at, ()):
             told |= _by_plan(index, shapes[index], bands[at])
+        others = [index for index in told if _is_walled_off(inventory.items[index], segment)]
+        told = {index: one for index, one in told.items() if index not in others}
         for index in named.get(at, ()):
             told |= _by_distance(index, inventory.items[index], clear[at], bands.get(at), shapes.get(index))
-        found.append(_reach(segment, clear[at], bands.get(at), told))
+        is_flight = floors.get(segment.start) != floors.get(segment.end)
+        found.append(_reach(segment, clear[at], bands.get(at), told, others, is_flight=is_flight))
     return tuple(found)
 
 
-def _reach(segment: Segment, clear: float, band: Band | None, told: Mapping[int, _Told]) -> Reached:
+def _is_walled_off(item: Item, segment: Segment) -> bool:
+    """Tell whether a wall stands between: the rooms are known and not the same, and the piece does not name it."""
+    is_named = item.route == segment.route and item.segment in ("", segment.segment)
+    rooms = {key(room) for room in segment.rooms}
+    return not is_named and bool(rooms) and bool(item.room) and key(item.room) not in rooms
+
+
+def _reach(
+    segment: Segment,
+    clear: float,
+    band: Band | None,
+    told: Mapping[int, _Told],
+    others: Sequence[int],
+    *,
+    is_flight: bool,
+) -> Reached:
     required = segment.required_width or DEFAULT_WIDTH
     obstacles = [obstacle for index in sorted(told) for obstacle in told[index].obstacles]
     flags = {
         "clear_assumed": segment.clear_width is None,
         "required_assumed": segment.required_width is None,
-        "no_plan": band is None,
+        "no_plan": band is None and not is_flight,
+        "between_floors": band is None and is_flight,
         "walls_unknown": band is not None and not segment.rooms,
         "own_rooms": band is not None and bool(segment.rooms),
     }
@@ -105,6 +126,7 @@ def _reach(segment: Segment, clear: float, band: Band | None, told: Mapping[int,
         flags=tuple(flag for flag, holds in flags.items() if holds),
         beside=tuple(_beside(index, told[index], clear, required) for index in sorted(told)),
         gaps=build_gaps(obstacles, clear),
+        other_rooms=tuple(sorted(others)),
     )
 
 
@@ -151,16 +173,8 @@ def _near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping[int,
     for at, band in bands.items():
         floor = inventory.routes[at].floor
         hits = trees[floor].query(band.ground()) if floor in trees else ()
-        rooms = {key(room) for room in inventory.routes[at].rooms}
-        near = (on_floor[floor][hit] for hit in sorted(hits))
-        found[at] = [index for index in near if _may_stand(inventory.items[index], inventory.routes[at], rooms)]
+        found[at] = [on_floor[floor][hit] for hit in sorted(hits)]
     return found
-
-
-def _may_stand(item: Item, segment: Segment, rooms: Collection[str]) -> bool:
-    """Tell whether no wall stands between: the rooms are the same or not known, or the piece names the segment."""
-    is_named = item.route == segment.route and item.segment in ("", segment.segment)
-    return is_named or not rooms or not item.room or key(item.room) in rooms
 
 
 # ---------------------------------------------------------------- by the plan

@@ -1,6 +1,7 @@
 """Rooms and floors: which rooms lose every exit, the ways that are left, and what is to be expected floor by floor."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,9 +14,12 @@ from assess.routes.scene import Scene
 from assess.routes.widths import kinds_of
 
 
-def evaluate_rooms(scene: Scene, chance: Mapping[int, float]) -> tuple[RoomResult, ...]:
-    """Return every room that the network joins to a way out; `chance` is that of a blockage by segment."""
-    return tuple(_room(scene, place, part, chance) for place, part in list_rooms(scene))
+def evaluate_rooms(scene: Scene, chance: Mapping[int, float], blind: Set[int]) -> tuple[RoomResult, ...]:
+    """Return every room that the network joins to a way out.
+
+    `chance` is that of a blockage by segment; `blind` are the segments that are not evaluated.
+    """
+    return tuple(_room(scene, place, part, chance, blind) for place, part in list_rooms(scene))
 
 
 def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
@@ -28,7 +32,7 @@ def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
     return list(find_rooms(places, parts, heights))
 
 
-def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> RoomResult:
+def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float], blind: Set[int]) -> RoomResult:
     def happens(draws: Draws) -> BoolArray:
         return part.cut_off(scene.blocked(draws, part.segments), [place.place])
 
@@ -43,18 +47,21 @@ def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -
         if_anchors_fail=unanchored[0] if unanchored else None,
         blocker=max(together, key=lambda item: (together[item], -item), default=None),
         ways=tuple(_ways(scene, place, part, chance)),
+        unevaluated=tuple(at for at in part.segments if at in blind),
     )
 
 
 def _ways(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> Iterator[Way]:
     ways = find_ways(part, place.place, chance)
     found = [Way(segments=segments, end=end, blocked=any_blocked(scene, segments)) for segments, end in ways]
-    yield from sorted(found, key=lambda way: way.blocked.probability)
+    found.sort(key=lambda way: way.blocked.probability)
+    for way in found:
+        yield replace(way, shared=tuple(at for at in way.segments if way is not found[0] and at in found[0].segments))
 
 
 def any_blocked(scene: Scene, segments: Sequence[int]) -> Chance:
     """Return the chance that any of some segments is blocked."""
-    return scene.chances(segments, lambda draws: _any(scene.blocked(draws, segments)))[0]
+    return scene.chances(segments, lambda draws: _any(scene.blocked(draws, segments), segments))[0]
 
 
 def evaluate_floors(scene: Scene, chance: Mapping[int, float], rooms: Sequence[RoomResult]) -> tuple[FloorRoutes, ...]:
@@ -77,9 +84,17 @@ def evaluate_floors(scene: Scene, chance: Mapping[int, float], rooms: Sequence[R
                     rooms=len(own),
                     cut_off_rooms=sum(room.loses.probability for room in own),
                     any_room=_any_room(scene, here) if here else None,
+                    uncounted=_count_unknown(scene, floor.floor, segments),
                 )
             )
     return tuple(found)
+
+
+def _count_unknown(scene: Scene, floor: str, segments: Sequence[int]) -> int:
+    """Count the pieces of a floor of which nothing tells whether they fall onto one of its segments."""
+    has_plan = any(scene.reached[at].band for at in segments)
+    items = [item for item in scene.inventory.items if item.floor == floor and not item.route] if segments else []
+    return sum(item.quantity for item in items if item.x is None or item.y is None or not has_plan)
 
 
 def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float:
@@ -90,8 +105,8 @@ def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float:
     return scene.chances(own, lambda draws: course.is_blocked(scene.blocked(draws, own)))[0].probability
 
 
-def _any(happened: BoolArray) -> BoolArray:
-    return np.asarray(happened.any(axis=1), dtype=np.bool_)
+def _any(blocked: BoolArray, segments: Sequence[int]) -> BoolArray:
+    return np.asarray(blocked[:, segments].any(axis=1), dtype=np.bool_)
 
 
 def _any_room(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance:

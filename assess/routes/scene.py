@@ -7,12 +7,15 @@ import numpy as np
 
 from assess.inventory.model import Inventory, Segment
 from assess.methods._method import BoolArray, FloatArray
-from assess.routes.couplings import Couplings, Draws, Happens, build_couplings, find_chances
+from assess.routes.couplings import ROUNDED, Couplings, Draws, Happens, build_couplings, find_chances
 from assess.routes.falls import Falls
 from assess.routes.gaps import Key
 from assess.routes.model import Chance, Outlook, RouteState
 from assess.routes.reach import Reached
 from assess.routes.widths import NARROWER
+
+WHOLE = -1
+"""Under this number the array stands of which the segments are columns: column by column, as it is read so."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,10 +74,14 @@ class Scene:
         return np.asarray(self.width(draws, segment) < width - NARROWER, dtype=np.bool_)
 
     def blocked(self, draws: Draws, segments: Collection[int]) -> BoolArray:
-        """Tell which of some segments are blocked (m, all segments); the others count as open."""
-        found = np.zeros((len(draws.weight), len(self.reached)), dtype=np.bool_, order="F")  # column by column
+        """Tell which of some segments are blocked (m, all segments); what stands of the others is not to be used."""
+        if not draws.blocked:
+            draws.blocked[WHOLE] = np.zeros((len(draws.weight), len(self.reached)), dtype=np.bool_, order="F")
+        found = draws.blocked[WHOLE]
         for at in segments:
-            found[:, at] = self.narrower(draws, at, self.reached[at].required)
+            if at not in draws.blocked:
+                found[:, at] = self.narrower(draws, at, self.reached[at].required)
+                draws.blocked[at] = found[:, at]
         return found
 
     def taken(self, draws: Draws, segments: Collection[int]) -> BoolArray:
@@ -124,7 +131,7 @@ class Scene:
         share = draws.weight[at] @ draws.fell[np.ix_(at, np.array(columns, dtype=np.intp))]
         found: dict[int, float] = {}
         for (item, _), value in zip(couplings.keys, share, strict=True):
-            found[item] = max(found.get(item, 0.0), float(value))
+            found[item] = max(found.get(item, 0.0), round(float(value), ROUNDED))
         return {item: value for item, value in found.items() if value > 0}
 
     def _state(self, blocked: float, taken: float) -> RouteState:

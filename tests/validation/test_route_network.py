@@ -109,7 +109,8 @@ def test_over_the_stairs_to_the_ground():
     (room,) = found.rooms
     assert (room.exits, room.by_stairs) == (("Door",), False)
     assert room.loses.probability == pytest.approx(2 / 8)
-    assert [len(way.segments) for way in room.ways] == [4]
+    assert [len(way.segments) for way in room.ways] == [4, 4]
+    assert [way.shared for way in room.ways] == [(), (6,)], "both go out by the door"
     assert found.routes[0].outlook.blocked.probability == pytest.approx(2 / 8)
     assert found.routes[0].floors == ("2", "1")
     upper, lower = found.floors
