@@ -81,7 +81,7 @@ def test_every_room_that_can_get_out_is_found(drawn):
 @QUICK
 @given(networks(), st.lists(st.floats(0, 0.9), min_size=8, max_size=8))
 def test_ways_out(drawn, chances):
-    """Each leads from the room to where it is said to end, none is safer than the first, and the second shares least."""
+    """Each leads from the room to its end, none is safer than the first, and the second shares least with it."""
     graph, kinds = drawn
     chance = dict(enumerate(chances))
     places = [place(name, kinds[name]) for name in NAMES if name in graph]

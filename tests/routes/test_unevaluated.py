@@ -1,0 +1,60 @@
+"""What nothing is known of is told, and never passes for safe."""
+
+import pytest
+
+from assess.routes.falls import Falls
+from assess.routes.reach import find_reached
+from tests.routes.buildings import CORRIDOR, building, corridor, evaluated, piece, place, stretch
+
+STAIRS = (place("Up", "stair", (0, 0), floor="2"), place("Down", "stair", (0, 0)))
+
+
+def test_a_segment_that_neither_plan_nor_piece_tells_of_is_not_evaluated():
+    segments = [stretch("a"), stretch("b"), stretch("flight", "Up", "Down", floor="", route="Stair")]
+    found = evaluated(Falls.of([0.2]), [piece(1.5, 0.0)], segments, STAIRS)
+    assert [one.is_evaluated for one in found.segments] == [True, False, False]
+    assert [one.flags for one in found.segments] == [("no_plan",), ("no_plan",), ("between_floors",)]
+    assert [(one.is_evaluated, one.unevaluated) for one in found.routes] == [(True, (1,)), (False, (2,))]
+
+
+def test_a_plan_without_pieces_is_evaluated():
+    found = evaluated(Falls.of([]), [], [corridor()], CORRIDOR)
+    assert found.segments[0].is_evaluated
+    assert found.rooms[0].unevaluated == ()
+
+
+def test_one_that_is_too_narrow_as_it_stands_needs_no_plan():
+    found = evaluated(Falls.of([]), [], [stretch("a", clear_width=0.8)])
+    assert found.segments[0].is_evaluated
+    assert found.segments[0].outlook.blocked.probability == 1
+
+
+def test_a_room_tells_which_segments_of_its_ways_are_not():
+    places = [*STAIRS, place("Office", "room", floor="2"), place("Street", "exit")]
+    segments = [stretch("office", "Office", "Up", floor="2"), stretch("flight", "Up", "Down", floor=""),
+                stretch("hall", "Down", "Street")]  # fmt: skip
+    found = evaluated(Falls.of([0.2]), [piece(1.5, 0.0, segment="hall", route="Way")], segments, places)
+    assert [room.unevaluated for room in found.rooms] == [(0, 1)]
+
+
+@pytest.mark.parametrize(("items", "uncounted"), [
+    ([piece(2.0, x=5.0, y=1.5, angle_deg=90)], 0),
+    ([piece(2.0, 0.3)], 0),
+    ([piece(2.0, x=None, y=None, quantity=6)], 6),
+    ([piece(2.0, x=5.0, y=None), piece(2.0, x=5.0, y=8.0)], 1),
+])  # fmt: skip
+def test_pieces_of_which_nothing_tells_are_counted(items, uncounted):
+    found = evaluated(Falls.of([0.5] * len(items)), items, [corridor()], CORRIDOR)
+    assert [one.uncounted for one in found.floors] == [uncounted]
+
+
+def test_a_position_tells_nothing_where_no_segment_has_a_plan():
+    found = evaluated(Falls.of([0.5]), [piece(2.0, x=5.0, y=1.5, quantity=1)], [stretch("a")])
+    assert [one.uncounted for one in found.floors] == [1]
+
+
+def test_a_piece_that_only_its_room_keeps_away_is_named():
+    cabinet = piece(2.0, x=5.0, y=1.5, angle_deg=90, width=0.8, room="Coridor")
+    far = piece(2.0, x=5.0, y=9.0, angle_deg=90, width=0.8, room="Office")
+    found = find_reached(building([cabinet, far], [corridor(room="Corridor")], CORRIDOR))[0]
+    assert (found.beside, found.other_rooms) == ((), (0,))
