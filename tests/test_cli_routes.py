@@ -7,17 +7,21 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 import assess
 from assess.cli import app
 from assess.inventory.blank import Content, write_workbook
 from assess.options import read_pfa
-from assess.report.commands.fragility_figure import A_PANEL, MOST_PANELS, choose_drawn
-from assess.routes.fragility import RouteFragility
+from assess.report.commands.fragility_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
+from assess.report.commands.routes import Sweep
+from assess.routes.fragility import Fragility, RouteFragility
 from assess.routes.model import Chance
 from assess.units import GRAVITY
 from tests.shaking import write_records
@@ -102,16 +106,89 @@ def test_the_document(swept):
 
 def test_the_pfa_at_which_levels_are_passed(swept):
     _, document, text = swept
-    aula, _, closet = document["routes"]
-    for at in aula["passes"]:
-        chances = [one["blocked"] for one in aula["chances"]]
-        after = next(number for number, chance in enumerate(chances) if chance >= at["chance"])
-        (x0, y0), (x1, y1) = ((document["pfa_g"][number], chances[number]) for number in (after - 1, after))
-        assert at["pfa_g"] == pytest.approx(x0 + (at["chance"] - y0) / (y1 - y0) * (x1 - x0))
-        assert (at["earliest_g"] or 0) <= at["pfa_g"] <= (at["latest_g"] or 1)
-        assert f"{100 * at['chance']:g} % at {at['pfa_g']:.2f} g" in text
-    assert [(at["where"], at["pfa_g"]) for at in closet["passes"]] == [("above", None)] * 3
+    aula, bar, closet = document["routes"]
+    for one in (aula, bar):
+        chances = [at["blocked"] for at in one["chances"]]
+        for at in one["passes"]:
+            after = next(number for number, chance in enumerate(chances) if chance >= at["chance"])
+            (x0, y0), (x1, y1) = ((document["pfa_g"][number], chances[number]) for number in (after - 1, after))
+            if y1 - y0 > 0.2 + 1e-9:
+                assert (at["where"], at["pfa_g"], at["between_g"]) == ("between", None, [x0, x1])
+                assert f"{100 * at['chance']:g} % between {x0:g} and {x1:g} g" in text
+                x0, x1 = at["between_g"]
+            else:
+                x0 = x1 = at["pfa_g"]
+                assert at["between_g"] is None
+                assert f"{100 * at['chance']:g} % at " in text
+            assert (at["earliest_g"] or 0) <= x0 <= x1 <= (at["latest_g"] or 1)
+    assert any(at["between_g"] for one in (aula, bar) for at in one["passes"])
+    nowhere = [(at["where"], at["pfa_g"], at["between_g"]) for at in closet["passes"]]
+    assert nowhere == [("above", None, None)] * 3
     assert closet["passes_if_anchors_fail"] is None
+    assert "between_g, without pfa_g" in document["meaning"]
+    assert text.endswith("\n\nTake smaller steps for those that lie between two values: --pfa LOW:HIGH:STEP\n")
+
+
+def swept_with(chances: list[float], spread: float, anchors: list[float] | None = None) -> Sweep:
+    """A sweep over 0.1, 0.2, ... g of one route, with these chances and a range of this much to both sides."""
+
+    def chance(at: float) -> Chance:
+        low, high = max(at - spread, 0), min(at + spread, 1)
+        return Chance(
+            probability=at, low=low, high=high, joint=at, independent=at, correlated=at, runs=100, is_joint=True,
+            pieces=1, unverified=0,
+        )  # fmt: skip
+
+    route = RouteFragility(
+        route="A", floors=(), blocked=tuple(map(chance, chances)), scenario_pfa=(1.5, 2.5),
+        if_anchors_fail=anchors and tuple(map(chance, anchors)),
+    )  # fmt: skip
+    values = tuple(GRAVITY * (1 + at) / 10 for at in range(len(chances)))
+    found = Fragility(values=values, runs=100, seed=1, routes=(route,), generic=(), stocky=0)
+    inventory = SimpleNamespace(source=Path("w.xlsx"), sha256="")
+    return Sweep(cast("Any", SimpleNamespace(inventory=inventory, scenario="as filled")), found)
+
+
+@pytest.mark.parametrize(
+    ("chances", "spread", "line"),
+    [
+        ([0.0, 1.0], 0, "3 % between 0.1 and 0.2 g; 30 % between 0.1 and 0.2 g; 50 % between 0.1 and 0.2 g"),
+        ([0.0, 0.15, 0.34, 0.5], 0, "3 % at 0.12 g; 30 % at 0.28 g; 50 % at 0.4 g"),
+        (
+            [0.0, 0.22, 0.4, 0.8], 0.04,
+            "3 % between 0.1 and 0.2 g (below 0.1 to 0.2); 30 % at 0.24 g (0.22 to 0.27); 50 % between 0.3 and 0.4 g",
+        ),
+        ([0.0, 0.0], 0, "3 % above 0.2 g; 30 % above 0.2 g; 50 % above 0.2 g"),
+    ],
+)  # fmt: skip
+def test_no_level_is_read_off_a_jump(chances, spread, line):
+    text = swept_with(chances, spread).to_text()
+    assert f"\n  reaches {line}\n" in f"{text}\n"
+    assert text.endswith("--pfa LOW:HIGH:STEP") == ("between" in line)
+
+
+def test_a_jump_where_anchors_fail_asks_for_smaller_steps_too():
+    sweep = swept_with([0.0, 0.0], 0, anchors=[0.0, 0.9])
+    assert sweep.to_text().endswith("--pfa LOW:HIGH:STEP")
+    (one,) = sweep.describe()["routes"]
+    assert [at["between_g"] for at in one["passes_if_anchors_fail"]] == [[0.1, 0.2]] * 3
+    assert [at["between_g"] for at in one["passes"]] == [None] * 3
+
+
+@pytest.mark.parametrize("chances", [[0.5], [0.0, 1.0], [0.0, 0.1, 0.9, 0.9, 0.4, 1.0]])
+def test_the_figure_has_no_line_over_a_jump(chances):
+    sweep = swept_with(chances, 0.05)
+    figure = Figure()
+    panels = [list(sweep.fragility.routes)]
+    paint(sweep.fragility, panels, sweep.pfa_g, figure)
+    (axes,) = figure.axes
+    steps = [
+        abs(step) for line in axes.lines if line.get_linewidth() > 1 and line.get_transform() == axes.transData
+        for step in np.diff(np.asarray(line.get_ydata(), dtype=float)) if line.get_linestyle() != "None"
+    ]  # fmt: skip
+    assert all(np.isnan(step) or step <= 0.2 for step in steps)
+    (marks,) = (line for line in axes.lines if line.get_linestyle() == "None")
+    assert list(marks.get_ydata()) == chances
 
 
 def test_the_csv_is_the_document(swept):

@@ -22,7 +22,7 @@ def write_csv(assessment: Assessment, path: Path) -> None:
             if not heads:
                 heads = list(flatten(record))
                 writer.writerow(heads)
-            writer.writerow([one if type(one) in _PLAIN else _safe(one) for one in _flat_values(record)])
+            writer.writerow([one if type(one) in _PLAIN else disarm(one) for one in _flat_values(record)])
         if not heads:
             writer.writerow(["item"])  # a table without rows still has a heading
 
@@ -77,7 +77,11 @@ def _flat_verification(value: Mapping[str, Any] | None) -> Iterator[Any]:
 _PLAIN = frozenset({float, int, bool, type(None)})
 
 
-def _safe(value: object) -> object:
+def disarm(value: object) -> object:
+    """Return a value so that a spreadsheet takes none for a formula: such a text goes behind an apostrophe.
+
+    A list becomes one text, joined by "; ".
+    """
     if isinstance(value, list):
         value = "; ".join(map(str, value))
     if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r", "\n"):

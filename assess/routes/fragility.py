@@ -13,6 +13,7 @@ import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,8 @@ from assess.verification import MOST_PAIRS, Progress, Work, choose_motions
 
 BATCH = 100
 """Motions made at once: the generator keeps its first hundred."""
+JUMP = 0.2
+"""A chance that rises or falls by more than this between two values says nothing of what it is between them [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,18 +128,25 @@ def find_fragility(
     )
 
 
-def find_passing(values: Sequence[float], chances: Sequence[float], level: float) -> float:
-    """Return the first of the PFA at which a chance reaches a level, on straight lines between the values.
+def find_jumps(chances: Sequence[float]) -> list[int]:
+    """Return after which values a chance jumps to the next by more than `JUMP`."""
+    return [at for at, (one, other) in enumerate(pairwise(chances)) if abs(other - one) > JUMP + ROUNDING]
 
-    Minus infinity where it is above the level at the first value already, infinity where it never reaches it.
+
+def find_passing(values: Sequence[float], chances: Sequence[float], level: float) -> tuple[float, float]:
+    """Return between which PFA a chance first reaches a level: the same one twice, on straight lines, unless it jumps.
+
+    Twice minus infinity where it is above the level at the first value already, infinity where it never reaches it.
     """
     at = next((at for at, chance in enumerate(chances) if chance >= level), None)
     if at is None:
-        return math.inf
+        return math.inf, math.inf
     if at == 0:
-        return values[0] if chances[0] == level else -math.inf
+        return (values[0],) * 2 if chances[0] == level else (-math.inf, -math.inf)
+    if at - 1 in find_jumps(chances):
+        return values[at - 1], values[at]
     share = (level - chances[at - 1]) / (chances[at] - chances[at - 1])
-    return values[at - 1] + share * (values[at] - values[at - 1])
+    return (values[at - 1] + share * (values[at] - values[at - 1]),) * 2
 
 
 # ---------------------------------------------------------------- the pieces

@@ -13,7 +13,7 @@ from assess.inventory.blank import Content, write_workbook
 from assess.methods import Cases, proposed_or
 from assess.results import Assessment
 from assess.rocking.ensemble import rock_blocks
-from assess.routes.fragility import find_fragility, find_passing
+from assess.routes.fragility import find_fragility, find_jumps, find_passing
 from assess.settings import Settings
 from assess.units import GRAVITY
 from assess.verification import choose_motions
@@ -177,14 +177,33 @@ def test_what_it_cannot_do(tmp_path):
 @pytest.mark.parametrize(
     ("chances", "level", "pfa"),
     [
-        ([0.0, 0.2, 0.6], 0.1, 0.15),
-        ([0.0, 0.2, 0.6], 0.2, 0.2),
-        ([0.0, 0.2, 0.6], 0.5, 0.275),
+        ([0.0, 0.2, 0.4], 0.1, 0.15),
+        ([0.0, 0.2, 0.4], 0.2, 0.2),
+        ([0.0, 0.2, 0.4], 0.35, 0.275),
+        ([0.7, 0.7, 0.9], 0.8, 0.25),
         ([0.0, 0.2, 0.6], 0.7, math.inf),
         ([0.3, 0.2, 0.6], 0.25, -math.inf),
         ([0.3, 0.2, 0.6], 0.3, 0.1),
-        ([0.0, 0.4, 0.2], 0.3, 0.175),
+        ([0.0, 0.16, 0.1], 0.12, 0.175),
     ],
 )
 def test_where_a_chance_reaches_a_level(chances, level, pfa):
-    assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx(pfa)
+    assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx((pfa, pfa))
+
+
+@pytest.mark.parametrize(
+    ("chances", "level", "between"),
+    [
+        ([0.0, 1.0, 1.0], 0.03, (0.1, 0.2)),
+        ([0.0, 1.0, 1.0], 1.0, (0.1, 0.2)),
+        ([0.0, 0.2, 0.41], 0.3, (0.2, 0.3)),
+        ([0.0, 0.4, 0.2], 0.3, (0.1, 0.2)),
+    ],
+)
+def test_nothing_is_read_off_a_jump(chances, level, between):
+    assert find_passing([0.1, 0.2, 0.3], chances, level) == between
+
+
+def test_jumps():
+    assert find_jumps([0.0, 0.3, 0.5, 0.7, 0.9, 0.6]) == [0, 4], "20 percentage points are none"
+    assert find_jumps([0.5]) == []

@@ -3,6 +3,7 @@
 import math
 import textwrap
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from assess.report import words
 from assess.report.figures.draw import label
 from assess.risk import LIMITS, RiskClass
-from assess.routes.fragility import Fragility, RouteFragility
+from assess.routes.fragility import Fragility, RouteFragility, find_jumps
 from assess.units import GRAVITY
 
 A_PANEL, MOST_PANELS = 8, 6
@@ -25,9 +26,10 @@ MOST_NAMED = 12
 ROOM = 130
 """Characters of a line above one panel."""
 MEANING = (
-    "Chance that a route is blocked if its floors shake with the PFA along both axes; anchors hold. Light bands: range "
-    "of the chance. Broad: the scenario's PFA on the route's floors, both axes. A stronger motion may spare a piece "
-    "that a weaker one overturns."
+    "Chance that a route is blocked if its floors shake with the PFA along both axes; anchors hold. Light bands or "
+    "bars: range of the chance. Thin dots: a jump to the next value; nothing is known between the two. Broad, or a box "
+    "over a jump: the scenario's PFA on the route's floors, both axes. A stronger motion may spare a piece that a "
+    "weaker one overturns."
 )
 
 Panels = Sequence[Sequence[RouteFragility]]
@@ -67,21 +69,44 @@ def paint(fragility: Fragility, panels: Panels, pfa_g: Sequence[float], figure: 
 
 
 def _paint_route(axes: Any, one: RouteFragility, pfa_g: Sequence[float], style: tuple[str, str, str]) -> None:
+    """Paint a curve with its range and the scenario: with neither line nor band where it jumps to the next value."""
     colour, line, marker = style
-    chances = [chance.probability for chance in one.blocked]
-    axes.fill_between(
-        pfa_g, [chance.low for chance in one.blocked], [chance.high for chance in one.blocked],
-        color=colour, alpha=0.1, linewidth=0,
-    )  # fmt: skip
+    ways = [[getattr(chance, end) for chance in one.blocked] for end in ("probability", "low", "high")]
+    jumps = find_jumps(ways[0])
     every = math.ceil(len(pfa_g) / MOST_MARKS)
-    axes.plot(pfa_g, chances, color=colour, linestyle=line, linewidth=1.3, marker=marker, markersize=4.5,
-              markevery=every, label=label(one.route), clip_on=False)  # fmt: skip
-    if one.scenario_pfa is None:
+    ends = {at + side for at in jumps for side in (0, 1)}
+    marked = [at for at in range(len(pfa_g)) if at % every == 0 or at in ends]
+    pfa, chances, low, high = (np.insert(way, [at + 1 for at in jumps], np.nan) for way in (pfa_g, *ways))
+    axes.fill_between(pfa, low, high, color=colour, alpha=0.1, linewidth=0)
+    alone = [at for at in range(len(pfa_g)) if {at - 1, at} <= {-1, len(pfa_g) - 1, *jumps}]
+    axes.vlines(*([way[at] for at in alone] for way in (pfa_g, *ways[1:])), color=colour, alpha=0.3, linewidth=3)
+    curve, marks = {"linestyle": line, "linewidth": 1.3}, {"marker": marker, "markersize": 4.5}
+    axes.plot(pfa, chances, color=colour, clip_on=False, **curve)
+    axes.plot(pfa_g, ways[0], color=colour, clip_on=False, linestyle="", markevery=marked, **marks)
+    axes.plot([], [], color=colour, label=label(one.route), **curve, **marks)
+    for at in jumps:
+        pair = slice(at, at + 2)
+        axes.plot(pfa_g[pair], ways[0][pair], color=colour, linestyle=(0, (1, 4)), linewidth=0.7)
+    if one.scenario_pfa is not None:
+        _paint_scenario(axes, [peak / GRAVITY for peak in one.scenario_pfa], pfa_g, ways[0], colour)
+
+
+def _paint_scenario(
+    axes: Any, peaks: Sequence[float], pfa_g: Sequence[float], chances: Sequence[float], colour: str
+) -> None:
+    """Paint the curve broad from one peak to the other; where it jumps, a box as high as the jump."""
+    low, high = max(peaks[0], pfa_g[0]), min(peaks[1], pfa_g[-1])
+    if low > high:
         return
-    low, high = (max(peak / GRAVITY, pfa_g[0]) for peak in one.scenario_pfa)
-    if one.scenario_pfa[1] / GRAVITY >= pfa_g[0] and low <= pfa_g[-1]:
-        at = np.unique([low, *(pfa for pfa in pfa_g if low < pfa < high), min(high, pfa_g[-1])])
-        axes.plot(at, np.interp(at, pfa_g, chances), color=colour, linewidth=5, alpha=0.35, solid_capstyle="round")
+    bounds = [0, *(side for at in find_jumps(chances) for side in (at, at + 1)), len(pfa_g) - 1]
+    for number, (first, last) in enumerate(pairwise(bounds)):
+        start, end = max(low, pfa_g[first]), min(high, pfa_g[last])
+        if number % 2 and start < pfa_g[last] and end > pfa_g[first]:
+            sides = {"facecolor": "none", "edgecolor": colour, "alpha": 0.6, "linewidth": 1.2}
+            axes.fill_between([start, end], *chances[first : last + 1], **sides)
+        elif number % 2 == 0 and start <= end:
+            at = np.unique([start, *(pfa for pfa in pfa_g if start < pfa < end), end])
+            axes.plot(at, np.interp(at, pfa_g, chances), color=colour, linewidth=5, alpha=0.35, solid_capstyle="round")
 
 
 def _dress(axes: Any, pfa_g: Sequence[float]) -> None:

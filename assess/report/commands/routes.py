@@ -6,7 +6,7 @@ import json
 import math
 import textwrap
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,9 @@ from assess.report import words
 from assess.report.commands.records import check_figure, save_figure
 from assess.report.findings.routes import say_basis
 from assess.report.provenance import versions
+from assess.report.table import disarm
 from assess.results import Assessment
-from assess.routes.fragility import Fragility, RouteFragility, find_passing
+from assess.routes.fragility import JUMP, Fragility, RouteFragility, find_passing
 from assess.routes.model import Chance
 from assess.units import GRAVITY
 from assess.version import __version__
@@ -41,9 +42,11 @@ MEANING = (
     "Rocking is not monotone: a stronger motion may spare a piece that a weaker one overturns. Sliding, castors and "
     "spilt contents are not counted.",
     "Where not all pieces were rocked together, the chance is the largest of three ways of falling together, and its "
-    "range spans them; else the range is the 95 % interval of the number of motions. Where a chance reaches a level is "
-    "read on straight lines between the values.",
+    "range spans them; else the range is the 95 % interval of the number of motions.",
+    "Where a chance reaches a level is read on straight lines between the values; where it jumps by more than "
+    f"{100 * JUMP:g} percentage points from one to the next, only these two are told (between_g, without pfa_g).",
 )
+FINER = "Take smaller steps for those that lie between two values: --pfa LOW:HIGH:STEP"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,17 +108,19 @@ class Sweep:
     def _pass(self, chances: Sequence[Chance], level: float) -> dict[str, Any]:
         found = self._passing(chances, level)
         sides = {-math.inf: "below", math.inf: "above"}
-        names = ("pfa_g", "earliest_g", "latest_g")
         return {
             "chance": level,
-            "where": sides.get(found[0], "between"),
-            **{name: value if math.isfinite(value) else None for name, value in zip(names, found, strict=True)},
+            "where": sides.get(found.low, "between"),
+            "pfa_g": None if found.is_jump else _finite(found.low),
+            "between_g": [found.low, found.high] if found.is_jump else None,
+            "earliest_g": _finite(found.earliest),
+            "latest_g": _finite(found.latest),
         }
 
-    def _passing(self, chances: Sequence[Chance], level: float) -> tuple[float, ...]:
-        """Return the PFA [g] at which a chance reaches a level, and those of the upper and lower end of its range."""
+    def _passing(self, chances: Sequence[Chance], level: float) -> "_Passing":
         ways = [[getattr(chance, end) for chance in chances] for end in ("probability", "high", "low")]
-        return tuple(find_passing(self.pfa_g, way, level) for way in ways)
+        (low, high), first, last = (find_passing(self.pfa_g, way, level) for way in ways)
+        return _Passing(low, high, min(low, first[0]), max(high, last[1]))
 
     def to_json(self) -> str:
         """Return the document as text."""
@@ -129,7 +134,7 @@ class Sweep:
         for one in self.describe()["routes"]:
             for at in one["chances"]:
                 fails = at["if_anchors_fail"]
-                row = at | {"route": _safe(one["route"]), "floors": _safe("; ".join(one["floors"]))}
+                row = at | {"route": disarm(one["route"]), "floors": disarm(one["floors"])}
                 row["if_anchors_fail"] = fails and fails["blocked"]
                 writer.writerow([row[name] for name in HEADS])
         return file.getvalue()
@@ -149,6 +154,9 @@ class Sweep:
         for one in fragility.routes:
             yield ""
             yield from self._route_lines(one)
+        every = [way for one in fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
+        if any(self._passing(way, level).is_jump for way in every for level in LEVELS):
+            yield from ("", FINER)
 
     def _route_lines(self, one: RouteFragility) -> Iterator[str]:
         first, floors = one.blocked[0], ", ".join(one.floors)
@@ -173,10 +181,25 @@ class Sweep:
         return "; ".join(self._say_passing(chances, level) for level in LEVELS)
 
     def _say_passing(self, chances: Sequence[Chance], level: float) -> str:
-        low, high = min(self.pfa_g), max(self.pfa_g)
-        found, first, last = (_say_pfa(value, low, high) for value in self._passing(chances, level))
-        spread = "" if first == last else f" ({first} to {last})"
-        return f"{100 * level:g} % {'at ' if found[0].isdigit() else ''}{found} g{spread}"
+        found = self._passing(chances, level)
+        low, high, first, last = (_say_pfa(one, self.pfa_g) for one in astuple(found))
+        spread = "" if first == last or (first, last) == (low, high) else f" ({first} to {last})"
+        at = f"between {low} and {high}" if found.is_jump else f"at {low}" if math.isfinite(found.low) else low
+        return f"{100 * level:g} % {at} g{spread}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Passing:
+    """Between which PFA a chance reaches a level, and the earliest and latest by the ends of its range [g]."""
+
+    low: float
+    high: float
+    earliest: float
+    latest: float
+
+    @property
+    def is_jump(self) -> bool:
+        return self.low < self.high
 
 
 def _say_pieces(one: RouteFragility) -> str:
@@ -190,11 +213,11 @@ def _say_pieces(one: RouteFragility) -> str:
     )
 
 
-def _say_pfa(value: float, low: float, high: float) -> str:
-    """Return a PFA [g], or on which side of the values it lies."""
+def _say_pfa(value: float, values: Sequence[float]) -> str:
+    """Return a PFA [g], or on which side of the values it lies; one of the values as it was typed."""
     if math.isfinite(value):
-        return f"{value:.2f}"
-    return f"below {low:g}" if value < 0 else f"above {high:g}"
+        return f"{value:g}" if value in values else f"{value:.2f}"
+    return f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}"
 
 
 def _grid(rows: dict[str, list[str]]) -> Iterator[str]:
@@ -214,9 +237,8 @@ def _in_g(value: float) -> float:
     return round(value / GRAVITY, 12)
 
 
-def _safe(text: str) -> str:
-    """Return a text of the workbook so that a spreadsheet does not take it for a formula."""
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r", "\n") else text
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 # ---------------------------------------------------------------- files
