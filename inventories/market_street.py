@@ -211,6 +211,7 @@ _OFFICE_POINTS: Mapping[str, Point] = {
     "west stair": (11.5, 12, "stair"), "east stair": (20.5, 12, "stair"),
     "Copy room": (3.3, 6.8, "room"), "Library": (3.3, 17.2, "room"), "Kitchen": (3.3, 21.2, "room"),
     "Archive": (27, 6.8, "room"), "Server room": (26.6, 17.2, "room"), "Meeting room": (28.7, 2.8, "room"),
+    "meeting door": (25.4, 2.8, "door"), "kitchen door": (6.6, 21.2, "door"),
 }  # fmt: skip
 POINTS: Mapping[str, Mapping[str, Point]] = {
     "42": {**_OFFICE_POINTS, "South office": (22, 2.8, "room"), "North office": (22, 21.2, "room")},
@@ -265,17 +266,21 @@ PATHS: Mapping[str, tuple[Course, ...]] = {
         ("storage", 10, "Storage", (("aisle", "corridor W"),)),
     ),
 }  # fmt: skip
-_OFFICE_DOORS = {
-    "Copy room": "corridor SW", "Library": "corridor NW", "Archive": "corridor SE", "Server room": "corridor NE",
-    "Meeting room": "South office",
+_OFFICE_DOORS: Mapping[str, tuple[str, ...]] = {
+    "Copy room": ("corridor SW",), "Library": ("corridor NW",), "Archive": ("corridor SE",),
+    "Server room": ("corridor NE",), "Meeting room": ("meeting door", "aisle SE"),
 }  # fmt: skip
-DOORS: Mapping[str, Mapping[str, str]] = {
-    "42": {**_OFFICE_DOORS, "Kitchen": "aisle NW"},
-    "34": {**_OFFICE_DOORS, "Kitchen": "North office"},
-    "25": {**_OFFICE_DOORS, "Kitchen": "North office"},
-    "G": {"Mail room": "Lobby", "Cafe": "lobby E", "Security office": "corridor E", "Building archive": "corridor E"},
+DOORS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    "42": {**_OFFICE_DOORS, "Kitchen": ("kitchen door", "aisle NW")},
+    "34": {**_OFFICE_DOORS, "Kitchen": ("kitchen door", "North office")},
+    "25": {**_OFFICE_DOORS, "Kitchen": ("kitchen door", "North office")},
+    "G": {"Mail room": ("Lobby",), "Cafe": ("lobby E",), "Security office": ("corridor E",),
+          "Building archive": ("corridor E",)},
 }  # fmt: skip
-"""The other rooms of each floor, and where their doors lead: a segment each, named after the room."""
+"""The other rooms of each floor, and the places to which a way leads from each, through its door if that is a place.
+
+The first segment is named after the room, one from a door on after the door.
+"""
 
 STAIRS = (
     ("West stair", "42 to G", "42 west stair", "G west stair", 30),
@@ -307,6 +312,16 @@ def _stretch(
     return Stretch(room, row | {"clear_width": widths[0], "required_width": widths[1], "occupants": people})
 
 
+def _out_of(floor: str, room: str, *ends: str) -> Iterator[Stretch]:
+    """Yield the segments from a room to where its door leads: in two rooms, or parted by the door."""
+    beyond = {"aisle": "North office" if room == "Kitchen" else "South office", "lobby": "Lobby"}
+    last = ends[-1] if ends[-1] in ROOMS[floor] else beyond.get(ends[-1].split()[0], "Corridor")
+    rooms = ((room,), (last,)) if len(ends) > 1 else ((room, last),)
+    for begin, end, (own, *through) in zip((room, *ends), ends, rooms, strict=False):
+        names = (f"{floor} rooms", begin, f"{floor} {begin}", f"{floor} {end}")
+        yield _stretch(own, names, WIDTHS["door"], 10, *through)
+
+
 def _stretches() -> Iterator[Stretch]:
     """Yield the segments: floor by floor the routes and the doors of the other rooms, then the stairs."""
     for floor, paths in PATHS.items():
@@ -319,10 +334,8 @@ def _stretches() -> Iterator[Stretch]:
                 through = (start, "Corridor") if segment == "door" and start != "west stair" else ()
                 yield _stretch(room, names, WIDTHS.get(segment, (1.5, CORRIDOR)), people, *through)
                 begin = end
-        for room, end in DOORS[floor].items():
-            names = (f"{floor} rooms", room, f"{floor} {room}", f"{floor} {end}")
-            beyond = {"aisle NW": "North office", "lobby E": "Lobby"}.get(end, "Corridor")
-            yield _stretch(room, names, WIDTHS["door"], 10, end if end in ROOMS[floor] else beyond)
+        for room, ends in DOORS[floor].items():
+            yield from _out_of(floor, room, *ends)
     for *flight, people in STAIRS:
         route, segment, start, end = map(str, flight)
         yield _stretch("", (route, segment, start, end), WIDTHS["stair"], int(people))

@@ -188,6 +188,21 @@ def bands(inventory: Inventory) -> dict[tuple[str, str], tuple[str, Box]]:
     return found
 
 
+def test_doors_stand_in_the_walls_of_their_rooms(inventory, script):
+    """From each of them a segment leads into the room, and another to the nearest end of the aisle."""
+    doors = {f"{floor} {room.lower()} door": f"{floor} {name}" for floor in FLOORS[:3]
+             for room, name in (("meeting", "Meeting room"), ("kitchen", "Kitchen"))}  # fmt: skip
+    places = {place.place: place for place in inventory.places}
+    for door, name in doors.items():
+        west, _, east, _ = script.ROOMS[places[door].floor][name.split(maxsplit=1)[1]]
+        assert places[door].x in (west, east)
+        ways = {(one.start, one.end): one.rooms for one in inventory.routes if door in (one.start, one.end)}
+        assert ways.pop((name, door)) == (name.split(maxsplit=1)[1],)
+        (((_, beyond), rooms),) = ways.items()
+        assert abs(places[beyond].x - places[door].x) < 2.5, "not along the aisle"
+        assert rooms in (("South office",), ("North office",))
+
+
 def test_the_photocopier_alone_stands_in_a_route(inventory):
     inside = {
         item.description

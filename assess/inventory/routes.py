@@ -1,6 +1,5 @@
 """Evacuation routes and the places that they join: read, and what in them does not fit together."""
 
-import difflib
 from collections.abc import Mapping
 from math import hypot
 
@@ -9,6 +8,7 @@ from assess.inventory.labels import key
 from assess.inventory.model import Place, Segment
 from assess.inventory.names import check_named, check_references, check_unique, spell_alike
 from assess.inventory.network import check_network
+from assess.inventory.rooms import find_near, split_rooms
 from assess.inventory.tables import Row, Table
 from assess.language import fill
 
@@ -135,14 +135,14 @@ def _check_rooms(table: Table, items: Table, places: Table) -> None:
         if (value := row.values.get(name)) is not None
     }
     for row in table.rows:
-        for room in (part.strip() for part in (row.values.get("room") or "").split(";")):
-            near = difflib.get_close_matches(key(room), known, 1, 0.75)
-            if room and key(room) not in known and near:
+        for room in split_rooms(row):
+            near = None if key(room) in known else find_near(key(room), known)
+            if near:
                 message = fill(
                     "no piece is in room {room}, so none counts beside this segment unless it names it.",
                     room=shorten(room),
                 )
-                mend = fill("Did you mean {room}?", room=known[near[0]])
+                mend = fill("Did you mean {room}?", room=known[near])
                 table.report(table.cell("room", row.number), message, mend, "warning")
 
 

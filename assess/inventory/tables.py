@@ -3,6 +3,7 @@
 Every problem is collected with its cell; reading goes on, so that one run names them all.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -239,7 +240,13 @@ def _blank(value: Any) -> bool:
     return value is None or (isinstance(value, str) and not value.strip())
 
 
-def raise_errors(problems: Sequence[Problem]) -> None:
-    """Raise WorkbookError if any of `problems` is an error."""
+def raise_errors(problems: Sequence[Problem], sheets: Sequence[str]) -> None:
+    """Raise WorkbookError if any of `problems` is an error: by the order of `sheets`, and from the top of each down."""
     if any(problem.severity == "error" for problem in problems):
-        raise WorkbookError(problems)
+        order = {name: at for at, name in enumerate(sheets)}
+        raise WorkbookError(sorted(problems, key=lambda problem: (order.get(problem.sheet, -1), _find_row(problem))))
+
+
+def _find_row(problem: Problem) -> int:
+    number = re.search(r"\d+", problem.cell)
+    return int(number[0]) if number else 0

@@ -43,7 +43,7 @@ def read_inventory(path: str | Path) -> Inventory:
     places = read_places(tables)
     routes = read_routes(tables)
     items = ItemReader(tables, building, {key(one.type): one for one in catalogue}).read()
-    raise_errors(problems)
+    raise_errors(problems, [table.sheet.name for table in tables.values()])
     return Inventory(
         source=path,
         sha256=hashlib.sha256(path.read_bytes()).hexdigest(),

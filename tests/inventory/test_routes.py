@@ -36,15 +36,20 @@ ITEMS_HEAD_ROOM = [["Item", "Floor", "Room", "Breadth [cm]", "Height [cm]"]]
 SOUND = {"Places": PLACES, "Routes": ROUTES, "Items": ITEMS}
 
 
+def changed(sheet: str, name: str, cells: Mapping[str, Any]) -> list[Any]:
+    """Return a sound row but for cells changed by how their header begins."""
+    row = list(SOUND[sheet][name])
+    for header, value in cells.items():
+        row[next(at for at, label in enumerate(HEADS[sheet]) if label.startswith(header))] = value
+    return row
+
+
 def book(folder: Path, *more: tuple[str, list[Any]], without: str = "", **changes: Mapping[str, Any]) -> Path:
     """Write a sound workbook but for cells changed by the name of the row and the header, and rows added to a sheet."""
     sheets: dict[str, list[Any]] = {}
     for sheet, head in HEADS.items():
-        rows = {name: list(row) for name, row in SOUND[sheet].items()}
-        for name, cells in changes.items():
-            for header, value in cells.items() if name in rows else ():
-                rows[name][next(at for at, label in enumerate(head) if label.startswith(header))] = value
-        sheets[sheet] = [head, *rows.values(), *(row for name, row in more if name == sheet)]
+        rows = [changed(sheet, name, changes.get(name, {})) for name in SOUND[sheet]]
+        sheets[sheet] = [head, *rows, *(row for name, row in more if name == sheet)]
     sheets.pop(without, None)
     return write(folder, sheets.pop("Items"), TWO_FLOORS, **sheets)
 
@@ -141,6 +146,16 @@ def test_one_run_names_them_all(tmp_path: Path) -> None:
     assert errors_of(book(tmp_path, **changes)) == {ERRORS[name][1] for name in names}
 
 
+def test_errors_are_told_sheet_by_sheet_and_row_by_row(tmp_path: Path) -> None:
+    """What cannot be read is found before what does not fit together, and Routes is checked before Items; a warning comes last."""
+    more = [("Routes", ["Way", "side", "9", None, None, 1.2, 0.9]), ("Items", ["B1", "1", "wide", 180, *[None] * 6])]
+    problems = problems_of(book(tmp_path, *more, hall={"To": "Yard"}, B1={"Segment": "lobby"}, Door={"X": "far"}))
+    assert [one.place for one in problems] == [
+        "Items!I2", "Items!C4", "Items!A4", "Places!C5", "Routes!E4", "Routes!C5",
+        "Items!E4",
+    ]  # fmt: skip
+
+
 def test_without_the_sheet_of_places(tmp_path: Path) -> None:
     assert errors_of(book(tmp_path, without="Places")) == {
         "Routes!D2: From 'Office' (and 2 more rows) is named, but there is no Places sheet. "
@@ -205,7 +220,7 @@ WARNINGS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
     ),
     "no position": (
         {"B2": {"X": None, "Y": None, "Angle": None}},
-        "Items!E3: 1 of 1 rows of floor '2' has neither a position nor a Route: whether it falls onto a route is not "
+        "Items!E3: 1 of 1 pieces of floor '2' has neither a position nor a Route: whether it falls onto a route is not "
         "known, and it is not counted. Fill in X, Y and Angle, or name the Route.",
     ),
     "no way out": (
@@ -244,23 +259,65 @@ def test_no_column_of_clear_width_is_said_once(tmp_path: Path) -> None:
     assert [str(problem) for problem in read_inventory(path).problems] == [f"Routes!A1: {CLEAR}"]
 
 
-def test_rows_without_position_or_route_are_counted_by_floor(tmp_path: Path) -> None:
+def test_pieces_without_position_or_route_are_counted_by_floor(tmp_path: Path) -> None:
     lost = [("Items", [f"C{at}", "2", 40, 180, *[None] * 6]) for at in range(3)]
     route = ("Items", ["D1", "2", 40, 180, None, None, None, "Way", None, None])
     assert remarks(sound(tmp_path, *lost, route), "warning") == {
-        "Items!E4: 3 of 5 rows of floor '2' have neither a position nor a Route: whether they fall onto a route is "
+        "Items!E4: 3 of 5 pieces of floor '2' have neither a position nor a Route: whether they fall onto a route is "
         "not known, and they are not counted. Fill in X, Y and Angle, or name the Route."
     }
 
 
-def test_a_floor_without_a_segment_on_the_plan_asks_for_no_positions(tmp_path: Path) -> None:
-    inventory = sound(tmp_path, Office={"X": None, "Y": None}, B2={"X": None, "Y": None, "Angle": None})
+NO_PLAN = "no segment of that floor has both its places placed, and"
+UNPLACED_ROUTES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "a place has no position": ({}, {"X": None, "Y": None}),
+    "a place has half a position": ({}, {"Y": None}),
+    "no place at its end": ({"To": None}, {}),
+    "no places, but a floor": ({"From": None, "To": None}, {}),
+    "the floor is that of its one place": ({"Floor": None, "To": None}, {}),
+}
+
+
+@pytest.mark.parametrize("name", UNPLACED_ROUTES)
+def test_a_floor_that_cannot_be_drawn_counts_only_pieces_that_name_a_route(tmp_path: Path, name: str) -> None:
+    aisle, office = UNPLACED_ROUTES[name]
+    head = [*HEADS["Items"], "Quantity"]
+    rows = [
+        [*ITEMS["B2"], None], ["C1", "2", 40, 180, None, None, None, None, None, None, 12],
+        ["C2", "2", 40, 180, 6, 3, 90, "Way", None, None, None],
+    ]  # fmt: skip
+    own = {
+        "Routes": [changed("Routes", "aisle", aisle)],
+        "Places": [changed("Places", "Office", office), PLACES["Upper"]],
+    }
+    sheets = {sheet: [HEADS[sheet], *cells] for sheet, cells in own.items()}
+    found = read_inventory(write(tmp_path, [head, *rows], TWO_FLOORS, **sheets))
+    told = {str(one) for one in found.problems if one.sheet == "Items"}
+    assert told == {
+        "Items!E3: 12 of 14 pieces of floor '2' have neither a position nor a Route: whether they fall onto a route is "
+        "not known, and they are not counted. Fill in X, Y and Angle, or name the Route.",
+        f"Items!E2: 1 piece of floor '2' has a position, but {NO_PLAN} it names no Route: it is not counted. "
+        "Fill in X and Y of the places, or name the Route.",
+    }
+
+
+def test_one_segment_on_the_plan_is_enough(tmp_path: Path) -> None:
+    lone = ("Routes", ["Way", "corner", "2", None, None, 1.2, 0.9])
+    assert sound(tmp_path, lone).problems == ()
+
+
+@pytest.mark.parametrize("change", [{"From": None, "To": None, "Floor": None}, {"From": "Lower", "Floor": "2"}])
+def test_a_floor_without_a_segment_of_its_own_asks_for_no_positions(tmp_path: Path, change: dict[str, Any]) -> None:
+    """A flight lies between floors, and a segment of which nothing tells the floor is on none that is known."""
+    nowhere = {"X": None, "Y": None, "Angle": None}
+    inventory = sound(tmp_path, aisle=change, Office={"Kind": "corridor"}, B2=nowhere)
     assert inventory.problems == ()
 
 
 @pytest.mark.parametrize("blank", [{"X": None, "Y": None}, {"Y": None}])
 def test_a_segment_that_cannot_be_drawn(tmp_path: Path, blank: dict[str, Any]) -> None:
-    inventory = sound(tmp_path, Upper=blank)
+    yard = ("Places", ["Yard", "2", 4, 9, "exit"])
+    inventory = sound(tmp_path, yard, ("Routes", ["Way", "yard", "2", "Office", "Yard", 1.2, 0.9]), Upper=blank)
     assert [str(problem) for problem in inventory.problems] == [
         "Routes!E2: 'Upper' has no position in Places: pieces count beside this segment only where they name it. "
         "Fill in its X and Y."
