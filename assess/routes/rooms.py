@@ -14,12 +14,17 @@ from assess.routes.scene import Scene
 from assess.routes.widths import kinds_of
 
 
+UNKNOWN = 0.5
+"""What the choice of the safest way takes for the chance of a segment of which nothing is known; stairs are as free."""
+
+
 def evaluate_rooms(scene: Scene, chance: Mapping[int, float], blind: Set[int]) -> tuple[RoomResult, ...]:
     """Return every room that the network joins to a way out.
 
     `chance` is that of a blockage by segment; `blind` are the segments that are not evaluated.
     """
-    return tuple(_room(scene, place, part, chance, blind) for place, part in list_rooms(scene))
+    unknown = {at: UNKNOWN for at in blind if "no_plan" in scene.reached[at].flags}
+    return tuple(_room(scene, place, part, {**chance, **unknown}, blind) for place, part in list_rooms(scene))
 
 
 def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:

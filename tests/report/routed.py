@@ -39,6 +39,38 @@ ITEMS: list[dict[str, Any]] = [
     {"item": "=apart", "floor": "1", "breadth": 28, "height": 210, "anchored": "no", "description": "=cmd()"},
 ]  # fmt: skip
 
+PARTLY: dict[str, list[dict[str, Any]]] = {
+    "Places": [
+        {"place": "Lab", "floor": "G", "x": 0.0, "y": 0.0, "kind": "room"},
+        {"place": "Fork", "floor": "G", "x": 6.0, "y": 0.0, "kind": "door"},
+        {"place": "Street", "floor": "G", "x": 12.0, "y": 0.0, "kind": "exit"},
+        {"place": "Yard", "floor": "G", "x": 6.0, "y": 9.0, "kind": "exit"},
+        {"place": "Shaft", "floor": "G", "kind": "exit"},
+    ],
+    "Routes": [
+        {"route": "Out", "segment": "aisle", "floor": "G", "start": "Lab", "end": "Fork", "room": "Hall",
+         "clear_width": 1.2, "required_width": 0.9},
+        {"route": "Out", "segment": "ahead", "floor": "G", "start": "Fork", "end": "Street", "clear_width": 1.2,
+         "required_width": 0.9},
+        {"route": "Out", "segment": "aside", "floor": "G", "start": "Fork", "end": "Yard", "clear_width": 1.2,
+         "required_width": 0.9},
+        {"route": "Out", "segment": "ladder", "floor": "G", "start": "Fork", "end": "Shaft", "clear_width": 1.2,
+         "required_width": 0.9},
+        {"route": "Cellar", "segment": "tunnel", "floor": "G", "clear_width": 1.2, "required_width": 0.9,
+         "occupants": 10},
+        {"route": "Cellar", "segment": "gap", "floor": "G", "clear_width": 1.2, "required_width": 0.9,
+         "occupants": 300},
+    ],
+    "Items": [
+        {"item": "tall", "floor": "G", "breadth": 30, "width": 80, "height": 200, "x": 9.0, "y": 0.9, "axis": "Y",
+         "angle_deg": 90, "anchored": "no"},
+        {"item": "behind", "floor": "G", "room": "Store", "breadth": 30, "width": 80, "height": 200, "x": 3.0,
+         "y": 0.9, "axis": "Y", "angle_deg": 90, "anchored": "no"},
+        {"item": "adrift", "floor": "G", "breadth": 30, "height": 200, "quantity": 3, "anchored": "no"},
+    ],
+}  # fmt: skip
+"""A building that is evaluated in part: the ladder leads to no position, and nothing is told of the route Cellar."""
+
 
 def write_routed(path: Path, **sheets: Any) -> Path:
     """Write the building; `sheets` take the place of its own by their names."""

@@ -9,7 +9,7 @@ import pytest
 from assess.report.data import SCHEMA, write_json
 from assess.report.routes_data import chance_record, routes_record
 from assess.settings import Settings
-from tests.report.routed import ROUTES, assess_routed
+from tests.report.routed import PARTLY, ROUTES, assess_routed
 from tests.workbooks import assessed
 
 VERIFIED = Settings(verify="all", runs=20, route_risk=0.1)
@@ -40,6 +40,14 @@ def test_the_schema_holds(written):
         (("segments", 0, "state"), "shut"),
         (("segments", 0, "blocked", "probability"), 1.1),
         (("segments", 0, "blocked"), None),
+        (("segments", 0, "state"), "not evaluated"),
+        (("segments", 0, "evaluated"), False),
+        (("segments", 1, "evaluated"), True),
+        (("segments", 1, "state"), "open"),
+        (("routes", 0, "evaluated"), False),
+        (("routes", 0, "unevaluated_segments"), [1]),
+        (("rooms", 0, "ways", 0, "shared"), None),
+        (("uncounted_pieces",), -1),
         (("routes", 0, "fixes", 0, "row"), 0),
         (("routes", 0, "segments"), [-1]),
         (("rooms", 0, "ways", 0, "more"), 1),
@@ -83,6 +91,9 @@ def test_every_chance_is_that_of_the_assessment(written):
     pairs = [*zip(found["routes"]["segments"], routes.segments, strict=True),
              *zip(found["routes"]["routes"], routes.routes, strict=True)]  # fmt: skip
     for told, one in pairs:
+        assert told["evaluated"] is one.is_evaluated
+        if not one.is_evaluated:
+            continue
         assert (told["state"], told["state_upper"]) == (one.outlook.state.word, one.outlook.upper.word)
         assert told["blocked"] == asdict(one.outlook.blocked)
         assert told["blocked_or_reduced"] == asdict(one.outlook.taken)
@@ -115,6 +126,48 @@ def test_what_is_blocked_by_what_is_told(written):
     assert all(one["is_mended"] for one in routes)
 
 
+def test_a_segment_of_which_nothing_tells_what_reaches_it_has_no_chance(written):
+    """The flight joins two floors and no piece names it: that it is open is not known."""
+    found = written[1]["routes"]
+    assert [one["evaluated"] for one in found["segments"]] == [True, False, True, True, True]
+    flight = found["segments"][1]
+    assert (flight["state"], flight["state_upper"], flight["flags"]) == (
+        "not evaluated", "not evaluated", ["between_floors"],
+    )  # fmt: skip
+    empty = ("blocked", "blocked_or_reduced", "blocked_if_anchors_fail", "under_record", "least_width_m")
+    assert {flight[name] for name in empty} == {None}
+    assert flight["standing_width_m"] == 1.2
+    assert [one["unevaluated_segments"] for one in found["routes"]] == [["flight"], [], []]
+    assert [one["evaluated"] for one in found["routes"]] == [True, True, True]
+    assert [one["unevaluated_segments"] for one in found["rooms"]] == [["flight"], ["flight"]]
+    assert [one["uncounted_pieces"] for one in found["floors"]] == [1, 0]
+    assert found["uncounted_pieces"] == 1
+
+
+def test_what_is_not_evaluated_counted_or_apart(tmp_path):
+    assessment = assess_routed(tmp_path / "w.xlsx", **PARTLY)
+    write_json(assessment, tmp_path / "r.json")
+    whole = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    jsonschema.validate(whole, _schema())
+    found = whole["routes"]
+    assert {one["segment"]: one["state"] for one in found["segments"]} == {
+        "aisle": "open", "ahead": "blocked", "aside": "open", "ladder": "not evaluated", "tunnel": "not evaluated",
+        "gap": "not evaluated",
+    }  # fmt: skip
+    assert [one["other_rooms"] for one in found["segments"]] == [["behind"], [], [], [], [], []]
+    tunnel, gap = found["segments"][4:]
+    assert (tunnel["insufficient_for_occupants"], tunnel["insufficient_after_falls"]) == (False, None)
+    assert (gap["insufficient_for_occupants"], gap["insufficient_after_falls"]["probability"]) == (True, 1)
+    out, cellar = found["routes"]
+    assert (out["evaluated"], out["state"], out["unevaluated_segments"]) == (True, "reduced", ["ladder"])
+    assert (cellar["evaluated"], cellar["state"], cellar["blocked"]) == (False, "not evaluated", None)
+    assert cellar["unevaluated_segments"] == ["tunnel", "gap"]
+    (lab,) = found["rooms"]
+    assert lab["unevaluated_segments"] == ["ladder"]
+    assert [one["shared"] for one in lab["ways"]] == [[], ["aisle"], ["aisle"]]
+    assert (found["uncounted_pieces"], found["floors"][0]["uncounted_pieces"]) == (3, 3)
+
+
 def test_rooms_and_floors(written):
     assessment, found = written
     rooms, floors = found["routes"]["rooms"], found["routes"]["floors"]
@@ -134,8 +187,8 @@ def test_rooms_and_floors(written):
 def test_without_routes_lists_are_empty(tmp_path):
     assessment = assessed(tmp_path / "w.xlsx")
     assert routes_record(assessment) == {
-        "risk": 0.03, "blocked_routes_expected": 0.0, "cut_off_rooms_expected": 0.0, "draws": 0, "segments": [],
-        "routes": [], "rooms": [], "floors": [],
+        "risk": 0.03, "blocked_routes_expected": 0.0, "cut_off_rooms_expected": 0.0, "draws": 0,
+        "uncounted_pieces": 0, "segments": [], "routes": [], "rooms": [], "floors": [],
     }  # fmt: skip
     write_json(assessment, tmp_path / "r.json")
     found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))

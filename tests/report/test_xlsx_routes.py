@@ -13,7 +13,7 @@ from assess.report.xlsx import write_xlsx
 from assess.routes.model import RouteState
 from assess.settings import Settings
 from tests.recalculate import compare_formulas
-from tests.report.routed import ITEMS, assess_routed
+from tests.report.routed import ITEMS, PARTLY, assess_routed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -62,15 +62,18 @@ def test_a_row_a_segment(written):
             text or None
             for text in (segment.route, segment.segment, segment.floor, segment.start, segment.end, segment.notes)
         ]
-        assert row["State"] == say_segment_state(one)
+        assert _is(one.standing) == row["Width now [m]"]
+        assert row["State"] == say_segment_state(one, assessment.routes.risk)
+        if not one.is_evaluated:
+            continue
         blocked = outlook.blocked
         for name, value in {
             "Chance blocked": blocked.probability, "Interval low": blocked.low, "Interval high": blocked.high,
             "Chance blocked or reduced": outlook.taken.probability, "Blocked, all independent": blocked.independent,
             "Blocked, fully correlated": blocked.correlated, "Clear width [m]": one.clear,
-            "Required width [m]": one.required, "Width with nothing fallen [m]": one.standing,
-            "Least width left [m]": one.least, "Width that they need [m]": one.needed, "Pieces": blocked.pieces,
-            "Not verified": blocked.unverified, "Occupants": segment.occupants,
+            "Required width [m]": one.required, "Width if all fall [m]": one.least,
+            "Width that they need [m]": one.needed, "Pieces": blocked.pieces,
+            "By the formula alone": blocked.unverified, "Occupants": segment.occupants,
         }.items():  # fmt: skip
             assert row[name] == _is(value), name
         anchors = outlook.if_anchors_fail
@@ -94,6 +97,7 @@ def test_routes_and_floors_below(written):
     for row, floor in zip(tables["To be expected floor by floor"], assessment.routes.floors, strict=True):
         assert row["Blocked routes expected"] == _is(floor.blocked_routes)
         assert row["Rooms expected to lose every exit"] == _is(floor.cut_off_rooms)
+        assert row["Pieces not counted"] == floor.uncounted
         assert row["Chance that any room does"] == _is(floor.any_room.probability if floor.any_room else None)
 
 
@@ -108,7 +112,7 @@ def test_pieces_beside_and_steps(written):
             one.segment.segment, result.item.item, result.item.quantity,
         )  # fmt: skip
         assert row["Chance of overturning"] == _is(result.adopted.probability)
-        assert row["Chance that it falls while the segment is blocked"] == _is(near.together)
+        assert row["Falls and blocked"] == _is(near.together)
         assert row["Width left beside it alone [m]"] == _is(near.left)
         assert row["Known by"] == ("plan" if near.by_plan else "Edge distance")
     assert tables[""][2]["Class (as run)"].startswith("⚓ depends on its anchor")
@@ -134,11 +138,65 @@ def test_rooms_with_their_ways(written):
     assert rows[0].get("Alternative: to") is None
 
 
+@pytest.fixture(scope="module")
+def partly(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("partly")
+    write_xlsx(assess_routed(folder / "w.xlsx", **PARTLY), folder / "r.xlsx")
+    return openpyxl.load_workbook(folder / "r.xlsx")
+
+
+def test_what_is_not_evaluated_has_no_chance(partly):
+    tables = _tables(partly["Routes"])
+    segments = {row["Segment"]: row for row in tables[""]}
+    routes = {row["Route"]: row for row in tables["Routes"]}
+    for row in (segments["ladder"], segments["tunnel"], segments["gap"], routes["Cellar"]):
+        assert row["State"] == "– not evaluated"
+        told = [name for name, value in row.items() if value is not None and name.startswith(("Chance b", "Interval"))]
+        assert not told
+        assert {row[name] for name in ("Blocked, all independent", "Pieces", "By the formula alone", "Basis")} == {None}
+    assert segments["tunnel"]["Remarks"] == "its places have no positions: only pieces that name it count"
+    assert (segments["tunnel"]["Width now [m]"], segments["tunnel"]["Width if all fall [m]"]) == (1.2, None)
+    assert segments["tunnel"]["Chance too narrow for occupants"] is None
+    assert segments["gap"]["Chance too narrow for occupants"] == 1
+    assert segments["ahead"]["Width if all fall [m]"] == 0
+    assert routes["Out"]["State"] == "≈ may be reduced"
+    assert (routes["Out"]["Segments not evaluated"], routes["Cellar"]["Segments not evaluated"]) == (
+        "ladder", "tunnel, gap",
+    )  # fmt: skip
+    assert {cell.style for row in partly["Routes"].iter_rows() for cell in row
+            if cell.value == "– not evaluated"} == {"Explanatory Text"}  # fmt: skip
+
+
+def test_what_is_not_counted_is_told(partly):
+    tables = _tables(partly["Routes"])
+    assert [row["Not counted, in another room"] for row in tables[""]] == ["behind", *[None] * 5]
+    assert [row["Pieces not counted"] for row in tables["To be expected floor by floor"]] == [3]
+
+
+def test_an_alternative_says_what_it_shares_with_the_safest_way(partly):
+    (lab,) = _tables(partly["Route rooms"])[""]
+    assert lab["Safest way: by"] != lab["Alternative: by"]
+    assert lab["Alternative: by"].startswith("Out: aisle, Out: ")
+    assert lab["Alternative: shared with the safest way"] == "Out: aisle"
+    assert lab["Segments not evaluated, taken as open"] == "Out: ladder"
+
+
+def test_a_way_of_which_nothing_is_evaluated_has_no_chance(tmp_path):
+    ladder = {"route": "Up", "segment": "ladder", "floor": "G", "start": "Lab", "end": "Shaft", "clear_width": 1.2}
+    write_xlsx(assess_routed(tmp_path / "w.xlsx", **PARTLY | {"Routes": [ladder]}), tmp_path / "r.xlsx")
+    (lab,) = _tables(openpyxl.load_workbook(tmp_path / "r.xlsx")["Route rooms"])[""]
+    assert (lab["Safest way: by"], lab["Safest way: chance of a blockage"]) == ("Up: ladder", None)
+    assert lab["Segments not evaluated, taken as open"] == "Up: ladder"
+
+
 def test_states_have_sign_and_named_style(written):
     assessment, book, _ = written
     styles = {RouteState.OPEN: "Route open", RouteState.REDUCED: "Route reduced", RouteState.BLOCKED: "Route blocked"}
     for at, one in enumerate(assessment.routes.segments, 2):
         cell = book["Routes"].cell(at, 6)
+        if not one.is_evaluated:
+            assert (cell.value, cell.style) == ("– not evaluated", "Explanatory Text")
+            continue
         assert cell.value.startswith(f"{one.outlook.state.symbol} ")
         assert cell.style == styles[one.outlook.state]
     assert "Route blocked" in {cell.style for row in book["Routes"].iter_rows() for cell in row}
@@ -146,8 +204,8 @@ def test_states_have_sign_and_named_style(written):
 
 def test_the_sheets_are_set_up(written):
     _, book, _ = written
-    for name, frozen, area in (("Routes", "C2", "A1:AC6"), ("Route pieces", "A2", "A1:O4"),
-                               ("Route rooms", "B2", "A1:R3")):  # fmt: skip
+    for name, frozen, area in (("Routes", "C2", "A1:AD6"), ("Route pieces", "A2", "A1:O4"),
+                               ("Route rooms", "B2", "A1:T3")):  # fmt: skip
         sheet = book[name]
         assert sheet.freeze_panes == frozen
         assert sheet.auto_filter.ref == area
@@ -163,7 +221,7 @@ def test_no_text_is_a_formula(written):
     for name in ("Routes", "Route pieces", "Route rooms", "Fix first"):
         for row in book[name].iter_rows():
             assert all(cell.data_type != "f" and cell.hyperlink is None for cell in row)
-    assert book["Routes"]["AC2"].value == "=1+1"
+    assert book["Routes"]["AD2"].value == "=1+1"
     assert not [sheet for sheet in book for row in sheet.iter_rows(values_only=True) for cell in row
                 if "not evaluated by this version" in str(cell)]  # fmt: skip
     assert compare_formulas(path) > len(ITEMS)
@@ -207,4 +265,4 @@ def test_headings_in_another_language_stay_apart(written, language, tmp_path):
         heads = [cell.value for cell in sheet[1] if cell.value]
         assert len(heads) == len(set(heads)), sheet.title
     widths = {len([cell for cell in sheet[1] if cell.value]) for sheet in book.worksheets}
-    assert {29, 15, 18} <= widths
+    assert {30, 15, 20} <= widths

@@ -58,3 +58,9 @@ def test_a_piece_that_only_its_room_keeps_away_is_named():
     far = piece(2.0, x=5.0, y=9.0, angle_deg=90, width=0.8, room="Office")
     found = find_reached(building([cabinet, far], [corridor(room="Corridor")], CORRIDOR))[0]
     assert (found.beside, found.other_rooms) == ((), (0,))
+
+
+def test_the_safest_way_is_not_the_one_of_which_nothing_is_known():
+    places = [*CORRIDOR, place("Ladder", "exit")]
+    found = evaluated(Falls.of([]), [], [corridor(), stretch("rungs", "West", "Ladder")], places)
+    assert [way.end for way in found.rooms[0].ways] == ["East", "Ladder"]

@@ -48,7 +48,7 @@ def _heads() -> Heads:
         _("Pieces"): (8, "#,##0"),
         _("Class (as run)"): (34, ""),
         _("Chance of overturning"): (11, CHANCE),
-        _("Chance that it falls while the segment is blocked"): (14, CHANCE),
+        _("Falls and blocked"): (14, CHANCE),
         with_unit(_("From the edge of the route"), "m"): (11, "0.00"),
         with_unit(_("Reaches into it"), "m"): (10, "0.00"),
         with_unit(_("Width left beside it alone"), "m"): (11, "0.00"),

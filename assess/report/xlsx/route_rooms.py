@@ -17,7 +17,7 @@ def has_rooms(content: Content) -> bool:
 
 
 def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
-    """Write every room with its safest way out, and the one that shares no segment with it."""
+    """Write every room with its safest way out, and the next that shares as few segments with it as may be."""
     routes, heads = content.assessment.routes, _heads()
     if routes is None:
         return
@@ -51,6 +51,8 @@ def _heads() -> Heads:
         _("Alternative: to"): (16, ""),
         _("Alternative: by"): (60, ""),
         _("Alternative: chance of a blockage"): (11, CHANCE),
+        _("Alternative: shared with the safest way"): (40, ""),
+        _("Segments not evaluated, taken as open"): (40, ""),
     }
 
 
@@ -63,12 +65,19 @@ def _room(one: RoomResult, routes: Routes, items: Sequence[str]) -> tuple[Any, .
         _("{stairs} (stairs: beyond them nothing is known)", stairs=exits) if one.by_stairs else exits,
         *interval(loses), loses.independent, loses.correlated, anchors.probability if anchors else None,
         name_piece(one.blocker, items), say.say_basis(loses), len(one.ways),
-        *(cell for way in ways[:2] for cell in _way(way, routes)),
+        *_way(ways[0], routes), *_way(ways[1], routes), _name(ways[1].shared if ways[1] else (), routes),
+        _name(one.unevaluated, routes),
     )  # fmt: skip
 
 
 def _way(way: Way | None, routes: Routes) -> tuple[Any, ...]:
     if way is None:
         return "", "", None
-    segments = (routes.segments[at].segment for at in way.segments)
-    return way.end, ", ".join(f"{one.route}: {one.segment}" for one in segments), way.blocked.probability
+    is_known = any(routes.segments[at].is_evaluated for at in way.segments)
+    return way.end, _name(way.segments, routes), way.blocked.probability if is_known else None
+
+
+def _name(segments: Sequence[int], routes: Routes) -> str:
+    """Return the names of segments with their routes."""
+    own = (routes.segments[at].segment for at in segments)
+    return ", ".join(f"{one.route}: {one.segment}" for one in own)

@@ -7,7 +7,8 @@ from assess.language import gettext as _
 from assess.report.content import Content
 from assess.report.findings import routes as say
 from assess.report.xlsx.pen import Pen, with_unit
-from assess.routes.model import FLAGS, Chance, FloorRoutes, Outlook, RouteResult, Routes, SegmentResult
+from assess.routes.flags import FLAGS
+from assess.routes.model import Chance, FloorRoutes, Outlook, RouteResult, Routes, SegmentResult
 
 CHANCE = "0.0%"
 Heads = Mapping[str, tuple[int, str]]
@@ -23,7 +24,7 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
         pen.listing(page, names, widths, [(_("The workbook names no routes."), *[None] * (len(heads) - 1))], formats)
         return
     items = [item.item for item in content.assessment.inventory.items]
-    rows = [_segment(one, items) for one in routes.segments]
+    rows = [_segment(one, routes, items) for one in routes.segments]
     pen.listing(page, names, widths, rows, formats)
     for letter in "GJ":
         pen.bar(page, f"{letter}2:{letter}{len(rows) + 1}")
@@ -38,7 +39,7 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
 
 def _write_totals(pen: Pen, page: Any, widths: Sequence[int], routes: Routes, items: Sequence[str], row: int) -> int:
     """Write the routes and the floors; return the row below them."""
-    own = [_route(one, items) for one in routes.routes]
+    own = [_route(one, routes, items) for one in routes.routes]
     row = pen.below(page, row, _("Routes"), _route_heads(), widths, own) + 1
     floors = [_floor(one) for one in routes.floors]
     return pen.below(page, row, _("To be expected floor by floor"), _floor_heads(), widths, floors) + 1
@@ -56,17 +57,18 @@ def _heads() -> Heads:
         _("Under the record"): (13, ""),
         _("Most likely piece"): (14, ""),
         _("Pieces"): (8, "#,##0"),
-        _("Not verified"): (9, "#,##0"),
+        _("By the formula alone"): (9, "#,##0"),
         _("Basis"): (30, ""),
         with_unit(_("Clear width"), "m"): (10, "0.00"),
         with_unit(_("Required width"), "m"): (10, "0.00"),
-        with_unit(_("Width with nothing fallen"), "m"): (11, "0.00"),
-        with_unit(_("Least width left"), "m"): (10, "0.00"),
+        with_unit(_("Width now"), "m"): (11, "0.00"),
+        with_unit(_("Width if all fall"), "m"): (10, "0.00"),
         _("Occupants"): (11, "#,##0"),
         with_unit(_("Width that they need"), "m"): (10, "0.00"),
         _("Insufficient for occupants"): (13, ""),
-        _("Chance of that after falls"): (10, CHANCE),
+        _("Chance too narrow for occupants"): (11, CHANCE),
         _("Room"): (18, ""),
+        _("Not counted, in another room"): (24, ""),
         _("Remarks"): (60, ""),
         _("Notes"): (40, ""),
     }
@@ -79,13 +81,16 @@ def _chances() -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def _segment(one: SegmentResult, items: Sequence[str]) -> tuple[Any, ...]:
-    segment = one.segment
+def _segment(one: SegmentResult, routes: Routes, items: Sequence[str]) -> tuple[Any, ...]:
+    segment, is_known = one.segment, one.is_evaluated
+    crowded = one.crowded if is_known or one.is_short else None
     return (
-        segment.route, segment.segment, segment.floor, segment.start, segment.end, say.say_segment_state(one),
-        *_outlook(one.outlook, items), one.clear, one.required, one.standing, one.least, segment.occupants, one.needed,
-        None if one.needed is None else say_whether(one.is_short), one.crowded.probability if one.crowded else None,
-        segment.room, say_flags(one.flags), segment.notes,
+        segment.route, segment.segment, segment.floor, segment.start, segment.end,
+        say.say_segment_state(one, routes.risk),
+        *(_outlook(one.outlook, items) if is_known else _NO_OUTLOOK),
+        one.clear, one.required, one.standing, one.least if is_known else None, segment.occupants, one.needed,
+        None if one.needed is None else say_whether(one.is_short), crowded.probability if crowded else None,
+        segment.room, ", ".join(items[at] for at in one.other_rooms), say_flags(one.flags), segment.notes,
     )  # fmt: skip
 
 
@@ -98,20 +103,26 @@ def _outlook(one: Outlook, items: Sequence[str]) -> tuple[Any, ...]:
     )  # fmt: skip
 
 
+_NO_OUTLOOK = (None,) * 12
+"""The cells of `_outlook` where nothing tells which pieces can reach a segment or route: a 0 would say more."""
+
+
 def _route_heads() -> dict[str, str]:
     return {
         _("Route"): "", _("Floors"): "", _("Segments"): "#,##0", _("Pieces to anchor or move"): "",
-        _("Chance left then"): CHANCE, _("State"): "", **dict.fromkeys(_chances(), CHANCE), _("Under the record"): "",
-        _("Most likely piece"): "", _("Pieces"): "#,##0", _("Not verified"): "#,##0", _("Basis"): "",
+        _("Segments not evaluated"): "", _("State"): "", **dict.fromkeys(_chances(), CHANCE), _("Under the record"): "",
+        _("Most likely piece"): "", _("Pieces"): "#,##0", _("By the formula alone"): "#,##0", _("Basis"): "",
+        _("Chance left then"): CHANCE,
     }  # fmt: skip
 
 
-def _route(one: RouteResult, items: Sequence[str]) -> tuple[Any, ...]:
+def _route(one: RouteResult, routes: Routes, items: Sequence[str]) -> tuple[Any, ...]:
     fixes = ", ".join(items[fix.item] for fix in one.fixes)
-    left = one.fixes[-1].left if one.fixes else None
+    unknown = ", ".join(routes.segments[at].segment.segment for at in one.unevaluated)
     return (
-        one.route, ", ".join(one.floors), len(one.segments), fixes, left, say.say_route_state(one),
-        *_outlook(one.outlook, items),
+        one.route, ", ".join(one.floors), len(one.segments), fixes, unknown, say.say_route_state(one, routes.risk),
+        *(_outlook(one.outlook, items) if one.is_evaluated else _NO_OUTLOOK),
+        one.fixes[-1].left if one.fixes else None,
     )  # fmt: skip
 
 
@@ -120,13 +131,14 @@ def _floor_heads() -> dict[str, str]:
         _("Floor"): "", _("Segments"): "#,##0", _("Blocked segments expected"): "0.00", _("Routes"): "#,##0",
         _("Blocked routes expected"): "0.00", _("Rooms"): "#,##0", _("Rooms expected to lose every exit"): "0.00",
         _("Chance that any room does"): CHANCE, _("Interval low"): CHANCE, _("Interval high"): CHANCE,
+        _("Pieces not counted"): "#,##0",
     }  # fmt: skip
 
 
 def _floor(one: FloorRoutes) -> tuple[Any, ...]:
     return (
         one.floor, one.segments, one.blocked_segments, one.routes, one.blocked_routes, one.rooms, one.cut_off_rooms,
-        *interval(one.any_room),
+        *interval(one.any_room), one.uncounted,
     )  # fmt: skip
 
 
