@@ -73,15 +73,20 @@ def print_result(assessment: "Assessment", files: Sequence[Path]) -> None:
 
 
 def _describe_routes(routes: "Routes") -> str:
+    from assess.report.findings.routes import is_held
     from assess.routes.model import RouteState
 
-    outlooks = [one.outlook for one in routes.routes]
+    outlooks = [one.outlook for one in routes.routes if one.is_evaluated]
     states = [one.state for one in outlooks]
     doubtful = sum(one.state == RouteState.OPEN < one.upper for one in outlooks)
+    held = sum(is_held(one, routes.risk) for one in outlooks)
+    unknown = len(routes.routes) - len(outlooks)
     return (
         f"Evacuation routes: of {len(states):,}, {states.count(RouteState.BLOCKED):,} may be blocked and "
         f"{states.count(RouteState.REDUCED):,} reduced at a risk of {100 * routes.risk:g} %"
-        + (f", of {doubtful:,} more that is not excluded" if doubtful else "")
+        + (f", for {doubtful:,} more it is not excluded" if doubtful else "")
+        + (f"; {held:,} may be blocked if anchors fail" if held else "")
+        + (f"; {unknown:,} more {'is' if unknown == 1 else 'are'} not evaluated" if unknown else "")
         + f"; {routes.blocked_routes:.2f} are expected to be blocked."
     )
 

@@ -80,13 +80,20 @@ class Content:
 
     @cached_property
     def shown_floors(self) -> Sequence[FloorPage]:
-        """Floors that have pieces: each has a page."""
+        """Floors that have pieces, or a segment of a route on the plan: each has a page."""
+        segments = self.assessment.routes.segments if self.assessment.routes else ()
+        drawn = {one.segment.floor for one in segments if one.length is not None}
+        return [page for page in self.floors if page.results or page.floor.floor in drawn]
+
+    @cached_property
+    def furnished(self) -> Sequence[FloorPage]:
+        """Floors that have pieces."""
         return [page for page in self.floors if page.results]
 
     @cached_property
     def worst_floors(self) -> Sequence[Counts]:
         """The floors that the summary has room for: in their order, or those with most risky pieces."""
-        there = [page.counts for page in self.shown_floors]
+        there = [page.counts for page in self.furnished]
         if len(there) <= FLOORS:
             return there
         return sorted(there, key=lambda one: (-one.risky, -one.expected))[:FLOORS]

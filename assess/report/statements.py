@@ -13,7 +13,7 @@ from assess.report.findings import motions
 from assess.report.findings.routes import say_risk
 from assess.results import Assessment
 from assess.routes.couplings import EXACT
-from assess.routes.model import FLAGS as ROUTE_FLAGS
+from assess.routes.flags import FLAGS as ROUTE_FLAGS
 from assess.routes.model import Routes
 from assess.units import GRAVITY
 from assess.version import __version__
@@ -95,11 +95,11 @@ def _list_couplings(routes: Routes, assessment: Assessment) -> list[tuple[str, s
     chances = [outlook.blocked for outlook in outlooks]
     if not any(chance.pieces for chance in chances):
         return []
-    lines = [(_("Routes: more outcomes than {exact:,} of the pieces together", exact=EXACT),
+    lines = [(_("Routes: where more than {exact:,} outcomes are too many to go through", exact=EXACT),
               _("{draws:,} draws with seed {seed}", draws=routes.draws, seed=assessment.settings.seed))]  # fmt: skip
     if any(chance.unverified for chance in chances):
-        lines.append((_("Routes: pieces that are not verified"),
-                      _("fall independently of all others, each with its adopted chance; the largest of the joint, the "
+        lines.append((_("Routes: pieces that enter by the formula's chance alone"),
+                      _("fall independently of all others; the largest of the joint, the "
                         "independent and the fully correlated chance counts")))  # fmt: skip
     if any(chance.pieces > chance.unverified and not chance.is_joint for chance in chances):
         lines.append((_("Routes: pieces on floors whose motions come from different sources"),
@@ -148,8 +148,8 @@ def _of_routes() -> tuple[str, ...]:
             "overturns counts: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
         ),
         _(
-            "A route that stays open is one whose chance is below the chosen risk in this scenario; it is not shown to "
-            "be safe. The direction of a recorded motion is not used: a piece may fall either way."
+            "A route that is below the chosen risk in this scenario is not shown to be safe, and a segment that is not "
+            "evaluated is not known to be. The direction of a recorded motion is not used: a piece may fall either way."
         ),
     )
 

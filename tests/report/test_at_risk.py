@@ -46,12 +46,14 @@ def test_routes_at_risk_stand_worst_first(routed):
 
 def test_the_summary_counts_what_the_assessment_holds(routed):
     routes, said = routed.routes, " ".join(at_risk.say_routes(routed))
-    assert said.startswith("Of 3 routes, 2 may be blocked or reduced, at the chosen risk of 3 %.")
+    assert said.startswith("Routes that may be blocked or reduced: 2 of 3, at the chosen risk of 3 %.")
     expected = (routes.blocked_routes, routes.cut_off_rooms)
     assert "{:.2f} blocked routes, {:.2f} rooms that lose every exit".format(*expected) in said
     worst = max(one.loses.probability for one in routes.rooms)
-    assert f"Of 2 rooms, 2 may lose every exit: the worst is Office with {words.percent(worst)}." in said
-    assert "If anchors fail, 1 more may be blocked." in said
+    assert f"Rooms that may lose every exit: 2 of 2, the worst Office with {words.percent(worst)}." in said
+    assert "If anchors fail, 1 more may be blocked: Yard." in said
+    assert "Of evaluated routes, 1 segment is not: nothing tells what can reach it." in said
+    assert "1 piece is not counted: whether it falls onto a route is not known." in said
     assert "1 segment is too narrow for its occupants as it stands." in said
 
 
@@ -67,10 +69,24 @@ def test_what_is_not_excluded_is_counted_apart(routed):
     routes = routed.routes
     doubtful = [replace(one, outlook=replace(one.outlook, state=RouteState.OPEN)) for one in routes.routes]
     assessment = replace(routed, routes=replace(routes, routes=tuple(doubtful)))
-    told = at_risk.say_routes(assessment)[0]
-    assert told.startswith("Of 3 routes, 0 may be blocked or reduced")
-    assert told.endswith("Of 2 more that is not excluded.")
+    told = at_risk.say_routes(assessment)
+    assert told[0].startswith("Routes that may be blocked or reduced: 0 of 3")
+    assert told[1] == "For 2 more it is not excluded."
     assert len(at_risk.list_routes_at_risk(assessment)) == 2
+
+
+def test_several_pieces_of_a_row_are_told(routed):
+    names = [at_risk.say_row(routed.result(at)) for at in range(2)]
+    assert names == ["tall", "calm (2 pieces)"]
+    (back,) = (one for one in at_risk.list_routes_at_risk(routed) if one.route == "Back")
+    assert back.needed == "calm (2 pieces)"
+
+
+def test_a_route_that_is_not_evaluated_is_not_said_to_be_safe(tmp_path):
+    assessment = assess_routed(tmp_path / "w.xlsx", Items=ITEMS[3:])
+    assert [one.is_evaluated for one in assessment.routes.routes] == [True, True, False]
+    told = at_risk.say_routes(assessment)
+    assert "1 route is not evaluated: nothing tells what can reach it." in told
 
 
 def test_where_none_is_at_risk_that_is_said_with_the_chosen_risk(tmp_path):
@@ -79,7 +95,7 @@ def test_where_none_is_at_risk_that_is_said_with_the_chosen_risk(tmp_path):
     said = at_risk.say_routes(assessment)
     assert said[0].startswith("None of the 3 routes is at risk")
     assert "below the chosen 90 %, also at the upper end" in said[0]
-    assert said[2] == "No room comes to that risk of losing every exit."
+    assert said[3] == "No room comes to that risk of losing every exit."
 
 
 def test_without_routes_nothing_is_said(tmp_path):
@@ -141,8 +157,11 @@ def test_what_was_assumed_of_routes(routed):
     lines = statements.list_assumptions(routed)
     assert ("Routes: the chosen risk", "3 %") in lines
     assert ("Routes: 2 segments", "no Required width is given: 0.9 m is taken") in lines
-    assert ("Routes: more outcomes than 4,096 of the pieces together", "4,000 draws with seed 1") in lines
-    assert any(where == "Routes: pieces that are not verified" for where, _ in lines)
+    assert (
+        "Routes: where more than 4,096 outcomes are too many to go through",
+        f"{routed.routes.draws:,} draws with seed 1",
+    ) in lines
+    assert any(where == "Routes: pieces that enter by the formula's chance alone" for where, _ in lines)
     limits = " ".join(statements.list_limits(has_verified=False, has_routes=True))
     assert "Evacuation routes are screened, by a rule of ours" in limits
     assert "screened" not in " ".join(statements.list_limits(has_verified=False, has_routes=False))
@@ -174,8 +193,12 @@ def test_the_command_line_ends_with_the_routes(routed, tmp_path):
             print_result(assessment, [])
         return out.getvalue()
 
-    expected = f"{routed.routes.blocked_routes:.2f} are expected to be blocked."
+    held = "1 may be blocked if anchors fail"
+    expected = f"{held}; {routed.routes.blocked_routes:.2f} are expected to be blocked."
     assert f"Evacuation routes: of 3, 2 may be blocked and 0 reduced at a risk of 3 %; {expected}" in printed(routed)
+    blind = assess_routed(tmp_path / "blind.xlsx", Items=ITEMS[3:])
+    assert "Evacuation routes: of 2, 0 may be" in printed(blind)
+    assert "; 1 more is not evaluated; " in printed(blind)
     assert "Evacuation routes" not in printed(assessed(tmp_path / "w.xlsx"))
 
 

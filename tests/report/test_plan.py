@@ -377,3 +377,25 @@ def test_kinds_of_places_have_signs_of_their_own(routed):
         "Office": "room", "Corner": "door", "Landing": "stair", "Balcony": "exit"
     }  # fmt: skip
     assert plan.kinds == ["exit", "stair", "door", "room"]
+
+
+def test_a_floor_with_routes_and_no_pieces_has_a_plan(tmp_path):
+    rooms = [{"place": "Foot", "floor": "2", "x": 10.0, "y": 8.0}, {"place": "Roof", "floor": "2", "x": 0.0, "y": 8.0}]
+    ways = [{"route": "Up", "segment": "roof", "floor": "2", "start": "Foot", "end": "Roof", "clear_width": 1.0}]
+    assessment = _assess(tmp_path / "w.xlsx", PIECES[:2], rooms, ways)
+    content = build_content(assessment)
+    assert [page.floor.floor for page in content.shown_floors] == ["1", "2"]
+    assert [page.floor.floor for page in content.furnished] == ["1"]
+    assert len(content.worst_floors) == 1
+    html = render(assessment)
+    assert len(_drawings(html)) == 2
+    assert "Plan: this floor has no pieces." in html
+
+
+def test_what_hangs_on_anchors_is_marked(tmp_path):
+    held = [BESIDE[0] | {"anchored": "yes"}]
+    assessment = _assess(tmp_path / "w.xlsx", held, CORRIDOR, WAYS)
+    aisle = _ways(_plans(assessment)[0])["<i>aisle</i>"]
+    assert (aisle.style.name, aisle.marks, aisle.is_open) == ("open", "⚓", False)
+    assert "✓ open if the anchors hold ⚓" in aisle.title
+    assert aisle.sign is not None

@@ -9,11 +9,13 @@ import pytest
 import assess
 from assess.inventory.blank import Content, write_workbook
 from assess.report import words
+from assess.report.findings import at_risk, route_rows
 from assess.report.findings import routes as said
 from assess.report.pages.context import LIMITS
 from assess.report.pages.html import render
 from assess.report.pages.pdf import load_weasyprint
-from assess.routes.model import FLAGS, RouteState
+from assess.routes.flags import FLAGS
+from assess.routes.model import RouteState
 from assess.routes.widths import RULES
 from tests.workbooks import UNVERIFIED
 
@@ -119,17 +121,21 @@ def test_every_number_of_a_route_is_shown(name, request):
         outlook = one.outlook
         route, _floors, state, *numbers, rests, unanchored, piece = row
         assert route == one.route
-        assert said.say_route_state(one) in state
+        assert said.say_route_state(one, assessment.routes.risk) in state
         assert numbers == [_chance(outlook.blocked), _chance(outlook.taken)]
         bounds = f"{_bounds(outlook.blocked)} " if outlook.blocked.pieces else ""
-        assert rests == f"{bounds}{said.say_basis(outlook.blocked)}"
+        left_out = f"; {said.say_left_out(one.unevaluated)}" if one.unevaluated else ""
+        assert rests == f"{bounds}{said.say_basis(outlook.blocked)}{left_out}"
         assert unanchored == _chance(outlook.if_anchors_fail)
         assert piece == _item(assessment, outlook.blocker)
 
 
+WEST = "20 motions, all together; 2 segments not evaluated"
+
+
 def test_a_verified_route_rests_on_its_motions(verified):
     (row, *_others) = _rows(render(verified), "routes")
-    assert row[5] == f"{_bounds(verified.routes.routes[0].outlook.blocked)} 20 motions, all together"
+    assert row[5] == f"{_bounds(verified.routes.routes[0].outlook.blocked)} {WEST}"
     assert re.fullmatch(r"[\d.]+ % \([\d.]+ to [\d.]+ %\)", row[3])
     assert verified.routes.routes[0].outlook.blocked.is_joint
 
@@ -140,9 +146,9 @@ def test_what_is_blocked_as_it_stands_is_told_from_what_may_be(html, assessment)
         "<b>West</b>": "✕ may be blocked",
         "Balcony": "≈ may be reduced",
         "Back": "✕ blocked as it stands",
-        "Yard": "✓ open",
+        "Yard": "✓ open if the anchors hold ⚓",
     }
-    assert "widen them, or move what stands inside. Back: gap" in _text(_section(html))
+    assert "widen them, or move what stands inside; check the Clear width. Back: gap" in _text(_section(html))
     certain = replace(assessment.routes.routes[2], is_mended=True)
     assert said.say_route_state(certain) == "✕ blocked"
 
@@ -156,8 +162,12 @@ def test_every_number_of_a_segment_is_shown(name, request):
         assert row[0] == f"{one.segment.route}: {one.segment.segment}"
         assert row[1] == (one.segment.floor or "–")
         assert row[2] == f"{one.segment.start} – {one.segment.end}".strip()
-        assert row[3:7] == [words.in_m(width) for width in (one.clear, one.required, one.standing, one.least)]
-        assert said.say_segment_state(one) in row[7]
+        assert row[3:6] == [words.in_m(width) for width in (one.clear, one.required, one.standing)]
+        assert said.say_segment_state(one, assessment.routes.risk) in row[7]
+        if not one.is_evaluated:
+            assert row[6:11] == ["–", "– not evaluated", "–", "–", "–"]
+            continue
+        assert row[6] == words.in_m(one.least)
         assert row[8:11] == [_chance(one.outlook.blocked), _bounds(one.outlook.blocked), _chance(one.outlook.taken)]
         for flag in one.flags:
             assert flag.replace("_", " ") in row[11]
@@ -177,7 +187,7 @@ def test_a_segment_that_is_too_narrow_for_its_occupants_says_so(html, assessment
 @pytest.mark.parametrize("name", ["assessment", "verified"])
 def test_every_piece_beside_a_segment_is_shown(name, request):
     assessment = request.getfixturevalue(name)
-    found = [(one, near) for one, near in said.list_beside(assessment.routes) if near]
+    found = [(one, near) for one, near in route_rows.list_beside(assessment.routes) if near]
     rows = [row for row in _rows(render(assessment), "beside") if "no piece reaches it" not in row]
     assert {assessment.inventory.items[near.item].item for _one, near in found} == {"tall & thin", "low", "held"}
     assert len(rows) == len(found) == sum(len(one.beside) for one in assessment.routes.segments)
@@ -201,7 +211,7 @@ def test_segments_with_nothing_beside_them_are_listed_where_they_are_too_narrow(
 
 def test_marks_are_explained_where_they_occur(html, assessment):
     text = _text(_section(html))
-    told = said.list_flags(assessment.routes)
+    told = route_rows.list_flags(assessment.routes)
     assert {"side_unknown", "no_plan", "required_assumed"} <= told.keys() < FLAGS.keys()
     for flag, meaning in FLAGS.items():
         assert (f"{flag.replace('_', ' ')} {meaning}" in text) == (flag in told)
@@ -219,7 +229,7 @@ def test_every_room_says_how_it_may_lose_its_exits_and_its_ways(name, request):
         assert one.ways[0].end in row[6]
         for way in one.ways:
             assert said.say_way(way, assessment.routes).replace(words.NO_BREAK, " ") in row[6]
-        assert ("no way without a segment of it" in row[6]) == (len(one.ways) == 1)
+        assert ("no other way" in row[6]) == (len(one.ways) == 1)
 
 
 def test_floors_say_what_is_to_be_expected(html, assessment):
@@ -227,12 +237,13 @@ def test_floors_say_what_is_to_be_expected(html, assessment):
         counted = (one.segments, one.blocked_segments, one.routes, one.blocked_routes, one.rooms, one.cut_off_rooms)
         shown = [f"{value:.2f}" if isinstance(value, float) else str(value) for value in counted]
         assert row[1:7] == [*shown[:5], f"{one.cut_off_rooms:.2f}"]
-        assert row[7] == _chance(one.any_room)
+        assert row[7:] == [_chance(one.any_room), str(one.uncounted)]
 
 
 def test_the_lead_counts_routes_and_rooms(html, assessment):
     text, routes = _text(_section(html)), assessment.routes
-    assert "4 evacuation routes: 2 may be blocked, 1 may be reduced, 1 stay open." in text
+    assert "4 evacuation routes: 2 may be blocked, 1 may be reduced, 1 below the chosen risk." in text
+    assert "Of evaluated routes, 2 segments are not: nothing tells what can reach them." in text
     assert f"To be expected: {routes.blocked_routes:.2f} blocked routes." in text
     assert f"Of 2 rooms, {routes.cut_off_rooms:.2f} are expected to lose every exit." in text
     assert "in this scenario, not per year" in text
@@ -244,12 +255,12 @@ def test_the_lead_counts_routes_and_rooms(html, assessment):
 @pytest.mark.parametrize("name", ["assessment", "verified"])
 def test_every_step_of_what_to_fix_is_shown(name, request):
     assessment = request.getfixturevalue(name)
-    steps = said.list_steps(assessment.routes)
+    steps = route_rows.list_steps(assessment.routes)
     assert steps
     rows = _rows(render(assessment), "steps")
     assert len(rows) == len(steps)
     for row, (one, number, step) in zip(rows, steps, strict=True):
-        assert row[:3] == [one.route, str(number), _item(assessment, step.item)]
+        assert row[:3] == [one.route, str(number), at_risk.say_row(assessment.result(step.item))]
         assert row[3:5] == [words.percent(step.gain), words.percent(step.left)]
         assert row[5] == ("under the chosen risk" if number == len(one.fixes) else "")
         assert not one.is_mended or one.fixes[-1].left < assessment.routes.risk
@@ -310,8 +321,8 @@ def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
     assert "80 more routes, less likely to be blocked, are in the Excel report." in text
     assert "30 more segments, less likely to be blocked, are in the Excel report." in text
     assert "30 more rooms, less likely to be cut off, are in the Excel report." in text
-    assert "As they are, 160 routes are blocked with less than the chosen risk: Route 0, " in text
-    assert "and 148 more." in text
+    assert "160 routes are not evaluated: nothing tells what can reach them." in text
+    assert "blocked with less than the chosen risk" not in text
 
 
 def test_the_section_prints_on_the_page(verified):
@@ -332,3 +343,79 @@ def test_the_section_prints_on_the_page(verified):
                     if table.element.get("class") != "short":
                         assert text.position_x + text.width <= cell.content_box_x() + cell.width + 0.5, text.text
     assert tables >= 5
+
+
+@pytest.fixture(scope="module")
+def unknown(tmp_path_factory):
+    """Two routes of which nothing tells what can reach them, one with a piece in another room, pieces not placed."""
+    routes = [
+        {"route": "Dark", "segment": "flight", "start": "Landing", "end": "Foot", "clear_width": 1.2},
+        {"route": "Blind", "segment": "lane", "floor": "G", "clear_width": 1.5},
+        {"route": "Hall", "segment": "aisle", "floor": "1", "start": "Office <1>", "end": "Landing",
+         "clear_width": 1.2, "room": "Hall"},
+        {"route": "Hall", "segment": "gallery", "floor": "1", "start": "Office <1>", "end": "Balcony",
+         "clear_width": 3.0, "required_width": 0.9, "room": "Hall"},
+    ]  # fmt: skip
+    items = [ITEMS[0] | {"room": "<Store>"}, {"item": "lost", "floor": "1", "breadth": 30, "height": 200,
+                                              "quantity": 3}]  # fmt: skip
+    return _assess(tmp_path_factory.mktemp("unknown") / "w.xlsx", Items=items, Routes=routes)
+
+
+def test_what_is_not_evaluated_is_neither_open_nor_has_a_chance(unknown):
+    html = render(unknown)
+    dark, blind, hall = _rows(html, "routes")
+    assert dark[2:7] == blind[2:7] == ["– not evaluated", "–", "–", "–", "–"]
+    assert hall[2] == "✓ open"
+    flight, lane, aisle, _gallery = _rows(html, "segments")
+    assert flight[6:11] == lane[6:11] == ["–", "– not evaluated", "–", "–", "–"]
+    assert aisle[7] == "✓ open"
+    assert 'class="way-state unevaluated"' in html
+    text = _text(_section(html))
+    assert "1 evacuation route: 0 may be blocked, 0 may be reduced, 1 below the chosen risk." in text
+    assert "2 routes are not evaluated: nothing tells what can reach them." in text
+    assert "blocked with less than the chosen risk: Hall." in text
+
+
+def test_where_nothing_is_evaluated_no_state_is_counted(unknown):
+    routes = replace(unknown.routes, routes=unknown.routes.routes[:2])
+    lines = route_rows.describe_routes(routes)
+    assert lines[0] == "2 routes are not evaluated: nothing tells what can reach them."
+    assert not any("below the chosen risk" in line for line in lines)
+
+
+def test_pieces_in_other_rooms_are_named_with_their_room(unknown):
+    html = render(unknown)
+    (aisle,) = (row for row in _rows(html, "segments") if row[0] == "Hall: aisle")
+    assert "not counted, in another room: tall & thin (<Store>)" in aisle[11]
+    assert "<Store>" not in html
+
+
+def test_pieces_that_are_not_counted_are_told(unknown, tmp_path):
+    sentence = "3 pieces have neither a position that tells nor a Route"
+    html = render(unknown)
+    assert sentence in _text(_section(html))
+    assert {row[0]: row[8] for row in _rows(html, "route-floors")} == {"1 – First": "3", "Floor G": "0"}
+    alone = _assess(tmp_path / "w.xlsx", Items=ITEMS[:3])
+    assert route_rows.say_uncounted(alone.routes) == ""
+
+
+def test_print_leaves_out_segments_that_nothing_reaches(unknown):
+    html = render(unknown, for_print=True)
+    assert [row[0] for row in _rows(html, "segments")] == ["Dark: flight", "Blind: lane", "Hall: aisle"]
+    assert "1 segment that no piece reaches is left out; the Excel report has all." in _text(_section(html))
+    assert "is left out" not in _text(_section(render(unknown)))
+
+
+def test_a_way_says_what_it_shares_with_the_first(assessment):
+    way = assessment.routes.rooms[0].ways[0]
+    (said_alone, said_shared) = (said.say_way(one, assessment.routes) for one in
+                                 (way, replace(way, shared=way.segments[:1])))  # fmt: skip
+    name = assessment.routes.segments[way.segments[0]].segment.segment
+    assert said_shared == f"{said_alone}; shares {name} with the first"
+
+
+def test_a_room_whose_ways_are_not_evaluated_has_no_chance(assessment):
+    room = assessment.routes.rooms[0]
+    assert route_rows.has_evaluated_way(room)
+    segments = tuple(at for way in room.ways for at in way.segments)
+    assert not route_rows.has_evaluated_way(replace(room, unevaluated=segments))

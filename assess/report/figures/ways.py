@@ -7,7 +7,7 @@ from assess.inventory.model import Inventory
 from assess.language import gettext as _
 from assess.report import words
 from assess.report.figures.labels import LINE, Bounds, Label, Point, overlap, place_labels
-from assess.report.findings.routes import say_chance, say_segment, say_segment_state
+from assess.report.findings.routes import is_held, say_chance, say_segment, say_segment_state
 from assess.routes.band import Band, build_bands
 from assess.routes.footprint import Corners
 from assess.routes.model import Routes, RouteState, SegmentResult
@@ -41,7 +41,7 @@ class Stretch:
     """A segment as it is drawn; `number` is that of its row among all segments, from 1.
 
     `sign` is where its sign stands: None where there is no room and nothing to warn of. `may_be` tells that a worse
-    state is not excluded.
+    state is not excluded, `is_held` that anchors alone keep it from being blocked.
     """
 
     number: int
@@ -52,12 +52,18 @@ class Stretch:
     end: Point
     corners: Corners
     may_be: bool
+    is_held: bool = False
     sign: Point | None = None
 
     @property
     def is_open(self) -> bool:
         """Whether there is nothing to warn of."""
-        return self.style.name == "open" and not self.may_be
+        return self.style.name == "open" and not self.marks
+
+    @property
+    def marks(self) -> str:
+        """What stands beside its sign."""
+        return ("?" if self.may_be else "") + ("⚓" if self.is_held else "")
 
 
 def list_styles() -> dict[str, Style]:
@@ -86,25 +92,26 @@ def build_stretches(inventory: Inventory, routes: Routes | None) -> Mapping[str,
     for at, band in bands.items():
         if band.length > 0:
             one = routes.segments[at]
-            found.setdefault(one.segment.floor, []).append(_stretch(at + 1, one, band, styles[_style_name(one)]))
+            found.setdefault(one.segment.floor, []).append(_stretch(at + 1, one, routes.risk, band, styles))
     return {floor: sorted(own, key=lambda one: order.index(one.style.name)) for floor, own in found.items()}
 
 
-def _stretch(number: int, one: SegmentResult, band: Band, style: Style) -> Stretch:
+def _stretch(number: int, one: SegmentResult, risk: float, band: Band, styles: Mapping[str, Style]) -> Stretch:
     return Stretch(
         number=number,
         name=words.cut(one.segment.segment, NAMED),
         title=_(
             "{segment}: {state}; chance of blockage {chance}",
             segment=say_segment(one),
-            state=say_segment_state(one),
+            state=say_segment_state(one, risk),
             chance=say_chance(one.outlook.blocked),
         ),
-        style=style,
+        style=styles[_style_name(one)],
         start=band.start,
         end=band.end,
         corners=_outline(band),
         may_be=one.outlook.upper > one.outlook.state,
+        is_held=is_held(one.outlook, risk),
     )
 
 

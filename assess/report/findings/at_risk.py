@@ -6,16 +6,21 @@ from assess.language import gettext as _
 from assess.language import ngettext
 from assess.ranking import RouteStep
 from assess.report import words
-from assess.report.findings.routes import say_chance, say_risk, say_route_state
-from assess.results import Assessment
-from assess.routes.model import Chance, RoomResult, RouteResult, Routes, RouteState
+from assess.report.findings.route_rows import count_uncounted, say_unknown
+from assess.report.findings.routes import is_blocked_standing, is_held, name_few, say_chance, say_risk, say_route_state
+from assess.results import Assessment, ItemResult
+from assess.routes.model import RoomResult, RouteResult, Routes, RouteState
 
 
 @dataclass(frozen=True, slots=True)
 class RouteAtRisk:
-    """A route that may be blocked or reduced, the piece that most likely blocks it, and what to fix: "" where none."""
+    """A route that may be blocked or reduced, the piece that most likely blocks it, and what to fix: "" where none.
+
+    `risk` is the chosen one [-].
+    """
 
     result: RouteResult
+    risk: float
     blocker: str
     needed: str
 
@@ -32,7 +37,7 @@ class RouteAtRisk:
     @property
     def state(self) -> str:
         """Its state with its sign, in words."""
-        return say_route_state(self.result)
+        return say_route_state(self.result, self.risk)
 
     @property
     def chance(self) -> str:
@@ -42,17 +47,33 @@ class RouteAtRisk:
 
 def list_routes_at_risk(assessment: Assessment) -> list[RouteAtRisk]:
     """Return the routes that may be blocked or reduced, or of which that is not excluded, the worst first."""
-    found = [one for one in _all(assessment.routes) if _worst(one) > RouteState.OPEN]
+    routes = assessment.routes
+    if routes is None:
+        return []
+    found = [one for one in routes.routes if _worst(one) > RouteState.OPEN]
     found.sort(key=lambda one: (-one.outlook.state, -one.outlook.blocked.probability, one.route.casefold()))
-    items = assessment.inventory.items
     return [
         RouteAtRisk(
             one,
-            "" if one.outlook.blocker is None else items[one.outlook.blocker].item,
-            ", ".join(items[fix.item].item for fix in one.fixes),
+            routes.risk,
+            _blocker(one, assessment),
+            ", ".join(say_row(assessment.result(fix.item)) for fix in one.fixes),
         )
         for one in found
     ]
+
+
+def _blocker(one: RouteResult, assessment: Assessment) -> str:
+    """Return the piece that most likely blocks a route; of one that is blocked as it stands, none does."""
+    at = one.outlook.blocker
+    return "" if at is None or is_blocked_standing(one) else assessment.inventory.items[at].item
+
+
+def say_row(one: ItemResult) -> str:
+    """Return the name of a row, and how many pieces it is if it is several: ``e5 (5 pieces)``."""
+    if one.item.quantity == 1:
+        return one.item.item
+    return f"{one.item.item} ({words.plural(one.item.quantity, 'piece')})"
 
 
 def describe_at_risk(one: RouteAtRisk) -> str:
@@ -62,10 +83,6 @@ def describe_at_risk(one: RouteAtRisk) -> str:
         return _("{route}: {state}, blocked in {chance}.", route=route, state=one.state, chance=one.chance)
     return _("{route}: {state}, blocked in {chance}, most likely by {item}.",
              route=route, state=one.state, chance=one.chance, item=one.blocker)  # fmt: skip
-
-
-def _all(routes: Routes | None) -> tuple[RouteResult, ...]:
-    return routes.routes if routes else ()
 
 
 def _worst(one: RouteResult) -> RouteState:
@@ -101,29 +118,34 @@ def say_routes(assessment: Assessment) -> list[str]:
     if routes is None:
         return []
     at_risk = list_routes_at_risk(assessment)
-    return [_say_at_risk(routes, len(at_risk)), _say_expected(routes), *_say_rooms(routes), *_say_beside(routes)]
+    return [
+        *_say_at_risk(routes, len(at_risk)),
+        *say_unknown(routes),
+        _say_expected(routes),
+        *_say_rooms(routes),
+        *_say_beside(routes),
+    ]
 
 
-def _say_at_risk(routes: Routes, at_risk: int) -> str:
-    risk = say_risk(routes.risk)
+def _say_at_risk(routes: Routes, at_risk: int) -> list[str]:
+    risk, found = say_risk(routes.risk), [one for one in routes.routes if one.is_evaluated]
+    if not found:
+        return []
     if not at_risk:
-        return ngettext(
+        told = ngettext(
             "The {n:,} route is not at risk: its chance of being blocked or reduced is below the chosen {risk}, also "
             "at the upper end of its interval.",
             "None of the {n:,} routes is at risk: the chance of each of being blocked or reduced is below the chosen "
             "{risk}, also at the upper end of its interval.",
-            len(routes.routes), risk=risk,
+            len(found), risk=risk,
         )  # fmt: skip
-    sure = sum(one.outlook.state > RouteState.OPEN for one in routes.routes)
-    told = ngettext(
-        "Of {n:,} route, {sure:,} may be blocked or reduced, at the chosen risk of {risk}.",
-        "Of {n:,} routes, {sure:,} may be blocked or reduced, at the chosen risk of {risk}.",
-        len(routes.routes), sure=sure, risk=risk,
-    )  # fmt: skip
+        return [told]
+    sure = sum(one.outlook.state > RouteState.OPEN for one in found)
+    told = _("Routes that may be blocked or reduced: {n:,} of {all:,}, at the chosen risk of {risk}.",
+             n=sure, all=len(found), risk=risk)  # fmt: skip
     if sure == at_risk:
-        return told
-    more = ngettext("Of {n:,} more that is not excluded.", "Of {n:,} more that is not excluded.", at_risk - sure)
-    return f"{told} {more}"
+        return [told]
+    return [told, ngettext("For {n:,} more it is not excluded.", "For {n:,} more it is not excluded.", at_risk - sure)]
 
 
 def _say_expected(routes: Routes) -> str:
@@ -140,31 +162,25 @@ def _say_rooms(routes: Routes) -> list[str]:
     if not found:
         return [_("No room comes to that risk of losing every exit.")]
     worst, chance = found[0].place, found[0].loses
-    return [
-        ngettext(
-            "Of {all:,} rooms, {n:,} may lose every exit: {room} with {chance}.",
-            "Of {all:,} rooms, {n:,} may lose every exit: the worst is {room} with {chance}.",
-            len(found), all=len(routes.rooms), room=words.cut(worst.place, 30), chance=say_chance(chance),
-        )
-    ]  # fmt: skip
+    return [_("Rooms that may lose every exit: {n:,} of {all:,}, the worst {room} with {chance}.",
+              n=len(found), all=len(routes.rooms), room=words.cut(worst.place, 30),
+              chance=say_chance(chance))]  # fmt: skip
 
 
 def _say_beside(routes: Routes) -> list[str]:
-    """Say how many more routes hang on anchors, and how many segments are too narrow as they stand."""
+    """Say which routes hang on anchors, how many segments are too narrow as they stand, and what is not counted."""
     texts = []
-    held = sum(_is_held(one.outlook.if_anchors_fail, routes.risk) for one in routes.routes if _worst(one) < _BLOCKED)
+    held = [one.route for one in routes.routes if is_held(one.outlook, routes.risk)]
     if held:
-        texts.append(ngettext("If anchors fail, {n:,} more may be blocked.",
-                              "If anchors fail, {n:,} more may be blocked.", held))  # fmt: skip
+        texts.append(ngettext("If anchors fail, {n:,} more may be blocked: {names}.",
+                              "If anchors fail, {n:,} more may be blocked: {names}.",
+                              len(held), names=name_few(held)))  # fmt: skip
     short = sum(one.is_short for one in routes.segments)
     if short:
         texts.append(ngettext("{n:,} segment is too narrow for its occupants as it stands.",
                               "{n:,} segments are too narrow for their occupants as they stand.", short))  # fmt: skip
+    if uncounted := count_uncounted(routes):
+        texts.append(ngettext("{n:,} piece is not counted: whether it falls onto a route is not known.",
+                              "{n:,} pieces are not counted: whether they fall onto a route is not known.",
+                              uncounted))  # fmt: skip
     return texts
-
-
-_BLOCKED = RouteState.BLOCKED
-
-
-def _is_held(chance: Chance | None, risk: float) -> bool:
-    return chance is not None and chance.probability >= risk

@@ -1,19 +1,17 @@
 """The words for evacuation routes: what may become of them, how likely, and what that rests on."""
 
-from collections.abc import Callable, Sequence
-from typing import TypeVar
+import math
+from collections.abc import Sequence
 
 from assess.inventory.routes import DEFAULT_WIDTH
 from assess.language import gettext as _
 from assess.language import ngettext, number
 from assess.report import words
 from assess.report.provenance import say_reference
+from assess.results import ItemResult
 from assess.routes.model import (
-    FLAGS,
-    Beside,
     Chance,
     Outlook,
-    RouteFix,
     RouteResult,
     Routes,
     RouteState,
@@ -25,7 +23,6 @@ from assess.units import LENGTH
 
 MOST_NAMED = 3
 """Names that stand in one cell; of a longer list it is said how many more there are."""
-Row = TypeVar("Row")
 
 
 def say_state(state: RouteState) -> str:
@@ -38,16 +35,39 @@ def say_state(state: RouteState) -> str:
     return f"{state.symbol} {said[state]}"
 
 
-def say_outlook(outlook: Outlook) -> str:
-    """Return the state, and the one that it may come to by the upper end of the interval."""
+def say_outlook(outlook: Outlook, risk: float = math.inf) -> str:
+    """Return the state, and the one that it may come to by the upper end of the interval.
+
+    With the chosen risk it is said as well where the state hangs on anchors.
+    """
     if outlook.blocked.low >= 1:
         blocked = _("blocked")
         return f"{RouteState.BLOCKED.symbol} {blocked}"
-    said = say_state(outlook.state)
+    said = _say_held(outlook.state) if is_held(outlook, risk) else say_state(outlook.state)
     if outlook.upper == outlook.state:
         return said
     upper = say_state(outlook.upper)
     return _("{state}, not excluded: {upper}", state=said, upper=upper)
+
+
+def _say_held(state: RouteState) -> str:
+    if state == RouteState.OPEN:
+        said = _("open if the anchors hold")
+    else:
+        said = _("may be reduced, and blocked if the anchors fail")
+    return f"{state.symbol} {said} ⚓"
+
+
+def is_held(outlook: Outlook, risk: float) -> bool:
+    """Tell whether anchors alone keep something from being blocked, by the chosen risk."""
+    fails = outlook.if_anchors_fail
+    return outlook.state < RouteState.BLOCKED and fails is not None and fails.probability >= risk
+
+
+def say_unevaluated() -> str:
+    """Return what is said of a segment or route of which nothing tells what can reach it."""
+    said = _("not evaluated")
+    return f"{words.DASH} {said}"
 
 
 def say_standing() -> str:
@@ -56,14 +76,18 @@ def say_standing() -> str:
     return f"{RouteState.BLOCKED.symbol} {standing}"
 
 
-def say_segment_state(one: SegmentResult) -> str:
-    """Return the state of a segment, told apart from one that is blocked with nothing fallen."""
-    return say_standing() if one.is_blocked_standing else say_outlook(one.outlook)
+def say_segment_state(one: SegmentResult, risk: float = math.inf) -> str:
+    """Return the state of a segment, told apart from one blocked with nothing fallen and from one not evaluated."""
+    if one.is_blocked_standing:
+        return say_standing()
+    return say_outlook(one.outlook, risk) if one.is_evaluated else say_unevaluated()
 
 
-def say_route_state(one: RouteResult) -> str:
-    """Return the state of a route, told apart from one that is blocked with nothing fallen."""
-    return say_standing() if is_blocked_standing(one) else say_outlook(one.outlook)
+def say_route_state(one: RouteResult, risk: float = math.inf) -> str:
+    """Return the state of a route, told apart from one blocked with nothing fallen and from one not evaluated."""
+    if is_blocked_standing(one):
+        return say_standing()
+    return say_outlook(one.outlook, risk) if one.is_evaluated else say_unevaluated()
 
 
 def is_blocked_standing(one: RouteResult) -> bool:
@@ -88,8 +112,8 @@ def say_basis(chance: Chance) -> str:
         return ngettext("{n:,} motion, all together", "{n:,} motions, all together", chance.runs)
     if chance.unverified:
         return ngettext(
-            "bounds: {n:,} of {pieces:,} pieces is not verified",
-            "bounds: {n:,} of {pieces:,} pieces are not verified",
+            "bounds: {n:,} of {pieces:,} pieces by the formula's chance alone",
+            "bounds: {n:,} of {pieces:,} pieces by the formula's chance alone",
             chance.unverified,
             pieces=chance.pieces,
         )
@@ -122,36 +146,13 @@ def say_bounds(chance: Chance) -> str:
 # ---------------------------------------------------------------- sentences
 
 
-def describe_routes(routes: Routes) -> list[str]:
-    """Return the routes of a building in plain words, as sentences."""
-    states = [one.outlook.state for one in routes.routes]
-    blocked, reduced = states.count(RouteState.BLOCKED), states.count(RouteState.REDUCED)
-    return [
-        ngettext(
-            "{n:,} evacuation route: {blocked:,} may be blocked, {reduced:,} may be reduced, {open:,} stay open.",
-            "{n:,} evacuation routes: {blocked:,} may be blocked, {reduced:,} may be reduced, {open:,} stay open.",
-            len(states),
-            blocked=blocked,
-            reduced=reduced,
-            open=len(states) - blocked - reduced,
-        ),
-        _("To be expected: {count} blocked routes.", count=words.fixed(routes.blocked_routes, 2)),
-        ngettext(
-            "Of {n:,} room, {count} are expected to lose every exit.",
-            "Of {n:,} rooms, {count} are expected to lose every exit.",
-            len(routes.rooms),
-            count=words.fixed(routes.cut_off_rooms, 2),
-        )
-        if routes.rooms
-        else _("No room is joined to a way out, so none is evaluated."),
-        _("These are chances in this scenario, not per year."),
-        _("A route may be blocked, or reduced, from a chance of {risk} on.", risk=say_risk(routes.risk)),
-    ]
-
-
 def list_cautions(routes: Routes) -> list[str]:
     """Return what the evaluation of routes takes for granted, and what it leaves out."""
-    return [
+    return [*_of_pieces(), *_of_states(), *_of_chances(routes)]
+
+
+def _of_pieces() -> tuple[str, ...]:
+    return (
         _("This is screening: no closed rule is published for what a fallen piece takes from a route; ours is this."),
         _(
             "A piece counts as falling toward the route unless the plan shows that it cannot reach it. Fallen, it "
@@ -165,29 +166,33 @@ def list_cautions(routes: Routes) -> list[str]:
             "The width left is the smallest that some chain of fallen pieces cuts off. A piece known by its Edge "
             "distance alone may stand at any place and face any other."
         ),
+    )
+
+
+def _of_states() -> tuple[str, ...]:
+    return (
         _(
             "A segment is blocked where the width left is under the required one, reduced where pieces take width and "
             "it is not; a route is blocked where a room or an open end that it serves is cut off from its way out."
         ),
+        _("Either is also blocked or reduced where it is so under the recorded motion itself, whatever its chance."),
         _("Not counted: pieces that slide or roll on castors, spilt contents, doors that jam or are shut, and people."),
+    )
+
+
+def _of_chances(routes: Routes) -> tuple[str, ...]:
+    return (
         _(
-            "Chances hold if all anchors do. Pieces that were verified together fall as they did motion by motion, "
+            "Chances hold if all anchors do. Pieces whose verified chance counts fall as they did motion by motion, "
             "others independently; what full independence and full correlation give stands beside, as equal pieces "
             "fall together."
         ),
         _(
-            "Where not all pieces of a route were verified together, the largest of the three is its chance, in "
+            "Where that is not so of all pieces of a route together, the largest of the three is its chance, in "
             "brackets their range. Where outcomes are too many to go through, {n:,} are drawn.",
             n=routes.draws,
         ),
-    ]
-
-
-def list_flags(routes: Routes) -> dict[str, str]:
-    """Return the marks that occur, and what each means; where its own rooms count, they are named instead."""
-    raised = [one.flags for one in routes.segments] + [near.flags for one in routes.segments for near in one.beside]
-    found = {flag for flags in raised for flag in flags if flag != "own_rooms"}
-    return {flag: _(text) for flag, text in FLAGS.items() if flag in found}
+    )
 
 
 def say_occupants(one: SegmentResult) -> str:
@@ -205,32 +210,6 @@ def say_occupants(one: SegmentResult) -> str:
 # ---------------------------------------------------------------- lists
 
 
-def choose_rows(rows: Sequence[Row], most: int, chance: Callable[[Row], float]) -> list[Row]:
-    """Return rows in their own order where they are few enough, else the likeliest."""
-    return list(rows) if len(rows) <= most else sorted(rows, key=lambda row: -chance(row))[:most]
-
-
-def list_segments(routes: Routes, most: int) -> list[tuple[int, SegmentResult]]:
-    """Return segments with their numbers, from 1: all, or those most likely to be blocked."""
-    numbered = list(enumerate(routes.segments, start=1))
-    return choose_rows(numbered, most, lambda row: row[1].outlook.blocked.probability)
-
-
-def list_beside(routes: Routes) -> list[tuple[SegmentResult, Beside | None]]:
-    """Return the pieces beside each segment, the segments most likely to be blocked first.
-
-    A segment that no piece reaches is there only if it is too narrow as it stands.
-    """
-    likeliest = sorted(routes.segments, key=lambda one: -one.outlook.blocked.probability)
-    told = [one for one in likeliest if one.beside or one.is_short or one.is_blocked_standing]
-    return [(one, near) for one in told for near in (one.beside or (None,))]
-
-
-def list_steps(routes: Routes) -> list[tuple[RouteResult, int, RouteFix]]:
-    """Return what to fix for each route, step by step: the route, the number of the step from 1, and the step."""
-    return [(one, at, step) for one in routes.routes for at, step in enumerate(one.fixes, start=1)]
-
-
 def list_unmended(routes: Routes) -> list[tuple[RouteResult, str]]:
     """Return the routes that are blocked with nothing fallen, each with the segments where."""
     found = [one for one in routes.routes if is_blocked_standing(one)]
@@ -240,26 +219,45 @@ def list_unmended(routes: Routes) -> list[tuple[RouteResult, str]]:
     ]
 
 
-def name_untouched(routes: Routes) -> tuple[int, str]:
-    """Return how many routes are under the chosen risk as they are, and their names."""
-    names = [words.cut(one.route, 40) for one in routes.routes if one.is_mended and not one.fixes]
-    return len(names), words.name_first(names, 12)
-
-
 def name_few(names: Sequence[str]) -> str:
     """Return the first of some names of the workbook, cut, and how many more there are."""
     return words.name_first([words.cut(name, 40) for name in names], MOST_NAMED)
 
 
 def say_way(way: Way, routes: Routes) -> str:
-    """Return a way out: where it ends, by which segments, and the chance that it is blocked."""
-    names = [words.cut(routes.segments[at].segment.segment, 30) for at in way.segments]
-    return _(
+    """Return a way out: where it ends, by which segments, the chance of a blockage, and what the first way shares."""
+    segments = [routes.segments[at] for at in way.segments]
+    said = _(
         "{end} by {segments}: {chance}",
         end=words.cut(way.end, 40),
-        segments=words.name_first(names, MOST_NAMED),
-        chance=say_chance(way.blocked),
+        segments=_name_segments(segments),
+        chance=say_chance(way.blocked) if any(one.is_evaluated for one in segments) else _("not evaluated"),
     )
+    if not way.shared:
+        return said
+    shared = _name_segments([routes.segments[at] for at in way.shared])
+    return _("{way}; shares {segments} with the first", way=said, segments=shared)
+
+
+def _name_segments(segments: Sequence[SegmentResult]) -> str:
+    return words.name_first([words.cut(one.segment.segment, 30) for one in segments], MOST_NAMED)
+
+
+def say_left_out(unevaluated: Sequence[int]) -> str:
+    """Return how many segments are not evaluated; nothing where all are."""
+    if not unevaluated:
+        return ""
+    return ngettext("{n:,} segment not evaluated", "{n:,} segments not evaluated", len(unevaluated))
+
+
+def say_other_rooms(one: SegmentResult, results: Sequence[ItemResult]) -> str:
+    """Return the pieces that would reach a segment, were they not in another room; nothing where there are none."""
+    if not one.other_rooms:
+        return ""
+    items = [results[at].item for at in one.other_rooms]
+    named = [f"{words.cut(item.item, 20)} ({words.cut(item.room, 20)})" if item.room else words.cut(item.item, 20)
+             for item in items]  # fmt: skip
+    return _("not counted, in another room: {pieces}", pieces=words.name_first(named, MOST_NAMED))
 
 
 def list_widths() -> list[tuple[str, list[str]]]:

@@ -18,7 +18,7 @@ from assess.report.figures.draw import draw_motion
 from assess.report.figures.plan import build_plan
 from assess.report.figures.verification import choose_traced, draw_traced
 from assess.report.figures.ways import build_stretches
-from assess.report.findings import motions, routes, trials, verified
+from assess.report.findings import motions, route_rows, routes, trials, verified
 from assess.report.findings.disagreements import find_disagreements, group_disagreements, summarise_disagreements
 from assess.report.look import Look
 from assess.report.pages import compact
@@ -56,7 +56,13 @@ def build_context(content: Content, look: Look, *, for_print: bool) -> dict[str,
         "script": script,
         "script_hash": script_hash(script),
     }
-    parts = (_of_summary(content), _of_floors(content), _of_routes(content), _of_methods(content), _of_figures(content))
+    parts = (
+        _of_summary(content),
+        _of_floors(content),
+        _of_routes(content, for_print=for_print),
+        _of_methods(content),
+        _of_figures(content),
+    )
     return context | {name: value for part in parts for name, value in part.items()}
 
 
@@ -111,27 +117,29 @@ def _of_floors(content: Content) -> dict[str, Any]:
     return {"plans": plans, "source": motions.describe_source, "origin": motions.describe_origin}
 
 
-def _of_routes(content: Content) -> dict[str, Any]:
-    """Return the evacuation routes, and the rows of each of their tables as far as they are shown."""
+def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
+    """Return the evacuation routes, and the rows of each of their tables as far as they are shown: fewer in print."""
     found = content.assessment.routes
     if found is None:
         return {"routes": None, "segment_rows": ()}
-    segments = routes.list_segments(found, LIMITS["most_segments"])
+    segments = route_rows.list_segments(found, LIMITS["most_segments"], is_short=for_print)
     return {
         "routes": found,
-        "shown_routes": routes.choose_rows(
+        "shown_routes": route_rows.choose_rows(
             found.routes, LIMITS["most_routes"], lambda one: one.outlook.blocked.probability
         ),
         "shown_segments": segments,
+        "left_out": sum(map(route_rows.is_untouched, found.segments)) if for_print else 0,
         "segment_rows": {number for number, _segment in segments},
-        "shown_rooms": routes.choose_rows(found.rooms, LIMITS["most_rooms"], lambda one: one.loses.probability),
-        "beside": routes.list_beside(found),
-        "steps": routes.list_steps(found),
+        "shown_rooms": route_rows.choose_rows(found.rooms, LIMITS["most_rooms"], lambda one: one.loses.probability),
+        "beside": route_rows.list_beside(found),
+        "steps": route_rows.list_steps(found),
         "unmended": routes.list_unmended(found),
-        "untouched": routes.name_untouched(found),
-        "route_lines": routes.describe_routes(found),
+        "untouched": route_rows.name_untouched(found),
+        "route_lines": route_rows.describe_routes(found),
+        "uncounted": route_rows.say_uncounted(found),
         "route_cautions": routes.list_cautions(found),
-        "route_flags": routes.list_flags(found),
+        "route_flags": route_rows.list_flags(found),
         "floor_names": {page.floor.floor: page.title for page in content.floors},
         "widths": routes.list_widths(),
         "default_width": routes.say_default_width(),
@@ -220,10 +228,12 @@ FILTERS: Mapping[str, Any] = {
     "first_names": routes.name_few,
     "fixed": words.fixed,
     "flag_name": lambda flag: _(flag.replace("_", " ")),
+    "has_evaluated_way": route_rows.has_evaluated_way,
     "in_cm_s": words.in_cm_s,
     "in_g": words.in_g,
     "in_m": words.in_m,
     "in_whole": lambda value: number(value, ",d"),
+    "is_blocked_standing": routes.is_blocked_standing,
     "percent": words.percent,
     "plural": words.plural,
     "reference": say_reference,
@@ -234,6 +244,8 @@ FILTERS: Mapping[str, Any] = {
     "say_basis": routes.say_basis,
     "say_bounds": routes.say_bounds,
     "say_chance": routes.say_chance,
+    "say_left_out": routes.say_left_out,
+    "say_other_rooms": routes.say_other_rooms,
     "say_risk": routes.say_risk,
     "say_occupants": routes.say_occupants,
     "say_recorded": routes.say_recorded,
