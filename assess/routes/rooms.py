@@ -13,7 +13,6 @@ from assess.routes.network import Part, build_course, build_graph, find_parts, f
 from assess.routes.scene import Scene
 from assess.routes.widths import kinds_of
 
-
 UNKNOWN = 0.5
 """What the choice of the safest way takes for the chance of a segment of which nothing is known; stairs are as free."""
 

@@ -359,7 +359,7 @@ def test_a_floor_without_placed_pieces_shows_its_segments_and_its_rooms(routed):
     _first, plan = _plans(routed)
     assert plan.pieces == plan.labels == ()
     assert [one.name for one in plan.ways] == ["roof"]
-    article = re.search(r'<article class="floor[^"]*" id="floor-2">.*?</article>', render(routed), re.S)[0]
+    (article,) = re.findall(r'<article class="floor[^"]*" id="floor-2">.*?</article>', render(routed), re.S)
     assert "Plan: no piece of this floor has a position." in article
     assert "Pieces by class and room; no piece of this floor has a position on the plan." in article
 

@@ -79,7 +79,8 @@ def _text(markup):
 
 
 def _section(html):
-    return re.search(r'<section id="routes".*?(?=<section id="items")', html, re.S)[0]
+    (found,) = re.findall(r'<section id="routes".*?(?=<section id="items")', html, re.S)
+    return found
 
 
 def _rows(html, table):
