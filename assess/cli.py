@@ -160,7 +160,7 @@ def run(
 def routes(
     path: Workbook,
     pfa: Annotated[
-        str, typer.Option(metavar="LOW:HIGH[:STEP]", help="PFA on the routes' floors [g]: both ends, steps of 0.1.")
+        str, typer.Option(metavar="LOW:HIGH[:STEP]", help="PFA on the routes' floors [g]: both ends, steps of 0.05.")
     ] = "0.1:1.0",
     runs: Annotated[str | None, typer.Option(help="Motions of each floor and axis.", show_default="200")] = None,
     seed: Seed = None,

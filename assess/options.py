@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from assess.inventory.model import Inventory
     from assess.report.look import Look
 
-MOST_PFA, STEP, MOST_VALUES = Decimal(5), "0.1", 50
+MOST_PFA, STEP, MOST_VALUES = Decimal(5), "0.05", 50
 """Largest PFA [g] of a fragility, the usual step [g], and how many values it may have."""
 NUMBER = r"(\d{1,4}(?:\.\d{0,12})?|\.\d{1,12})"
 PFA = re.compile(rf"{NUMBER}:{NUMBER}(?::{NUMBER})?", re.ASCII)

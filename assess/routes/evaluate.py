@@ -79,6 +79,7 @@ def _segment(scene: Scene, at: int) -> SegmentResult:
         length=one.band.length if one.band else None,
         beside=tuple(_beside(scene, at)),
         flags=one.flags,
+        is_evaluated=one.is_evaluated,
         other_rooms=one.other_rooms,
     )
 

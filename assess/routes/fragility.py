@@ -57,6 +57,8 @@ class RouteFragility:
         Of its being blocked at each value, if all anchors hold.
     if_anchors_fail : tuple of Chance, optional
         The same with anchored pieces taken as free-standing; None where there are none.
+    is_evaluated : bool
+        Whether anything tells what can reach one of its segments.
     scenario_pfa : pair of float, optional
         The least and the largest PFA of the scenario on its floors [m/s2]; None where its segments name no floor.
     """
@@ -65,6 +67,7 @@ class RouteFragility:
     floors: tuple[str, ...]
     blocked: tuple[Chance, ...]
     if_anchors_fail: tuple[Chance, ...] | None
+    is_evaluated: bool
     scenario_pfa: tuple[float, float] | None
 
 
@@ -264,5 +267,6 @@ def _route(assessment: Assessment, scenes: Sequence[Scene], name: str) -> RouteF
         floors=floors,
         blocked=tuple(one.blocked for one in outlooks),
         if_anchors_fail=tuple(one.if_anchors_fail for one in outlooks if one.if_anchors_fail) or None,
+        is_evaluated=any(scenes[0].reached[at].is_evaluated for at in segments),
         scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
     )

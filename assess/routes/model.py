@@ -5,7 +5,6 @@ from enum import IntEnum
 
 from assess.inventory.model import Place, Segment
 from assess.risk import RiskClass, classify
-from assess.routes.flags import BLIND
 from assess.routes.widths import NARROWER
 
 
@@ -161,6 +160,8 @@ class SegmentResult:
         The pieces that reach it, the one most likely to block it first.
     flags : tuple of str
         Keys of `FLAGS`.
+    is_evaluated : bool
+        Whether anything tells which pieces can reach it: the plan, or a piece that names it.
     other_rooms : tuple of int
         Pieces that would reach it, were they not in another room than those that its Room names.
     """
@@ -177,12 +178,8 @@ class SegmentResult:
     length: float | None
     beside: tuple[Beside, ...]
     flags: tuple[str, ...]
+    is_evaluated: bool
     other_rooms: tuple[int, ...]
-
-    @property
-    def is_evaluated(self) -> bool:
-        """Whether anything tells which pieces can reach it: the plan, or a piece that names it."""
-        return bool(self.beside) or self.is_blocked_standing or BLIND.isdisjoint(self.flags)
 
     @property
     def is_blocked_standing(self) -> bool:

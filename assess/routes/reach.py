@@ -18,6 +18,7 @@ from assess.inventory.model import Inventory, Item, Segment
 from assess.inventory.routes import DEFAULT_WIDTH
 from assess.methods._method import BoolArray
 from assess.routes.band import Band, build_bands
+from assess.routes.flags import BLIND
 from assess.routes.gaps import Gaps, Obstacle, build_gaps
 from assess.routes.model import Beside
 from assess.routes.shapes import Shape, build_shapes
@@ -55,6 +56,11 @@ class Reached:
     def standing(self) -> float:
         """Width left with nothing fallen [m]."""
         return float(self.gaps.residual(self._all(False))[0])
+
+    @property
+    def is_evaluated(self) -> bool:
+        """Whether anything tells which pieces can reach it; where it is too narrow as it stands, none need."""
+        return bool(self.beside) or BLIND.isdisjoint(self.flags) or self.standing < self.required - NARROWER
 
     def _all(self, fell: bool) -> BoolArray:
         return np.full((1, len(self.gaps.keys)), fell, dtype=np.bool_)

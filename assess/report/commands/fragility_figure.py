@@ -27,9 +27,8 @@ ROOM = 130
 """Characters of a line above one panel."""
 MEANING = (
     "Chance that a route is blocked if its floors shake with the PFA along both axes; anchors hold. Light bands or "
-    "bars: range of the chance. Thin dots: a jump to the next value; nothing is known between the two. Broad, or a box "
-    "over a jump: the scenario's PFA on the route's floors, both axes. A stronger motion may spare a piece that a "
-    "weaker one overturns."
+    "bars: range of the chance. Thin dots: a jump to the next value; nothing is known between the two. Broad: the "
+    "scenario's PFA on the route's floors, both axes. A stronger motion may spare a piece that a weaker one overturns."
 )
 
 Panels = Sequence[Sequence[RouteFragility]]
@@ -94,17 +93,14 @@ def _paint_route(axes: Any, one: RouteFragility, pfa_g: Sequence[float], style: 
 def _paint_scenario(
     axes: Any, peaks: Sequence[float], pfa_g: Sequence[float], chances: Sequence[float], colour: str
 ) -> None:
-    """Paint the curve broad from one peak to the other; where it jumps, a box as high as the jump."""
+    """Paint the curve broad from one peak to the other, but for where it jumps."""
     low, high = max(peaks[0], pfa_g[0]), min(peaks[1], pfa_g[-1])
     if low > high:
         return
     bounds = [0, *(side for at in find_jumps(chances) for side in (at, at + 1)), len(pfa_g) - 1]
     for number, (first, last) in enumerate(pairwise(bounds)):
         start, end = max(low, pfa_g[first]), min(high, pfa_g[last])
-        if number % 2 and start < pfa_g[last] and end > pfa_g[first]:
-            sides = {"facecolor": "none", "edgecolor": colour, "alpha": 0.6, "linewidth": 1.2}
-            axes.fill_between([start, end], *chances[first : last + 1], **sides)
-        elif number % 2 == 0 and start <= end:
+        if number % 2 == 0 and start <= end:
             at = np.unique([start, *(pfa for pfa in pfa_g if start < pfa < end), end])
             axes.plot(at, np.interp(at, pfa_g, chances), color=colour, linewidth=5, alpha=0.35, solid_capstyle="round")
 
@@ -124,8 +120,12 @@ def _dress(axes: Any, pfa_g: Sequence[float]) -> None:
 
 
 def _notes(fragility: Fragility, wide: int) -> Iterator[str]:
-    free = [one.route for one in fragility.routes if max(chance.high for chance in one.blocked) == 0]
+    flat = [one for one in fragility.routes if max(chance.high for chance in one.blocked) == 0]
+    free, unknown = ([one.route for one in flat if one.is_evaluated is told] for told in (True, False))
     yield from textwrap.wrap(MEANING, wide)
     if free:
         named = words.name_first([label(name) for name in free], MOST_NAMED)
         yield from textwrap.wrap(f"Always 0 %, as no free-standing piece can block them: {named}.", wide)
+    if unknown:
+        named = words.name_first([label(name) for name in unknown], MOST_NAMED)
+        yield from textwrap.wrap(f"Not evaluated, as nothing tells what can reach them: {named}.", wide)

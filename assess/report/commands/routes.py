@@ -99,8 +99,9 @@ class Sweep:
             "route": one.route,
             "floors": list(one.floors),
             "scenario_pfa_g": None if peaks is None else [_in_g(peak) for peak in peaks],
-            "chances": [{"pfa_g": pfa, **_chance(chance, fails)} for pfa, chance, fails in pairs],
-            "passes": [self._pass(one.blocked, level) for level in LEVELS],
+            "evaluated": one.is_evaluated,
+            "chances": [{"pfa_g": pfa, **_chance(chance, fails)} for pfa, chance, fails in pairs if one.is_evaluated],
+            "passes": [self._pass(one.blocked, level) for level in LEVELS if one.is_evaluated],
             "passes_if_anchors_fail": one.if_anchors_fail
             and [self._pass(one.if_anchors_fail, level) for level in LEVELS],
         }
@@ -132,6 +133,8 @@ class Sweep:
         writer = csv.writer(file, lineterminator="\r\n")
         writer.writerow(HEADS)
         for one in self.describe()["routes"]:
+            if not one["evaluated"]:
+                writer.writerow([disarm(one["route"]), disarm(one["floors"]), *[None] * (len(HEADS) - 2)])
             for at in one["chances"]:
                 fails = at["if_anchors_fail"]
                 row = at | {"route": disarm(one["route"]), "floors": disarm(one["floors"])}
@@ -204,6 +207,8 @@ class _Passing:
 
 def _say_pieces(one: RouteFragility) -> str:
     first = one.blocked[0]
+    if not one.is_evaluated:
+        return "not evaluated: nothing tells what can reach it"
     if first.pieces:
         return f"{words.plural(first.pieces, 'piece')}; {say_basis(first)}"
     if first.probability > 0:
