@@ -14,7 +14,7 @@ from assess.routes.scene import Scene
 from assess.routes.widths import kinds_of
 
 UNKNOWN = 0.5
-"""What the choice of the safest way takes for the chance of a segment of which nothing is known; stairs are as free."""
+"""What the choice of the safest way takes for the chance of a segment of which nothing is known [-]."""
 
 
 def evaluate_rooms(scene: Scene, chance: Mapping[int, float], blind: Set[int]) -> tuple[RoomResult, ...]:
@@ -22,7 +22,7 @@ def evaluate_rooms(scene: Scene, chance: Mapping[int, float], blind: Set[int]) -
 
     `chance` is that of a blockage by segment; `blind` are the segments that are not evaluated.
     """
-    unknown = {at: UNKNOWN for at in blind if "no_plan" in scene.reached[at].flags}
+    unknown = dict.fromkeys(blind, UNKNOWN)
     return tuple(_room(scene, place, part, {**chance, **unknown}, blind) for place, part in list_rooms(scene))
 
 
