@@ -16,7 +16,6 @@ import numpy as np
 from assess.inventory.labels import key
 from assess.inventory.model import Inventory, Item, Segment
 from assess.inventory.routes import DEFAULT_WIDTH
-from assess.methods._method import BoolArray
 from assess.routes.band import Band, build_bands
 from assess.routes.flags import BLIND
 from assess.routes.gaps import Gaps, Obstacle, build_gaps
@@ -39,8 +38,8 @@ SIDES: tuple[Literal["left", "right"], ...] = ("left", "right")
 class Reached:
     """One segment with the pieces that reach it, before anything is known of their chances.
 
-    `clear` and `required` are the widths used [m], `standing` and `least` those left with nothing and with everything
-    fallen; `flags` are keys of `assess.routes.flags.FLAGS`. `other_rooms` are pieces that only their Room keeps away.
+    `clear` and `required` are the widths used [m], `standing` is the one left with nothing fallen; `flags` are keys
+    of `assess.routes.flags.FLAGS`. `other_rooms` are pieces that only their Room keeps away.
     """
 
     segment: Segment
@@ -51,19 +50,12 @@ class Reached:
     beside: tuple[Beside, ...]
     gaps: Gaps
     other_rooms: tuple[int, ...]
-
-    @property
-    def standing(self) -> float:
-        """Width left with nothing fallen [m]."""
-        return float(self.gaps.residual(self._all(False))[0])
+    standing: float
 
     @property
     def is_evaluated(self) -> bool:
         """Whether anything tells which pieces can reach it; where it is too narrow as it stands, none need."""
         return bool(self.beside) or BLIND.isdisjoint(self.flags) or self.standing < self.required - NARROWER
-
-    def _all(self, fell: bool) -> BoolArray:
-        return np.full((1, len(self.gaps.keys)), fell, dtype=np.bool_)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +116,7 @@ def _reach(
         "walls_unknown": band is not None and not segment.rooms,
         "own_rooms": band is not None and bool(segment.rooms),
     }
+    gaps = build_gaps(obstacles, clear)
     return Reached(
         segment=segment,
         clear=clear,
@@ -131,8 +124,9 @@ def _reach(
         band=band,
         flags=tuple(flag for flag, holds in flags.items() if holds),
         beside=tuple(_beside(index, told[index], clear, required) for index in sorted(told)),
-        gaps=build_gaps(obstacles, clear),
+        gaps=gaps,
         other_rooms=tuple(sorted(others)),
+        standing=float(gaps.residual(np.zeros((1, len(gaps.keys)), dtype=np.bool_))[0]),
     )
 
 

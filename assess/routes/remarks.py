@@ -17,18 +17,14 @@ def remark_routes(inventory: Inventory, reached: Sequence[Reached]) -> Iterator[
     seen: set[tuple[str, int]] = set()
     for segment in reached:
         for one in segment.beside:
-            for flag in ("nearer_than_plan", "standing_inside"):
+            for flag, tell in (("nearer_than_plan", _contradiction), ("standing_inside", _inside)):
                 if flag in one.flags and (flag, one.item) not in seen:
                     seen.add((flag, one.item))
-                    yield (
-                        _contradiction(inventory, one)
-                        if flag == "nearer_than_plan"
-                        else _inside(inventory, segment, one)
-                    )
+                    yield tell(inventory, segment, one)
     yield from _out_of_reach(inventory, reached)
 
 
-def _contradiction(inventory: Inventory, one: Beside) -> Problem:
+def _contradiction(inventory: Inventory, _segment: Reached, one: Beside) -> Problem:
     message = fill(
         "Edge distance {distance:g} m of '{item}' is nearer to the route than its position on the plan says; the "
         "distance counts.",
