@@ -2,14 +2,16 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from assess.methods._method import BoolArray, FloatArray
 from assess.risk import wilson_interval
+from assess.routes.draws import Draws
 from assess.routes.falls import Falls
 from assess.routes.gaps import Key
 from assess.routes.model import Chance
@@ -23,44 +25,28 @@ MOST_PATTERNS = 20_000
 """Motions up to which pieces of different numbers of motions are made to meet evenly."""
 ROUNDED = 12
 """Decimals that chances keep: sums of weights leave a hair."""
+NONE, EVERY = 0b01, 0b10
+"""The two draws of `Couplings.ends`: nothing falls, and everything does."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Draws:
-    """m draws of which of n pieces fall (m, n), with their weights (m,), which add up to 1.
-
-    `widths` and `blocked` keep what has been worked out for them, by the number of a segment: the clear width left (m,)
-    [m], and a column of the array that tells which segments are blocked (m, all segments).
-    """
-
-    keys: tuple[Key, ...]
-    fell: BoolArray
-    weight: FloatArray
-    widths: dict[int, FloatArray] = field(default_factory=dict)
-    blocked: dict[int, BoolArray] = field(default_factory=dict)
-    place: dict[Key, int] = field(init=False)
-    """Where each piece stands among the columns."""
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "place", {key: at for at, key in enumerate(self.keys)})
-
-
-Happens = Callable[[Draws], BoolArray]
-"""Tells for each of m draws whether something happens: (m,), or (m, r) for r things."""
+Happens = Callable[[Draws], Sequence[int]]
+"""Tells for some draws in which of them each of several things happens, as sets of `assess.routes.bits`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Couplings:
     """The same pieces falling together in three ways.
 
-    `runs` is the least number of motions of a verified piece, 0 without one; `is_drawn` tells whether any of the three
-    was drawn rather than gone through. `pieces` and `unverified` count pieces, not rows.
+    `ends` are the draws `NONE` and `EVERY`. `runs` is the least number of motions of a verified piece,
+    0 without one; `is_drawn` tells whether any of the three was drawn rather than gone through. `pieces` and
+    `unverified` count pieces, not rows.
     """
 
     keys: tuple[Key, ...]
     joint: Draws
     independent: Draws
     correlated: Draws
+    ends: Draws
     is_joint: bool
     runs: int
     is_drawn: bool
@@ -73,115 +59,151 @@ def build_couplings(
 ) -> Couplings:
     """Return how the pieces of `keys` fall together; draws depend on `seed` and on the piece alone.
 
-    Where they are to be drawn, those of more pieces serve, if `of_all` gives them: what is known of those is shared.
+    Those of more pieces serve as well, if `of_all` gives them, where not every outcome is gone through: what has been
+    worked out for those is shared.
     """
-    keys = tuple(keys)
+    keys, whole = tuple(keys), of_all() if of_all else None
     columns: dict[int, list[int]] = {}
     for at, (item, _number) in enumerate(keys):
         columns.setdefault(item, []).append(at)
-    rows = sorted(columns)
-    groups = sorted({int(falls.group[item]) for item in rows} - {-1})
-    alone = [item for item in rows if falls.group[item] < 0]
-    members = {one: [item for item in rows if falls.group[item] == one] for one in groups}
-    units = [_group_unit(falls, one, {item: columns[item] for item in own}) for one, own in members.items()]
-    single = {item: _row_unit(falls, item, own) for item, own in columns.items()}
-    lone = list(single.values())
-    independent = of_all().independent if of_all and _is_drawn(lone) else _combine(lone, keys, seed)
-    mixed = [*units, *(single[item] for item in alone)] if units else lone
-    joint = of_all().joint if of_all and _is_drawn(mixed) else _combine(mixed, keys, seed) if units else independent
-    runs = [falls.fell[item].size for item in rows if falls.group[item] >= 0]
+    groups = sorted({int(falls.group[item]) for item in columns} - {-1})
+    alone = [item for item in columns if falls.group[item] < 0]
+    singles = {item: _Single(falls, item, own) for item, own in columns.items()}
+    members = {one: {item: own for item, own in columns.items() if falls.group[item] == one} for one in groups}
+    mixed: list[_Unit] = [
+        *(_Group(falls, one, own) for one, own in members.items()),
+        *(singles[item] for item in alone),
+    ]
+    lone = list(singles.values())
+    independent = whole.independent if whole and _is_drawn(lone) else _combine(lone, keys, seed)
+    joint = whole.joint if whole and _is_drawn(mixed) else _combine(mixed, keys, seed) if groups else independent
+    rows = list(columns)
     return Couplings(
         keys=keys,
         joint=joint,
         independent=independent,
-        correlated=_correlate(falls, keys),
+        correlated=whole.correlated if whole else _correlate(falls, keys),
+        ends=whole.ends if whole else _ends(keys),
         is_joint=not alone and len(groups) <= 1,
-        runs=min(runs, default=0),
+        runs=min((falls.fell[item].size for own in members.values() for item in own), default=0),
         is_drawn=bool(alone or len(groups) > 1) and (_is_drawn(mixed) or _is_drawn(lone)),
         pieces=int(falls.quantity[rows].sum()),
         unverified=int(falls.quantity[alone].sum()),
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Unit:
-    """Pieces that fall together in a known way: their columns (c,), the patterns (k, c) and the weights of those.
+class _Unit(Protocol):
+    """Pieces that fall together in a known way.
 
-    `name` is the piece, or the group, by which draws are told apart; `is_group` tells which of the two.
+    `key` tells it apart in draws, `count` is the number of its patterns, and `patterns` returns them: the columns of
+    its pieces (c,), which of those fall (count, c), and the weights (count,).
     """
 
-    name: int
-    columns: list[int]
-    fell: BoolArray
-    weight: FloatArray
-    is_group: bool = False
+    @property
+    def key(self) -> tuple[int, int]: ...
+    @property
+    def count(self) -> int: ...
+    def patterns(self) -> tuple[list[int], BoolArray, FloatArray]: ...
 
 
-def _group_unit(falls: Falls, group: int, columns: Mapping[int, list[int]]) -> _Unit:
-    """Return the outcomes of verified pieces, motion by motion.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Group:
+    """Verified pieces of one group, of which `columns` tells the columns.
 
     A piece that was decided after fewer motions than another repeats its own, so that its chance stays what it is.
     """
-    sizes = [falls.fell[item].size for item in columns]
-    runs = math.lcm(*sizes)
-    runs = runs if runs <= MOST_PATTERNS else max(sizes)
-    fell = np.column_stack([np.resize(falls.fell[item], runs) for item, own in columns.items() for _ in own])
-    every = [at for own in columns.values() for at in own]
-    return _Unit(group, every, fell, np.full(runs, 1.0 / runs), is_group=True)
+
+    falls: Falls
+    group: int
+    columns: Mapping[int, list[int]]
+
+    @property
+    def key(self) -> tuple[int, int]:
+        return self.group, 1
+
+    @property
+    def count(self) -> int:
+        sizes = {self.falls.fell[item].size for item in self.columns}
+        runs = math.lcm(*sizes)
+        return runs if runs <= MOST_PATTERNS else max(sizes)
+
+    def patterns(self) -> tuple[list[int], BoolArray, FloatArray]:
+        """Return what falls motion by motion."""
+        runs, fell = self.count, self.falls.fell
+        every = [at for own in self.columns.values() for at in own]
+        found = np.column_stack([np.resize(fell[item], runs) for item, own in self.columns.items() for _ in own])
+        return every, found, np.full(runs, 1.0 / runs)
 
 
-def _row_unit(falls: Falls, item: int, columns: list[int]) -> _Unit:
-    """Return the outcomes of one row: none, one, or two or more of its pieces fall, independently of each other."""
-    p, q = float(falls.probability[item]), int(falls.quantity[item])
-    none = (1 - p) ** q
-    if len(columns) == 1:
-        return _Unit(item, columns, np.array([[False], [True]]), np.array([none, 1 - none]))
-    one = q * p * (1 - p) ** (q - 1)
-    patterns = np.array([[False, False], [True, False], [True, True]])
-    return _Unit(item, columns, patterns, np.array([none, one, max(0.0, 1 - none - one)]))
+@dataclass(frozen=True, slots=True, eq=False)
+class _Single:
+    """The pieces of one row, which fall independently of each other: none, one, or two or more of them."""
+
+    falls: Falls
+    item: int
+    columns: list[int]
+
+    @property
+    def key(self) -> tuple[int, int]:
+        return self.item, 0
+
+    @property
+    def count(self) -> int:
+        return 1 + len(self.columns)
+
+    def patterns(self) -> tuple[list[int], BoolArray, FloatArray]:
+        """Return none of them, one of them, two or more."""
+        p, q = float(self.falls.probability[self.item]), int(self.falls.quantity[self.item])
+        none = (1 - p) ** q
+        if len(self.columns) == 1:
+            return self.columns, np.array([[False], [True]]), np.array([none, 1 - none])
+        one = q * p * (1 - p) ** (q - 1)
+        fell = np.array([[False, False], [True, False], [True, True]])
+        return self.columns, fell, np.array([none, one, max(0.0, 1 - none - one)])
 
 
 def _is_drawn(units: Sequence[_Unit]) -> bool:
-    return len(units) > 1 and math.prod(len(unit.weight) for unit in units) > EXACT
+    return len(units) > 1 and math.prod(unit.count for unit in units) > EXACT
 
 
 def _combine(units: Sequence[_Unit], keys: tuple[Key, ...], seed: int) -> Draws:
     """Combine units that fall independently: every combination where they are few, else `DRAWS` of them."""
-    sizes = [len(unit.weight) for unit in units]
     if not units:
-        return Draws(keys, np.zeros((1, 0), dtype=np.bool_), np.ones(1))
-    if not _is_drawn(units):
-        at = np.indices(sizes).reshape(len(sizes), -1)
-        weight = np.ones(at.shape[1])
-        for unit, chosen in zip(units, at, strict=True):
-            weight = weight * unit.weight[chosen]
-    else:
-        at = np.array([_draw(unit, seed) for unit in units])
+        return Draws.of(keys, np.zeros((1, 0), dtype=np.bool_), np.ones(1))
+    is_drawn, every = _is_drawn(units), [unit.patterns() for unit in units]
+    if is_drawn:
+        at = np.array([_draw(unit.key, one[2], seed) for unit, one in zip(units, every, strict=True)])
         weight = np.full(DRAWS, 1.0 / DRAWS)
+    else:
+        at = np.indices([unit.count for unit in units]).reshape(len(units), -1)
+        weight = np.prod([own[chosen] for (_, _, own), chosen in zip(every, at, strict=True)], axis=0)
     fell = np.zeros((len(weight), len(keys)), dtype=np.bool_)
-    for unit, chosen in zip(units, at, strict=True):
-        fell[:, unit.columns] = unit.fell[chosen]
-    return Draws(keys, fell, weight)
+    for (columns, patterns, _), chosen in zip(every, at, strict=True):
+        fell[:, columns] = patterns[chosen]
+    return Draws.of(keys, fell, weight)
 
 
-def _draw(unit: _Unit, seed: int) -> NDArray[np.intp]:
+def _draw(key: tuple[int, int], weight: FloatArray, seed: int) -> NDArray[np.intp]:
     """Draw patterns of a unit, each as often as its weight says, in an order of the unit's own."""
-    levels = _order(seed, unit.name, unit.is_group)
-    return np.minimum(np.searchsorted(np.cumsum(unit.weight), levels), len(unit.weight) - 1)
+    return np.minimum(np.searchsorted(np.cumsum(weight), _order(seed, *key)), len(weight) - 1)
 
 
 @lru_cache(maxsize=8192)
-def _order(seed: int, name: int, is_group: bool) -> FloatArray:
+def _order(seed: int, name: int, is_group: int) -> FloatArray:
     """Return the levels, from 0 to 1, by which the draws of a piece or of a group go."""
-    return (np.random.default_rng([seed, name, int(is_group)]).permutation(DRAWS) + 0.5) / DRAWS
+    return (np.random.default_rng([seed, name, is_group]).permutation(DRAWS) + 0.5) / DRAWS
 
 
 def _correlate(falls: Falls, keys: tuple[Key, ...]) -> Draws:
     """Return the draws where one level decides for all: what falls at a chance falls at every higher one."""
-    probability = falls.probability[np.array([item for item, _ in keys], dtype=np.intp)]
-    levels = np.unique(np.concatenate(([0.0, 1.0], probability)))
-    middle = (levels[:-1] + levels[1:]) / 2
-    return Draws(keys, probability > middle[:, np.newaxis], np.diff(levels))
+    chance = {key: float(falls.probability[key[0]]) for key in keys}
+    levels = sorted({0.0, 1.0, *chance.values()})
+    under = {level: (1 << at) - 1 for at, level in enumerate(levels)}
+    return Draws({key: under[level] for key, level in chance.items()}, np.diff(levels))
+
+
+def _ends(keys: tuple[Key, ...]) -> Draws:
+    return Draws(dict.fromkeys(keys, EVERY), np.array([0.5, 0.5]))
 
 
 def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chance]:
@@ -189,19 +211,17 @@ def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chanc
 
     What cannot happen with every piece fallen, or happens with none, is certain, and so is without an interval.
     """
-    n = len(couplings.keys)
-    none_and_every = np.array([[False] * n, [True] * n], dtype=np.bool_).reshape(2, n)
-    ends = _rows(happens(Draws(couplings.keys, none_and_every, np.ones(2))))
     ways = (couplings.joint, couplings.independent, couplings.correlated)
-    shares = np.round([one.weight @ _rows(happens(one)) for one in ways], ROUNDED)
+    happened = [happens(one) for one in ways]
     return [
-        _chance(couplings, share, z, is_certain=bool(none) or not every)
-        for share, (none, every) in zip(shares.T, ends.T, strict=True)
-    ]
+        _chance(couplings, [round(way.share(one), ROUNDED) for way, one in zip(ways, own, strict=True)], z,
+                is_certain=bool(end & NONE) or not end)
+        for end, *own in zip(happens(couplings.ends), *happened, strict=True)
+    ]  # fmt: skip
 
 
-def _chance(couplings: Couplings, shares: FloatArray, z: float, *, is_certain: bool) -> Chance:
-    joint, independent, correlated = (float(share) for share in shares)
+def _chance(couplings: Couplings, shares: Sequence[float], z: float, *, is_certain: bool) -> Chance:
+    joint, independent, correlated = shares
     values = (joint,) if couplings.is_joint else (joint, independent, correlated)
     low, high = min(values), max(values)
     counts = [*([couplings.runs] if couplings.runs else []), *([DRAWS] if couplings.is_drawn else [])]
@@ -213,7 +233,3 @@ def _chance(couplings: Couplings, shares: FloatArray, z: float, *, is_certain: b
         independent=independent, correlated=correlated, runs=couplings.runs, is_joint=couplings.is_joint,
         pieces=couplings.pieces, unverified=couplings.unverified,
     )  # fmt: skip
-
-
-def _rows(happened: BoolArray) -> BoolArray:
-    return happened if happened.ndim == 2 else happened[:, np.newaxis]

@@ -6,15 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from assess.inventory.model import Inventory
-from assess.methods._method import BoolArray
 from assess.methods.housner_monte_carlo import interval_width
-from assess.routes.couplings import DRAWS, Draws
+from assess.routes.couplings import DRAWS
 from assess.routes.falls import Falls
 from assess.routes.fixes import find_fixes
 from assess.routes.model import Beside, Chance, RouteResult, Routes, SegmentResult
 from assess.routes.network import build_course
 from assess.routes.reach import Reached
-from assess.routes.rooms import evaluate_floors, evaluate_rooms
+from assess.routes.rooms import evaluate_floors, evaluate_rooms, list_rooms
 from assess.routes.scene import Scene
 from assess.routes.widths import NARROWER, kinds_of, needed_width
 from assess.settings import Settings
@@ -49,13 +48,14 @@ def evaluate_routes(
     chance = {at: one.outlook.blocked.probability for at, one in enumerate(segments)}
     blind = frozenset(at for at, one in enumerate(segments) if not one.is_evaluated)
     routes = tuple(_route(scene, name, blind) for name in dict.fromkeys(one.segment.route for one in reached))
-    rooms = evaluate_rooms(scene, chance, blind)
+    parts = list_rooms(scene)
+    rooms = evaluate_rooms(scene, parts, chance, blind)
     return Routes(
         risk=settings.route_risk,
         segments=segments,
         routes=routes,
         rooms=rooms,
-        floors=evaluate_floors(scene, chance, rooms),
+        floors=evaluate_floors(scene, parts, chance, rooms),
         blocked_routes=sum(one.outlook.blocked.probability for one in routes),
         cut_off_rooms=sum(one.loses.probability for one in rooms),
         draws=DRAWS,
@@ -68,7 +68,7 @@ def _segment(scene: Scene, at: int) -> SegmentResult:
     standing = one.standing
     return SegmentResult(
         segment=one.segment,
-        outlook=scene.outlook([at], lambda blocked: blocked[:, at]),
+        outlook=scene.outlook([at], lambda blocked, _every: blocked[at]),
         clear=one.clear,
         required=one.required,
         standing=standing,
@@ -88,11 +88,11 @@ def _least(scene: Scene, at: int) -> float:
     """Return the width that is left with every free-standing piece fallen [m]."""
     one = scene.reached[at]
     free = np.array([not scene.falls.anchored[item] for item, _ in one.gaps.keys], dtype=np.bool_)
-    return float(one.gaps.residual(free[np.newaxis])[0])
+    return one.gaps.residual(free)
 
 
 def _crowded(scene: Scene, at: int, needed: float) -> Chance:
-    return scene.chances([at], lambda draws: scene.narrower(draws, at, needed))[0]
+    return scene.chances([at], lambda draws: [scene.narrower(draws, at, needed)])[0]
 
 
 def _beside(scene: Scene, at: int) -> list[Beside]:
@@ -102,7 +102,7 @@ def _beside(scene: Scene, at: int) -> list[Beside]:
     """
     found: dict[int, float] = {}
     for fail in (True, False):
-        together = scene.together([at], lambda draws: scene.blocked(draws, [at])[:, at], anchors_fail=fail)
+        together = scene.together([at], lambda draws: list(scene.blocked(draws, [at]).values()), anchors_fail=fail)
         found |= {item: together.get(item, 0.0) for item, _ in scene.keys([at], anchors_fail=fail)}
     beside = [replace(one, together=found.get(one.item, 0.0)) for one in scene.reached[at].beside]
     falls = scene.falls
@@ -121,12 +121,8 @@ def _beside(scene: Scene, at: int) -> list[Beside]:
 def _route(scene: Scene, name: str, blind: Set[int]) -> RouteResult:
     segments = scene.segments_of(name)
     course = build_course(segments, kinds_of(scene.inventory.places))
-    reaching = {at: {item for item, _ in scene.reached[at].gaps.keys} for at in segments}
-
-    def is_blocked(draws: Draws) -> BoolArray:
-        return course.is_blocked(scene.blocked(draws, segments))
-
-    fixes, is_mended = find_fixes(scene.couplings(segments), is_blocked, scene.risk, reaching)
+    lanes = {at: scene.reached[at] for at in segments}
+    fixes, is_mended = find_fixes(scene.couplings(segments), lanes, course.is_blocked, scene.risk)
     return RouteResult(
         route=name,
         outlook=scene.outlook(tuple(segments), course.is_blocked),

@@ -6,7 +6,7 @@ widest gaps. So pieces that face each other count together, and pieces far apart
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -14,16 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.methods._method import BoolArray, FloatArray
+from assess.routes.bits import union
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
 Key = tuple[int, int]
 """A piece that may fall: its index in the inventory, and 0, or 1 for a second piece of the same row."""
-MOST = 4_000_000
-"""Gaps that are worked on at once."""
-MOST_KNOWN = 16
-"""Pieces beside a segment up to which the widths of all that may fall together are kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -88,31 +85,42 @@ class Gaps:
     between: FloatArray
     sided: NDArray[np.intp]
     clear: float
-    _known: list[FloatArray] = field(default_factory=list)
-    """What has been worked out already, where the pieces are few: by the number whose bits are the fallen ones."""
+    _chains: dict[float, list["_Chains"]] = field(default_factory=dict)
+    """What is looked at for a width, kept."""
 
-    def residual(self, fell: BoolArray) -> FloatArray:
-        """Return the clear width left (k,) [m] where the pieces `fell` (k, n)."""
-        if len(self.keys) > MOST_KNOWN:
-            first, back = find_distinct(fell)
-            return self._compute(fell[first])[back]
-        if not self._known:
-            self._known.append(np.full(2 ** len(self.keys), np.nan))
-        known, code = self._known[0], _encode(fell)
-        lacking = np.unique(code[np.isnan(known[code])])
-        if lacking.size:
-            bits = (lacking[:, np.newaxis] >> np.arange(len(self.keys))) & 1
-            known[lacking] = self._compute(bits.astype(np.bool_))
-        return np.asarray(known[code], dtype=np.float64)
+    def residual(self, fell: BoolArray) -> float:
+        """Return the clear width left [m] where the pieces `fell` (n,)."""
+        there = np.append(fell, True)[self.column]
+        return min(self._narrowest(np.flatnonzero(there & side)) for side in self._sides())
 
-    def _compute(self, fell: BoolArray) -> FloatArray:
-        size = max(1, MOST // max(1, self.column.size**2))
-        parts = [self._residual(fell[at : at + size]) for at in range(0, len(fell), size)]
-        return np.concatenate(parts) if parts else np.zeros(0)
+    def _narrowest(self, own: NDArray[np.intp]) -> float:
+        """Return the least widest gap [m] of all ways from wall to wall over some obstacles, one obstacle by one."""
+        ways = np.full((2 + own.size, 2 + own.size), self.clear)
+        ways[0, 2:] = ways[2:, 0] = self.left[own]
+        ways[1, 2:] = ways[2:, 1] = self.right[own]
+        ways[2:, 2:] = self.between[np.ix_(own, own)]
+        for _ in own:
+            ways = np.minimum(ways[:-1, :-1], np.maximum(ways[-1, :-1, np.newaxis], ways[-1, np.newaxis, :-1]))
+        return float(ways[0, 1])
 
-    def _residual(self, fell: BoolArray) -> FloatArray:
-        there = np.column_stack((fell, np.ones(len(fell), dtype=np.bool_)))[:, self.column]
-        return np.asarray(np.min([self._narrowest(there & one) for one in self._sides()], axis=0), dtype=np.float64)
+    def narrower(self, fallen: Mapping[Key, int], every: int, width: float) -> int:
+        """Return the set of the draws in which less than a width [m] is left: where some chain has narrower gaps alone.
+
+        Parameters
+        ----------
+        fallen : mapping of key to int
+            For each piece the set of the draws in which it falls; others stand. Sets are those of `assess.routes.bits`.
+        every : int
+            The set of all draws.
+        width : float
+            Width [m].
+        """
+        if self.clear < width:
+            return every
+        if width not in self._chains:
+            self._chains[width] = [_Chains.of(self, side, width) for side in self._sides()]
+        there = [every if at < 0 else fallen.get(self.keys[at], 0) for at in self.column.tolist()]
+        return union(one.lead(there) for one in self._chains[width])
 
     def _sides(self) -> list[BoolArray]:
         """Return which obstacles (m,) are looked at together: never one piece on both sides.
@@ -126,23 +134,50 @@ class Gaps:
         lefts = [(np.abs(self.sided) >> bit) & 1 == one for bit in bits for one in (0, 1)]
         return [(self.sided == 0) | ((self.sided > 0) == left) for left in lefts]
 
-    def _narrowest(self, there: BoolArray) -> FloatArray:
-        """Find the least widest gap of all chains from the left wall, obstacle by obstacle until nothing changes."""
-        widest: FloatArray = np.where(there, self.left, np.inf)
-        while widest.size:
-            nearer = np.maximum(widest[:, :, np.newaxis], self.between).min(axis=1)
-            nearer = np.where(there, np.minimum(widest, nearer), np.inf)
-            if np.array_equal(nearer, widest):
-                break
-            widest = nearer
-        return np.asarray(np.maximum(widest, self.right).min(axis=1, initial=self.clear), dtype=np.float64)
+
+@dataclass(frozen=True, slots=True)
+class _Chains:
+    """The gaps under a width: obstacles that have none wider to either wall, or to the left or right one, and pairs."""
+
+    alone: list[int]
+    first: list[int]
+    last: list[int]
+    pairs: list[tuple[int, int]]
+
+    @classmethod
+    def of(cls, gaps: Gaps, side: BoolArray, width: float) -> "_Chains":
+        """Find those of some obstacles (m,); what is too near both walls needs no other."""
+        left, right = side & (gaps.left < width), side & (gaps.right < width)
+        linked = np.triu(gaps.between < width, 1) & np.outer(side & ~(left & right), side & ~(left & right))
+        pairs = [(int(one), int(other)) for one, other in zip(*np.nonzero(linked), strict=True)]
+        alone, first, last = (np.flatnonzero(one).tolist() for one in (left & right, left & ~right, right & ~left))
+        return cls(alone, first, last, pairs)
+
+    def lead(self, there: Sequence[int]) -> int:
+        """Return the set of the draws in which some chain leads from wall to wall, of obstacles `there` in sets."""
+        found = union(there[at] for at in self.alone)
+        if not (self.first and self.last and self.pairs):
+            return found
+        reached = [0] * len(there)
+        for at in self.first:
+            reached[at] = there[at]
+        changed = True
+        while changed:
+            changed = False
+            for one, other in self.pairs:
+                both = (reached[one] | reached[other]) & there[one] & there[other]
+                if both & ~(reached[one] & reached[other]):
+                    changed = True
+                    reached[one] |= both
+                    reached[other] |= both
+        return found | union(reached[at] for at in self.last)
 
 
 def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
     """Return the gaps between obstacles, of which `clear` [m] is the width of the segment."""
     keys = tuple(sorted({one.key for one in obstacles if one.falls}))
     place = {key: at for at, key in enumerate(keys)}
-    pieces = sorted({one.key for one in obstacles})
+    pieces = sorted({one.key for one in obstacles if one.side})
     between = np.full((len(obstacles), len(obstacles)), math.inf)
     for at, one in enumerate(obstacles):
         for other_at, other in enumerate(obstacles[:at]):
@@ -159,7 +194,7 @@ def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
 
 
 def _side(one: Obstacle, pieces: Sequence[Key]) -> int:
-    return {"left": 1, "right": -1, None: 0}[one.side] * (pieces.index(one.key) + 1)
+    return {"left": 1, "right": -1}[one.side] * (pieces.index(one.key) + 1) if one.side else 0
 
 
 def _gap(one: Obstacle, other: Obstacle, clear: float) -> float:
@@ -175,24 +210,3 @@ def _gap(one: Obstacle, other: Obstacle, clear: float) -> float:
         return math.inf  # on one side, or one and the same piece
     left, right = (one, other) if one.side == "left" else (other, one)
     return max(0.0, left.right + right.left - clear)
-
-
-def _encode(fell: BoolArray) -> NDArray[np.intp]:
-    """Return for each row of an array (k, n), of at most 16 columns, the number of which its values are the bits."""
-    packed = np.packbits(fell, axis=1, bitorder="little")
-    code = np.zeros(len(fell), dtype=np.intp)
-    for at in range(packed.shape[1]):
-        code |= packed[:, at].astype(np.intp) << 8 * at
-    return code
-
-
-def find_distinct(fell: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return where each distinct row of an array (k, n) stands first, and for each row which of those it is."""
-    if not fell.size:
-        return np.arange(min(len(fell), 1)), np.zeros(len(fell), dtype=np.intp)
-    packed = np.packbits(fell, axis=1)
-    words = np.zeros((len(fell), -(-packed.shape[1] // 8) * 8), dtype=np.uint8)
-    words[:, : packed.shape[1]] = packed
-    as_one = words.view(np.uint64) if words.shape[1] == 8 else words.view(np.dtype((np.void, words.shape[1])))
-    _, first, back = np.unique(as_one.ravel(), return_index=True, return_inverse=True)
-    return first, back

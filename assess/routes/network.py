@@ -3,28 +3,26 @@
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from assess.inventory.model import Place, Segment
-from assess.methods._method import BoolArray
-from assess.routes.gaps import find_distinct
+from assess.routes.bits import union
 
 if TYPE_CHECKING:
     import networkx as nx
 
 MOST_WAYS = 3
 """Ways out of a room that are listed."""
-FEW, MOST_TOGETHER = 1000, 12
-"""Draws below which, and segments above which, it does not pay to look for draws that are alike."""
 EACH = 1e-6
 """What every segment adds to the cost of a way, so that of two that are as safe the shorter is taken."""
 AGAIN = 100.0
 """What a segment costs more once a way has taken it: another shares it only where it must."""
 BEYOND = "\0"
 """Stands for all the ways out together, where they are taken as one place."""
+
+Blocked = Mapping[int, int]
+"""For each segment the set of the draws in which it is blocked, as `assess.routes.bits` has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,42 +41,23 @@ class Part:
         """Its segments."""
         return tuple(sorted(at for _, _, at in self.edges))
 
-    def cut_off(self, blocked: BoolArray, sources: Sequence[str]) -> BoolArray:
-        """Tell which of `sources` (r,) reach none of the targets where segments are `blocked` (m, all segments)."""
-        doubtful = [edge for edge in self.edges if blocked[:, edge[2]].any()]
-        if len(blocked) < FEW or len(doubtful) > MOST_TOGETHER:
-            return self._cut_off(blocked, sources, doubtful)
-        first, back = find_distinct(blocked[:, [segment for _, _, segment in doubtful]])
-        return self._cut_off(blocked[first], sources, doubtful)[back]
+    def cut_off(self, blocked: Blocked, sources: Sequence[str], every: int) -> list[int]:
+        """Return for each of some places the set of the draws in which it reaches none of the targets.
 
-    def _cut_off(
-        self, blocked: BoolArray, sources: Sequence[str], doubtful: Sequence[tuple[str, str, int]]
-    ) -> BoolArray:
-        is_doubtful = {segment for _, _, segment in doubtful}
-        at = self._join(edge for edge in self.edges if edge[2] not in is_doubtful)
-        reached = np.zeros((len(blocked), len(at)), dtype=np.bool_, order="F")  # column by column
-        reached[:, [at[place] for place in self.targets]] = True
+        `every` is the set of all draws.
+        """
+        reached = {place: 0 for edge in self.edges for place in edge[:2]} | dict.fromkeys(self.targets, every)
+        passable = [(one, other, every & ~blocked[segment]) for one, other, segment in self.edges]
         changed = True
         while changed:
-            before = int(reached.sum())
-            for one, other, segment in doubtful:
-                passable = (reached[:, at[one]] | reached[:, at[other]]) & ~blocked[:, segment]
-                reached[:, at[one]] |= passable
-                reached[:, at[other]] |= passable
-            changed = int(reached.sum()) > before
-        return ~reached[:, [at[place] for place in sources]]
-
-    def _join(self, edges: Iterable[tuple[str, str, int]]) -> dict[str, int]:
-        """Number the places; those that such edges join have one number."""
-        places = sorted({place for one, other, _ in self.edges for place in (one, other)} | self.targets)
-        at = {place: number for number, place in enumerate(places)}
-        joined: dict[int, list[str]] = {number: [place] for place, number in at.items()}
-        for one, other, _ in edges:
-            less, more = sorted((at[one], at[other]))
-            if less != more:
-                joined[less] += joined[more]
-                at |= dict.fromkeys(joined.pop(more), less)
-        return at
+            changed = False
+            for one, other, free in passable:
+                more = (reached[one] ^ reached[other]) & free
+                if more:
+                    changed = True
+                    reached[one] |= more
+                    reached[other] |= more
+        return [every & ~reached[place] for place in sources]
 
 
 def build_graph(segments: Mapping[int, Segment]) -> "nx.MultiGraph[str]":
@@ -122,12 +101,10 @@ class Course:
     parts: tuple[tuple[Part, tuple[str, ...]], ...]
     loose: tuple[int, ...]
 
-    def is_blocked(self, blocked: BoolArray) -> BoolArray:
-        """Tell for each of m draws whether it is, where segments are `blocked` (m, all segments)."""
-        found = blocked[:, list(self.loose)].any(axis=1)
-        for part, sources in self.parts:
-            found |= part.cut_off(blocked, sources).any(axis=1)
-        return np.asarray(found, dtype=np.bool_)
+    def is_blocked(self, blocked: Blocked, every: int) -> int:
+        """Return the set of the draws in which it is; `every` is the set of all draws."""
+        lost = (part.cut_off(blocked, sources, every) for part, sources in self.parts)
+        return union([*(blocked[at] for at in self.loose), *chain.from_iterable(lost)])
 
 
 def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Course:

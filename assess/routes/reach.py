@@ -18,7 +18,7 @@ from assess.inventory.model import Inventory, Item, Segment
 from assess.inventory.routes import DEFAULT_WIDTH
 from assess.routes.band import Band, build_bands
 from assess.routes.flags import BLIND
-from assess.routes.gaps import Gaps, Obstacle, build_gaps
+from assess.routes.gaps import Gaps, Key, Obstacle, build_gaps
 from assess.routes.model import Beside
 from assess.routes.shapes import Shape, build_shapes
 from assess.routes.widths import NARROWER
@@ -56,6 +56,15 @@ class Reached:
     def is_evaluated(self) -> bool:
         """Whether anything tells which pieces can reach it; where it is too narrow as it stands, none need."""
         return bool(self.beside) or BLIND.isdisjoint(self.flags) or self.standing < self.required - NARROWER
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """The pieces that may fall onto it."""
+        return self.gaps.keys
+
+    def blocked(self, fallen: Mapping[Key, int], every: int) -> int:
+        """Return the set of the draws, of `every`, in which it is blocked where pieces fall in sets of them."""
+        return self.gaps.narrower(fallen, every, self.required - NARROWER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,13 +135,13 @@ def _reach(
         beside=tuple(_beside(index, told[index], clear, required) for index in sorted(told)),
         gaps=gaps,
         other_rooms=tuple(sorted(others)),
-        standing=float(gaps.residual(np.zeros((1, len(gaps.keys)), dtype=np.bool_))[0]),
+        standing=gaps.residual(np.zeros(len(gaps.keys), dtype=np.bool_)),
     )
 
 
 def _beside(index: int, told: _Told, clear: float, required: float) -> Beside:
     gaps = build_gaps([one for one in told.obstacles if one.number == 0], clear)
-    left = float(gaps.residual(np.ones((1, len(gaps.keys)), dtype=np.bool_))[0])
+    left = gaps.residual(np.ones(len(gaps.keys), dtype=np.bool_))
     stands = any(not one.falls for one in told.obstacles)
     return Beside(
         item=index,

@@ -3,11 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 
-import numpy as np
-
 from assess.inventory.model import Place
-from assess.methods._method import BoolArray
-from assess.routes.couplings import Draws
+from assess.routes.bits import union
+from assess.routes.draws import Draws
 from assess.routes.model import Chance, FloorRoutes, RoomResult, Way
 from assess.routes.network import Part, build_course, build_graph, find_parts, find_rooms, find_ways
 from assess.routes.scene import Scene
@@ -17,17 +15,8 @@ UNKNOWN = 0.5
 """What the choice of the safest way takes for the chance of a segment of which nothing is known [-]."""
 
 
-def evaluate_rooms(scene: Scene, chance: Mapping[int, float], blind: Set[int]) -> tuple[RoomResult, ...]:
-    """Return every room that the network joins to a way out.
-
-    `chance` is that of a blockage by segment; `blind` are the segments that are not evaluated.
-    """
-    unknown = dict.fromkeys(blind, UNKNOWN)
-    return tuple(_room(scene, place, part, {**chance, **unknown}, blind) for place, part in list_rooms(scene))
-
-
 def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
-    """Return every such room, and the part of the network that lies on its ways out."""
+    """Return every room that the network joins to a way out, and the part of it that lies on the room's ways out."""
     segments = {at: one.segment for at, one in enumerate(scene.reached)}
     places = scene.inventory.places
     parts = list(find_parts(build_graph(segments), kinds_of(places)))
@@ -36,9 +25,20 @@ def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
     return list(find_rooms(places, parts, heights))
 
 
+def evaluate_rooms(
+    scene: Scene, parts: Sequence[tuple[Place, Part]], chance: Mapping[int, float], blind: Set[int]
+) -> tuple[RoomResult, ...]:
+    """Return what becomes of the rooms of `list_rooms`.
+
+    `chance` is that of a blockage by segment; `blind` are the segments that are not evaluated.
+    """
+    unknown = dict.fromkeys(blind, UNKNOWN)
+    return tuple(_room(scene, place, part, {**chance, **unknown}, blind) for place, part in parts)
+
+
 def _room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float], blind: Set[int]) -> RoomResult:
-    def happens(draws: Draws) -> BoolArray:
-        return part.cut_off(scene.blocked(draws, part.segments), [place.place])
+    def happens(draws: Draws) -> Sequence[int]:
+        return part.cut_off(scene.blocked(draws, part.segments), [place.place], draws.every)
 
     loses = scene.chances(part.segments, happens)[0]
     unanchored = scene.chances_unanchored(part.segments, happens)
@@ -65,12 +65,13 @@ def _ways(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -
 
 def any_blocked(scene: Scene, segments: Sequence[int]) -> Chance:
     """Return the chance that any of some segments is blocked."""
-    return scene.chances(segments, lambda draws: _any(scene.blocked(draws, segments), segments))[0]
+    return scene.chances(segments, lambda draws: [union(scene.blocked(draws, segments).values())])[0]
 
 
-def evaluate_floors(scene: Scene, chance: Mapping[int, float], rooms: Sequence[RoomResult]) -> tuple[FloorRoutes, ...]:
-    """Return what is to be expected on every floor that has segments or rooms."""
-    parts = list_rooms(scene)
+def evaluate_floors(
+    scene: Scene, parts: Sequence[tuple[Place, Part]], chance: Mapping[int, float], rooms: Sequence[RoomResult]
+) -> tuple[FloorRoutes, ...]:
+    """Return what is to be expected on every floor that has segments or rooms; `rooms` are those of `parts`."""
     found = []
     for floor in scene.inventory.floors:
         segments = [at for at, one in enumerate(scene.reached) if one.segment.floor == floor.floor]
@@ -106,19 +107,14 @@ def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float:
     own = {at: one for at, one in scene.segments_of(route).items() if at in segments}
     course = build_course(own, kinds_of(scene.inventory.places))
 
-    return scene.chances(own, lambda draws: course.is_blocked(scene.blocked(draws, own)))[0].probability
-
-
-def _any(blocked: BoolArray, segments: Sequence[int]) -> BoolArray:
-    return np.asarray(blocked[:, segments].any(axis=1), dtype=np.bool_)
+    return scene.chances(own, lambda draws: [course.is_blocked(scene.blocked(draws, own), draws.every)])[0].probability
 
 
 def _any_room(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance:
     segments = sorted({at for _, part in rooms for at in part.segments})
 
-    def happens(draws: Draws) -> BoolArray:
+    def happens(draws: Draws) -> Sequence[int]:
         blocked = scene.blocked(draws, segments)
-        every = [part.cut_off(blocked, [place.place])[:, 0] for place, part in rooms]
-        return np.asarray(np.any(every, axis=0), dtype=np.bool_)
+        return [union(part.cut_off(blocked, [place.place], draws.every)[0] for place, part in rooms)]
 
     return scene.chances(segments, happens)[0]

@@ -6,16 +6,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from assess.inventory.model import Inventory, Segment
-from assess.methods._method import BoolArray, FloatArray
-from assess.routes.couplings import ROUNDED, Couplings, Draws, Happens, build_couplings, find_chances
+from assess.routes.bits import union
+from assess.routes.couplings import ROUNDED, Couplings, Happens, build_couplings, find_chances
+from assess.routes.draws import Draws
 from assess.routes.falls import Falls
 from assess.routes.gaps import Key
 from assess.routes.model import Chance, Outlook, RouteState
+from assess.routes.network import Blocked
 from assess.routes.reach import Reached
 from assess.routes.widths import NARROWER
-
-WHOLE = -1
-"""Under this number the array stands of which the segments are columns: column by column, as it is read so."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +32,7 @@ class Scene:
     z: float
     _couplings: dict[tuple[Key, ...], Couplings] = field(default_factory=dict)
     _of_all: dict[bool, Couplings] = field(default_factory=dict)
-    """Of all pieces, by whether anchors fail: those of pieces that are too many to go through take theirs from it."""
+    """Of all pieces, by whether anchors fail: those of fewer take from it what they may."""
 
     def segments_of(self, route: str) -> Mapping[int, Segment]:
         """Return the segments of a route by their number."""
@@ -59,35 +58,23 @@ class Scene:
 
     # ------------------------------------------------------------ what happens in draws
 
-    def width(self, draws: Draws, segment: int) -> FloatArray:
-        """Return the clear width left of a segment (m,) [m]; pieces that the draws do not know of stand."""
-        if segment not in draws.widths:
-            gaps = self.reached[segment].gaps
-            columns = [draws.place.get(key, -1) for key in gaps.keys]
-            fell = draws.fell[:, columns] & (np.array(columns, dtype=np.intp) >= 0) if draws.place else None
-            nothing = np.zeros((len(draws.weight), len(columns)), dtype=np.bool_)
-            draws.widths[segment] = gaps.residual(nothing if fell is None else fell)
-        return draws.widths[segment]
+    def narrower(self, draws: Draws, segment: int, width: float) -> int:
+        """Return the set of the draws in which what is left of a segment is under a width [m].
 
-    def narrower(self, draws: Draws, segment: int, width: float) -> BoolArray:
-        """Tell whether what is left of a segment (m,) is under a width [m]."""
-        return np.asarray(self.width(draws, segment) < width - NARROWER, dtype=np.bool_)
+        Pieces that the draws do not know of stand.
+        """
+        if (segment, width) not in draws.narrower:
+            found = self.reached[segment].gaps.narrower(draws.fallen, draws.every, width - NARROWER)
+            draws.narrower[segment, width] = found
+        return draws.narrower[segment, width]
 
-    def blocked(self, draws: Draws, segments: Collection[int]) -> BoolArray:
-        """Tell which of some segments are blocked (m, all segments); what stands of the others is not to be used."""
-        if not draws.blocked:
-            draws.blocked[WHOLE] = np.zeros((len(draws.weight), len(self.reached)), dtype=np.bool_, order="F")
-        found = draws.blocked[WHOLE]
-        for at in segments:
-            if at not in draws.blocked:
-                found[:, at] = self.narrower(draws, at, self.reached[at].required)
-                draws.blocked[at] = found[:, at]
-        return found
+    def blocked(self, draws: Draws, segments: Iterable[int]) -> Blocked:
+        """Return for each of some segments the set of the draws in which it is blocked."""
+        return {at: self.narrower(draws, at, self.reached[at].required) for at in segments}
 
-    def taken(self, draws: Draws, segments: Collection[int]) -> BoolArray:
-        """Tell whether any of some segments is narrowed at all (m,)."""
-        every = [self.narrower(draws, at, self.reached[at].standing) for at in segments]
-        return np.asarray(np.any(every, axis=0), dtype=np.bool_)
+    def taken(self, draws: Draws, segments: Iterable[int]) -> int:
+        """Return the set of the draws in which any of some segments is narrowed at all."""
+        return union(self.narrower(draws, at, self.reached[at].standing) for at in segments)
 
     # ------------------------------------------------------------ chances
 
@@ -101,15 +88,16 @@ class Scene:
             return None
         return find_chances(self.couplings(segments, anchors_fail=True), happens, self.z)
 
-    def outlook(self, segments: Collection[int], is_blocked: Callable[[BoolArray], BoolArray]) -> Outlook:
-        """Return the outlook of some segments together; `is_blocked` (m,) tells from those that are (m, all)."""
+    def outlook(self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int]) -> Outlook:
+        """Return the outlook of some segments together; `is_blocked` tells it from those that are, and all draws."""
 
-        def happens(draws: Draws) -> BoolArray:
-            blocked = is_blocked(self.blocked(draws, segments))
-            return np.column_stack((blocked, blocked | self.taken(draws, segments)))
+        def happens(draws: Draws) -> Sequence[int]:
+            blocked = is_blocked(self.blocked(draws, segments), draws.every)
+            return blocked, blocked | self.taken(draws, segments)
 
         blocked, taken = self.chances(segments, happens)
-        unanchored, together = self.chances_unanchored(segments, happens), self.together(segments, happens)
+        unanchored = self.chances_unanchored(segments, lambda draws: happens(draws)[:1])
+        together = self.together(segments, happens)
         in_record = self._in_record(segments, happens)
         least = in_record or RouteState.OPEN
         return Outlook(
@@ -125,13 +113,11 @@ class Scene:
     def together(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> dict[int, float]:
         """Return for each piece the chance that it falls while the first of what happens does, where there is any."""
         couplings = self.couplings(segments, anchors_fail=anchors_fail)
-        draws, happened = couplings.joint, happens(couplings.joint)
-        at = np.flatnonzero(happened[:, 0] if happened.ndim == 2 else happened)
-        columns = [draws.place[key] for key in couplings.keys]
-        share = draws.weight[at] @ draws.fell[np.ix_(at, np.array(columns, dtype=np.intp))]
+        draws, happened = couplings.joint, happens(couplings.joint)[0]
         found: dict[int, float] = {}
-        for (item, _), value in zip(couplings.keys, share, strict=True):
-            found[item] = max(found.get(item, 0.0), round(float(value), ROUNDED))
+        for key in couplings.keys:
+            value = round(draws.share(happened & draws.fallen[key]), ROUNDED)
+            found[key[0]] = max(found.get(key[0], 0.0), value)
         return {item: value for item, value in found.items() if value > 0}
 
     def _state(self, blocked: float, taken: float) -> RouteState:
@@ -145,5 +131,5 @@ class Scene:
         known = self.falls.in_record[np.array([item for item, _ in keys], dtype=np.intp)]
         if not keys or np.isnan(known).all():
             return None
-        blocked, taken = happens(Draws(keys, known[np.newaxis] == 1, np.ones(1)))[0]
+        blocked, taken = happens(Draws.of(keys, known[np.newaxis] == 1, np.ones(1)))
         return RouteState.BLOCKED if blocked else RouteState.REDUCED if taken else RouteState.OPEN

@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from assess.routes import couplings as module
+from assess.routes.bits import union
 from assess.routes.couplings import build_couplings, find_chances
 from assess.routes.falls import Falls
 from assess.routes.model import Chance
@@ -129,9 +130,12 @@ def test_rows_against_every_outcome_of_every_piece(rows):
     """Any and two or more of a row's pieces, from all 2^n outcomes of single pieces."""
     falls = Falls.of([p for p, _ in rows], quantity=[q for _, q in rows])
     keys = [(at, number) for at, (_, q) in enumerate(rows) for number in range(min(q, 2))]
-    chances = find_chances(
-        build_couplings(falls, keys, 1), lambda draws: np.column_stack((draws.fell.any(axis=1), draws.fell)), 1.96
-    )
+
+    def happens(draws):
+        fallen = [draws.fallen[key] for key in keys]
+        return [union(fallen), *fallen]
+
+    chances = find_chances(build_couplings(falls, keys, 1), happens, 1.96)
     none = np.prod([(1 - p) ** q for p, q in rows])
     assert chances[0].independent == pytest.approx(1 - none)
     for (at, number), chance in zip(keys, chances[1:], strict=True):

@@ -1,12 +1,17 @@
 """The set of pieces to fix: enough, and no piece in it too many."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.routes.couplings import Draws, build_couplings
+from assess.routes.bits import to_array, union
+from assess.routes.couplings import build_couplings
 from assess.routes.falls import Falls
 from assess.routes.fixes import find_fixes
+from assess.routes.gaps import Key
 
 QUICK = settings(max_examples=60, deadline=None)
 RUNS = 20
@@ -28,33 +33,57 @@ def routes(draw):
     return build_couplings(falls, [(at, 0) for at in range(n)], 1), sets
 
 
-def blocked_by(sets):
-    return lambda draws: np.any([draws.fell[:, one].all(axis=1) for one in sets], axis=0)
+@dataclass(frozen=True)
+class Together:
+    """A segment that is blocked where all of some pieces fall."""
+
+    pieces: list[int]
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        return tuple((item, 0) for item in self.pieces)
+
+    def blocked(self, fallen: Mapping[Key, int], every: int) -> int:
+        for key in self.keys:
+            every &= fallen.get(key, 0)
+        return every
 
 
-def chance(couplings, is_blocked, fixed):
+def lanes(sets):
+    return {at: Together(one) for at, one in enumerate(sets)}
+
+
+def any_blocked(blocked, _every):
+    return union(blocked.values())
+
+
+def chance(couplings, sets, fixed):
     """Return the chance that a report goes by once these pieces are fixed."""
-    free = np.array([item not in fixed for item, _ in couplings.keys])
     ways = [couplings.joint] if couplings.is_joint else [couplings.joint, couplings.independent, couplings.correlated]
-    return max(float(one.weight @ is_blocked(Draws(one.keys, one.fell & free, one.weight))) for one in ways)
+    found = []
+    for one in ways:
+        count = len(one.weight)
+        fell = {item: to_array(0 if item in fixed else falls, count) == 1 for (item, _), falls in one.fallen.items()}
+        happens = np.any([np.all([fell[item] for item in own], axis=0) for own in sets], axis=0)
+        found.append(float(one.weight @ happens))
+    return max(found)
 
 
 @QUICK
 @given(routes(), st.sampled_from([0.005, 0.031, 0.11, 0.33, 0.77]))
 def test_enough_and_none_too_many(drawn, risk):
     couplings, sets = drawn
-    is_blocked = blocked_by(sets)
-    steps, is_mended = find_fixes(couplings, is_blocked, risk)
+    steps, is_mended = find_fixes(couplings, lanes(sets), any_blocked, risk)
     fixed = [step.item for step in steps]
     assert is_mended
     assert len(fixed) == len(set(fixed))
-    assert chance(couplings, is_blocked, fixed) < risk
+    assert chance(couplings, sets, fixed) < risk
     for one in fixed:
-        assert chance(couplings, is_blocked, [other for other in fixed if other != one]) >= risk
-    left = chance(couplings, is_blocked, [])
+        assert chance(couplings, sets, [other for other in fixed if other != one]) >= risk
+    left = chance(couplings, sets, [])
     assert (left < risk) == (not steps)
     for count, step in enumerate(steps, 1):
-        after = chance(couplings, is_blocked, fixed[:count])
+        after = chance(couplings, sets, fixed[:count])
         assert abs(step.left - after) < 1e-9
         assert abs(step.gain - (left - after)) < 1e-9
         left = after
@@ -63,5 +92,5 @@ def test_enough_and_none_too_many(drawn, risk):
 @QUICK
 @given(routes())
 def test_what_no_piece_blocks_cannot_be_mended(drawn):
-    couplings, _ = drawn
-    assert find_fixes(couplings, lambda draws: np.ones(len(draws.fell), dtype=np.bool_), 0.03) == ([], False)
+    couplings, sets = drawn
+    assert find_fixes(couplings, lanes(sets), lambda _, every: every, 0.03) == ([], False)

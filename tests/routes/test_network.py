@@ -5,6 +5,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from assess.routes.bits import to_array, to_sets
 from assess.routes.network import Part, build_course, find_parts, find_rooms, find_ways
 from tests.routes.buildings import place, stretch
 
@@ -40,8 +41,9 @@ def test_cut_off_is_what_networkx_cannot_reach(drawn, data):
     blocked = np.array(
         [data.draw(st.lists(st.booleans(), min_size=width, max_size=width)) for _ in range(5)], dtype=np.bool_
     )
-    found = part.cut_off(blocked, places)
-    for row, lost in zip(blocked, found, strict=True):
+    sets = dict(enumerate(to_sets(blocked)))
+    found = [to_array(lost, len(blocked)) for lost in part.cut_off(sets, places, 0b11111)]
+    for row, lost in zip(blocked, np.transpose(found), strict=True):
         graph: nx.MultiGraph[str] = nx.MultiGraph()
         graph.add_nodes_from(places)
         graph.add_edges_from((one, other) for one, other, at in part.edges if not row[at])
@@ -118,7 +120,7 @@ def test_a_route_is_blocked_where_one_of_its_rooms_is_cut_off(drawn, data):
     segments = {at: stretch(str(at), one, other) for one, other, at in graph.edges(keys=True)}
     width = max(segments) + 1
     row = np.array(data.draw(st.lists(st.booleans(), min_size=width, max_size=width)), dtype=np.bool_)
-    is_blocked = bool(build_course(segments, kinds).is_blocked(row[np.newaxis])[0])
+    is_blocked = bool(build_course(segments, kinds).is_blocked({at: int(one) for at, one in enumerate(row)}, 1))
     open_graph: nx.MultiGraph[str] = nx.MultiGraph()
     open_graph.add_nodes_from(graph)
     open_graph.add_edges_from((one, other) for one, other, at in graph.edges(keys=True) if not row[at])
