@@ -1,6 +1,7 @@
 """What happens in which of many draws, as one whole number: bit k tells of draw k.
 
-Such sets are joined by `|`, met by `&` and counted at once: what is asked most often of draws is then quick.
+Such sets are joined by `|`, met by `&` and counted at once: what is asked most often of draws is then quick. What a set
+leaves out is `every & ~set`, of the set of all draws: no set is negative.
 """
 
 from collections.abc import Iterable
@@ -14,7 +15,7 @@ from assess.methods._method import BoolArray
 
 
 def to_sets(happens: BoolArray) -> list[int]:
-    """Return the sets of the draws in which each of r things happens (m, r)."""
+    """Return the sets of the draws in which each of r things happens (m draws, r)."""
     packed = np.packbits(happens, axis=0, bitorder="little")
     return [int.from_bytes(packed[:, at].tobytes(), "little") for at in range(happens.shape[1])]
 

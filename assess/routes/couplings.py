@@ -37,9 +37,9 @@ Happens = Callable[[Draws], Sequence[int]]
 class Couplings:
     """The same pieces falling together in three ways.
 
-    `ends` are the draws `NONE` and `EVERY`. `runs` is the least number of motions of a verified piece,
-    0 without one; `is_drawn` tells whether any of the three was drawn rather than gone through. `pieces` and
-    `unverified` count pieces, not rows.
+    The draws may be of more pieces than `keys`: nothing may be asked of them that depends on another. `ends` are the
+    draws `NONE` and `EVERY`. `runs` is the least number of motions of a verified piece, 0 without one; `is_drawn` tells
+    whether any of the three was drawn rather than gone through. `pieces` and `unverified` count pieces, not rows.
     """
 
     keys: tuple[Key, ...]
@@ -59,8 +59,8 @@ def build_couplings(
 ) -> Couplings:
     """Return how the pieces of `keys` fall together; draws depend on `seed` and on the piece alone.
 
-    Those of more pieces serve as well, if `of_all` gives them, where not every outcome is gone through: what has been
-    worked out for those is shared.
+    `of_all` gives those of more pieces, if wanted: what has been worked out for them is shared, wherever not every
+    outcome of `keys` alone is gone through.
     """
     keys, whole = tuple(keys), of_all() if of_all else None
     columns: dict[int, list[int]] = {}
@@ -95,8 +95,8 @@ def build_couplings(
 class _Unit(Protocol):
     """Pieces that fall together in a known way.
 
-    `key` tells it apart in draws, `count` is the number of its patterns, and `patterns` returns them: the columns of
-    its pieces (c,), which of those fall (count, c), and the weights (count,).
+    `key` tells it apart in draws: the row and 0, or the group and 1. `count` is the number of its patterns; `patterns`
+    returns the columns of its pieces (c,), which of those fall (count, c), and the weights (count,).
     """
 
     @property

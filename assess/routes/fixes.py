@@ -40,7 +40,7 @@ def find_fixes(
     lanes : mapping of int to Lane
         The segments of the route by their number.
     is_blocked : callable
-        Tells from them whether the route is blocked.
+        Tells from the draws in which they are blocked, and from all draws, in which of them the route is.
     risk : float
         The chosen risk [-].
     """
@@ -85,44 +85,43 @@ class _Route:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sample:
-    """Draws with some pieces fixed: in which of them each piece still falls, and each segment is blocked."""
+    """Draws with some pieces fixed: in which of them each piece still falls, each segment and the route are blocked.
+
+    `chance` is that of the last [-].
+    """
 
     route: _Route
     draws: Draws
     fallen: Mapping[Key, int]
     blocked: Blocked
+    happened: int
+    chance: float
+
+    @classmethod
+    def of(cls, route: _Route, draws: Draws, fallen: Mapping[Key, int], blocked: Blocked) -> "_Sample":
+        happened = route.is_blocked(blocked, draws.every)
+        return cls(route, draws, fallen, blocked, happened, round(draws.share(happened), ROUNDED))
 
     @classmethod
     def begin(cls, route: _Route, draws: Draws, keys: Sequence[Key]) -> "_Sample":
         fallen = {key: draws.fallen[key] for key in keys if key[0] in route.beside}
-        blocked = {at: lane.blocked(fallen, draws.every) for at, lane in route.lanes.items()}
-        return cls(route, draws, fallen, blocked)
-
-    @property
-    def happened(self) -> int:
-        """The draws in which the route is blocked."""
-        return self.route.is_blocked(self.blocked, self.draws.every)
-
-    @property
-    def chance(self) -> float:
-        """The chance of that [-]."""
-        return round(self.draws.share(self.happened), ROUNDED)
+        return cls.of(route, draws, fallen, {at: one.blocked(fallen, draws.every) for at, one in route.lanes.items()})
 
     def fix(self, items: Collection[int]) -> "_Sample":
         """Return it with more pieces fixed."""
         fallen = {key: falls for key, falls in self.fallen.items() if key[0] not in items}
         near = {at for item in items for at in self.route.beside[item]}
         blocked = {at: self.route.lanes[at].blocked(fallen, self.draws.every) for at in near}
-        return _Sample(self.route, self.draws, fallen, {**self.blocked, **blocked})
+        return _Sample.of(self.route, self.draws, fallen, {**self.blocked, **blocked})
 
     def left(self, items: Sequence[int]) -> dict[int, float]:
         """Return the chance left with each of some pieces fixed: it can open the route only where it falls."""
-        happened, chance, opens = self.happened, self.chance, dict[tuple[int, ...], int]()
+        opens: dict[tuple[int, ...], int] = {}
         for near in {self.route.beside[item] for item in items}:
             clear = {**self.blocked, **dict.fromkeys(near, 0)}
-            opens[near] = happened & ~self.route.is_blocked(clear, self.draws.every)
-        can = {item for item in items if opens[self.route.beside[item]] & self.fallen[item, 0]}
-        return {item: self.fix((item,)).chance if item in can else chance for item in items}
+            opens[near] = self.happened & ~self.route.is_blocked(clear, self.draws.every)
+        can = {item for (item, _), falls in self.fallen.items() if falls & opens.get(self.route.beside[item], 0)}
+        return {item: self.fix((item,)).chance if item in can else self.chance for item in items}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,9 +138,13 @@ class _Trial:
     @classmethod
     def begin(cls, couplings: Couplings, lanes: Mapping[int, Lane], is_blocked: IsBlocked) -> "_Trial":
         route = _Route.of(lanes, is_blocked)
-        every = (couplings.joint, couplings.independent, couplings.correlated)
-        made = [_Sample.begin(route, draws, couplings.keys) for draws in every]
-        return cls(made[:1] if couplings.is_joint else made, made[1])
+        bounds = () if couplings.is_joint else (couplings.independent, couplings.correlated)
+        made = {
+            id(draws): _Sample.begin(route, draws, couplings.keys)
+            for draws in (couplings.joint, couplings.independent, *bounds)
+        }
+        samples = {id(draws): made[id(draws)] for draws in (couplings.joint, *bounds)}
+        return cls(list(samples.values()), made[id(couplings.independent)])
 
     @property
     def chance(self) -> float:
@@ -151,8 +154,8 @@ class _Trial:
     @property
     def items(self) -> list[int]:
         """The pieces that fall in any of the draws in which it is blocked."""
-        every = [(one, one.happened) for one in (*self.samples, self.independent)]
-        return sorted({item for one, happened in every for (item, _), falls in one.fallen.items() if falls & happened})
+        every = (*self.samples, self.independent)
+        return sorted({item for one in every for (item, _), falls in one.fallen.items() if falls & one.happened})
 
     def left(self, items: Collection[int]) -> float:
         """Return the chance with more pieces fixed [-]."""
@@ -160,7 +163,8 @@ class _Trial:
 
     def fix(self, items: Collection[int]) -> "_Trial":
         """Return the trial with more pieces fixed."""
-        return _Trial([one.fix(items) for one in self.samples], self.independent.fix(items))
+        fixed = {id(one): one.fix(items) for one in (*self.samples, self.independent)}
+        return _Trial([fixed[id(one)] for one in self.samples], fixed[id(self.independent)])
 
     def best(self) -> int:
         """Return the piece whose fixing lowers the chance most, the largest of the three; else the independent one."""

@@ -94,7 +94,7 @@ class Gaps:
         return min(self._narrowest(np.flatnonzero(there & side)) for side in self._sides())
 
     def _narrowest(self, own: NDArray[np.intp]) -> float:
-        """Return the least widest gap [m] of all ways from wall to wall over some obstacles, one obstacle by one."""
+        """Return the least widest gap [m] of all ways from wall to wall over some obstacles, obstacle by obstacle."""
         ways = np.full((2 + own.size, 2 + own.size), self.clear)
         ways[0, 2:] = ways[2:, 0] = self.left[own]
         ways[1, 2:] = ways[2:, 1] = self.right[own]
@@ -104,14 +104,14 @@ class Gaps:
         return float(ways[0, 1])
 
     def narrower(self, fallen: Mapping[Key, int], every: int, width: float) -> int:
-        """Return the set of the draws in which less than a width [m] is left: where some chain has narrower gaps alone.
+        """Return the set of the draws in which less than a width [m] is left: some chain has narrower gaps alone.
 
         Parameters
         ----------
         fallen : mapping of key to int
             For each piece the set of the draws in which it falls; others stand. Sets are those of `assess.routes.bits`.
         every : int
-            The set of all draws.
+            The set of all draws, which is returned where the segment itself is narrower.
         width : float
             Width [m].
         """
@@ -137,40 +137,48 @@ class Gaps:
 
 @dataclass(frozen=True, slots=True)
 class _Chains:
-    """The gaps under a width: obstacles that have none wider to either wall, or to the left or right one, and pairs."""
+    """The chains of gaps under a width, by obstacles.
+
+    `alone` are too near to both walls, and need no other; `first` too near to the left wall only. `inner` are pairs too
+    near to each other, one of which may be a first; `closing` such pairs of which the second is too near to the right
+    wall only.
+    """
 
     alone: list[int]
     first: list[int]
-    last: list[int]
-    pairs: list[tuple[int, int]]
+    inner: list[tuple[int, int]]
+    closing: list[tuple[int, int]]
 
     @classmethod
     def of(cls, gaps: Gaps, side: BoolArray, width: float) -> "_Chains":
-        """Find those of some obstacles (m,); what is too near both walls needs no other."""
+        """Find those of some obstacles (m,)."""
         left, right = side & (gaps.left < width), side & (gaps.right < width)
-        linked = np.triu(gaps.between < width, 1) & np.outer(side & ~(left & right), side & ~(left & right))
-        pairs = [(int(one), int(other)) for one, other in zip(*np.nonzero(linked), strict=True)]
-        alone, first, last = (np.flatnonzero(one).tolist() for one in (left & right, left & ~right, right & ~left))
-        return cls(alone, first, last, pairs)
+        alone, first, last, rest = left & right, left & ~right, right & ~left, side & ~left & ~right
+        near, before = gaps.between < width, first | rest
+        inner = np.triu(near & np.outer(before, before) & ~np.outer(first, first), 1)
+        closing = near & np.outer(before, last)
+        return cls(np.flatnonzero(alone).tolist(), np.flatnonzero(first).tolist(), _pairs(inner), _pairs(closing))
 
     def lead(self, there: Sequence[int]) -> int:
         """Return the set of the draws in which some chain leads from wall to wall, of obstacles `there` in sets."""
-        found = union(there[at] for at in self.alone)
-        if not (self.first and self.last and self.pairs):
-            return found
         reached = [0] * len(there)
         for at in self.first:
             reached[at] = there[at]
-        changed = True
+        changed = bool(self.first and self.closing)
         while changed:
             changed = False
-            for one, other in self.pairs:
+            for one, other in self.inner:
                 both = (reached[one] | reached[other]) & there[one] & there[other]
                 if both & ~(reached[one] & reached[other]):
                     changed = True
                     reached[one] |= both
                     reached[other] |= both
-        return found | union(reached[at] for at in self.last)
+        closed = union(reached[one] & there[end] for one, end in self.closing)
+        return closed | union(there[at] for at in self.alone)
+
+
+def _pairs(linked: BoolArray) -> list[tuple[int, int]]:
+    return [(int(one), int(other)) for one, other in zip(*np.nonzero(linked), strict=True)]
 
 
 def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:

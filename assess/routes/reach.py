@@ -62,9 +62,16 @@ class Reached:
         """The pieces that may fall onto it."""
         return self.gaps.keys
 
+    def narrower(self, fallen: Mapping[Key, int], every: int, width: float) -> int:
+        """Return the set of the draws, of `every`, in which it is narrower than a width [m], by more than rounding.
+
+        `fallen` has for each piece the set of those in which it falls; others stand.
+        """
+        return self.gaps.narrower(fallen, every, width - NARROWER)
+
     def blocked(self, fallen: Mapping[Key, int], every: int) -> int:
-        """Return the set of the draws, of `every`, in which it is blocked where pieces fall in sets of them."""
-        return self.gaps.narrower(fallen, every, self.required - NARROWER)
+        """Return the same for its required width."""
+        return self.narrower(fallen, every, self.required)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,6 @@ from assess.routes.gaps import Key
 from assess.routes.model import Chance, Outlook, RouteState
 from assess.routes.network import Blocked
 from assess.routes.reach import Reached
-from assess.routes.widths import NARROWER
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,14 +39,15 @@ class Scene:
 
     def keys(self, segments: Iterable[int], *, anchors_fail: bool = False) -> tuple[Key, ...]:
         """Return the pieces that reach any of some segments: the free-standing ones, or all of them."""
-        found = {key for at in segments for key in self.reached[at].gaps.keys}
+        found = {key for at in segments for key in self.reached[at].keys}
         return tuple(sorted(key for key in found if anchors_fail or not self.falls.anchored[key[0]]))
 
     def couplings(self, segments: Iterable[int], *, anchors_fail: bool = False) -> Couplings:
         """Return how the pieces that reach any of some segments fall together."""
         keys = self.keys(segments, anchors_fail=anchors_fail)
         if keys not in self._couplings:
-            self._couplings[keys] = build_couplings(self.falls, keys, self.seed, lambda: self._all(anchors_fail))
+            takes_anchored = any(self.falls.anchored[item] for item, _ in keys)  # the same pieces, the same couplings
+            self._couplings[keys] = build_couplings(self.falls, keys, self.seed, lambda: self._all(takes_anchored))
         return self._couplings[keys]
 
     def _all(self, anchors_fail: bool) -> Couplings:
@@ -59,12 +59,12 @@ class Scene:
     # ------------------------------------------------------------ what happens in draws
 
     def narrower(self, draws: Draws, segment: int, width: float) -> int:
-        """Return the set of the draws in which what is left of a segment is under a width [m].
+        """Return the set of the draws in which what is left of a segment is narrower than a width [m].
 
         Pieces that the draws do not know of stand.
         """
         if (segment, width) not in draws.narrower:
-            found = self.reached[segment].gaps.narrower(draws.fallen, draws.every, width - NARROWER)
+            found = self.reached[segment].narrower(draws.fallen, draws.every, width)
             draws.narrower[segment, width] = found
         return draws.narrower[segment, width]
 
@@ -89,14 +89,18 @@ class Scene:
         return find_chances(self.couplings(segments, anchors_fail=True), happens, self.z)
 
     def outlook(self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int]) -> Outlook:
-        """Return the outlook of some segments together; `is_blocked` tells it from those that are, and all draws."""
+        """Return the outlook of some segments together.
+
+        `is_blocked` tells from the sets of the draws in which segments are blocked, and that of all draws, in which of
+        them they count as blocked together.
+        """
 
         def happens(draws: Draws) -> Sequence[int]:
             blocked = is_blocked(self.blocked(draws, segments), draws.every)
             return blocked, blocked | self.taken(draws, segments)
 
         blocked, taken = self.chances(segments, happens)
-        unanchored = self.chances_unanchored(segments, lambda draws: happens(draws)[:1])
+        unanchored = self.chances_unanchored(segments, happens)
         together = self.together(segments, happens)
         in_record = self._in_record(segments, happens)
         least = in_record or RouteState.OPEN

@@ -12,7 +12,9 @@ from assess.routes.bits import union
 from assess.routes.couplings import build_couplings, find_chances
 from assess.routes.falls import Falls
 from assess.routes.model import Chance
-from tests.routes.buildings import evaluated, piece, place, stretch
+from assess.routes.reach import find_reached
+from assess.routes.scene import Scene
+from tests.routes.buildings import building, evaluated, piece, place, stretch
 
 QUICK = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 PLACES = [place("Room", "room"), place("Hall"), place("West", "exit"), place("East", "exit")]
@@ -156,3 +158,32 @@ def test_what_depends_on_pieces_of_different_runs_is_no_less_than_each_alone():
     routes = evaluated(Falls.of([0.05, 0.01], fell=fell), items, segments)
     assert [one.outlook.blocked.probability for one in routes.segments] == pytest.approx([0.05, 0.01])
     assert routes.routes[0].outlook.blocked.probability >= 0.05 - 1e-12
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_who_asks_first_changes_nothing(first):
+    """Segment a has a free-standing piece and an anchored one, b the first alone, whether anchors fail or not.
+
+    Asked of b as if anchors fail, then of a as if they hold: the anchored piece, which alone blocks a, does not count.
+    """
+    items = [piece(0.5, 0.0, route="Way", segment=""), piece(1.5, 0.0, route="Way", segment="a")]
+    segments = [stretch("a"), stretch("b")]
+    falls = Falls.of([0.4, 0.9], anchored=[False, True])
+    inventory = building(items, segments)
+    scene = Scene(inventory, find_reached(inventory), falls, 0.03, 1, 1.96)
+    scene.couplings([1], anchors_fail=first)
+    (chance,) = scene.chances([0], lambda draws: list(scene.blocked(draws, [0]).values()))
+    assert (chance.joint, chance.independent, chance.correlated, chance.high) == (0, 0, 0, 0)
+    fails = scene.chances_unanchored([0], lambda draws: list(scene.blocked(draws, [0]).values()))
+    assert [one.probability for one in fails or []] == [pytest.approx(0.9)]
+
+
+@QUICK
+@given(pieces())
+def test_sharing_what_is_known_of_all_pieces_changes_nothing(rows):
+    """Each segment alone, and of the whole building: where every outcome is gone through, the chances are the same."""
+    falls = falls_of(rows)
+    whole = found(rows)[0].segments
+    for at, one in enumerate(SEGMENTS):
+        (alone,) = evaluated(falls, [item for item, *_ in rows], [one], PLACES).segments
+        same([alone.outlook.blocked, alone.outlook.taken], [whole[at].outlook.blocked, whole[at].outlook.taken])

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -64,8 +65,8 @@ def chance(couplings, sets, fixed):
     for one in ways:
         count = len(one.weight)
         fell = {item: to_array(0 if item in fixed else falls, count) == 1 for (item, _), falls in one.fallen.items()}
-        happens = np.any([np.all([fell[item] for item in own], axis=0) for own in sets], axis=0)
-        found.append(float(one.weight @ happens))
+        happens = [np.all([fell[item] for item in own], axis=0) for own in sets]
+        found.append(float(one.weight @ np.any(happens, axis=0)) if sets else 0.0)
     return max(found)
 
 
@@ -87,6 +88,35 @@ def test_enough_and_none_too_many(drawn, risk):
         assert abs(step.left - after) < 1e-9
         assert abs(step.gain - (left - after)) < 1e-9
         left = after
+
+
+@QUICK
+@given(routes(), st.sampled_from([0.005, 0.11, 0.33]), st.data())
+def test_with_another_way_open(drawn, risk, data):
+    """The route is blocked only where two lanes are, one of each half: what is fixed on one may open it or not."""
+    couplings, sets = drawn
+    half = data.draw(st.integers(0, len(sets)))
+    first, second = sets[:half], sets[half:]
+
+    def both(blocked, _every):
+        return union(blocked[at] for at in range(half)) & union(blocked[at] for at in range(half, len(sets)))
+
+    steps, is_mended = find_fixes(couplings, lanes(sets), both, risk)
+    pairs = [sorted({*one, *other}) for one in first for other in second]
+    fixed = [step.item for step in steps]
+    assert is_mended
+    left = chance(couplings, pairs, [])
+    assert (left < risk) == (not steps)
+    for count, step in enumerate(steps, 1):
+        assert step.left == pytest.approx(chance(couplings, pairs, fixed[:count]), abs=1e-9)
+        least = min(
+            chance(couplings, pairs, [*fixed[: count - 1], other]) for other in {one for own in pairs for one in own}
+        )
+        if len(steps) == 1 and least < left:
+            assert step.left == pytest.approx(least, abs=1e-9)  # the first step takes the piece that gains most
+    assert chance(couplings, pairs, fixed) < risk or not pairs
+    for one in fixed:
+        assert chance(couplings, pairs, [other for other in fixed if other != one]) >= risk
 
 
 @QUICK

@@ -55,7 +55,7 @@ def patterns(n):
 @QUICK
 @given(gaps())
 def test_against_every_chain(one):
-    """The width left, and in which patterns it is under another: under all that may be, none of which it is."""
+    """The width that is left in every pattern, and in which patterns it is under a given one."""
     fell = patterns(len(one.keys))
     left = [one.residual(row) for row in fell]
     assert left == [by_every_chain(one, row) for row in fell]
@@ -74,7 +74,7 @@ def test_more_fallen_pieces_never_widen(one, data):
 
 
 def test_many_pieces_in_many_draws():
-    """70 pieces in 100 draws: in each, what is left is under its own width and the next, and not under the one below.
+    """70 pieces in 100 draws: in each, what is left is under a hair more than its width, and not under a hair less.
 
     Pieces that are not told of stand.
     """
