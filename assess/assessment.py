@@ -1,7 +1,7 @@
 """The main job: an inventory in, an assessment out."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,19 +10,19 @@ from numpy.typing import NDArray
 
 from assess.adoption import VERIFICATION, adopt, choose_items, find_governing
 from assess.demand import AXES, Demand, Demands, build_demands
+from assess.errors import Problem
 from assess.inventory.model import Inventory
 from assess.methods import Cases, all_methods
 from assess.remarks import remark
 from assess.results import Assessment
-from assess.routes.evaluate import evaluate_routes
-from assess.routes.falls import build_falls
-from assess.routes.reach import Reached, find_reached
-from assess.routes.remarks import remark_routes
+from assess.routes.falls import Falls, build_falls
 from assess.settings import SCENARIOS, Settings
 from assess.verification import Progress, choose_motions, remark_suite, verify
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
+    from assess.routes.model import Routes
+    from assess.routes.reach import Reached
 
 
 def run(
@@ -68,7 +68,7 @@ def run(
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction)
     case_item, case_demand = _pair(inventory, demands)
-    cases, reached = _cases(inventory, case_item, case_demand), find_reached(inventory)
+    cases, reached = _cases(inventory, case_item, case_demand), _find_reached(inventory)
     outcomes = {one.key: one.evaluate(cases, settings) for one in all_methods() if one.tier == "screening"}
     chosen = choose_items(settings.verify, outcomes, case_item, _on_route(inventory, reached))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
@@ -90,8 +90,8 @@ def run(
         outcomes=outcomes,
         adoption=adoption,
         governing=governing,
-        routes=evaluate_routes(inventory, reached, falls, settings),
-        problems=(*inventory.problems, *map(inventory.place, (*told, *remark_routes(inventory, reached)))),
+        routes=_evaluate_routes(inventory, reached, falls, settings),
+        problems=(*inventory.problems, *map(inventory.place, (*told, *_remark_routes(inventory, reached)))),
     )
 
 
@@ -106,7 +106,34 @@ def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tup
     return np.array([index for index, _ in pairs], dtype=np.intp), tuple(demand for _, demand in pairs)
 
 
-def _on_route(inventory: Inventory, reached: Sequence[Reached]) -> NDArray[np.bool_]:
+def _find_reached(inventory: Inventory) -> "Sequence[Reached]":
+    """Return what reaches the segments; what evaluates routes is imported only where there are any."""
+    if not inventory.routes:
+        return ()
+    from assess.routes.reach import find_reached
+
+    return find_reached(inventory)
+
+
+def _evaluate_routes(
+    inventory: Inventory, reached: "Sequence[Reached]", falls: Falls, settings: Settings
+) -> "Routes | None":
+    if not inventory.routes:
+        return None
+    from assess.routes.evaluate import evaluate_routes
+
+    return evaluate_routes(inventory, reached, falls, settings)
+
+
+def _remark_routes(inventory: Inventory, reached: "Sequence[Reached]") -> Iterable[Problem]:
+    if not inventory.routes:
+        return ()
+    from assess.routes.remarks import remark_routes
+
+    return remark_routes(inventory, reached)
+
+
+def _on_route(inventory: Inventory, reached: "Sequence[Reached]") -> NDArray[np.bool_]:
     """Tell which items name a route, or can reach one by the plan."""
     reaching = {one.item for segment in reached for one in segment.beside}
     return np.array([bool(item.route) or at in reaching for at, item in enumerate(inventory.items)], dtype=np.bool_)

@@ -2,10 +2,13 @@
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from assess.results import ItemResult
 from assess.risk import RiskClass
-from assess.routes.model import Routes
+
+if TYPE_CHECKING:
+    from assess.routes.model import Routes
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +28,7 @@ class RouteStep:
     at_last: float
 
 
-def list_steps(routes: Routes | None) -> list[RouteStep]:
+def list_steps(routes: "Routes | None") -> list[RouteStep]:
     """Return what to fix for every route, step by step."""
     return [
         RouteStep(one.route, fix.item, place, len(one.fixes), fix.left + fix.gain, fix.left, one.fixes[-1].left)

@@ -16,7 +16,6 @@ from assess.inventory.model import Axis, Inventory, Item
 from assess.methods import Cases, Method, Outcome
 from assess.methods._method import ALIKE, Joint
 from assess.risk import RiskClass, classify
-from assess.routes.model import Routes
 from assess.settings import Settings
 from assess.units import GRAVITY
 
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from assess.motion.suite import Suite
+    from assess.routes.model import Routes
 
 MOST_KEPT = 2000
 """Items up to which results are kept once they have been read; a larger inventory's would fill the memory."""
@@ -122,7 +122,7 @@ class Assessment:
     outcomes: Mapping[str, Outcome]
     adoption: Adoption
     governing: NDArray[np.intp]
-    routes: Routes | None
+    routes: "Routes | None"
     problems: tuple[Problem, ...]
 
     def __len__(self) -> int:
