@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from assess.errors import AssessError, InputError, OutputError, Problem, RecordError, WorkbookError
     from assess.inventory.model import Inventory
     from assess.inventory.workbook import read_inventory
+    from assess.methods._fitted import read_model
     from assess.report import write_reports
     from assess.results import Assessment
     from assess.settings import Settings
@@ -33,6 +34,7 @@ _HOME = {
     "WorkbookError": "assess.errors",
     "Inventory": "assess.inventory.model",
     "read_inventory": "assess.inventory.workbook",
+    "read_model": "assess.methods._fitted",
     "write_reports": "assess.report",
     "Settings": "assess.settings",
 }
@@ -49,6 +51,7 @@ __all__ = [
     "WorkbookError",
     "__version__",
     "read_inventory",
+    "read_model",
     "run",
     "write_reports",
 ]

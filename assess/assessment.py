@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from assess.adoption import VERIFICATION, adopt, choose_items, find_governing
 from assess.demand import AXES, Demand, Demands, build_demands
-from assess.errors import Problem
+from assess.errors import InputError, Problem
 from assess.inventory.model import Inventory
-from assess.methods import Cases, all_methods
+from assess.methods import Cases, Method, all_methods
 from assess.remarks import remark
 from assess.results import Assessment
 from assess.routes.falls import Falls, build_falls
@@ -30,6 +30,7 @@ def run(
     settings: Settings | None = None,
     *,
     suite: "Suite | None" = None,
+    methods: Sequence[Method] = (),
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Assessment:
@@ -49,6 +50,9 @@ def run(
     suite : Suite, optional
         The user's own motions, from `assess.motion.suite.read_suite`, in place of generated ones; `settings.runs` is
         their number then.
+    methods : sequence of Method, optional
+        Further ones, as from `assess.read_model`: they stand beside the published ones in every report,
+        but no adopted risk, choice or count goes by them.
     jobs : int, optional
         Threads; as many as there are processors by default. They do not change a result.
     progress : callable, optional
@@ -62,14 +66,16 @@ def run(
     ------
     WorkbookError
         If nothing that the scenario asks for serves a floor.
+    InputError
+        If two methods have one key or title.
     """
-    settings = settings or Settings()
+    every, settings = _join_methods(methods), settings or Settings()
     settings = settings if suite is None else replace(settings, runs=len(suite))
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction)
     case_item, case_demand = _pair(inventory, demands)
     cases, reached = _cases(inventory, case_item, case_demand), _find_reached(inventory)
-    outcomes = {one.key: one.evaluate(cases, settings) for one in all_methods() if one.tier == "screening"}
+    outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, outcomes, case_item, _on_route(inventory, reached))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
     outcomes[VERIFICATION] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
@@ -83,7 +89,7 @@ def run(
         scenario=scenario,
         suite=suite,
         demands=demands,
-        methods=all_methods(),
+        methods=every,
         cases=cases,
         case_item=case_item,
         case_demand=case_demand,
@@ -93,6 +99,19 @@ def run(
         routes=_evaluate_routes(inventory, reached, falls, settings),
         problems=(*inventory.problems, *map(inventory.place, (*told, *_remark_routes(inventory, reached)))),
     )
+
+
+def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:
+    """Return the published methods and further ones, in the order of reports."""
+    every = (*all_methods(), *further)
+    for name in ("key", "title"):
+        taken = [str(getattr(one, name)) for one in every]
+        twice = [one for one in taken if taken.count(one) > 1]
+        if twice:
+            raise InputError(
+                f"two methods have the {name} {twice[0]!r}: give each its own {name}, or name one only once."
+            )
+    return every
 
 
 def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tuple[Demand, ...]]:

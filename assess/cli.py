@@ -4,6 +4,7 @@ Exit status: 0 done; 1 done, but something could not be assessed or written (nam
 written. Messages go to standard error, what was asked for to standard output.
 """
 
+from collections.abc import Sequence
 from enum import Enum
 from functools import partial
 from pathlib import Path
@@ -14,12 +15,21 @@ import typer
 from assess.cli_motion import record, rock
 from assess.console import exits, print_problems, print_result
 from assess.errors import InputError
-from assess.options import check_run, read_fixed_settings, read_formats, read_look, read_pfa, read_settings
+from assess.options import (
+    check_run,
+    read_fixed_settings,
+    read_formats,
+    read_look,
+    read_methods,
+    read_pfa,
+    read_settings,
+)
 from assess.settings import ROUTE_RISK, SCENARIOS, Settings
 from assess.units import GRAVITY
 from assess.version import __version__
 
 if TYPE_CHECKING:
+    from assess.methods import Method
     from assess.progress import Progress
     from assess.results import Assessment
     from assess.verification import Work
@@ -118,6 +128,10 @@ def run(
     ] = None,
     scale_motions: Annotated[bool, typer.Option("--scale-motions", help="Scale them to each floor's PFA.")] = False,
     scenario: Scenario = None,
+    method: Annotated[
+        list[Path] | None,
+        typer.Option(help="A fitted model (.toml) to show beside the methods; may be repeated.", show_default=False),
+    ] = None,
     route_risk: Annotated[
         float, typer.Option(help="Chance under which every evacuation route is to be brought, above 0 and below 1.")
     ] = ROUTE_RISK,
@@ -146,7 +160,7 @@ def run(
     with exits():
         check_folder(folder)
         look = read_look(language, template, accessible)
-        assessment = _assess(path, settings, motions, jobs)
+        assessment = _assess(path, settings, motions, read_methods(method), jobs)
         print_problems([one for one in assessment.problems if one.severity == "warning"])
         if "pdf" in wanted:
             from assess.report.pages.pdf import list_problems
@@ -228,7 +242,13 @@ def doctor() -> None:
         raise typer.Exit(1)
 
 
-def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: int | None = None) -> "Assessment":
+def _assess(
+    path: Path,
+    settings: Settings,
+    motions: Path | None = None,
+    methods: "Sequence[Method]" = (),
+    jobs: int | None = None,
+) -> "Assessment":
     from assess.assessment import run as run_assessment
     from assess.inventory.workbook import read_inventory
 
@@ -238,7 +258,7 @@ def _assess(path: Path, settings: Settings, motions: Path | None = None, jobs: i
         from assess.motion.suite import read_suite
 
         suite = read_suite(motions)
-    return run_assessment(inventory, settings, suite=suite, jobs=jobs, progress=_progress)
+    return run_assessment(inventory, settings, suite=suite, methods=methods, jobs=jobs, progress=_progress)
 
 
 def _progress(work: "Work", doing: str = "Verifying") -> "Progress":

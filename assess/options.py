@@ -1,7 +1,7 @@
 """What the options of `assess run` and `assess routes` mean, checked before the work."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from assess.errors import InputError
 from assess.settings import AUTO, MOST_RUNS, ROUTE_RISK, SCENARIOS, SEED, VERIFY, Settings, match_choice, read_runs
 
 if TYPE_CHECKING:
     from assess.inventory.model import Inventory
+    from assess.methods import Method
     from assess.report.look import Look
 
+MOST_METHODS = 4
+"""Fitted models that a report shows beside the published methods: a column each."""
 MOST_PFA, STEP, MOST_VALUES = Decimal(5), "0.05", 50
 """Largest PFA [g] of a fragility, the usual step [g], and how many values it may have."""
 NUMBER = r"(\d{1,4}(?:\.\d{0,12})?|\.\d{1,12})"
@@ -45,6 +49,24 @@ def read_look(language: str | None, template: Path | None, accessible: bool) -> 
 
         check_look(look)
     return lambda inventory: look if language else replace(look, language=inventory.report_language)
+
+
+def read_methods(files: "Sequence[Path] | None") -> "list[Method]":
+    """Return the fitted models of files as methods, as many as a report has room for.
+
+    Raises
+    ------
+    InputError
+        If one cannot be used, or there are too many.
+    """
+    files = files or ()
+    if len(files) > MOST_METHODS:
+        raise InputError(f"--method names {len(files)} files; a report has room for {MOST_METHODS}. Leave some out.")
+    if not files:
+        return []
+    from assess.methods._fitted import read_model
+
+    return [read_model(file) for file in files]
 
 
 def read_formats(formats: str, verify: str) -> list[str]:

@@ -19,6 +19,8 @@ BoolArray = NDArray[np.bool_]
 
 ALIKE = 9
 """Decimals to which two PFA [g] or two probabilities are held against each other when one of them has to govern."""
+DECIMALS = 3
+"""Of the errors of fitted models, as they are shown."""
 
 
 class Ensemble(Protocol):
@@ -219,9 +221,27 @@ class Outcome:
     joints: Sequence[Joint] = ()
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FittedOn:
+    """What a model was fitted on, in words, and its root mean square errors where a building is left out [-].
+
+    `spread` is the standard error of `error`; `constant` is the error of a constant, the mean chance of the others.
+    """
+
+    data: str
+    error: float
+    spread: float
+    constant: float
+
+    @property
+    def is_no_better(self) -> bool:
+        """Whether a constant does as well, to the decimals that are shown."""
+        return round(self.error, DECIMALS) >= round(self.constant, DECIMALS)
+
+
 @dataclass(frozen=True, slots=True)
 class Method:
-    """One published method: what it is called, needs and assumes, and the function that evaluates it.
+    """One method: what it is called, needs and assumes, and the function that evaluates it.
 
     Parameters
     ----------
@@ -249,6 +269,8 @@ class Method:
         Whether it tells at once for every case, or integrates those that have an ensemble.
     evaluate : callable
         ``evaluate(cases, settings) -> Outcome``; inputs are left untouched.
+    fitted : FittedOn, optional
+        Of a model that a study fitted; None of a published method.
     """
 
     key: str
@@ -266,6 +288,7 @@ class Method:
     flags: Mapping[str, str] = field(default_factory=dict)
     words: tuple[str, str] = ("", "")
     tier: Literal["screening", "verification"] = "screening"
+    fitted: FittedOn | None = None
 
 
 _erfc = np.frompyfunc(math.erfc, 1, 1)

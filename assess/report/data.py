@@ -82,10 +82,18 @@ def describe_run(assessment: Assessment) -> dict[str, Any]:
                 "records": dict(inventory.files),
                 "motions": dict(assessment.suite.files) if assessment.suite else {},
             },
+            **_fitted_record(assessment),
         },
         "building": building_record(assessment),
         "floors": [floor_record(assessment, floor.floor) for floor in inventory.floors],
     }
+
+
+def _fitted_record(assessment: Assessment) -> dict[str, Any]:
+    """Return what fitted models stand among the methods; nothing where there are none."""
+    found = {one.key: one for one in assessment.methods if one.fitted is not None}
+    texts = {key: {"title": str(one.title), "reference": str(one.reference)} for key, one in found.items()}
+    return {"fitted_models": texts} if texts else {}
 
 
 def building_record(assessment: Assessment) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from assess.language import fill, ngettext, number
 from assess.language import gettext as _
+from assess.methods import Method
 from assess.results import ItemResult
 from assess.risk import LIMITS, RiskClass, classify
 from assess.units import ACCELERATION, LENGTH, VELOCITY
@@ -15,6 +16,11 @@ MOST_DECIMALS = 6
 """Decimals of a percentage at most, however near a limit it lies."""
 DASH = "–"
 NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+def name_ranges(method: Method) -> str:
+    """Return what the ranges of a method are, as a heading."""
+    return _("Checked for") if method.fitted is None else _("Range of the data")
 
 
 def clip(text: str, longest: int = LONGEST) -> str:

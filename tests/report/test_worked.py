@@ -1,5 +1,6 @@
 """The worked example: every step that computes is worked again from the numbers that it prints."""
 
+import dataclasses
 import itertools
 import math
 import re
@@ -8,11 +9,13 @@ import pytest
 
 import assess
 from assess.language import load_catalogue, speaking
-from assess.methods import all_methods
+from assess.methods import all_methods, static
+from assess.methods._fitted_texts import build_method
 from assess.methods._method import normal_cdf
 from assess.methods.proposed_or import COEFFICIENTS
 from assess.report.example.worked import WORKING, choose_example, work_example
 from assess.settings import Settings
+from tests.methods.test_fitted import SURFACE
 from tests.workbooks import RECORDS, UNVERIFIED, assessed
 
 MARKET_STREET = RECORDS.parents[1] / "inventories" / "market-street.xlsx"
@@ -59,9 +62,13 @@ def by_key(one, settings=UNVERIFIED, **named):
 
 
 def piece(tmp_path, breadth, height, pfa, pfv=None, **building):
+    return piece_found(tmp_path, breadth, height, pfa, pfv, **building).result(0)
+
+
+def piece_found(tmp_path, breadth, height, pfa, pfv=None, **building):
     floors = [{"floor": "1", "pfa_x": pfa, "pfv_x": pfv}]
     items = [{"item": "A", "floor": "1", "breadth": breadth, "width": breadth, "height": height, "axis": "X"}]
-    return assessed(tmp_path / "w.xlsx", items, floors, **building).result(0)
+    return assessed(tmp_path / "w.xlsx", items, floors, **building)
 
 
 def last(method, start):
@@ -93,6 +100,26 @@ def test_sweep_of_sizes_and_motions(tmp_path):
 
 def test_every_method_can_be_worked():
     assert set(WORKING) == {method.key for method in all_methods()}
+
+
+def test_a_published_method_without_a_working_is_left_out(tmp_path):
+    # by the key alone it would pass for a fitted model; it has no detail "raw"
+    further = dataclasses.replace(static.METHOD, key="fitted_by_name", title="Further")
+    book = piece_found(tmp_path, 50, 200, 0.4, 40)
+    found = assess.run(book.inventory, UNVERIFIED, methods=[further])
+    one = found.result(0)
+    assert one.governing.methods["fitted_by_name"].value is not None
+    worked = [method.key for method in work_example(one, UNVERIFIED, methods=found.methods)]
+    assert worked == [method.key for method in work_example(one, UNVERIFIED)]
+
+
+def test_a_fitted_model_is_worked_whatever_its_key(tmp_path):
+    model = dataclasses.replace(build_method(SURFACE, "m.toml"), key="of_my_own")
+    book = piece_found(tmp_path, 50, 200, 0.4, 40)
+    found = assess.run(book.inventory, UNVERIFIED, methods=[model])
+    worked = work_example(found.result(0), UNVERIFIED, methods=found.methods)[-1]
+    assert worked.key == "of_my_own"
+    assert worked.steps[-1].startswith("R = ")
 
 
 def test_terms_of_equation_9_add_up(tmp_path):

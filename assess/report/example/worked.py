@@ -3,14 +3,15 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from assess.language import gettext as _
-from assess.methods import all_methods
+from assess.methods import Method, all_methods
 from assess.report.example.formulas import work_kaneko_hayashi, work_proposed_or
 from assess.report.example.others import work_fema_p58, work_housner, work_ishiyama, work_japan_rule, work_static
-from assess.report.example.steps import Piece, Worked
+from assess.report.example.steps import Piece, Worked, chance, fill_in, show_acceleration, show_ratio
 from assess.results import ItemResult
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
@@ -24,7 +25,7 @@ WORKING: Mapping[str, Callable[[Piece], Worked]] = {
     "fema_p58": work_fema_p58,
     "housner_monte_carlo": work_housner,
 }
-"""How each method's numbers are shown; a method that is not here has no worked example."""
+"""How the numbers of each published method are shown; `_work_fitted` shows those of fitted models."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +50,13 @@ def _example_first(one: ItemResult) -> tuple[bool, bool, int, float]:
     return one.is_anchored, not one.is_verified, -int(one.adopted.upper), -one.adopted.probability
 
 
-def work_example(one: ItemResult, settings: Settings, *, restitution: float | None = None) -> Sequence[WorkedMethod]:
+def work_example(
+    one: ItemResult,
+    settings: Settings,
+    *,
+    restitution: float | None = None,
+    methods: Sequence[Method] | None = None,
+) -> Sequence[WorkedMethod]:
     """Return the calculation of every method that was evaluated for a piece, under the motion that governs it.
 
     Parameters
@@ -60,11 +67,13 @@ def work_example(one: ItemResult, settings: Settings, *, restitution: float | No
         Of the assessment.
     restitution : float, optional
         The building's own restitution [-]; None is Housner's.
+    methods : sequence of Method, optional
+        Those that are worked; by default the published ones.
 
     Returns
     -------
     sequence of WorkedMethod
-        In the order of reports.
+        In the order of reports; a published method without an entry in `WORKING` is left out.
     """
     case = one.governing
     piece = Piece(
@@ -77,9 +86,23 @@ def work_example(one: ItemResult, settings: Settings, *, restitution: float | No
         restitution=math.nan if restitution is None else restitution,
     )
     worked = []
-    for method in all_methods():
-        if method.key in WORKING and case.methods[method.key].value is not None:
+    for method in all_methods() if methods is None else methods:
+        work = _find_working(method)
+        if work is not None and case.methods[method.key].value is not None:
             with np.errstate(all="ignore"):
-                steps, result = WORKING[method.key](piece)
+                steps, result = work(piece)
             worked.append(WorkedMethod(method.key, _(method.title), tuple(steps), result))
     return tuple(worked)
+
+
+def _find_working(method: Method) -> Callable[[Piece], Worked] | None:
+    """Return how the numbers of a method are shown; None for a published one that nothing shows."""
+    return WORKING.get(method.key) if method.fitted is None else partial(_work_fitted, method)
+
+
+def _work_fitted(method: Method, piece: Piece) -> Worked:
+    """Put what a fitted model reads beside its equation, which holds for any piece, and its coefficients."""
+    velocity = [] if math.isnan(piece.PFV) else [fill_in("PFV = {PFV:.6g} cm/s", **piece.put)]
+    raw = fill_in("R = {raw:.4f}", raw=piece.detail(method, "raw"))
+    steps = [show_ratio(piece), show_acceleration(piece), *velocity, *map(_, method.equations), raw]
+    return steps, chance("R", piece.value(method))

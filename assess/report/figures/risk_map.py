@@ -109,12 +109,13 @@ def paint_names(axes: Any, places: Mapping[Place, Sequence[ItemResult]], taken: 
             named += 1
 
 
-def paint_legend(figure: Any) -> None:
-    """Explain the fields, the symbols and the outline below the panels."""
+def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
+    """Explain the fields, the symbols and the outline, where there is one, below the panels."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     fields = [Patch(facecolor=one.fill, hatch=2 * HATCHES[one], edgecolor=HATCHING, linewidth=0.5,
                     label=words.risk_label(one)) for one in RiskClass]  # fmt: skip
     checked = Line2D([], [], color=INK, linewidth=1.2, linestyle=":", label=_("range in which the formula is checked"))
-    figure.legend(handles=[*fields, checked], loc="outside lower center", ncols=5, fontsize=6, frameon=False)
+    handles = [*fields, checked] if has_checked else fields
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=6, frameon=False)

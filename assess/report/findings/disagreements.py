@@ -1,7 +1,8 @@
 """Where the methods disagree on a piece by more than one class, and why.
 
 Compared are the probabilities under the motion that governs the piece. Rows of which the same may be said stand in one
-group, so that a large inventory has few.
+group, so that a large inventory has few. The published methods are compared with each other; a fitted model is compared
+with them and told apart, so that it hides nothing of theirs.
 """
 
 from collections import Counter
@@ -10,10 +11,10 @@ from dataclasses import dataclass
 
 from assess.language import gettext as _
 from assess.language import ngettext
-from assess.methods import all_methods
+from assess.methods import Method, all_methods
 from assess.report import words
 from assess.report.findings.facts import Facts
-from assess.report.findings.reasons import KINDS, find_kinds
+from assess.report.findings.fitted import find_reasons, say_reason, summarise_fitted
 from assess.results import ItemResult
 from assess.risk import RiskClass, classify
 
@@ -37,7 +38,7 @@ class Verdict:
 class Disagreement:
     """A piece on which the `highest` and the `lowest` method differ by more than one class.
 
-    `kinds` names the reasons, for grouping; `reasons` says them of this piece.
+    `kinds` names the reasons, for grouping; `reasons` says them of this piece. `model` is the fitted one of the two.
     """
 
     result: ItemResult
@@ -45,6 +46,12 @@ class Disagreement:
     lowest: Verdict
     kinds: tuple[str, ...]
     reasons: Sequence[str]
+    model: Method | None = None
+
+    @property
+    def facts(self) -> Facts:
+        """What is known of the piece."""
+        return Facts(self.result, self.highest.key, self.lowest.key, self.model)
 
     @property
     def spread(self) -> int:
@@ -84,29 +91,53 @@ class Group:
         return max(0, len(self.rows) - NAMED)
 
 
-def find_disagreements(results: Iterable[ItemResult]) -> Sequence[Disagreement]:
-    """Return the rows on which methods differ by more than one class; the widest first, then the highest class."""
-    found = [one for result in results if (one := _compare(result)) is not None]
-    return tuple(sorted(found, key=lambda one: (-one.spread, -int(one.result.adopted.upper))))
+def find_disagreements(
+    results: Iterable[ItemResult], methods: Sequence[Method] | None = None
+) -> Sequence[Disagreement]:
+    """Return the rows on which methods differ by more than one class; the widest first, then the highest class.
+
+    Compared are the published methods among `methods`, which are all of them by default. The rows on which a fitted
+    model differs from one of them come last, model by model.
+    """
+    compared = all_methods() if methods is None else methods
+    published = [method for method in compared if method.fitted is None]
+    rows = tuple(results)
+    found = _sort(_compare(result, _verdicts(result, published)) for result in rows)
+    for method in compared:
+        if method.fitted is not None:
+            found += _sort(_compare_fitted(result, method, _verdicts(result, published)) for result in rows)
+    return tuple(found)
 
 
-def _compare(result: ItemResult) -> Disagreement | None:
-    verdicts = _verdicts(result)
+def _sort(found: Iterable[Disagreement | None]) -> list[Disagreement]:
+    return sorted((one for one in found if one), key=lambda one: (-one.spread, -int(one.result.adopted.upper)))
+
+
+def _compare_fitted(result: ItemResult, model: Method, published: Sequence[Verdict]) -> Disagreement | None:
+    """Compare a fitted model with the published method that lies farthest from it."""
+    own = _verdicts(result, [model])
+    if not (own and published):
+        return None
+    farthest = max(published, key=lambda one: (abs(one.risk - own[0].risk), abs(one.value - own[0].value)))
+    return _compare(result, [farthest, *own], model)
+
+
+def _compare(result: ItemResult, verdicts: Sequence[Verdict], model: Method | None = None) -> Disagreement | None:
     if not verdicts:
         return None
     highest = max(verdicts, key=lambda one: (one.risk, one.value))
     lowest = min(verdicts, key=lambda one: (one.risk, one.value))
     if highest.risk - lowest.risk <= 1:
         return None
-    facts = Facts(result, highest.key, lowest.key)
-    kinds = find_kinds(facts)[:MOST_REASONS]
-    return Disagreement(result, highest, lowest, kinds, tuple(KINDS[kind].say([facts]) for kind in kinds))
+    facts = Facts(result, highest.key, lowest.key, model)
+    kinds = find_reasons(facts)[:MOST_REASONS]
+    return Disagreement(result, highest, lowest, kinds, tuple(say_reason(kind, [facts]) for kind in kinds), model)
 
 
-def _verdicts(result: ItemResult) -> list[Verdict]:
+def _verdicts(result: ItemResult, methods: Sequence[Method]) -> list[Verdict]:
     """Return what the methods that give a probability say under the governing motion."""
     verdicts = []
-    for method in all_methods():
+    for method in methods:
         value = result.governing.methods[method.key].value
         risk = None if value is None or method.kind != "probability" else classify(value)
         if value is not None and risk is not None:
@@ -115,18 +146,23 @@ def _verdicts(result: ItemResult) -> list[Verdict]:
 
 
 def group_disagreements(disagreements: Iterable[Disagreement]) -> Sequence[Group]:
-    """Return groups of rows of which the same may be said; the widest first, then the largest."""
+    """Return groups of rows of which the same may be said; the widest first, then the largest; fitted models last."""
     groups: dict[tuple[object, ...], list[Disagreement]] = {}
     for one in disagreements:
         key = (one.highest.key, one.highest.risk, one.lowest.key, one.lowest.risk, one.kinds)
         groups.setdefault(key, []).append(one)
-    ordered = sorted(groups.values(), key=lambda rows: (-rows[0].spread, -int(rows[0].highest.risk), -len(rows)))
+    ordered = sorted(groups.values(), key=_rank)
     return tuple(_group(rows) for rows in ordered)
+
+
+def _rank(rows: Sequence[Disagreement]) -> tuple[bool, int, int, int]:
+    first = rows[0]
+    return first.model is not None, -first.spread, -int(first.highest.risk), -len(rows)
 
 
 def _group(rows: Sequence[Disagreement]) -> Group:
     first = rows[0]
-    facts = [Facts(row.result, row.highest.key, row.lowest.key) for row in rows]
+    facts = [row.facts for row in rows]
     return Group(
         highest=first.highest.title,
         highest_class=first.highest.risk,
@@ -134,13 +170,24 @@ def _group(rows: Sequence[Disagreement]) -> Group:
         lowest=first.lowest.title,
         lowest_class=first.lowest.risk,
         lowest_value=words.percents([row.lowest.value for row in rows]),
-        reasons=tuple(KINDS[kind].say(facts) for kind in first.kinds),
+        reasons=tuple(say_reason(kind, facts) for kind in first.kinds),
         rows=tuple(rows),
     )
 
 
 def summarise_disagreements(disagreements: Sequence[Disagreement], rows: int) -> str:
-    """Return in one sentence how many of `rows` the methods disagree on, and which two most often."""
+    """Return on how many of `rows` the published methods disagree, and which two most often; then each fitted model."""
+    published = [one for one in disagreements if one.model is None]
+    pairs: dict[str, list[tuple[str, str]]] = {}
+    for one in disagreements:
+        if one.model is not None:
+            title = one.highest.title if one.highest.key == one.model.key else one.lowest.title
+            pairs.setdefault(title, []).append((one.highest.title, one.lowest.title))
+    told = [summarise_fitted(title, found, rows) for title, found in pairs.items()]
+    return " ".join((_summarise_published(published, rows), *told))
+
+
+def _summarise_published(disagreements: Sequence[Disagreement], rows: int) -> str:
     if not disagreements:
         return ngettext(
             "On the {n:,} row, the methods lie within one class of each other.",

@@ -8,7 +8,7 @@ from functools import cached_property
 from assess.adoption import FORMULA, VERIFICATION
 from assess.language import gettext as _
 from assess.language import number
-from assess.methods import Cases, all_methods, proposed_or
+from assess.methods import Cases, Method, all_methods, proposed_or
 from assess.report import words
 from assess.results import ItemResult
 from assess.settings import Settings
@@ -33,11 +33,15 @@ OR, KANEKO, FEMA, INTEGRATION = FORMULA, "kaneko_hayashi", "fema_p58", VERIFICAT
 
 @dataclass(frozen=True)
 class Facts:
-    """What is known of a piece on which the methods `highest` and `lowest` disagree."""
+    """What is known of a piece on which the methods `highest` and `lowest` disagree; `model` is the fitted one of them.
+
+    A fitted model is compared with a published method only, so that there is one at most.
+    """
 
     result: ItemResult
     highest: str
     lowest: str
+    model: Method | None = None
 
     def value(self, key: str) -> float:
         """Return the value of a method [-]; NaN where it was not evaluated."""

@@ -149,17 +149,23 @@ def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
 def _of_methods(content: Content) -> dict[str, Any]:
     assessment = content.assessment
     example = choose_example(content.results)
-    found = find_disagreements(content.results)
+    found = find_disagreements(content.results, content.methods)
     types = {item.type for item in assessment.inventory.items}
     return {
         "example": example,
-        "worked": work_example(example, assessment.settings, restitution=assessment.inventory.building.restitution)
+        "worked": work_example(
+            example,
+            assessment.settings,
+            restitution=assessment.inventory.building.restitution,
+            methods=content.methods,
+        )
         if example
         else (),
         "disagreement": summarise_disagreements(found, len(content.results)),
         "disagreements": group_disagreements(found),
         "more": has_worse_motion,
-        "quantities": {"breadth_to_height": "B/H", "pfa": "PFA", "pfv": "PFV"},
+        "quantities": {"breadth_to_height": "B/H", "pfa": "PFA", "height": "H", "pfv": "PFV"},
+        "name_ranges": words.name_ranges,
         "profiles": tuple(PROFILES.values()),
         "used_profiles": motions.used_profiles(assessment.demands),
         "used_types": [one for one in assessment.inventory.catalogue if one.source and one.type in types],

@@ -11,6 +11,7 @@ from assess.report.content import Content
 from assess.report.findings.motions import ENVELOPES, list_clauses, profile_status
 from assess.report.findings.routes import list_cautions, list_widths, say_default_width
 from assess.report.provenance import say_reference
+from assess.report.words import name_ranges
 from assess.report.xlsx.formulas import LIMITS as LIMIT_NAMES
 from assess.report.xlsx.pen import Pen
 from assess.risk import LIMITS
@@ -54,7 +55,7 @@ def _method(method: Method) -> Iterator[tuple[str, str, str]]:
         (_("Equation"), method.equations),
         (_("Assumption"), method.assumptions),
         (_("Departure from the source"), method.departures),
-        (_("Checked for"), tuple(_range(name, one) for name, one in method.valid.items())),
+        (name_ranges(method), tuple(_range(name, one) for name, one in method.valid.items())),
     )
     for what, texts in parts:
         yield from ((title, what, _(text)) for text in texts)
@@ -88,5 +89,5 @@ def _labels() -> tuple[str, ...]:
 
 def _range(name: str, one: Range) -> str:
     """Return in words between what values a method has been checked."""
-    what = {"breadth_to_height": _("B/H"), "pfa": _("PFA")}.get(name, name)
+    what = {"breadth_to_height": _("B/H"), "pfa": _("PFA"), "height": "H", "pfv": "PFV"}.get(name, name)
     return _("{what} {low:g} to {high:g} {unit}", what=what, low=one.low, high=one.high, unit=one.unit).strip()

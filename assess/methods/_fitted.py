@@ -1,0 +1,246 @@
+"""A model that a study fitted as one more method: its TOML file, written and read, every fault named by its key."""
+
+import hashlib
+import json
+import re
+import tomllib
+import unicodedata
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from assess.errors import InputError
+from assess.methods._fitted_model import PREFIX, Fitted, Polynomial, Probit
+from assess.methods._fitted_texts import build_method
+from assess.methods._method import Method, Range
+
+__all__ = ["Fitted", "Polynomial", "Probit", "parse_model", "read_model", "write_model"]
+
+FORMAT = 1
+"""Version of the file."""
+MOST_BYTES = 65_536
+MOST_TERMS, MOST_POWER = 16, 3
+LARGEST = 1e30
+"""Of a coefficient: no sum of terms overflows."""
+LONGEST_TITLE, LONGEST_DATA = 60, 120
+
+TOP = ("format", "key", "title", "kind", "fitted_on", "range", "errors")
+RANGES = {"breadth_to_height": "", "pfa_g": "g", "height_cm": "cm", "pfv_cm_s": "cm/s", "pfv_over_pfa_s": "s"}
+"""Keys of the validity, and their units."""
+ERRORS = ("leave_one_out_rmse", "leave_one_out_standard_error", "constant_rmse")
+KINDS = {"polynomial": ("base", "terms"), "probit": ("b0", "b1", "b2")}
+KEY = re.compile(rf"{PREFIX}[a-z0-9_]{{1,40}}(?<!_raw)(?<!_flags)", re.ASCII)
+"""The endings are those of columns that stand beside a method's value."""
+
+
+def write_model(model: Fitted) -> str:
+    """Return the file of a model.
+
+    Raises
+    ------
+    InputError
+        If it holds what could not be read back, as a number that is not finite.
+    """
+    ranges = (model.breadth_to_height, model.pfa, model.height, model.pfv, model.pfv_to_pfa)
+    errors = (model.error, model.error_spread, model.error_constant)
+    lines = [
+        "# A model of the chance of overturning, fitted by assess. To show it in reports: assess run --method FILE",
+        f"format = {FORMAT}",
+        *(f"{name} = {json.dumps(getattr(model, name), ensure_ascii=False)}" for name in TOP[1:5]),
+        "\n[range]",
+        *(f"{name} = [{_number(one.low)}, {_number(one.high)}]" for name, one in zip(RANGES, ranges, strict=True)),
+        "\n[errors]",
+        *(f"{name} = {_number(one)}" for name, one in zip(ERRORS, errors, strict=True)),
+        f"\n[{model.kind}]",
+        *_write_formula(model.formula),
+    ]
+    text = "\n".join(lines) + "\n"
+    parse_model(text, "the model")
+    return text
+
+
+def _write_formula(formula: Polynomial | Probit) -> Sequence[str]:
+    if isinstance(formula, Probit):
+        return [f"{name} = {_number(getattr(formula, name))}" for name in KINDS["probit"]]
+    head = [f'base = "{formula.base}"', "terms = [  # power of the base, of x = B/H; power of PFA [cm/s2]; coefficient"]
+    return [*head, *(f"  [{i}, {j}, {_number(c)}]," for i, j, c in formula.terms), "]"]
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def read_model(path: Path) -> Method:
+    """Return the model of a TOML file as a method.
+
+    Raises
+    ------
+    InputError
+        If it cannot be used: the message names the file, the key and the mend.
+    """
+    text = _read_text(path)
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return build_method(parse_model(text, str(path)), f"{path.name}, SHA-256 {digest}")
+
+
+def _read_text(path: Path) -> str:
+    """Return the text of a file; raises InputError where it is none, too large, or may not be read."""
+    try:
+        if not path.is_file():
+            told = (
+                "it is no file: name the .toml that `assess study fit` wrote."
+                if path.exists()
+                else "there is no such file. Check the name."
+            )
+            raise InputError(f"{path}: {told}")
+        with path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: it cannot be read: {error}. Check who may read it.") from None
+    if len(data) > MOST_BYTES:
+        raise InputError(f"{path}: it is larger than {MOST_BYTES >> 10} kB, so no fitted model. Name another file.")
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: it is no text in UTF-8. Name the .toml file that a study wrote.") from None
+
+
+def parse_model(text: str, file: str) -> Fitted:
+    """Return the model of a file's text; raises InputError that names `file`, the key and the mend."""
+    try:
+        found = tomllib.loads(text.removeprefix("\ufeff"))
+    except (ValueError, RecursionError) as error:  # also: a number of thousands of digits
+        told = str(error).partition(";")[0]
+        raise InputError(
+            f"{file}: it is no TOML: {told}. Mend the line, or have the study write the file again."
+        ) from None
+    if found.get("format") != FORMAT or isinstance(found.get("format"), bool):
+        told = _show(found["format"]) if "format" in found else "missing"
+        raise InputError(f"{file}: format is {told}, expected {FORMAT}. Have a study of this version write the file.")
+    kind = found.get("kind")
+    if not isinstance(kind, str) or kind not in KINDS:
+        told = _show(kind) if "kind" in found else "missing"
+        raise InputError(f"{file}: kind is {told}, expected one of: {', '.join(KINDS)}.")
+    return _build(file, found, kind)
+
+
+def _build(file: str, found: dict[str, Any], kind: str) -> Fitted:
+    top = _Table(file, "", found, (*TOP, kind))
+    ranges = _Table(file, "range.", found["range"], tuple(RANGES))
+    errors = _Table(file, "errors.", found["errors"], ERRORS)
+    formula = _Table(file, f"{kind}.", found[kind], KINDS[kind])
+    by_height, pfa, height, pfv, pfv_to_pfa = (ranges.ends(name, unit) for name, unit in RANGES.items())
+    error, spread, constant = (errors.number(name, 0.0) for name in ERRORS)
+    return Fitted(
+        key=_read_key(top),
+        title=top.text("title", LONGEST_TITLE),
+        fitted_on=top.text("fitted_on", LONGEST_DATA),
+        formula=_read_polynomial(formula) if kind == "polynomial" else _read_probit(formula),
+        breadth_to_height=by_height,
+        pfa=pfa,
+        height=height,
+        pfv=pfv,
+        pfv_to_pfa=pfv_to_pfa,
+        error=error,
+        error_spread=spread,
+        error_constant=constant,
+    )
+
+
+class _Table:
+    """A table of the file, of which every fault is told with its key."""
+
+    def __init__(self, file: str, name: str, values: object, keys: Sequence[str]) -> None:
+        self.file, self.name = file, name
+        if not isinstance(values, dict):
+            raise self.fault("", f"is {_show(values)}, expected a table: [{name.rstrip('.')}].")
+        self.values: dict[str, Any] = values
+        for key in keys:
+            if key not in values:
+                raise self.fault(key, "is missing. Add it, or have the study write the file again.")
+        for key in values:
+            if key not in keys:
+                raise self.fault(_show(key), f"is unknown. Remove it; expected are: {', '.join(keys)}.")
+
+    def fault(self, key: str, what: str) -> InputError:
+        return InputError(f"{self.file}: {(self.name + key).rstrip('.')} {what}")
+
+    def number(self, key: str, low: float = -LARGEST) -> float:
+        return self.check_number(key, self.values[key], low)
+
+    def check_number(self, key: str, value: object, low: float = -LARGEST) -> float:
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not (is_number and low <= value <= LARGEST):  # type: ignore[operator]
+            least = f"of at most {LARGEST:g}" if low < 0 else f"from {low:g} to {LARGEST:g}"
+            raise self.fault(key, f"is {_show(value)}, expected a number {least}.")
+        return float(value)  # type: ignore[arg-type]
+
+    def ends(self, key: str, unit: str) -> Range:
+        value = self.values[key]
+        if not (isinstance(value, list) and len(value) == 2):
+            raise self.fault(key, f"is {_show(value)}, expected [lowest, highest].")
+        low, high = (self.check_number(key, end, 0.0) for end in value)
+        if low > high:
+            raise self.fault(key, f"is {_show(value)}, expected the lowest first.")
+        if high == 0:
+            raise self.fault(
+                key, f"is {_show(value)}, expected a highest above 0, as in the data that it was fitted to."
+            )
+        return Range(low, high, unit)
+
+    def text(self, key: str, longest: int) -> str:
+        value = self.values[key]
+        if not isinstance(value, str) or not 0 < len(value) <= longest:
+            raise self.fault(key, f"is {_show(value)}, expected a text of 1 to {longest} characters.")
+        odd = [sign for sign in value if unicodedata.category(sign)[0] in "CZ" and sign != " "]
+        if odd:
+            raise self.fault(key, f"holds the character {odd[0]!a}, which cannot be printed. Remove it.")
+        if not value[0].isalnum():
+            raise self.fault(key, f"begins with {value[0]!r}, expected a letter or a digit.")
+        return value
+
+
+def _read_key(top: _Table) -> str:
+    from assess.methods import all_methods
+
+    key = top.values["key"]
+    if not isinstance(key, str) or not KEY.fullmatch(key):
+        rule = f"{PREFIX} and then small letters, digits and _, not ending in _raw or _flags"
+        raise top.fault("key", f"is {_show(key)}, expected {rule}.")
+    if any(method.key == key for method in all_methods()):
+        raise top.fault("key", f"is {_show(key)}, which a published method has. Choose another.")
+    return key
+
+
+def _read_probit(table: _Table) -> Probit:
+    return Probit(table.number("b0"), table.number("b1", 0.0), table.number("b2", 0.0))
+
+
+def _read_polynomial(table: _Table) -> Polynomial:
+    base, terms = table.values["base"], table.values["terms"]
+    if base not in ("x", "1/x"):
+        raise table.fault("base", f'is {_show(base)}, expected "x" for B/H or "1/x" for its inverse.')
+    if not (isinstance(terms, list) and 0 < len(terms) <= MOST_TERMS):
+        raise table.fault("terms", f"is {_show(terms)}, expected 1 to {MOST_TERMS} of [i, j, coefficient].")
+    found = [_read_term(table, f"terms[{at}]", term) for at, term in enumerate(terms)]
+    powers = [(i, j) for i, j, _ in found]
+    for at, one in enumerate(powers):
+        if one in powers[:at]:
+            raise table.fault(f"terms[{at}]", f"has the powers {one[0]}, {one[1]} of another term. Remove one.")
+    return Polynomial(base, tuple(found))
+
+
+def _read_term(table: _Table, key: str, term: object) -> tuple[int, int, float]:
+    if not (isinstance(term, list) and len(term) == 3):
+        raise table.fault(key, f"is {_show(term)}, expected [i, j, coefficient].")
+    i, j, coefficient = term
+    for power in (i, j):
+        if type(power) is not int or not 0 <= power <= MOST_POWER:
+            raise table.fault(key, f"has the power {_show(power)}, expected a whole number from 0 to {MOST_POWER}.")
+    return i, j, table.check_number(key, coefficient)
+
+
+def _show(value: object) -> str:
+    """Return a value of the file short enough for a message, without what a terminal would act on."""
+    told = ascii(value) if not isinstance(value, int) or abs(value) < 10**40 else "a number of over 40 digits"
+    return told if len(told) <= 60 else f"{told[:57]}..."
