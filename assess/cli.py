@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli_motion import record, rock
+from assess.cli_study import study
 from assess.console import exits, print_problems, print_result
 from assess.errors import InputError
 from assess.options import (
@@ -213,6 +214,7 @@ def routes(
 
 
 app.command()(record)
+app.command()(study)
 app.command()(rock)
 
 

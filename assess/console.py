@@ -1,11 +1,12 @@
 """What the command line says, and the exit status it ends with."""
 
 import os
+import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Never
 
 import typer
 
@@ -22,15 +23,20 @@ INTERRUPTED = 130
 
 
 @contextmanager
-def exits() -> Iterator[None]:
+def exits(interrupted: Callable[[], str] = lambda: "no report was written") -> Iterator[None]:
     """Turn what is raised on purpose into a message and an exit status; Ctrl-C ends the process at once.
 
     Reports are written beside the old ones and moved into place at the end, so that nothing is half written.
+
+    Parameters
+    ----------
+    interrupted : callable
+        Returns what there is to tell after Ctrl-C.
     """
     try:
         yield
     except KeyboardInterrupt:
-        typer.echo("\nInterrupted; no report was written.", err=True)
+        typer.echo(f"\nInterrupted; {interrupted()}.", err=True)
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(INTERRUPTED)  # threads that integrate would be waited for
@@ -45,6 +51,20 @@ def exits() -> Iterator[None]:
     except OutputError as error:
         typer.echo(f"error  {error}", err=True)
         raise typer.Exit(1) from None
+
+
+@contextmanager
+def stops() -> Iterator[None]:
+    """Take a polite request to end (SIGTERM) as Ctrl-C."""
+
+    def stop(*_: object) -> Never:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def print_problems(problems: Sequence[Problem]) -> None:

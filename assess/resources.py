@@ -10,6 +10,17 @@ def templates() -> Path:
     return inside if inside.is_dir() else Path(__file__).parents[1] / "templates"
 
 
+_RECORDS = ("inventories/records/575-market", "samples/buildings/berkeley-1103", "samples/records")
+
+
+def record(name: str) -> Path:
+    """Return a file of recorded motion that comes along: in a checkout beside the package, once installed inside it."""
+    inside = Path(__file__).with_name("records")
+    beside = [Path(__file__).parents[1] / folder for folder in _RECORDS]
+    folders = sorted(inside.iterdir()) if inside.is_dir() else beside
+    return next((folder / name for folder in folders if (folder / name).is_file()), inside / name)
+
+
 def fonts() -> dict[tuple[str, str], Path]:
     """Return the report's fonts by family and style: the DejaVu fonts that matplotlib brings along."""
     spec = importlib.util.find_spec("matplotlib")

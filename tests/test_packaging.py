@@ -1,4 +1,4 @@
-"""The wheel, installed in a clean environment away from the checkout, renders a report."""
+"""The wheel, installed in a clean environment away from the checkout, renders a report and does a study."""
 
 import os
 import subprocess
@@ -36,25 +36,60 @@ def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
         "assess/inventory/catalogue.csv",
         "assess/report/results.schema.json",
         "assess/py.typed",
+        "assess/studies/facts/table1_buildings.csv",
     } <= names
+    assert {name.split("/")[2] for name in names if name.startswith("assess/records/")} == {
+        "575-market", "berkeley-1103", "others"
+    }  # fmt: skip
     assert not [name for name in names if name.startswith(("tests", "inventories", "samples"))]
 
 
-@pytest.mark.slow
-def test_the_installed_wheel_renders_a_report_elsewhere(wheel, tmp_path):
+def test_no_file_of_the_wheel_hides_another_and_it_stays_small(wheel):
+    names = zipfile.ZipFile(wheel).namelist()
+    assert len(names) == len(set(names))
+    assert wheel.stat().st_size < 4e6  # 3 MB of it are the records of the studies
+
+
+@pytest.fixture(scope="module")
+def installed(wheel, tmp_path_factory):
     """Its dependencies are those of this environment, put on the path behind its own packages."""
-    home = tmp_path / "venv"
+    home = tmp_path_factory.mktemp("installed") / "venv"
     venv.create(home, with_pip=True)
     python = home / ("Scripts" if os.name == "nt" else "bin") / "python"
     _run(str(python), "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", str(wheel))
     packages = next(path for path in map(Path, sys.path) if (path / "openpyxl").is_dir())
     own = _run(str(python), "-c", "import sysconfig; print(sysconfig.get_path('purelib'))").strip()
     (Path(own) / "dependencies.pth").write_text(f"{packages}\n", encoding="utf-8")
-    book = write(tmp_path / "w.xlsx")
+    return python
+
+
+def _elsewhere(python, folder, *words):
+    """Run the installed Python in a folder, without what points it to the checkout."""
     where = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
-    place = _run(str(python), "-c", "import assess; print(assess.__file__)", cwd=tmp_path, env=where)
-    assert Path(place.strip()).is_relative_to(home)
-    _run(str(python), "-m", "assess", "run", str(book), "--runs", "20", "--out", "out", cwd=tmp_path, env=where)
+    return _run(str(python), *words, cwd=folder, env=where)
+
+
+@pytest.mark.slow
+def test_the_installed_wheel_renders_a_report_elsewhere(installed, tmp_path):
+    book = write(tmp_path / "w.xlsx")
+    place = _elsewhere(installed, tmp_path, "-c", "import assess; print(assess.__file__)")
+    assert Path(place.strip()).is_relative_to(installed.parents[1])
+    _elsewhere(installed, tmp_path, "-m", "assess", "run", str(book), "--runs", "20", "--out", "out")
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "report.pdf", "report.xlsx", "report.html", "results.json", "items.csv",
     }  # fmt: skip
+
+
+READ_ALL = """
+from assess.studies._buildings import all_buildings
+channels = [one for building in all_buildings() for one in building.channels]
+print(len(channels), all(one.read().pfa > 0 and "site-packages" in str(one.file) for one in channels))
+"""
+
+
+@pytest.mark.slow
+def test_the_installed_wheel_does_a_study_and_reads_its_records_elsewhere(installed, tmp_path):
+    told = _elsewhere(installed, tmp_path, "-m", "assess", "study", "table3", "--out", "out")
+    assert "27 printed OR" in told
+    assert (tmp_path / "out" / "table3.md").is_file()
+    assert _elsewhere(installed, tmp_path, "-c", READ_ALL).split() == ["21", "True"]

@@ -10,7 +10,7 @@ from assess.methods import Cases
 from assess.methods.fema_p58 import BETA, CHECKED_BREADTH_TO_HEIGHT, METHOD
 from assess.settings import Settings
 
-FACTS = Path(__file__).parents[1] / "data" / "facts" / "fema_p58_contents.csv"
+FACTS = Path(__file__).parents[2] / "assess" / "studies" / "facts" / "fema_p58_contents.csv"
 with FACTS.open(encoding="utf-8") as file:
     ROWS = list(csv.DictReader(line for line in file if not line.startswith("#")))
 

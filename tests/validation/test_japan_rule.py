@@ -10,7 +10,7 @@ from assess.methods import Cases
 from assess.methods.japan_rule import LIMIT, METHOD
 from assess.settings import Settings
 
-FACTS = Path(__file__).parents[1] / "data" / "facts" / "japan_rule.csv"
+FACTS = Path(__file__).parents[2] / "assess" / "studies" / "facts" / "japan_rule.csv"
 with FACTS.open(encoding="utf-8") as file:
     ROWS = list(csv.DictReader(line for line in file if not line.startswith("#")))
 

@@ -9,7 +9,7 @@ from assess.methods import Cases
 from assess.methods.kaneko_hayashi import METHOD, G
 from assess.settings import Settings
 
-FACTS = Path(__file__).parents[1] / "data" / "facts" / "kaneko_hayashi_median_pfa.csv"
+FACTS = Path(__file__).parents[2] / "assess" / "studies" / "facts" / "kaneko_hayashi_median_pfa.csv"
 with FACTS.open(encoding="utf-8") as file:
     ROWS = list(csv.DictReader(line for line in file if not line.startswith("#")))
 

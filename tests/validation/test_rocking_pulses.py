@@ -16,7 +16,7 @@ from assess.rocking.ensemble import rock_blocks
 from assess.units import GRAVITY
 from tests.rocking.reference import Block, integrate
 
-FACTS = Path(__file__).parents[1] / "data" / "facts" / "rocking_pulses.csv"
+FACTS = Path(__file__).parents[2] / "assess" / "studies" / "facts" / "rocking_pulses.csv"
 with FACTS.open(encoding="utf-8") as file:
     ROWS = list(csv.DictReader(line for line in file if not line.startswith("#")))
 

@@ -15,7 +15,7 @@ from assess.methods.proposed_or import METHOD
 from assess.settings import Settings
 from assess.units import GRAVITY
 
-FACTS = Path(__file__).parents[1] / "data" / "facts" / "table3_shaking_table.csv"
+FACTS = Path(__file__).parents[2] / "assess" / "studies" / "facts" / "table3_shaking_table.csv"
 with FACTS.open(encoding="utf-8") as file:
     ROWS = list(csv.DictReader(line for line in file if not line.startswith("#")))
 

@@ -10,7 +10,7 @@ import pytest
 
 from tests.workbooks import write
 
-FACTS = Path(__file__).parents[1] / "data" / "facts" / "table3_shaking_table.csv"
+FACTS = Path(__file__).parents[2] / "assess" / "studies" / "facts" / "table3_shaking_table.csv"
 
 
 @pytest.fixture(scope="module")

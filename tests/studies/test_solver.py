@@ -1,0 +1,195 @@
+"""The study of solvers: limits in closed form, bands, physics of a flight, and what it writes."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from assess.studies import _pulses
+from assess.studies._histories import follow_near, sample, tabulate_histories
+from assess.studies._limits import (
+    EXACT,
+    KERNEL,
+    LOOSE,
+    NEAR,
+    ODE23S,
+    RK45,
+    TIGHT,
+    Found,
+    Limit,
+    find_limit,
+    read_limits,
+    solve_half_sine,
+)  # fmt: skip
+from assess.studies._pulses import ALPHA, ETA, Case, P, Response, Solver, follow
+from assess.studies._study import Options
+from assess.studies.solver import STUDY, describe_missing
+from tests.rocking.reference import Block, integrate
+
+LINEAR, NONLINEAR = (Case("one_sine", equation, 5.0) for equation in ("linear", "nonlinear"))
+LIMITS = read_limits()
+
+
+def name(limit: Limit) -> str:
+    return f"{limit.case.pulse}-{limit.case.equation}-{limit.printed}"
+
+
+def test_limits_of_the_table():
+    assert len(LIMITS) == 10
+    assert [one.over_below for one in LIMITS[:3]] == [False, True, False]
+    assert {one.case.ratio for one in LIMITS} == {1, 2, 4, 5, 8}
+
+
+@pytest.mark.parametrize(("ratio", "limit"), [(1, 1.3224), (2, 1.8007), (4, 2.7908), (8, 4.7871)])
+def test_half_sines_in_closed_form(ratio, limit):
+    found = solve_half_sine(ratio)
+    assert found == pytest.approx(limit, abs=5e-5)
+    assert found * math.exp(-(math.pi - math.asin(1 / found)) / ratio) + math.sqrt(found**2 - 1) == pytest.approx(ratio)
+
+
+@pytest.mark.parametrize("limit", [one for one in LIMITS if one.case.pulse == "half_sine"], ids=name)
+@pytest.mark.parametrize(
+    ("solver", "within"), [(EXACT, 1e-6), (KERNEL, 5e-6), (TIGHT, 5e-6), (RK45, 1e-3), (ODE23S, 1e-3)]
+)
+def test_half_sines_by_every_solver(limit, solver, within):
+    exact = solve_half_sine(limit.case.ratio)
+    for side in (-within, within):
+        assert follow(limit.case, exact + side, solver).overturned == (side > 0)
+
+
+@pytest.mark.parametrize("limit", LIMITS[:6], ids=name)
+def test_one_sines_by_every_solver(limit):
+    """DOP853 and the kernel share nothing but the equation; the others are as near as the page tells."""
+    exact, kernel = find_limit(limit, EXACT), find_limit(limit, KERNEL)
+    assert exact.limit == pytest.approx(limit.listed, abs=1.1e-3)
+    assert kernel.limit == pytest.approx(exact.limit, abs=1e-5)
+    assert exact.changes == kernel.changes == 1
+    for solver, within in ((RK45, 3e-3), (ODE23S, 5e-4), (TIGHT, 5e-5)):
+        for side in (-within, within):
+            falls = follow(limit.case, exact.limit + side, solver).overturned
+            assert falls == (limit.over_below if side < 0 else not limit.over_below)
+
+
+@pytest.mark.parametrize("case", [LINEAR, NONLINEAR], ids=["linear", "nonlinear"])
+@pytest.mark.parametrize("solver", [EXACT, RK45, ODE23S, KERNEL], ids=lambda one: one.name)
+def test_verdicts_are_not_monotone(case, solver):
+    """Safe, over with one impact, safe, over without."""
+    seen = [follow(case, amplitude, solver) for amplitude in (2.5, 4.0, 6.95, 8.0)]
+    assert [one.overturned for one in seen] == [False, True, False, True]
+    assert (seen[1].impacts, seen[3].impacts) == (1, 0)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.floats(1.02, 9.0), st.booleans())
+def test_the_same_verdicts_as_the_reference_of_the_kernel(amplitude, is_linear):
+    """`tests.rocking.reference` integrates a record sample by sample; no case here is nearer than 0.01 to a limit."""
+    case = LINEAR if is_linear else NONLINEAR
+    assume(all(abs(amplitude - one.listed) > 0.01 for one in LIMITS[:6] if one.case == case))
+    assume(amplitude * ALPHA > 1.01 * case.threshold)
+    values = amplitude * ALPHA * np.sin(np.linspace(0, 2 * math.pi, 401))
+    values[-1] = 0.0
+    found = integrate(Block(ALPHA, P, ETA, linear=is_linear), values, case.end / 400)
+    one = follow(case, amplitude, TIGHT)
+    assert one.overturned == found.overturned
+    if one.overturned:
+        assert one.impacts == found.impacts
+
+
+@pytest.mark.parametrize("case", [LINEAR, NONLINEAR], ids=["linear", "nonlinear"])
+def test_a_block_starts_where_the_sine_passes_its_threshold(case):
+    start = case.start(3.0, 0.0)
+    assert 3 * ALPHA * math.sin(5 * P * start) == pytest.approx(case.threshold)
+    assert case.accelerate(0.0, -case.threshold) == pytest.approx(0.0, abs=1e-14)
+    assert case.start(3.0, 0.1) == 0.1
+    assert case.start(3.0, 0.3) == pytest.approx(start + math.pi / (5 * P))  # in the second lobe
+    assert case.start(3.0, 0.57) == math.inf
+    assert case.start(0.99, 0.0) == math.inf
+    assert not follow(case, 0.99, RK45).impacts
+
+
+def test_a_half_sine_has_one_lobe():
+    assert replace(LINEAR, pulse="half_sine").start(3.0, 0.3) == math.inf
+
+
+def test_free_motion_of_the_linear_equation():
+    """After the pulse, between impacts, theta - alpha sgn(theta) is a sum of exp(pt) and exp(-pt)."""
+    response = follow(LINEAR, 2.5, EXACT, until=4.0)
+    signs = np.sign(response.theta)
+    inside = np.flatnonzero((response.times > LINEAR.end) & (signs != 0))
+    h = _pulses.POINT
+    checked = 0
+    for at in inside[1:-1]:
+        steps = np.diff(response.times[at - 1 : at + 2])
+        if np.allclose(steps, h, rtol=1e-9) and abs(signs[at - 1 : at + 2].sum()) == 3:
+            left, here, right = response.theta[at - 1 : at + 2] - signs[at] * ALPHA
+            assert left + right == pytest.approx(2 * math.cosh(P * h) * here, abs=1e-9)
+            checked += 1
+    assert checked > 200
+
+
+def test_paths_agree_between_solvers():
+    limit = LIMITS[4]
+    paths = [sample(follow(limit.case, 5.0, one, until=5.4)) for one in (KERNEL, TIGHT, EXACT)]
+    assert np.isnan(paths[2]).any()
+    for one in paths[:2]:
+        assert one == pytest.approx(paths[2], abs=2e-3, nan_ok=True)
+    assert np.isnan(sample(Response(overturned=True))[1:]).all()
+
+
+def test_histories_tell_the_pulse_and_stop_at_the_fall():
+    limit = LIMITS[0]
+    table = tabulate_histories([limit], follow_near([limit]))
+    rows = list(table.rows)
+    assert all(len(row) == len(table.columns) for row in rows)
+    assert max(float(str(row[4])) for row in rows) == pytest.approx((limit.listed + NEAR) * ALPHA, rel=0.02)
+    assert rows[0][5:] == (0.0, 0.0, 0.0)
+    assert rows[-1][5] is None or abs(float(str(rows[-1][5]))) < math.pi / 2 / ALPHA
+
+
+def test_a_loose_solver_moves_a_limit():
+    found = find_limit(LIMITS[0], LOOSE[0])
+    assert not abs(found.limit - LIMITS[0].listed) < 0.1
+    assert not found.above.overturned
+
+
+def test_a_limit_that_is_not_there_is_not_found():
+    found = find_limit(replace(LIMITS[0], printed="4.5"), RK45)
+    assert math.isnan(found.limit)
+    assert found.changes == 0
+
+
+def test_limits_that_are_not_found_are_counted():
+    def find(*values: float) -> list[Found]:
+        return [Found(one, 1, Response(), Response()) for one in values]
+
+    assert describe_missing({EXACT: find(3.0, 6.0), RK45: find(3.1, 6.1)}) == ""
+    told = describe_missing({EXACT: find(3.0, 6.0), RK45: find(3.1, math.nan), LOOSE[0]: find(math.nan, math.nan)})
+    assert told == ("Not found within 0.16 alpha g of the listed limits, and left out: 1 by RK45, 2 by RK45 loose.")
+
+
+def test_a_solver_that_fails_is_told():
+    with pytest.raises(ArithmeticError, match="at 3 alpha g"):
+        follow(LINEAR, 3.0, Solver("RK45", "RK45", 1e-5, math.nan))
+
+
+@pytest.mark.slow
+def test_the_study(tmp_path):
+    told: list[str] = []
+    finding = STUDY.run(Options(out=tmp_path, tell=told.append))
+    page = "\n".join(finding.page)
+    assert "The paper picked ODE23s" in page
+    assert "| ODE23s | 1e-05, 1e-07 | 0.0003" in page
+    assert "20 of 20" in page
+    assert "3.033 (+0.0007), 6.744 (+0.0010)" in page
+    assert "nan" not in page
+    assert "ot found" not in page
+    assert len(finding.page) <= 45
+    assert len(" ".join(line for line in finding.page if not line.startswith("|")).split()) <= 250
+    assert len(finding.tables["solver-limits"].rows) == 70
+    for table in finding.tables.values():
+        assert {len(row) for row in table.rows} == {len(table.columns)}
+    assert finding.figures["solver-histories.svg"].startswith(b"<?xml")
+    assert len(told) == 8
