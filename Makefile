@@ -28,7 +28,7 @@ blank: .venv/.installed
 docs: .venv/.installed
 	$(BIN)/python docs/motions.py
 	$(BIN)/python docs/rocking.py
-	$(BIN)/python docs/verification.py
+	$(BIN)/python docs/validation.py
 
 samples: .venv/.developing
 	$(BIN)/python docs/samples.py
