@@ -76,7 +76,7 @@ def all_buildings() -> tuple[Building, ...]:
     """
     return (
         Building(
-            "575 Market Street", "San Francisco", "Loma Prieta, 18 October 1989",
+            "575 Market Street", "San Francisco", "Loma Prieta, 18 October 1989 UTC",
             tuple(_find("575 Market Street", "891018_1.cra-1.0210{}.smc", MARKET)),
         ),
         Building(
