@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, overload
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -57,12 +57,13 @@ def study(
         from assess.studies import Options, all_studies
         from assess.studies._run import check_folder, run_all
 
-        every, folder = all_studies(), _name_folder("out", out)
+        _check_named(out=out, records=records)
+        every, folder = all_studies(), Path(out)
         chosen = [one for one in every if name.lower() in (one.name, ALL)]
         if not chosen:
             raise InputError(f"'{name}' is no study; expected one of {', '.join(one.name for one in every)}, {ALL}")
         options = Options(out=folder, runs=runs, seed=seed, jobs=jobs or os.cpu_count() or 1, tell=_tell)
-        own = {"records": _name_folder("records", records), "breadth": breadth, "height": height}
+        own = {"records": None if records is None else Path(records), "breadth": breadth, "height": height}
         options = _add_own(own, options, chosen, every)
         check_folder(folder)
         findings = run_all(chosen, options)
@@ -71,15 +72,11 @@ def study(
         _tell_findings(chosen, findings, folder)
 
 
-@overload
-def _name_folder(option: str, text: str) -> Path: ...
-@overload
-def _name_folder(option: str, text: str | None) -> Path | None: ...
-def _name_folder(option: str, text: str | None) -> Path | None:
-    """Return the folder that an option names; an empty name would mean the one in which one stands."""
-    if text is not None and not text.strip():
-        raise InputError(f"--{option} is empty: name a folder, or leave --{option} away")
-    return None if text is None else Path(text)
+def _check_named(**folders: str | None) -> None:
+    """Refuse a folder without a name, which would mean the one in which one stands."""
+    for option, name in folders.items():
+        if name is not None and not name.strip():
+            raise InputError(f"--{option} is empty: name a folder, or leave --{option} away")
 
 
 def _add_own(

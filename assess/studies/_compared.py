@@ -8,7 +8,7 @@ import numpy as np
 from assess.methods._method import BoolArray
 from assess.methods.proposed_or import METHOD as PROPOSED_OR
 from assess.risk import LIMITS
-from assess.studies._agreement import Agreement, correlate_ranks, find_agreement
+from assess.studies._agreement import Agreement, find_agreement
 from assess.studies._formulas import CRITERIA, FORMULAS
 from assess.studies._judged import Judged, agree, as_recorded, by_building, every_case, pool
 from assess.studies._pairs import Pair, find_pairs
@@ -83,12 +83,13 @@ class Compared:
     """All of it.
 
     Agreements go by building, part of the cases (see `SUBSETS`) and key of the formula, or `NOTHING`; criteria by
-    building and key; `by_ratio` is the rank correlation, over channels, of the bias of a formula with PFV/PFA [-], by
-    key.
+    building and key. `ratios` are PFV/PFA of the channels [s], (c,), and `biases` those of each formula under them [-],
+    (c,), by key.
     """
 
     agreements: Mapping[tuple[str, str, str], Agreement]
-    by_ratio: Mapping[str, float]
+    ratios: Sequence[float]
+    biases: Mapping[str, Sequence[float]]
     criteria: Mapping[tuple[str, str], Criterion]
     at_rest: AtRest
     pairs: Sequence[Pair]
@@ -96,10 +97,14 @@ class Compared:
 
 def compare(judged: Sequence[Judged]) -> Compared:
     """Hold formulas and criteria against what the blocks did."""
-    ratio = [one.ratio for one in judged]
-    by_ratio = {key: correlate_ranks([agree([one], key).bias for one in judged], ratio) for key in FORMULAS}
-    rest = find_at_rest(judged)
-    return Compared(find_agreements(judged), by_ratio, find_criteria(judged), rest, find_pairs(judged))
+    return Compared(
+        agreements=find_agreements(judged),
+        ratios=[one.ratio for one in judged],
+        biases={key: [agree([one], key).bias for one in judged] for key in FORMULAS},
+        criteria=find_criteria(judged),
+        at_rest=find_at_rest(judged),
+        pairs=find_pairs(judged),
+    )
 
 
 def find_agreements(judged: Sequence[Judged]) -> dict[tuple[str, str, str], Agreement]:

@@ -110,18 +110,15 @@ def find_errors(values: FloatArray, points: Points) -> LeftOut:
 
 def gather(judged: Sequence[Judged]) -> tuple[Counts, NDArray[np.str_]]:
     """Return the cases of all channels at the common values of PFA, and the building of each."""
-    own, n = [one.trials for one in judged], len(LEVELS)
-    sizes = [one.breadth.size * n for one in own]
+    sizes = [len(LEVELS) * one.trials.breadth.size for one in judged]
+    cases = [one.trials.cases for one in judged]
 
-    def join(values: Sequence[FloatArray]) -> FloatArray:
-        return np.concatenate(values)
+    def join(name: str) -> FloatArray:
+        return np.concatenate([getattr(one, name)[:size] for one, size in zip(cases, sizes, strict=True)])
 
     counts = Counts(
-        breadth=join([np.tile(one.breadth, n) for one in own]),
-        height=join([np.tile(one.height, n) for one in own]),
-        pfa=join([np.repeat(one.pfa[:n], one.breadth.size) for one in own]),
-        pfv=join([np.repeat(one.pfv[:n], one.breadth.size) for one in own]),
-        fallen=np.concatenate([one.fallen[:n].ravel() for one in own]),
-        runs=np.concatenate([np.full(size, one.runs, dtype=np.int64) for one, size in zip(own, sizes, strict=True)]),
-    )
+        breadth=join("breadth"), height=join("height"), pfa=join("pfa"), pfv=join("pfv"),
+        fallen=np.concatenate([one.trials.fallen.ravel()[:size] for one, size in zip(judged, sizes, strict=True)]),
+        runs=np.repeat([one.trials.runs for one in judged], sizes),
+    )  # fmt: skip
     return counts, np.repeat([one.building.name for one in judged], sizes)

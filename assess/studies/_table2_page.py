@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from assess.studies._agreement import correlate_ranks
 from assess.studies._compared import ALL, NOTHING, Compared
 from assess.studies._formulas import CRITERIA, FORMULAS, INTEGRATION, percent
 from assess.studies._judged import TOGETHER, Judged, by_building
@@ -80,11 +81,12 @@ def summarise(judged: Sequence[Judged], found: Compared, options: Options) -> st
 def say_failures(judged: Sequence[Judged], found: Compared) -> Iterator[str]:
     """Yield where the formulas fail against integration."""
     names, rest = list(by_building(judged)), found.at_rest
+    by_ratio = correlate_ranks(found.biases[OR], found.ratios)
     high = {key: _join(percent(found.agreements[name, ALL, key].class_too_high) for name in names) for key in FORMULAS}
     yield (
         "**OR does not see how long a motion pushes.** It knows PFA alone, so it says the same for a slow floor and "
         f"for a quick one: it puts {high[OR]} of the cases into too high a class ({' / '.join(names)}). The quicker "
-        f"the motion, the further off: over the channels, its bias has a rank correlation of {found.by_ratio[OR]:.2f} "
+        f"the motion, the further off: over the channels, its bias has a rank correlation of {by_ratio:.2f} "
         "with PFV/PFA."
     )
     yield (

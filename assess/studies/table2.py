@@ -12,7 +12,7 @@ from assess.report.figures.draw import draw
 from assess.studies._agreement import NAMES
 from assess.studies._compared import Compared, compare
 from assess.studies._formulas import CRITERIA, FORMULAS
-from assess.studies._judged import RECORDED, TOGETHER, Judged, agree, rock_all
+from assess.studies._judged import RECORDED, TOGETHER, Judged, rock_all
 from assess.studies._study import Finding, Options, Row, Study, Table
 from assess.studies._table2_page import describe, explain_overview, give_overview, say_failures, summarise
 from assess.studies._table2_print import describe_print
@@ -36,7 +36,7 @@ def run(options: Options) -> Finding:
         summary=[summarise(judged, found, options)],
         failures=list(say_failures(judged, found)),
         tables=_build_tables(judged, found),
-        figures={"table2.svg": draw(7, 2.6, partial(_paint, judged))},
+        figures={"table2.svg": draw(7, 2.6, partial(_paint, found))},
     )
 
 
@@ -75,13 +75,12 @@ def _channel_rows(judged: Sequence[Judged]) -> Iterator[Row]:
                 )  # fmt: skip
 
 
-def _paint(judged: Sequence[Judged], figure: Any) -> None:
+def _paint(found: Compared, figure: Any) -> None:
     """Paint the bias of each formula over PFV/PFA, a point a channel: what the formula leaves out shows."""
     axes = figure.subplots()
-    ratio = [one.ratio for one in judged]
     for (key, title), (mark, colour) in zip(FORMULAS.items(), MARKS, strict=True):
-        bias = [100 * agree([one], key).bias for one in judged]
-        axes.plot(ratio, bias, mark, ms=4, mfc="none", mec=colour, label=title)
+        bias = [100 * one for one in found.biases[key]]
+        axes.plot(found.ratios, bias, mark, ms=4, mfc="none", mec=colour, label=title)
     axes.axhline(0, color="#888888", lw=0.6)
     axes.set_xlabel("PFV/PFA of the record [s]", fontsize=7)
     axes.set_ylabel("bias [percentage points]", fontsize=7)
