@@ -1,47 +1,62 @@
-# Two commands that set up what they need: `make example` runs the main job on the worked example, `make test` passes
-# the tests. Both make a virtual environment in .venv.
+# Two commands that set up what they need: `make example` runs the main job on the worked example, `make test` runs
+# the tests that show the product works. Both make a virtual environment in .venv (VENV=folder: in another).
 
 PYTHON ?= python3
-BIN := .venv/bin
+VENV ?= .venv
+BIN := $(VENV)/bin
 
-.PHONY: example test lint benchmark blank docs texts samples clean
+# Workers keep to neighbouring tests, which share what they set up; more than eight gain nothing and take memory.
+PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist worksteal
+SLOW := slow or browser or libreoffice or verapdf
 
-example: .venv/.installed
+.PHONY: example test test-slow test-long lint benchmark blank docs texts samples clean
+
+example: $(VENV)/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street
 
-test: .venv/.developing
-	$(BIN)/python -m pytest -n auto
+test: $(VENV)/.developing
+	$(PYTEST) -m "not ($(SLOW) or long)"
 
-lint: .venv/.developing
+# Full reports, browsers, LibreOffice, veraPDF, extremes, killed processes: 12 minutes at most.
+test-slow: $(VENV)/.developing
+	$(PYTEST) -m "($(SLOW)) and not long"
+
+# Whole studies, fuzzing, the lowest and the newest dependencies: an hour. Writes docs/tests.md.
+test-long: $(VENV)/.developing
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'uv>=0.5'
+	$(BIN)/python tests/run_long.py
+
+lint: $(VENV)/.developing
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-benchmark: .venv/.developing
+benchmark: $(VENV)/.developing
 	$(BIN)/python tests/benchmarks/run.py
 
-blank: .venv/.installed
+blank: $(VENV)/.installed
 	$(BIN)/assess new inventories/blank.xlsx --force
 	$(BIN)/assess new inventories/blank-it.xlsx --language it --force
 	$(BIN)/python inventories/market_street.py
 
-docs: .venv/.installed
+docs: $(VENV)/.installed
 	$(BIN)/python docs/motions.py
 	$(BIN)/python docs/rocking.py
 	$(BIN)/python docs/validation.py
+	$(BIN)/python -m assess.report.results_schema
 
-samples: .venv/.developing
+samples: $(VENV)/.developing
 	$(BIN)/python docs/samples.py
 
-texts: .venv/.installed
+texts: $(VENV)/.installed
 	$(BIN)/python docs/texts.py
 
-.venv/.installed: pyproject.toml setup.sh
-	PYTHON="$(PYTHON)" sh setup.sh .
+$(VENV)/.installed: pyproject.toml setup.sh
+	PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh .
 	touch $@
 
-.venv/.developing: .venv/.installed
-	PYTHON="$(PYTHON)" sh setup.sh '.[dev]'
+$(VENV)/.developing: $(VENV)/.installed
+	PYTHON="$(PYTHON)" VENV="$(VENV)" sh setup.sh '.[dev]'
 	touch $@
 
 clean:

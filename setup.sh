@@ -1,10 +1,11 @@
 #!/bin/sh
-# setup.sh WHAT: makes .venv and installs WHAT ('.' or '.[dev]') into it, editable.
+# setup.sh WHAT: makes a virtual environment ($VENV, or .venv) and installs WHAT ('.' or '.[dev]') into it, editable.
 # Where this is Debian or Ubuntu and we may install packages, the system libraries of the PDF are installed as well;
 # elsewhere they are named. Without them everything works but the PDF.
 set -eu
 
 PYTHON=${PYTHON:-python3}
+VENV=${VENV:-.venv}
 LIBRARIES="libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 as_root() {
@@ -31,10 +32,10 @@ if ! "$PYTHON" -c "import ensurepip, venv" 2>/dev/null; then
     }
 fi
 
-[ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
-.venv/bin/python -m pip install --quiet --disable-pip-version-check -e "$1"
+[ -x "$VENV/bin/python" ] || "$PYTHON" -m venv "$VENV"
+"$VENV/bin/python" -m pip install --quiet --disable-pip-version-check -e "$1"
 
-works() { .venv/bin/python -c "import weasyprint" >/dev/null 2>&1; }
+works() { "$VENV"/bin/python -c "import weasyprint" >/dev/null 2>&1; }
 if ! works; then
     echo "Installing the system libraries of the PDF: $LIBRARIES ..."
     install_packages "$LIBRARIES" || true

@@ -1,0 +1,45 @@
+"""Fixtures that several folders of tests share, and an environment that is the same on every machine."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+import assess
+from tests.workbooks import UNVERIFIED
+
+EXAMPLE = Path(__file__).parents[1] / "inventories" / "market-street.xlsx"
+FOREIGN_VARIABLES = (
+    "COLUMNS", "LINES", "TERMINAL_WIDTH", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "CLICOLOR_FORCE", "TTY_COMPATIBLE",
+    "TTY_INTERACTIVE", "GITHUB_ACTIONS", "SOURCE_DATE_EPOCH",
+)  # fmt: skip
+"""Variables of a terminal or a build service that change what the command prints, or the date of a report."""
+
+settings.register_profile("same", derandomize=True, deadline=None)  # the same draws everywhere, on slow machines too
+settings.register_profile("random", deadline=None, print_blob=True)  # other draws: `make test-long`
+settings.load_profile("same")
+
+
+def pytest_configure() -> None:
+    """Give commands that tests start what they would have in a plain terminal, and SIGINT its usual effect.
+
+    A shell makes what it starts in the background ignore SIGINT, and programs hand that down.
+    """
+    for name in FOREIGN_VARIABLES:
+        os.environ.pop(name, None)
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="session")
+def example_inventory():
+    """Return the worked example as read."""
+    return assess.read_inventory(EXAMPLE)
+
+
+@pytest.fixture(scope="session")
+def example(example_inventory):
+    """Return the worked example assessed by the formulas."""
+    return assess.run(example_inventory, UNVERIFIED)

@@ -1,0 +1,94 @@
+"""The long tests, and the quick ones on the oldest and newest dependencies: ``make test-long`` writes docs/tests.md.
+
+Not part of the gate: an hour on two cores. The page holds the last result with its date.
+"""
+
+import datetime
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+sys.path.insert(0, str(ROOT))
+from docs.machine import describe_machine  # noqa: E402
+
+PAGE = ROOT / "docs" / "tests.md"
+BUILD = ROOT / "build"
+QUICK = "not (slow or browser or libreoffice or verapdf or long)"
+SEEDS = range(1, 21)
+CLOSING = re.compile(r"(\d+ (?:passed|failed|error|skipped|xfailed).*) in [\d.]+s")
+LISTED = ("numpy", "scipy", "numba", "openpyxl", "xlsxwriter", "weasyprint", "matplotlib", "shapely", "pandas", "typer")
+
+
+def main() -> int:
+    """Run everything, write the page, and return 0 if nothing failed."""
+    rows = [
+        run("whole studies and pages", sys.executable, "-m", "long", "-n", "auto"),
+        fuzz(),
+        *(run_with(name, resolution) for name, resolution in (("oldest", "lowest-direct"), ("newest", "highest"))),
+    ]
+    PAGE.write_text("\n".join(describe(rows)) + "\n", encoding="utf-8")
+    return int(any("failed" in row[1] or "error" in row[1] for row in rows))
+
+
+def describe(rows: list[tuple[str, str, str]]) -> Iterator[str]:
+    """Yield the lines of the page."""
+    yield "# The long tests: their last result"
+    yield ""
+    yield f"Written by `make test-long` on {datetime.datetime.now(datetime.UTC):%d %B %Y}. {describe_machine()}"
+    yield ""
+    yield "| what | result | minutes |"
+    yield "|---|---|---|"
+    yield from (f"| {' | '.join(row)} |" for row in rows)
+
+
+def run(what: str, python: str | Path, *arguments: str) -> tuple[str, str, str]:
+    """Run pytest and return a row of the page."""
+    started = time.monotonic()
+    command = [str(python), "-m", "pytest", "--dist", "worksteal", "-q", *arguments]
+    print(f"== {what}", flush=True)
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
+    print(done.stdout)
+    closing = CLOSING.findall(done.stdout)
+    result = closing[-1] if closing else f"error: pytest ended with {done.returncode}"
+    return what, result, f"{(time.monotonic() - started) / 60:.0f}"
+
+
+def fuzz() -> tuple[str, str, str]:
+    """Run the tests that draw their input (files, workbooks, sizes) with other draws than the quick tests make."""
+    started, failed, passed = time.monotonic(), 0, 0
+    for seed in SEEDS:
+        more = ("-m", "hypothesis and not long", "--hypothesis-profile", "random", f"--hypothesis-seed={seed}")
+        _, result, _ = run(f"drawn input, seed {seed}", sys.executable, "-n", "auto", *more)
+        counts = {word: int(number) for number, word in re.findall(r"(\d+) (passed|failed|error)", result)}
+        passed, failed = passed + counts.get("passed", 0), failed + counts.get("failed", 0) + ("error" in result)
+    result = f"{failed} failed, {passed} passed" if failed else f"{passed} passed"
+    what = f"drawn input, {len(SEEDS)} seeds: at least {150 * len(SEEDS):,} damaged workbooks and files a target"
+    return what, result, f"{(time.monotonic() - started) / 60:.0f}"
+
+
+def run_with(name: str, resolution: str) -> tuple[str, str, str]:
+    """Run the quick tests on the declared lowest or the newest versions of the dependencies."""
+    folder = BUILD / f"venv-{name}"
+    uv = [sys.executable, "-m", "uv"]
+    python = folder / "bin" / "python"
+    for command in (
+        [*uv, "venv", "--quiet", "--clear", "--python", sys.executable, str(folder)],
+        [*uv, "pip", "install", "--quiet", "--python", str(python), "--resolution", resolution, "-e", ".[dev]"],
+    ):
+        done = subprocess.run(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, check=False)
+        if done.returncode:
+            print(done.stderr)
+            return f"{name} dependencies", "error: they cannot be installed", "0"
+    code = (
+        f"from importlib.metadata import version\nprint(*(f'{{one}} {{version(one)}}' for one in {LISTED!r}), sep=', ')"
+    )
+    listed = subprocess.run([python, "-c", code], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+    return run(f"quick tests on the {name} dependencies: {listed}", python, "-m", QUICK, "-n", "auto")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
