@@ -4,36 +4,42 @@
 
 AssessError
 ├── InputError          what the user gave cannot be used: nothing is written, exit status 2
+│   ├── SettingsError   ... in a setting; also a ValueError
 │   ├── WorkbookError   ... in the workbook: every problem with its sheet and cell
 │   └── RecordError     ... in a file of recorded motion
-└── OutputError         a result could not be written, exit status 1
-    └── PdfUnavailableError  the native libraries of the PDF are missing
+├── OutputError         a result could not be written, exit status 1
+│   └── PdfUnavailableError  the native libraries of the PDF are missing
+└── CancelledError      the caller stopped the work; nothing was written
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 Severity = Literal["error", "warning", "note"]
 
+_ADDRESS = re.compile(r"[A-Z]{1,3}\d+(:[A-Z]{1,3}\d+)?")
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing to tell the user about the input: where it is, what is the matter, and the mend."""
+    """One thing to tell the user about the input: where it is, what is the matter, and how to fix it."""
 
     severity: Severity
     sheet: str
     cell: str
     message: str
-    mend: str = ""
+    fix: str = ""
 
     @property
     def place(self) -> str:
-        """Sheet and cell, ``Items!H14``; the sheet alone, or nothing, where no single cell is to blame."""
-        return f"{self.sheet}!{self.cell}" if self.cell else self.sheet
+        """Sheet and cell, ``Items!H14``, or ``Items row 3 Height``; less where no single cell is to blame."""
+        mark = "!" if _ADDRESS.fullmatch(self.cell) else " "
+        return f"{self.sheet}{mark}{self.cell}" if self.cell else self.sheet
 
     def __str__(self) -> str:
-        text = f"{self.message} {self.mend}".strip()
+        text = f"{self.message} {self.fix}".strip()
         return f"{self.place}: {text}" if self.place else text
 
 
@@ -45,10 +51,18 @@ class InputError(AssessError):
     """What the user gave cannot be used."""
 
 
-class WorkbookError(InputError):
-    """The workbook cannot be used; `problems` holds all that was found, errors first."""
+class SettingsError(InputError, ValueError):
+    """A setting cannot be used; the message begins with the setting's name."""
 
-    def __init__(self, problems: Sequence[Problem]) -> None:
+
+class WorkbookError(InputError):
+    """The workbook cannot be used; `problems` holds all that was found, errors first.
+
+    `language` is the code of the workbook's language, as far as it was known.
+    """
+
+    def __init__(self, problems: Sequence[Problem], language: str = "en") -> None:
+        self.language = language
         self.problems = tuple(sorted(problems, key=lambda problem: problem.severity != "error"))
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
@@ -63,3 +77,10 @@ class OutputError(AssessError):
 
 class PdfUnavailableError(OutputError):
     """The PDF needs native libraries that are not installed here."""
+
+
+class CancelledError(AssessError):
+    """The caller stopped the work; nothing was written."""
+
+    def __init__(self) -> None:
+        super().__init__("the work was cancelled; nothing was written.")

@@ -1,61 +1,116 @@
-"""Tells on standard error how far the verification is, or another rocking: pieces, floors and the time left."""
+"""How far a piece of work is, and whether it is to stop: one object through reading, motions, rocking and rendering."""
 
-import sys
 import threading
 import time
-from typing import TextIO
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from threading import Event
+from typing import Self
 
-import numpy as np
+from assess.errors import CancelledError
 
-from assess.verification import Work
+ESTIMATE_FROM = 0.02
+"""Share of a stage [-] that has to be done before the time left is estimated."""
 
-SLOWEST = 0.2
-"""A line is written again after this many seconds at the earliest."""
-TOLD_FROM = 0.02
-"""Share of the work [-] that has to be done before the time left is told."""
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """How far a stage is.
+
+    Parameters
+    ----------
+    stage : str
+        Its key: "reading", "motions", "routes", "rendering" and the like.
+    share : float
+        Share that is done [-]; 1.0 once at its end.
+    detail : str
+        What is worked on, in plain English: "121 pieces on 4 floors".
+    seconds_left : float, optional
+        Estimate of the time left in this stage [s]; None while too little is done.
+    """
+
+    stage: str
+    share: float
+    detail: str
+    seconds_left: float | None
+
+
+Listener = Callable[[Report], None]
 
 
 class Progress:
-    """Writes one line that keeps changing on a terminal; elsewhere one line, once, that says what is begun."""
+    """Passes reports on to a listener, and raises `CancelledError` in the work once `cancel` is set.
 
-    def __init__(self, work: Work, stream: TextIO | None = None, doing: str = "Verifying") -> None:
-        self._work = work
-        self._doing = doing
-        self._stream = stream or sys.stderr
-        self._shares = np.zeros(len(work.items))
-        self._start = self._written = time.monotonic()
-        self._lock = threading.Lock()  # ensembles are worked on side by side
-        self._is_terminal = self._stream.isatty()
-        if not self._is_terminal:
-            self._stream.write(f"{doing} {self._describe(work.pieces, len(set(work.floors)))}.\n")
+    It may be used from several threads at once. Work calls `check` at least every 0.2 s.
 
-    def __call__(self, what: str, number: int, share: float) -> None:
-        """Note that a share of ensemble `number` is done."""
-        with self._lock:
-            self._shares[number] = share
-            done, now = float(self._shares.mean()), time.monotonic()
-            if self._is_terminal and (now - self._written > SLOWEST or done == 1.0):
-                self._written = now
-                self._stream.write("\r\x1b[K" + ("" if done == 1.0 else self._line(done, now)))
-                self._stream.flush()
+    Parameters
+    ----------
+    listener : callable, optional
+        Called with each `Report`, from whichever thread does the work, never from two at once.
+    cancel : threading.Event, optional
+        Set by the caller, from any thread, to stop the work.
+    """
 
-    def _line(self, done: float, now: float) -> str:
-        left = "" if done < TOLD_FROM else f", about {_round((now - self._start) * (1 - done) / done)} left"
-        finished = self._shares == 1.0
-        going = {floor for floor, one in zip(self._work.floors, finished, strict=True) if not one}
-        floors = set(self._work.floors) - going
-        waiting = [items for items, one in zip(self._work.items, finished, strict=True) if not one]
-        pieces = self._work.pieces - len(np.unique(np.concatenate(waiting))) if waiting else self._work.pieces
-        total = self._describe(self._work.pieces, len(set(self._work.floors)))
-        return f"{self._doing}: {self._describe(pieces, len(floors))} done of {total}{left}"
+    def __init__(self, listener: Listener | None = None, cancel: Event | None = None) -> None:
+        self._listener, self._cancel = listener, cancel or Event()
+        self._lock = threading.Lock()
 
-    @staticmethod
-    def _describe(pieces: int, floors: int) -> str:
-        return f"{pieces:,} piece{'s' if pieces != 1 else ''} on {floors:,} floor{'s' if floors != 1 else ''}"
+    @classmethod
+    def of(cls, progress: "Progress | Listener | None", cancel: Event | None = None) -> Self:
+        """Return a progress as it is, or make one of a listener and an event."""
+        if isinstance(progress, cls) and cancel is None:
+            return progress
+        listener = progress._listener if isinstance(progress, Progress) else progress
+        return cls(listener, cancel)
+
+    def check(self) -> None:
+        """Raise `CancelledError` if the work is to stop."""
+        if self._cancel.is_set():
+            raise CancelledError
+
+    @property
+    def is_cancelled(self) -> bool:
+        """Whether the work is to stop."""
+        return self._cancel.is_set()
+
+    @contextmanager
+    def stage(self, name: str, detail: str = "", parts: int = 1) -> Iterator["Stage"]:
+        """Report a stage from its beginning to its end; `parts` of it may be worked on side by side."""
+        self.check()
+        stage = Stage(self, name, detail, parts)
+        self.tell(Report(name, 0.0, detail, None))
+        yield stage
+        self.tell(Report(name, 1.0, detail, 0.0))
+
+    def tell(self, report: Report) -> None:
+        """Pass a report on to the listener."""
+        if self._listener is not None:
+            with self._lock:
+                self._listener(report)
 
 
-def _round(seconds: float) -> str:
-    """Return a time for people: no more digits than can be known."""
-    if seconds < 90:
-        return f"{max(1, round(seconds))} s"
-    return f"{round(seconds / 60)} min"
+class Stage:
+    """One stage of the work, in parts of equal weight."""
+
+    def __init__(self, progress: Progress, name: str, detail: str, parts: int) -> None:
+        self.progress, self._name, self._detail = progress, name, detail
+        self._shares, self._start = [0.0] * max(1, parts), time.monotonic()
+
+    def at(self, share: float, part: int = 0) -> None:
+        """Note that `share` [-] of a part is done; raises `CancelledError` if the work is to stop."""
+        self.progress.check()
+        self._shares[part] = share
+        done = sum(self._shares) / len(self._shares)
+        spent = time.monotonic() - self._start
+        left = spent * (1 - done) / done if done >= ESTIMATE_FROM else None
+        if done < 1.0:
+            self.progress.tell(Report(self._name, done, self._detail, left))
+
+    def check(self) -> None:
+        """Raise `CancelledError` if the work is to stop."""
+        self.progress.check()
+
+
+SILENT = Progress()
+"""Reports to nobody and never stops the work: the default everywhere."""

@@ -6,6 +6,7 @@ which class a limit itself belongs; here it belongs to the higher one.
 
 import math
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,12 +27,12 @@ class RiskClass(IntEnum):
 
     @property
     def symbol(self) -> str:
-        """A shape that tells the class without colour."""
+        """A shape that identifies the class without colour."""
         return ("○", "◇", "▲", "■")[self]
 
     @property
     def fill(self) -> str:
-        """Background colour, light to dark: told apart without red and green, and in grey."""
+        """Background colour, light to dark: distinct without red and green, and in grey."""
         return ("#eaf3fb", "#f7cf5c", "#db7133", "#8c1d3f")[self]
 
     @property
@@ -81,9 +82,14 @@ def wilson_interval(count: ArrayLike, runs: ArrayLike, z: float = NORMAL_95) -> 
     American Statistical Association 22(158):209-212. doi:10.1080/01621459.1927.10502953
     """
     k, n = np.asarray(count, dtype=np.float64), np.asarray(runs, dtype=np.float64)
-    share, widening = k / n, z * z / n
-    centre = share + widening / 2
-    half = z * np.sqrt(share * (1 - share) / n + widening / (4 * n))
     # The ends are exact where none or all have fallen; rounding would leave a hair.
-    low = np.where(k == 0, 0.0, (centre - half) / (1 + widening))
-    return low, np.where(k == n, 1.0, (centre + half) / (1 + widening))
+    low = np.where(k == 0, 0.0, wilson_end(k / n, n, z, is_high=False))
+    return low, np.where(k == n, 1.0, wilson_end(k / n, n, z, is_high=True))
+
+
+def wilson_end(share: Any, runs: Any, z: Any, *, is_high: bool) -> Any:
+    """Return one end of the interval of a `share` of `runs` trials, rounding included."""
+    widening = z * z / runs
+    centre = share + widening / 2
+    half = z * np.sqrt(share * (1 - share) / runs + widening / (4 * runs))
+    return (centre + half if is_high else centre - half) / (1 + widening)

@@ -1,15 +1,22 @@
-"""What a run can be told, with its defaults."""
+"""How a run is set up: every setting, its default and what it may be, checked here and nowhere else."""
 
 import math
+import operator
+import os
 import re
 import unicodedata
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Literal, get_args
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields, replace
+from difflib import get_close_matches
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+from assess.errors import SettingsError
 
 Verify = Literal["none", "high", "all"]
 VERIFY: tuple[str, ...] = get_args(Verify)
-"""Which pieces are verified by direct integration: none; those that are high or very high by a formula, outside its
+"""Which pieces are simulated by direct integration: none; those that are high or very high by a formula, outside its
 checked range, or on a route; or all."""
 
 AUTO = "auto"
@@ -19,8 +26,11 @@ ROUTE_RISK = 0.03
 
 Scenario = Literal["as filled", "recorded", "given", "ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"]
 SCENARIOS: tuple[str, ...] = get_args(Scenario)
-"""Where the floor motion comes from: as filled, floor by floor a record, then given PFA and PFV, then between the
-floors above and below, then a code's profile; or records alone, given peaks alone, or one profile on every floor."""
+"""Source of the floor motion: as filled, floor by floor a record, then given PFA and PFV, then between the floors
+above and below, then a code's profile; or records alone, given peaks alone, or one profile on every floor."""
+
+LONGEST_SHOWN = 40
+"""Characters of a wrong value that a message repeats."""
 
 
 def match_choice(text: str, choices: Iterable[str]) -> str | None:
@@ -32,31 +42,74 @@ def _plain(text: str) -> str:
     return re.sub(r"[\s_\-\u2010-\u2015\u2212]", "", unicodedata.normalize("NFKC", text)).casefold()
 
 
-def read_runs(text: str | None) -> int | Literal["auto"] | None:
-    """Return the number of motions that a text means, the usual one for None, and None for a text that means none."""
-    if text is None:
-        return RUNS
-    if text.casefold() == AUTO:
-        return "auto"
-    is_number = text.isascii() and text.isdigit() and len(text) < 10
-    return int(text) if is_number and 1 <= int(text) <= MOST_RUNS else None
+# ---------------------------------------------------------------- one reader for each kind of value
+
+
+def _read_choice(value: Any, choices: tuple[str, ...]) -> str | None:
+    return match_choice(value, choices) if isinstance(value, str) else None
+
+
+def _read_whole(value: Any, low: int, high: float) -> int | None:
+    """Return a whole number within limits, also of numpy or as its digits; None for anything else."""
+    if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 20:
+        value = int(value)
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        return None
+    number = operator.index(value)
+    return number if low <= number <= high else None
+
+
+def _read_runs(value: Any) -> int | str | None:
+    return _read_choice(value, (AUTO,)) or _read_whole(value, 1, MOST_RUNS)
+
+
+def _read_number(value: Any, is_allowed: Callable[[float], bool]) -> float | None:
+    if isinstance(value, (bool, str)) or not hasattr(value, "__float__"):
+        return None
+    number = float(value)
+    return number if math.isfinite(number) and is_allowed(number) else None
+
+
+def _read_flag(value: Any) -> bool | None:
+    return value if isinstance(value, bool) else None
+
+
+_positive = partial(_read_number, is_allowed=lambda number: number > 0)
+_RULES: Mapping[str, tuple[Callable[[Any], Any], str]] = {
+    "scenario": (partial(_read_choice, choices=SCENARIOS), f"one of: {', '.join(SCENARIOS)}"),
+    "verify": (partial(_read_choice, choices=VERIFY), f"one of: {', '.join(VERIFY)}"),
+    "runs": (_read_runs, f"1 to {MOST_RUNS:,}, or {AUTO}"),
+    "seed": (partial(_read_whole, low=0, high=math.inf), "a whole number, 0 or above"),
+    "scale_motions": (_read_flag, "True or False"),
+    "zeta_acceleration": (_positive, "above 0, and finite"),
+    "zeta_velocity": (_positive, "above 0, and finite"),
+    "slide_coefficient": (partial(_read_number, is_allowed=lambda number: 0 <= number <= 1), "0 to 1"),
+    "ductility_reduction": (partial(_read_number, is_allowed=lambda number: number >= 1), "at least 1, and finite"),
+    "route_risk": (
+        partial(_read_number, is_allowed=lambda number: 0 < number < 1),
+        "above 0 and below 1 (write 3 % as 0.03)",
+    ),
+}
+"""What reads the value of each setting, None for one that cannot be used, and what was expected."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
     """How an inventory is assessed.
 
+    Words are accepted in any spelling ("asce 7-22", "ASCE_7-22") and stored in the one listed here.
+
     Parameters
     ----------
     scenario : str, optional
         One of `SCENARIOS`; None takes the workbook's own, which is "as filled" where it is blank.
     verify : str
-        Which pieces are verified by direct integration, one of `VERIFY`.
+        Which pieces are simulated by direct integration, one of `VERIFY`.
     runs : int or "auto"
         Motions of each floor and axis, 1 to 100,000; "auto" adds motions until every piece's interval lies
         within one class, at most 5,000. 0 of 100 cannot show "low": the interval's upper end is 0.037.
     seed : int
-        Of the generated motions, 0 or above.
+        Random seed of the generated motions, 0 or above.
     scale_motions : bool
         Whether motions of the user's own are scaled to each floor's PFA.
     zeta_acceleration, zeta_velocity : float
@@ -65,17 +118,16 @@ class Settings:
     slide_coefficient : float
         Kaneko and Hayashi's slide coefficient, alpha of eq. 5 [-]; 1 is no sliding, the paper's assumption.
     ductility_reduction : float
-        R_mu of ASCE 7-22 [-], at least 1: by how much the building's ductility lowers the PFA that this code's profile
-        gives above the ground. 1 is no reduction.
+        R_mu of ASCE 7-22 [-], at least 1: the factor by which the building's ductility lowers the PFA that this code's
+        profile gives above the ground. 1 is no reduction.
     route_risk : float
-        The chance [-], above 0 and below 1, under which every evacuation route is to be brought: what is to be fixed
-        for it is sought down to there, and a route is called blocked or reduced from there on. 0.03 is where the class
-        low ends.
+        Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: fixes are sought until every
+        route is below it, and a route is called blocked or reduced from there on. 0.03 is where the class low ends.
 
     Raises
     ------
-    ValueError
-        If a value is not one of those allowed.
+    SettingsError
+        If a value cannot be used: an `InputError` and a `ValueError`, whose message begins with the setting's name.
     """
 
     scenario: Scenario | None = None
@@ -90,19 +142,45 @@ class Settings:
     route_risk: float = ROUTE_RISK
 
     def __post_init__(self) -> None:
-        if self.scenario is not None and self.scenario not in SCENARIOS:
-            raise ValueError(f"scenario is {self.scenario!r}, expected one of: {', '.join(SCENARIOS)}")
-        if self.verify not in VERIFY:
-            raise ValueError(f"verify is {self.verify!r}, expected one of: {', '.join(VERIFY)}")
-        if self.runs != AUTO and not (isinstance(self.runs, int) and 1 <= self.runs <= MOST_RUNS):
-            raise ValueError(f"runs is {self.runs!r}, expected 1 to {MOST_RUNS:,}, or {AUTO}")
-        if self.seed < 0:
-            raise ValueError(f"seed is {self.seed}, expected 0 or above")
-        if not (0 < self.zeta_acceleration < math.inf and 0 < self.zeta_velocity < math.inf):
-            raise ValueError("zeta_acceleration and zeta_velocity must be finite and above 0")
-        if not 0 <= self.slide_coefficient <= 1:
-            raise ValueError(f"slide_coefficient is {self.slide_coefficient}, expected 0 to 1")
-        if not 1 <= self.ductility_reduction < math.inf:
-            raise ValueError(f"ductility_reduction is {self.ductility_reduction}, expected at least 1, and finite")
-        if not 0 < self.route_risk < 1:
-            raise ValueError(f"route_risk is {self.route_risk}, expected above 0 and below 1")
+        for name, (read, expected) in _RULES.items():
+            given = getattr(self, name)
+            value = None if given is None else read(given)
+            if value is None and not (name == "scenario" and given is None):
+                raise SettingsError(f"{name} is {_show(given)}, expected {expected}")
+            object.__setattr__(self, name, value)
+
+
+def _show(value: object) -> str:
+    shown = repr(value) if isinstance(value, str) else str(value)
+    return shown if len(shown) <= LONGEST_SHOWN else f"{shown[:LONGEST_SHOWN]}..."
+
+
+def change_settings(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:
+    """Return settings, the defaults where there are none, with `changes` by keyword.
+
+    Raises
+    ------
+    SettingsError
+        If there is no such setting, or a value cannot be used.
+    """
+    names = [field.name for field in fields(Settings)]
+    for name in changes:
+        if name not in names:
+            near = get_close_matches(name, names, 1)
+            meant = f". Did you mean {near[0]}?" if near else f"; expected one of: {', '.join(names)}"
+            raise SettingsError(f"{name} is an unknown setting{meant}")
+    return replace(settings or Settings(), **changes)
+
+
+CPU_QUOTA = Path("/sys/fs/cgroup/cpu.max")
+"""Where Linux states the processor time of a container: quota and period, or ``max`` and period."""
+
+
+def count_processors() -> int:
+    """Return how many processors this process may use: by its affinity, and by the quota of its control group."""
+    count = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    try:
+        quota, period = CPU_QUOTA.read_text(encoding="ascii").split()
+        return max(1, min(count, math.ceil(int(quota) / int(period))))
+    except (OSError, ValueError):  # no control group, or no quota
+        return count

@@ -1,4 +1,4 @@
-"""Write `motions.md` and its figures: how generated motions and generic targets compare with what was recorded.
+"""Write `motions.md` and its figures: generated motions and generic targets, compared with records.
 
 Run it with ``python docs/motions.py``. Every number on the page is from the run.
 """
@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from assess.motion.compatible import Generator, build_generator
 from assess.motion.fit import measure_fit, velocities
 from assess.motion.formats import read_records
+from assess.motion.generate import Generator, build_generator
 from assess.motion.record import Motion, treat
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import (
@@ -20,6 +20,7 @@ from assess.motion.target import (
     generic_target,
     recorded_target,
 )
+from docs.machine import describe_machine
 
 ROOT = Path(__file__).parents[1]
 MARKET = ROOT / "inventories" / "records" / "575-market"
@@ -52,13 +53,13 @@ RECORDS: dict[str, tuple[Path, float, float]] = {
         )
     },
 }  # fmt: skip
-"""Records of floors: file, T1 as read off their spectra [s], and height of the building [m]: 175 for 575 Market Street,
-50 taken for the other two, whose height we do not know."""
+"""Records of floors: file, T1 as read from their spectra [s], and height of the building [m]: 175 for 575 Market
+Street, 50 assumed for the other two, whose height is unknown."""
 
 
 def main() -> None:
     """Write the page and the figures."""
-    from assess.report.commands.ensembles import draw_ensemble, draw_targets
+    from docs.ensemble_figures import draw_ensemble, draw_targets
 
     figures = ROOT / "docs" / "figures"
     motions = {name: treat(read_records(path)[0]) for name, (path, _, _) in RECORDS.items()}
@@ -67,7 +68,7 @@ def main() -> None:
     (figures / "ensemble.png").write_bytes(draw_ensemble(generators[first], first, "png"))
     periods = build_periods(0.03, 10.0, 200)
     (figures / "targets.png").write_bytes(draw_targets(list(panels(motions, periods)), periods, "png"))
-    page = "\n".join([*lines_of_ensembles(generators), *lines_of_targets(motions)]) + "\n"
+    page = "\n".join([*lines_of_ensembles(generators), *lines_of_targets(motions), "", describe_machine()]) + "\n"
     (ROOT / "docs" / "motions.md").write_text(page, encoding="utf-8")
 
 
@@ -79,10 +80,10 @@ def build(motion: Motion) -> Generator:
 
 def lines_of_ensembles(generators: dict[str, Generator]) -> Iterator[str]:
     """Yield the part on ensembles."""
-    yield "# Generated motions and generic targets, held against records"
+    yield "# Generated motions and generic targets, compared with records"
     yield ""
-    yield "Written by `python docs/motions.py`; every number is from that run (seed 1, axis X). No report uses these"
-    yield "motions yet: they are made for the integration of rocking."
+    yield "Written by `python docs/motions.py`; every number is from that run (seed 1, axis X). The simulation"
+    yield "in `assess run` uses such motions where a floor has a record, or only peaks."
     yield ""
     yield "## Ensembles compatible with a recorded floor"
     yield ""
@@ -149,8 +150,8 @@ def lines_of_targets(motions: dict[str, Motion]) -> Iterator[str]:
     yield "## Generic targets, for floors of which only PFA is known"
     yield ""
     yield "Largest pseudo-velocity of the generic spectrum over that of the record, both for the record's PFA, and the"
-    yield "ratio of their ordinates at 1 s. Below 1 the generic spectrum is on the unsafe side. T1 is read off the"
-    yield "records' spectra; the heights of the buildings at Alhambra and Berkeley are not known to us, 50 m is taken."
+    yield "ratio of their ordinates at 1 s. Below 1 the generic spectrum is on the unsafe side. T1 is read from the"
+    yield "records' spectra; the heights of the buildings at Alhambra and Berkeley are unknown; 50 m is assumed."
     yield ""
     yield "![PSA/PFA of recorded floors and of generic targets](figures/targets.png)"
     yield ""
@@ -178,8 +179,8 @@ def compare(generic: np.ndarray, recorded: np.ndarray, periods: np.ndarray) -> s
 def lines_of_peaks(motions: dict[str, Motion]) -> Iterator[str]:
     """Yield what the motions made from a generic spectrum come to."""
     motion = next(iter(motions.values()))
-    yield "Where PFA and spectrum cannot both be had, PFA wins and the misfit is told. Motions for the PFA of the 42nd"
-    yield f"floor ({motion.pfa / 9.80665:.3f} g; its recorded PFV is {motion.pfv * 100:.0f} cm/s):"
+    yield "Where PFA and spectrum cannot both be met, PFA takes precedence and the misfit is reported. Motions for"
+    yield f"the PFA of the 42nd floor ({motion.pfa / 9.80665:.3f} g; its recorded PFV is {motion.pfv * 100:.0f} cm/s):"
     yield ""
     yield "| known | deviation of the mean spectrum: mean | largest | mean PFV [cm/s] |"
     yield "|---|---|---|---|"

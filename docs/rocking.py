@@ -1,4 +1,4 @@
-"""Write `rocking.md`: how well the rocking of blocks is integrated, measured on pairs of block and real record.
+"""Write `rocking.md`: the accuracy of the integration of rocking, measured on pairs of block and real record.
 
 Run it with ``python docs/rocking.py``. Every number on the page is from the run.
 """
@@ -17,6 +17,7 @@ sys.path.insert(0, str(ROOT))
 from assess.rocking import ensemble, kernel  # noqa: E402
 from assess.rocking.ensemble import rock_blocks  # noqa: E402
 from assess.units import GRAVITY  # noqa: E402
+from docs.machine import describe_machine  # noqa: E402
 from tests.rocking.pairs import Pair, draw_pairs, ground, read_table  # noqa: E402 - a script, and tests are no part of the package
 from tests.rocking.reference import of_sizes, scaled  # noqa: E402
 from tests.rocking.variants import kernel_with  # noqa: E402
@@ -39,7 +40,7 @@ def main() -> None:
     table = read_table()
     pairs = draw_pairs()
     page = [*lines_of_agreement(pairs, table), *lines_of_division(pairs[::EVERY]), *lines_of_steps(pairs)]
-    page += lines_of_rest(pairs[::EVERY], table[::EVERY])
+    page += [*lines_of_rest(pairs[::EVERY], table[::EVERY]), "", describe_machine()]
     (ROOT / "docs" / "rocking.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 
@@ -93,12 +94,12 @@ def lines_of_agreement(pairs: list[Pair], table: list[dict[str, str]]) -> Iterat
     found, reference = rock(pairs), of_table(table)
     robust = np.array([row["robust"] == "1" for row in table])
     more, fewer = int((found.over & ~reference.over).sum()), int((~found.over & reference.over).sum())
-    yield "# How well the rocking of blocks is integrated"
+    yield "# Accuracy of the integration of rocking"
     yield ""
     yield "Written by `python docs/rocking.py`; every number is from that run. Pairs are those of"
     yield f"`tests/rocking/pairs.py`: the strongest 25 s of {len({pair[0] for pair in pairs})} records of floors and"
     yield "ground, blocks 0.6 to 2.2 m high with B/H of 0.1 to 0.6, peaks of 0.5 to 4 times the block's threshold."
-    yield "Rotations are compared, relatively, where both stay below the critical angle."
+    yield "Relative differences of rotations are compared where both stay below the critical angle."
     yield ""
     yield "## Against a reference"
     yield ""
@@ -134,7 +135,7 @@ def lines_of_steps(pairs: list[Pair]) -> Iterator[str]:
     yield "## Why longer steps are divided"
     yield ""
     yield f"Steps longer than p dt = {ensemble.LONGEST_STEP:g} are divided. Here the records are stretched until all"
-    yield f"steps are as long as said, and not divided; held against the same divided into {FINEST}."
+    yield f"steps are as long as given, and not divided; compared with the same divided into {FINEST}."
     yield ""
     yield f"| p dt | {COLUMNS}"
     yield f"|---|{RULE}"
@@ -159,10 +160,10 @@ def lines_of_rest(pairs: list[Pair], table: list[dict[str, str]]) -> Iterator[st
     yield "## When a block rests"
     yield ""
     yield "After an impact a block rests if its next hop would be lower than this share of the critical angle; here it"
-    yield f"is {kernel.REST:g}, in the reference 1e-9. Against the reference. Seconds are those of all these blocks"
+    yield f"is {kernel.REST:g}, in the reference 1e-9. Against the reference. Seconds: the time for all these blocks"
     yield f"under one record with a peak of 0.5 g, the least of nine, over those at {kernel.REST:g}."
     yield ""
-    yield f"| share | {COLUMNS} impacts a pair | seconds |"
+    yield f"| share | {COLUMNS} impacts per pair | seconds |"
     yield f"|---|{RULE}---|---|"
     seconds, cells = {}, {}
     for rest in (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9):

@@ -113,7 +113,7 @@ def test_a_processor_without_wide_vectors_gives_the_same_risks(tmp_path):
     for name, changes in (("native", {}), ("generic", {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""})):
         out = tmp_path / name
         words = ["assess", "run", str(path), "--verify", "all", "--formats", "json", "--out", str(out)]
-        code = f"import sys\nfrom assess.cli import main\nsys.argv = {words!r}\nmain()"
+        code = f"import sys\nfrom assess.cli.app import main\nsys.argv = {words!r}\nmain()"
         _child(
             code,
             NUMBA_CACHE_DIR=tmp_path / f"cache-{name}" if changes else os.environ.get("NUMBA_CACHE_DIR"),

@@ -10,7 +10,7 @@ from babel.messages.pofile import read_po
 import assess
 from assess import resources
 from assess.errors import InputError
-from assess.language import (
+from assess.i18n import (
     LANGUAGES,
     fill,
     find_language,

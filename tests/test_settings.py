@@ -1,27 +1,46 @@
 import math
 
+import numpy as np
 import pytest
 
 import assess
-from assess.settings import SCENARIOS, match_choice
+from assess.errors import SettingsError
+from assess.settings import SCENARIOS, Settings, change_settings, match_choice
+
+WRONG = [
+    ("scenario", "ASCE 7-10", "scenario is 'ASCE 7-10', expected one of: as filled, recorded, given, ASCE 7-22"),
+    ("scenario", 7, "scenario is 7, expected one of: as filled"),
+    ("verify", "maybe", "verify is 'maybe', expected one of: none, high, all"),
+    ("verify", None, "verify is None, expected one of"),
+    *(
+        ("runs", runs, f"runs is {runs!r}, expected 1 to 100,000, or auto")
+        for runs in (0, -1, 100_001, "x", None, True)
+    ),
+    ("runs", 2.5, "runs is 2.5, expected 1 to 100,000, or auto"),
+    ("runs", "9" * 5000, "runs is '999999999999999999999999999999999999999..., expected 1 to"),
+    ("seed", -1, "seed is -1, expected a whole number, 0 or above"),
+    ("seed", 1.0, "seed is 1.0, expected a whole number"),
+    ("scale_motions", "yes", "scale_motions is 'yes', expected True or False"),
+    *(("zeta_velocity", zeta, "expected above 0, and finite") for zeta in (0.0, -1.0, math.nan, math.inf, "0.5")),
+    ("zeta_acceleration", 0, "zeta_acceleration is 0, expected above 0, and finite"),
+    ("slide_coefficient", 1.01, "slide_coefficient is 1.01, expected 0 to 1"),
+    *(("ductility_reduction", one, "expected at least 1, and finite") for one in (0.99, 0.0, -2.0, math.nan, math.inf)),
+    *(("route_risk", risk, "expected above 0 and below 1 (write 3 % as 0.03)") for risk in (0, 1, 3.0, math.nan)),
+]
 
 
-@pytest.mark.parametrize("zeta", [0.0, -1.0, math.nan, math.inf])
-def test_a_zeta_that_is_no_positive_number_is_refused(zeta):
-    with pytest.raises(ValueError, match="must be finite and above 0"):
-        assess.Settings(zeta_velocity=zeta)
+@pytest.mark.parametrize(("name", "value", "message"), WRONG)
+def test_a_value_that_cannot_be_used_is_named(name, value, message):
+    with pytest.raises(SettingsError) as caught:
+        Settings(**{name: value})
+    assert str(caught.value).startswith(f"{name} is ")
+    assert message in str(caught.value)
+    assert "--" not in str(caught.value)
 
 
-def test_the_package_offers_its_names_before_they_are_loaded():
-    assert {"run", "Settings", "read_inventory", "write_reports"} <= set(dir(assess))
-    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
-        assess.nonsense  # noqa: B018
-
-
-@pytest.mark.parametrize("reduction", [0.99, 0.0, -2.0, math.nan, math.inf])
-def test_a_ductility_reduction_below_one_is_refused(reduction):
-    with pytest.raises(ValueError, match=r"ductility_reduction is .*, expected at least 1, and finite"):
-        assess.Settings(ductility_reduction=reduction)
+def test_the_error_is_of_the_family_and_a_value_error():
+    assert issubclass(SettingsError, assess.InputError)
+    assert issubclass(SettingsError, ValueError)
 
 
 @pytest.mark.parametrize(
@@ -38,26 +57,39 @@ def test_a_ductility_reduction_below_one_is_refused(reduction):
         ("", None),
     ],
 )
-def test_choices_are_matched_loosely(text, choice):
+def test_choices_are_matched_in_any_spelling(text, choice):
     assert match_choice(text, SCENARIOS) == choice
+    if choice:
+        assert Settings(scenario=text).scenario == choice
 
 
-def test_by_default_what_is_high_or_doubtful_is_verified_under_200_motions():
-    usual = assess.Settings()
-    assert (usual.verify, usual.runs, usual.seed, usual.scale_motions) == ("high", 200, 1, False)
+@pytest.mark.parametrize(
+    ("given", "runs"), [(1, 1), (100_000, 100_000), ("auto", "auto"), ("AUTO", "auto"), ("200", 200), (np.int64(7), 7)]
+)
+def test_runs_that_can_be_used(given, runs):
+    found = Settings(runs=given).runs
+    assert found == runs
+    assert type(found) is type(runs)
 
 
-@pytest.mark.parametrize("runs", [0, -1, 100_001, 2.5, "x", "Auto", None])
-def test_a_number_of_runs_that_cannot_be_is_refused(runs):
-    with pytest.raises(ValueError, match=r"runs is .*, expected 1 to 100,000, or auto"):
-        assess.Settings(runs=runs)
+def test_equal_settings_in_other_spellings_are_equal():
+    assert Settings(scenario="asce 7-22", verify="HIGH", runs="200", slide_coefficient=1) == Settings(
+        scenario="ASCE 7-22"
+    )
 
 
-@pytest.mark.parametrize("runs", [1, 100_000, "auto"])
-def test_runs_that_can_be(runs):
-    assert assess.Settings(runs=runs).runs == runs
+def test_settings_are_changed_by_keyword():
+    assert change_settings(None, {}) == Settings()
+    assert change_settings(Settings(seed=3), {"verify": "none"}) == Settings(seed=3, verify="none")
+    with pytest.raises(SettingsError, match=r"^verfy is an unknown setting\. Did you mean verify\?$"):
+        change_settings(None, {"verfy": "none"})
+    with pytest.raises(SettingsError, match="xyz is an unknown setting; expected one of: scenario, verify"):
+        change_settings(None, {"xyz": 1})
+    with pytest.raises(SettingsError, match="runs is 0, expected"):
+        change_settings(None, {"runs": 0})
 
 
-def test_a_seed_below_zero_is_refused():
-    with pytest.raises(ValueError, match="seed is -1, expected 0 or above"):
-        assess.Settings(seed=-1)
+def test_the_package_offers_its_names_before_they_are_loaded():
+    assert {"run", "Settings", "read_inventory", "write_reports"} <= set(dir(assess))
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        assess.nonsense  # noqa: B018

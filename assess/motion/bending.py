@@ -13,6 +13,7 @@ from assess.compiled import compiled
 from assess.motion.record import FloatArray
 from assess.motion.spectrum import run_rows
 from assess.motion.target import Grid
+from assess.progress import SILENT, Progress
 
 BENT = 2.0
 """Share of the logarithm of a missing peak that is bent in one round [-]; a peak changes by half of its bending."""
@@ -87,9 +88,9 @@ def bend_row(
         peaks[0], peaks[1] = max(peaks[0], abs(motion[i])), max(peaks[1], abs(speed))
 
 
-def lift_peaks(motions: FloatArray, factors: FloatArray, threads: int) -> None:
+def lift_peaks(motions: FloatArray, factors: FloatArray, threads: int, progress: Progress = SILENT) -> None:
     """Multiply the PFA of each motion by its factor, in place; less of it, the smaller the acceleration is."""
-    run_rows(lambda row: _lift_row(motions[row], factors[row]), len(motions), threads)
+    run_rows(lambda row: _lift_row(motions[row], factors[row]), len(motions), threads, progress)
 
 
 @compiled

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.motion.record import FloatArray
+from assess.progress import SILENT, Progress
 
 LOWEST, HIGHEST = 0.1, 25.6
 """Centres of the first and last octave [Hz]; the first reaches down to 0, the last up to the Nyquist frequency."""
@@ -108,7 +109,15 @@ def filter_frequencies(count: int, time_step: float) -> FloatArray:
 
 
 def draw_noise(
-    envelopes: Envelopes, time_step: float, *, seed: int, axis: str, first: int, count: int, threads: int
+    envelopes: Envelopes,
+    time_step: float,
+    *,
+    seed: int,
+    axis: str,
+    first: int,
+    count: int,
+    threads: int,
+    progress: Progress = SILENT,
 ) -> NDArray[np.complex128]:
     """Return the transforms of realisations `first` to `first + count - 1` of white noise under the envelopes.
 
@@ -129,9 +138,12 @@ def draw_noise(
     white = np.exp(1j * np.array([draw.uniform(0, 2 * np.pi, frequencies.size) for draw in draws]))
     times = np.arange(samples) * time_step
     noise = np.zeros((count, samples))
+    progress.check()
     for weight, values in zip(split(frequencies, envelopes.centres), envelopes.values, strict=True):
+        progress.check()
         band = irfft(white * weight, length, axis=1, workers=threads)[:, :samples]
         for row, stretch in enumerate(stretches):
+            progress.check()
             at = envelopes.half_time + (times - envelopes.half_time) / stretch
             noise[row] += band[row] * np.interp(at, times, values)
     return np.asarray(rfft(noise, length, axis=1, workers=threads), dtype=np.complex128)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from assess.motion.record import FloatArray
 from assess.motion.target import JUDGED_FROM, Target, matched_to
+from assess.progress import SILENT, Progress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +80,9 @@ def measure_fit(target: Target, acceleration: FloatArray, time_step: float, thre
     return measure_match(target, acceleration, time_step, threads)[0]
 
 
-def measure_match(target: Target, acceleration: FloatArray, time_step: float, threads: int = 1) -> tuple[Fit, Spectra]:
+def measure_match(
+    target: Target, acceleration: FloatArray, time_step: float, threads: int = 1, progress: Progress = SILENT
+) -> tuple[Fit, Spectra]:
     """Return how motions (k, n) [m/s2] meet their target, and the spectra by which this was measured.
 
     The periods are those from 0.05 s to where the match is judged, twice as many as they were matched at.
@@ -91,7 +94,7 @@ def measure_match(target: Target, acceleration: FloatArray, time_step: float, th
     periods = np.sort(np.concatenate([target.periods, between]))
     judged = (periods >= JUDGED_FROM) & (periods <= wanted_to)
     periods = periods[judged]
-    pseudo = pseudo_acceleration(acceleration, time_step, periods, threads=threads)
+    pseudo = pseudo_acceleration(acceleration, time_step, periods, threads=threads, progress=progress)
     wanted = target.ordinates(periods, time_step)
     deviation = pseudo.mean(axis=0) / wanted - 1
     worst = int(np.abs(deviation).argmax())

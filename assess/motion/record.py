@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import RecordError
-from assess.language import Text, fill, nfill
+from assess.i18n import Text, fill, nfill
+from assess.motion.highpass import PASS_ORDER, high_pass_both_ways
+from assess.progress import SILENT, Progress
 from assess.units import GRAVITY
 
 FloatArray = NDArray[np.float64]
@@ -20,8 +22,6 @@ Baseline = Literal["standard", "none"]
 
 CORNER = 0.1
 """Corner of the high-pass [Hz]: the response is 1/sqrt(2) there in each of the two passes, 0.5 after both."""
-PASS_ORDER = 2
-"""Order of the Butterworth filter in each pass."""
 PASSES = 2
 """Forward and backward, so that no phase is shifted; the order in effect is PASS_ORDER * PASSES = 4."""
 PAD = 1.5 * PASS_ORDER * PASSES / CORNER
@@ -60,7 +60,7 @@ class Record:
     azimuth_deg : float, optional
         Direction of positive acceleration, clockwise from north [deg].
     vertical : bool
-        A vertical channel topples no furniture.
+        Whether the channel is vertical; only horizontal motion overturns furniture.
     corrected : bool
         Whether the provider has already filtered it.
     time_step : float
@@ -135,14 +135,16 @@ def peak(values: FloatArray) -> float:
     return float(np.abs(values).max())
 
 
-def treat(record: Record, baseline: Baseline = "standard") -> Motion:
-    """Return the motion that every method uses; `treatment` says in words what is done here.
+def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress = SILENT) -> Motion:
+    """Return the motion that every method uses; `treatment` describes it in words.
 
     Parameters
     ----------
     record : Record
     baseline : str
         "standard"; "none" leaves out the filter, not the removal of an uncorrected record's mean.
+    progress : Progress
+        Asked often whether to stop; CancelledError then.
 
     Returns
     -------
@@ -154,13 +156,20 @@ def treat(record: Record, baseline: Baseline = "standard") -> Motion:
     if not record.corrected:
         values = values - values.mean()
         if baseline == "standard":
-            return _high_pass(values, step)
+            return _high_pass(values, step, progress)
     velocity = _integral(values, step)
     return Motion(values, velocity, _integral(velocity, step), step)
 
 
+def scale(motion: Motion, factor: float) -> Motion:
+    """Return a motion whose acceleration, velocity and displacement are `factor` times as large."""
+    return Motion(
+        factor * motion.acceleration, factor * motion.velocity, factor * motion.displacement, motion.time_step
+    )
+
+
 def treatment(record: Record, baseline: Baseline = "standard") -> Text:
-    """Say in one sentence what `treat` does to `record`."""
+    """Return one sentence on what `treat` does to `record`."""
     if record.corrected:
         return fill("Corrected by its provider: used as it is in the file.")
     if baseline == "none":
@@ -175,13 +184,9 @@ def treatment(record: Record, baseline: Baseline = "standard") -> Text:
     )
 
 
-def _high_pass(values: FloatArray, time_step: float) -> Motion:
-    # scipy.signal takes a second to import: only where a record is filtered.
-    from scipy.signal import butter, sosfiltfilt
-
-    sections = butter(PASS_ORDER, CORNER, "highpass", fs=1 / time_step, output="sos")
+def _high_pass(values: FloatArray, time_step: float, progress: Progress) -> Motion:
     pad = math.ceil(PAD / time_step)
-    filtered = sosfiltfilt(sections, np.pad(values, pad), padtype=None)
+    filtered = high_pass_both_ways(values, time_step, CORNER, pad, progress)
     velocity = _integral(filtered, time_step)
     own = slice(pad, pad + values.size)
     # Copies, or each motion would keep its two minutes of pads in memory.
@@ -277,7 +282,7 @@ def check_samples(values: FloatArray) -> None:
     if values.size < FEWEST_SAMPLES:
         raise RecordError(f"the number of samples is {values.size}, expected at least {FEWEST_SAMPLES}")
     if not np.isfinite(values).all():
-        raise RecordError(f"sample {int(np.isfinite(values).argmin()) + 1} is not a number: mend or remove it")
+        raise RecordError(f"sample {int(np.isfinite(values).argmin()) + 1} is not a number: correct or remove it")
     if peak(values) > MOST_ACCELERATION:
         raise RecordError(f"the peak is {peak(values) / GRAVITY:.3g} g, expected at most 50 g: is the unit right?")
     if values.min() == values.max():
@@ -297,4 +302,4 @@ def _check_times(times: FloatArray) -> None:
     wrong = ~(np.abs(times) <= LATEST_TIME)
     if wrong.any():
         place = int(wrong.argmax())
-        raise RecordError(f"the time of sample {place + 1} is {times[place]:g} s: mend it")
+        raise RecordError(f"the time of sample {place + 1} is {times[place]:g} s: correct it")

@@ -1,14 +1,15 @@
-"""Peak floor acceleration up a building without sensors: the profiles that codes give for design.
+"""Peaks of floors without sensors: PFA by the profiles that codes give for design, PFV estimated from PFA.
 
-A profile tells by how much a rigid piece on a floor at height z of a building of height h is shaken more than the
-ground: PFA = ground PGA x amplification. Ground PGA stands for 0.4 SDS (ASCE 7) and for alpha S (EN 1998-1, NTC 2018).
-Codes give design envelopes, not expected values: they mostly lie above what is recorded and bias a scenario high.
+A profile gives the factor by which a rigid piece on a floor at height z of a building of height h is shaken more than
+the ground: PFA = ground PGA x amplification. Ground PGA is 0.4 SDS (ASCE 7) or alpha S (EN 1998-1, NTC 2018). Codes
+give design envelopes, not expected values: they mostly lie above what is recorded and bias a scenario high.
 
 References
 ----------
 ASCE/SEI 7-22 and 7-16, section 13.3.1; EN 1998-1:2004, 4.3.5.2; NTC 2018 with Circolare 2019, C7.2.3.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -17,10 +18,10 @@ PGA_OF_SDS = 0.4
 """Ground PGA over SDS: ASCE 7's horizontal acceleration of the ground is 0.4 SDS."""
 
 UNVERIFIED = "not checked against the code's own text"
-"""What is said of a profile that nothing was held against."""
+"""Status of a profile that has not been checked."""
 
 VERIFIED = "agrees with public implementations; the code's own text was not read"
-"""What is said of a profile that was held against programs that others wrote."""
+"""Status of a profile that was checked against programs that others wrote."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,19 +33,19 @@ class Profile:
     key, title : str
         Its name among the scenarios, and in full.
     clause, equation : str
-        Where it stands in the code, and how it reads there, for a rigid component.
+        The clause of the code, and its equation for a rigid component.
     reference : str
         The code.
     verified : bool
         Whether the equation agrees with public implementations. The codes' own texts were not read.
     remark : str
-        How many programs it was held against, and what was left out of it, in whole sentences.
+        How many programs it was checked against, and what was left out of it, in whole sentences.
     factor : callable
         Height ratio [-], from 0 to 1, and T1 [s] or None to amplification [-].
     reduced : bool
         Whether the code divides by R_mu, for the ductility of the building.
     clause_without_period : str
-        Where another equation stands that applies while T1 is unknown.
+        The clause of the equation that applies while T1 is unknown.
     """
 
     key: str
@@ -117,8 +118,8 @@ _ALL = (
         reference="ASCE/SEI 7-22, Minimum Design Loads and Associated Criteria for Buildings and Other Structures, "
         "American Society of Civil Engineers, 2022",
         verified=True,
-        remark="It was held against three of them, independent of each other. T1 stands for T_a, R_μ = 1 unless told "
-        "otherwise, and the PFA is never less than the ground's.",
+        remark="Checked against three independent implementations. T1 is used for T_a, R_μ is 1 unless given, and the "
+        "PFA is never below the ground's.",
         factor=_asce_7_22,
         reduced=True,
     ),
@@ -130,8 +131,8 @@ _ALL = (
         reference="ASCE/SEI 7-16, Minimum Design Loads and Associated Criteria for Buildings and Other Structures, "
         "American Society of Civil Engineers, 2017",
         verified=True,
-        remark="It was held against one of them. This is the part of the equation that belongs to a rigid component, "
-        "a_p = 1 and R_p/I_p = 1.",
+        remark="Checked against one implementation. This is the part of the equation for a rigid component: a_p = 1 "
+        "and R_p/I_p = 1.",
         factor=_asce_7_16,
     ),
     Profile(
@@ -161,4 +162,16 @@ PROFILES: Mapping[str, Profile] = MappingProxyType({profile.key: profile for pro
 """The profiles by name, the default first."""
 
 DEFAULT = _ALL[0]
-"""What serves a floor of which nothing is known but its height."""
+"""The profile of a floor of which nothing but its height is known."""
+
+HIGHEST_FLOOR_FREQUENCY = 1.3
+"""Upper end [Hz] of the frequency with which PFV is estimated from PFA: an assumption, ICC-ES AC156's lower corner. The
+floors of a stiff building move with the ground; without it, their velocity would be underestimated."""
+
+
+def estimate_pfv(pfa: float, period: float) -> float:
+    """Return PFV [m/s] = PFA/(2 pi f), f = min(1/T1, 1.3 Hz), from PFA [m/s2] and the building's period T1 [s].
+
+    It is the paper's equivalent floor frequency, equation (7), solved for PFV.
+    """
+    return pfa / (2 * math.pi * min(1 / period, HIGHEST_FLOOR_FREQUENCY))

@@ -15,6 +15,7 @@ import numpy as np
 
 from assess.compiled import compiled
 from assess.motion.record import FloatArray
+from assess.progress import SILENT, Progress
 
 DAMPING = 0.05
 """Share of critical damping [-]."""
@@ -50,7 +51,13 @@ def build_periods(shortest: float = 0.02, longest: float = 10.0, count: int = 12
 
 
 def response_spectrum(
-    acceleration: FloatArray, time_step: float, periods: FloatArray, *, damping: float = DAMPING, threads: int = 1
+    acceleration: FloatArray,
+    time_step: float,
+    periods: FloatArray,
+    *,
+    damping: float = DAMPING,
+    threads: int = 1,
+    progress: Progress = SILENT,
 ) -> Spectrum:
     """Return the response spectra of one motion or of several.
 
@@ -67,29 +74,45 @@ def response_spectrum(
     damping : float
         Share of critical damping, above 0 and below 1 [-].
     threads : int
-        Motions are shared out among as many; they do not change a result.
+        Number of threads that share the motions; it does not change a result.
+    progress : Progress
+        Asked before each motion whether to stop.
 
     Raises
     ------
+    CancelledError
+        If the caller stops the work.
     ValueError
         If a period, the damping or the time step is outside these limits, or a motion has fewer than two samples or one
         that is not finite.
     """
-    peaks = _respond(acceleration, time_step, periods, damping, threads, both=True)
+    peaks = _respond(acceleration, time_step, periods, damping, threads, progress, both=True)
     squared = (2 * np.pi / np.asarray(periods)) ** 2
     return Spectrum(np.asarray(periods, dtype=np.float64), peaks[..., 0, :] * squared, peaks[..., 1, :])
 
 
 def pseudo_acceleration(
-    acceleration: FloatArray, time_step: float, periods: FloatArray, *, threads: int = 1
+    acceleration: FloatArray,
+    time_step: float,
+    periods: FloatArray,
+    *,
+    threads: int = 1,
+    progress: Progress = SILENT,
 ) -> FloatArray:
     """Return the 5 % pseudo-acceleration alone [m/s2], (..., m), a third sooner than `response_spectrum`."""
-    peaks = _respond(acceleration, time_step, periods, DAMPING, threads, both=False)
+    peaks = _respond(acceleration, time_step, periods, DAMPING, threads, progress, both=False)
     return np.asarray(peaks[..., 0, :] * (2 * np.pi / np.asarray(periods)) ** 2)
 
 
 def _respond(
-    acceleration: FloatArray, time_step: float, periods: FloatArray, damping: float, threads: int, *, both: bool
+    acceleration: FloatArray,
+    time_step: float,
+    periods: FloatArray,
+    damping: float,
+    threads: int,
+    progress: Progress,
+    *,
+    both: bool,
 ) -> FloatArray:
     """Return peak displacements [m] and, where `both`, peak absolute accelerations [m/s2], (..., 2, m)."""
     periods = np.asarray(periods, dtype=np.float64)
@@ -108,20 +131,25 @@ def _respond(
     step = oscillator_step(periods, time_step, damping)
     peaks = np.zeros((len(rows), 2, periods.size))
     if both:
-        run_rows(lambda row: _peaks(rows[row], step, peaks[row]), len(rows), threads)
+        run_rows(lambda row: _peaks(rows[row], step, peaks[row]), len(rows), threads, progress)
     else:
-        run_rows(lambda row: _displacements(rows[row], step, peaks[row, 0]), len(rows), threads)
+        run_rows(lambda row: _displacements(rows[row], step, peaks[row, 0]), len(rows), threads, progress)
     return peaks.reshape((*acceleration.shape[:-1], 2, periods.size))
 
 
-def run_rows(work: Callable[[int], object], count: int, threads: int) -> None:
-    """Call `work` with 0 to `count` - 1, in as many threads; what it calls should let go of the interpreter."""
+def run_rows(work: Callable[[int], object], count: int, threads: int, progress: Progress) -> None:
+    """Call `work` with 0 to `count` - 1, in `threads` threads; `work` should release the interpreter's lock."""
+
+    def run(row: int) -> None:
+        progress.check()
+        work(row)
+
     if threads == 1 or count == 1:
         for row in range(count):
-            work(row)
+            run(row)
         return
     with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(work, range(count)))
+        list(pool.map(run, range(count)))
 
 
 def oscillator_step(periods: FloatArray, time_step: float, damping: float = DAMPING) -> FloatArray:

@@ -2,25 +2,25 @@
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 
 import numpy as np
 
 from assess.errors import RecordError
-from assess.language import fill
+from assess.i18n import fill
 from assess.motion.fit import Spectra
 from assess.motion.formats import read_records
 from assess.motion.record import FloatArray, Motion, Record, treat
+from assess.progress import SILENT, Progress
 
 MOST_SPECTRA, SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT = 100, 0.05, 10.0, 120
 """Motions whose spectra are found, and the periods [s]."""
 FEW = 30
-"""Motions below which it is told that they are few: of 30, none fallen leaves 11 % in the interval."""
+"""Below this number of motions a note says that they are few: with 0 of 30 fallen, the interval reaches to 11 %."""
 TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst", ".ini", ".db"})
-"""Endings of what stands beside records and is passed over."""
+"""Endings of files next to records that are passed over."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +43,8 @@ class Suite:
     motions: tuple[tuple[str, Motion], ...]
     files: Mapping[str, str]
     notes: tuple[str, ...] = ()
+    _found: list[tuple[FloatArray, FloatArray]] = field(default_factory=list, init=False, repr=False)
+    """The spectra once they have been found: scaling keeps their shape."""
 
     def __len__(self) -> int:
         return len(self.motions)
@@ -58,21 +60,23 @@ class Suite:
             for step, alike in groupby(chosen, key=lambda motion: motion.time_step)
         ]
 
-    def scaled_spectra(self, pfa: float | None = None) -> Spectra:
+    def scaled_spectra(self, pfa: float | None = None, *, progress: Progress = SILENT) -> Spectra:
         """Return the spectra of the first 100 motions, each scaled to a `pfa` [m/s2] where one is given."""
-        periods, ordinates = self._spectra
+        if not self._found:
+            self._found.append(self._find_spectra(progress))
+        periods, ordinates = self._found[0]
         if pfa is not None:
             ordinates = ordinates * np.array([[pfa / motion.pfa] for _, motion in self.motions[:MOST_SPECTRA]])
         return Spectra(periods=periods, ordinates=ordinates.astype(np.float32))
 
-    @cached_property
-    def _spectra(self) -> tuple[FloatArray, FloatArray]:
-        """Periods [s] and spectra [m/s2] of the motions as they are: found once, as scaling keeps their shape."""
+    def _find_spectra(self, progress: Progress) -> tuple[FloatArray, FloatArray]:
+        """Return periods [s] and spectra [m/s2] of the motions as they are."""
         from assess.motion.spectrum import build_periods, pseudo_acceleration
 
         periods = build_periods(SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT)
         batches = self.realise(0, MOST_SPECTRA)
-        return periods, np.concatenate([pseudo_acceleration(batch, step, periods) for batch, step in batches])
+        found = [pseudo_acceleration(batch, step, periods, progress=progress) for batch, step in batches]
+        return periods, np.concatenate(found)
 
 
 def _scaled(motion: Motion, pfa: float | None) -> FloatArray:
@@ -86,7 +90,7 @@ def _stack(rows: list[FloatArray]) -> FloatArray:
     return stacked
 
 
-def read_suite(folder: Path) -> Suite:
+def read_suite(folder: Path, *, progress: Progress = SILENT) -> Suite:
     """Read every record of a folder, but not of folders within it.
 
     Raises
@@ -99,8 +103,8 @@ def read_suite(folder: Path) -> Suite:
         raise RecordError(f"{folder}: there is no such folder. Name a folder of floor records")
     paths = [path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")]
     paths = [path for path in paths if path.suffix.lower() not in TEXTS]
-    found = {path: _read(path) for path in paths}
-    motions = [one for path, records in found.items() for one in _horizontal(path, records)]
+    found = {path: _read(path, progress) for path in paths}
+    motions = [one for path, records in found.items() for one in _horizontal(path, records, progress)]
     if not motions:
         raise RecordError(f"{folder}: it holds no horizontal channel. Put floor records into it")
     vertical = [f"{path.name}#{one.channel}" for path, records in found.items() for one in records if one.vertical]
@@ -116,17 +120,18 @@ def _notes(count: int, vertical: list[str]) -> Iterator[str]:
     if vertical:
         yield fill("vertical channels are left out: {channels}", channels=", ".join(vertical))
     if count < FEW:
-        yield fill("{count} are few: the intervals of the chances are wide", count=count)
+        yield fill("{count} motions are few: the probabilities have wide intervals", count=count)
 
 
-def _read(path: Path) -> tuple[Record, ...]:
+def _read(path: Path, progress: Progress) -> tuple[Record, ...]:
     try:
-        return read_records(path)
+        return read_records(path, progress=progress)
     except RecordError as error:
-        raise RecordError(f"{error}. Mend it, or take it out of the folder") from None
+        raise RecordError(f"{error}. Correct it, or take it out of the folder") from None
 
 
-def _horizontal(path: Path, records: tuple[Record, ...]) -> Iterator[tuple[str, Motion]]:
+def _horizontal(path: Path, records: tuple[Record, ...], progress: Progress) -> Iterator[tuple[str, Motion]]:
     for record in records:
+        progress.check()
         if not record.vertical:
             yield (f"{path.name}#{record.channel}" if len(records) > 1 else path.name), treat(record)

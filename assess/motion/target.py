@@ -1,7 +1,7 @@
 """What generated motions of a floor have to match: a 5 % response spectrum, peaks, and how the shaking grows and fades.
 
-A recorded motion gives all of it. For a floor of which only a peak is known there is a generic spectrum; it is our
-choice, built from the shape of ICC-ES AC156 and checked against the recorded floors that come with the tests.
+A recorded motion gives all of it. For a floor of which only a peak is known there is a generic spectrum: an
+assumption, built from the shape of ICC-ES AC156 and checked against the recorded floors that come with the tests.
 
 References
 ----------
@@ -23,7 +23,7 @@ TIME_STEP = 0.005
 SHORTEST, LONGEST, COUNT = 0.03, 10.0, 160
 """Periods at which spectra are matched [s], evenly spaced in their logarithm."""
 JUDGED_FROM = 0.05
-"""Shortest period at which a match is judged [s]; below, a spectrum says little more than PFA."""
+"""Shortest period at which a match is judged [s]; below, a spectrum holds little more than PFA."""
 
 RIGID_BELOW, PLATEAU_FROM = 1 / 33.3, 1 / 8.3
 """Periods [s] up to which PSA equals PFA, and from which the plateau runs: AC156's corners."""

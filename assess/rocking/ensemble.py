@@ -4,8 +4,7 @@ Importing this imports numba: do so where blocks are to be rocked.
 """
 
 import math
-from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
@@ -13,14 +12,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from assess.motion.record import FloatArray
+from assess.motion.spectrum import run_rows
+from assess.progress import SILENT, Progress
 from assess.rocking import block, kernel
 from assess.units import GRAVITY
 
 LONGEST_STEP = 0.1
 """Largest p dt of a step [-]; a motion with longer steps is divided for that block, on the straight lines between its
 samples. Furniture under a motion of 200 samples a second stays below; `docs/rocking.md` shows what is left out."""
-TILE = 10_000
-"""Pairs of block and motion that one thread takes up at once, a few tenths of a second at most."""
+TILE = 8_000_000
+"""Samples of all pairs of block and motion that a thread integrates between two checks for a cancel: about 0.1 s."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +54,7 @@ def rock_blocks(
     *,
     restitution: ArrayLike = math.nan,
     threads: int = 1,
-    tell: Callable[[int], None] | None = None,
+    progress: Progress = SILENT,
 ) -> Rocking:
     """Integrate every block under every motion (eq. 3 of the paper, with impacts).
 
@@ -72,11 +73,13 @@ def rock_blocks(
         Angular velocity after an impact over that before it [-], 0 to 1; NaN is Housner's 1 - 1.5 sin2(alpha).
     threads : int
         Tiles are shared out among as many; they do not change a result, nor do the order of blocks or of motions.
-    tell : callable, optional
-        Called with the number of pairs that were decided, tile by tile; what it raises ends the work.
+    progress : Progress
+        Asked before each tile whether to stop.
 
     Raises
     ------
+    CancelledError
+        If the caller stops the work.
     ValueError
         If a size is not above 0, a block is too stocky to rock (B/H of 1.41 or more), a restitution is outside 0 to 1,
         or the motions or their time step are not finite numbers of that shape.
@@ -89,7 +92,7 @@ def rock_blocks(
     divisions = count_parts(sizes, time_step)
     for parts in np.unique(divisions):
         own = np.flatnonzero(divisions == parts)
-        found = _rock_alike(sizes[:, own], divide(motions, int(parts)), time_step / parts, threads, tell)
+        found = _rock_alike(sizes[:, own], divide(motions, int(parts)), time_step / parts, threads, progress)
         found[..., kernel.FALL] *= np.where(found[..., kernel.FALL] < 0, 1, time_step / parts)
         outcome[own] = found
     outcome = outcome[which.ravel()]
@@ -151,47 +154,26 @@ def build_blocks(sizes: FloatArray, time_step: float) -> FloatArray:
 
 
 def _rock_alike(
-    sizes: FloatArray, motions: FloatArray, time_step: float, threads: int, tell: Callable[[int], None] | None
+    sizes: FloatArray, motions: FloatArray, time_step: float, threads: int, progress: Progress
 ) -> FloatArray:
     """Integrate blocks of `sizes` (3, m) under padded motions (k, n) [g]; returns the kernel's outcome (m, k, 3)."""
     blocks = build_blocks(sizes, time_step)
     outcome = np.zeros((len(blocks), len(motions), 3))
     outcome[..., kernel.FALL] = -1.0
-    nothing = np.zeros((0, 3))
+    no_trace, tiles = np.zeros((0, 3)), list(_tiles(len(blocks), *motions.shape))
 
-    def run(tile: tuple[slice, range]) -> int:
-        own, rows = tile
-        kernel.rock(blocks[own], motions, rows.start, rows.stop, outcome[own], nothing)
-        return len(blocks[own]) * len(rows)
+    def run(number: int) -> None:
+        own, rows = tiles[number]
+        kernel.rock(blocks[own], motions, rows.start, rows.stop, outcome[own], no_trace)
 
-    _run_tiles(run, list(_tiles(len(blocks), len(motions))), threads, tell or (lambda _: None))
+    run_rows(run, len(tiles), threads, progress)
     return outcome
 
 
-def _tiles(blocks: int, motions: int) -> Iterator[tuple[slice, range]]:
-    """Cut blocks x motions into tiles that depend on nothing else: many blocks under few motions."""
-    high = min(blocks, TILE)
-    wide = max(1, TILE // high)
+def _tiles(blocks: int, motions: int, samples: int) -> Iterator[tuple[slice, range]]:
+    """Cut blocks x motions into tiles: many blocks under few motions, as the size does not change a result."""
+    pairs = max(kernel.LANES, TILE // samples)
+    high = min(blocks, pairs)
+    wide = max(1, pairs // high)
     for first, start in product(range(0, motions, wide), range(0, blocks, high)):
         yield slice(start, min(start + high, blocks)), range(first, min(first + wide, motions))
-
-
-def _run_tiles(
-    run: Callable[[tuple[slice, range]], int],
-    tiles: list[tuple[slice, range]],
-    threads: int,
-    tell: Callable[[int], None],
-) -> None:
-    if threads == 1 or len(tiles) == 1:
-        for tile in tiles:
-            tell(run(tile))
-        return
-    pool = ThreadPoolExecutor(threads)
-    try:
-        left: set[Future[int]] = {pool.submit(run, tile) for tile in tiles}
-        while left:
-            done, left = wait(left, return_when=FIRST_COMPLETED)
-            for one in done:
-                tell(one.result())
-    finally:
-        pool.shutdown(cancel_futures=True)  # after Ctrl-C no tile is begun

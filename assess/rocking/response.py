@@ -126,7 +126,7 @@ def _end(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Add what the last step brought, which is not in the trace: the fall, or the impact after which the block rests.
 
-    From the end of the motion on, one sample after its last, the last step tells that the block can no longer fall, and
+    From the end of the motion on, one sample after its last, the last step shows that the block can no longer fall, and
     the path ends before it.
     """
     if fall >= 0:

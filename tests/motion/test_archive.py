@@ -68,7 +68,7 @@ def test_windows_paths(tmp_path: Path) -> None:
 
 def test_nothing_to_read(tmp_path: Path) -> None:
     message = (
-        r"^set\.zip: nothing in the zip archive can be read as a record: README\.txt: of no known format; "
+        r"^set\.zip: nothing in the zip archive can be read as a record: README\.txt: unsupported file format; "
         r"v\.smc: it holds velocity"
     )
     with pytest.raises(RecordError, match=message):
@@ -165,5 +165,5 @@ def test_what_is_left_out_is_said_once(tmp_path: Path) -> None:
     first, *others = read_set(tmp_path, zipped({"A.V2": csmip_v2(*THREE), "B.V2": cut, **README}))
     (note,) = first.notes
     assert note.startswith("left out of the archive: B.V2: ")
-    assert note.endswith("README.txt: of no known format")
+    assert note.endswith("README.txt: unsupported file format")
     assert not any(record.notes for record in others)

@@ -7,7 +7,7 @@ import pytest
 
 from assess.errors import RecordError
 from assess.motion.formats import read_records, select
-from assess.motion.formats._choice import tell_apart
+from assess.motion.formats._choice import rename_duplicates
 from assess.motion.record import Record
 from tests.motion.writers import EAST, NORTH, THREE, Signal, csmip_v1, csmip_v2, wave, zipped
 
@@ -46,7 +46,9 @@ def test_select_an_unknown_channel(channel: str) -> None:
 
 
 def test_select_needs_a_channel() -> None:
-    message = r"made-up-sweep\.csv holds 3 channels: north, east, up\. Write which, as made-up-sweep\.csv#north"
+    message = (
+        r"made-up-sweep\.csv holds 3 channels: north, east, up\. Name one of them, such as made-up-sweep\.csv#north"
+    )
     with pytest.raises(RecordError, match=message):
         select(SWEEP)
 
@@ -69,7 +71,9 @@ def test_select_from_an_archive(tmp_path: Path) -> None:
     assert select(records, "chan02.v2") is select(records, "CHAN02.V2/12") is records[1]
     assert select(records, "Free field.zip/CHAN01.V2/11") is select(records, "Free Field.zip/CHAN01.V2") is records[0]
     assert select(records, "RAW.V1/11") is records[3]
-    with pytest.raises(RecordError, match=r"made has 3 channels '11'\. Write which: Free Field\.zip/CHAN01\.V2/11, "):
+    with pytest.raises(
+        RecordError, match=r"made has 3 channels '11'\. Name one of them: Free Field\.zip/CHAN01\.V2/11, "
+    ):
         select(records, "11")
 
 
@@ -78,7 +82,7 @@ def test_every_name_that_is_listed_means_one_channel(tmp_path: Path) -> None:
     records = read_set(tmp_path, zipped({"CHAN01.V2": csmip_v2(*THREE), "a.zip": inner, "b.zip": inner}))
     with pytest.raises(RecordError, match=r"made holds 5 channels: ") as caught:
         select(records)
-    names = str(caught.value).partition("channels: ")[2].partition(". Write")[0].split(", ")
+    names = str(caught.value).partition("channels: ")[2].partition(". Name")[0].split(", ")
     assert [select(records, name).file for name in names] == [record.file for record in records]
 
 
@@ -90,12 +94,14 @@ def test_a_member_beside_a_folder_of_copies_can_be_named(tmp_path: Path) -> None
 
 def test_long_lists_are_cut(tmp_path: Path) -> None:
     many = csmip_v2(*(Signal(wave(), 90.0, number) for number in range(1, 21)))
-    with pytest.raises(RecordError, match=r"holds 20 channels: 11, .*, 22 and 8 more\. Write which, as made#11$"):
+    with pytest.raises(
+        RecordError, match=r"holds 20 channels: 11, .*, 22 and 8 more\. Name one of them, such as made#11$"
+    ):
         select(read_set(tmp_path, many))
 
 
 def test_channels_of_one_name_are_told_apart() -> None:
-    twice = tell_apart([SWEEP[0], replace(SWEEP[1], channel="North"), SWEEP[2]])
+    twice = rename_duplicates([SWEEP[0], replace(SWEEP[1], channel="North"), SWEEP[2]])
     assert [record.channel for record in twice] == ["north", "North (2)", "up"]
     assert select(twice, "north (2)") is twice[1]
 

@@ -13,7 +13,7 @@ DATA = write(EAST)
 
 
 def read_one(data: bytes) -> Record:
-    (record,) = cosmos.read(data, "made")
+    (record,) = cosmos.FORMAT.read(data, "made")
     return record
 
 
@@ -47,7 +47,7 @@ def test_units(unit: str, factor: float) -> None:
 
 
 def test_directions_by_number() -> None:
-    records = cosmos.read(write(*THREE, text_direction=False), "made")
+    records = cosmos.FORMAT.read(write(*THREE, text_direction=False), "made")
     assert [(record.azimuth_deg, record.vertical) for record in records] == [(90, False), (360, False), (None, True)]
 
 
@@ -57,7 +57,7 @@ def test_the_recorder_s_step_where_no_other_is_given() -> None:
 
 def test_velocities_beside_accelerations_are_left_out() -> None:
     both = write(EAST) + write(UP, kind="Corrected velocity", unit="cm/sec(05)") + write(NORTH)
-    assert [record.channel for record in cosmos.read(both, "made")] == ["1", "2"]
+    assert [record.channel for record in cosmos.FORMAT.read(both, "made")] == ["1", "2"]
 
 
 @pytest.mark.parametrize(
@@ -69,10 +69,10 @@ def test_velocities_beside_accelerations_are_left_out() -> None:
          r"it holds raw counts \(volume 0\), not acc.*Give volume 1 or 2 .*or convert it to m/s2"),
         (write(EAST, unit="furlong(99)"), r"the unit 'furlong' with the code 99 is no known unit of acceleration"),
         (write(EAST, unit="g(04)"), r"the unit 'g' with the code 4 is no known unit"),
-        (DATA[:1500], r"the header is not whole\. Get the file again|cut short"),
+        (DATA[:1500], r"the header is incomplete\. Get the file again|cut short"),
         (DATA[:6000], r"announces 400 numbers of data, there are \d+: cut short"),
         (changed(DATA, b"400  accel", b"999999999  accel"), r"announces 999999999 numbers of data"),
-        (changed(DATA, b" 100 Integer", b" 100 Inteeer"), r"the header is not whole"),
+        (changed(DATA, b" 100 Integer", b" 100 Inteeer"), r"the header is incomplete"),
         (DATA.replace(b"    10.000000", b"     0.000000").replace(b"     0.005000", b"     0.000000"), r"step is 0 s"),
         (write(EAST, kind="Response spectra of acceleration"), r"it holds no accelerations, but: Response spectra"),
     ],

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from assess.errors import RecordError
-from assess.motion.formats import csmip_v1, csmip_v2
+from assess.motion.formats import csmip
 from assess.motion.record import Record
 from assess.units import GRAVITY
 from tests.motion.writers import EAST, NORTH, THREE, Signal, wave
@@ -32,7 +32,9 @@ def with_number(data: bytes, line: int, at: int, text: bytes) -> bytes:
 
 
 def read_one(data: bytes) -> Record:
-    (record,) = csmip_v2.read(data, "made") if csmip_v2.recognises(data) else csmip_v1.read(data, "made")
+    (record,) = (
+        csmip.VOLUME_2.read(data, "made") if csmip.VOLUME_2.recognises(data) else csmip.VOLUME_1.read(data, "made")
+    )
     return record
 
 
@@ -98,7 +100,7 @@ def test_old_and_new_line_ends() -> None:
 
 
 def test_a_dead_channel_does_not_lose_the_others() -> None:
-    for read, write in ((csmip_v1.read, write_v1), (csmip_v2.read, write_v2)):
+    for read, write in ((csmip.VOLUME_1.read, write_v1), (csmip.VOLUME_2.read, write_v2)):
         records = read(write(EAST, DEAD, NORTH), "made")
         assert len(records) == 2
         for record in records:
@@ -109,30 +111,30 @@ def test_a_dead_channel_does_not_lose_the_others() -> None:
 
 def test_a_channel_that_is_cut_off_does_not_lose_the_others() -> None:
     whole = write_v2(*THREE)
-    records = csmip_v2.read(whole[: whole.rindex(b"POINTS OF ACCEL") + 1000], "made")
+    records = csmip.VOLUME_2.read(whole[: whole.rindex(b"POINTS OF ACCEL") + 1000], "made")
     assert [record.channel for record in records] == ["11", "12"]
     assert re.search(r"channel 3 .* 400 numbers of data, there are \d+: cut short", records[0].notes[0])
 
 
 def test_nothing_is_left() -> None:
     with pytest.raises(RecordError, match=r"^none of its 6 channels can be read: channel 1: every sample is 0 m/s2"):
-        csmip_v1.read(write_v1(*[DEAD] * 6), "made")
-    many = csmip_v1.read(write_v1(EAST, *[DEAD] * 6), "made")[0].notes
+        csmip.VOLUME_1.read(write_v1(*[DEAD] * 6), "made")
+    many = csmip.VOLUME_1.read(write_v1(EAST, *[DEAD] * 6), "made")[0].notes
     assert (len(many), many[-1]) == (5, "2 more channels of the file are left out")
 
 
 def test_spectra_are_refused() -> None:
     data = b"RESPONSE AND FOURIER AMPLITUDE SPECTRA (79 PERIODS,  .04 -  6.5 SEC)   FOR\r\n" + V2
-    assert csmip_v2.recognises(data)
+    assert csmip.VOLUME_2.recognises(data)
     with pytest.raises(RecordError, match=r"it holds response spectra \(volume 3\), not accel.*\. Give volume 2 or 1"):
-        csmip_v2.read(data, "made")
+        csmip.VOLUME_2.read(data, "made")
 
 
 @pytest.mark.parametrize(
     ("data", "message"),
     [
         (b"hello", r'no line says "Uncorrected accelerogram data"\. Get the file again'),
-        (V1[:1000], r"the header does not say the number of points, or their unit|cut short"),
+        (V1[:1000], r"the header does not give the number of points, or their unit|cut short"),
         (V1[:4000], r"announces 400 numbers of data, there are \d+: cut short\. Get the file again"),
         (changed(V1, b"  400 Accel", b"99999999 Accel"), r"announces 99999999 numbers of data, expected 1 to 8000000"),
         (changed(V1, b"at 100 pts/sec", b"at 0 pts/sec"), r"line 28: the rate or the unit cannot be read"),
@@ -143,14 +145,14 @@ def test_spectra_are_refused() -> None:
         (with_number(V1, 29, 9, b"  0.14x54"), r"line 29: '0\.14x54' is not a number\. Get the file again"),
         (with_number(V1, 29, 9, b"         "), r"line 29: a number is missing"),
         (with_number(V1, 29, 9, b"      NaN"), r"sample 2 is not a number"),
-        (changed(PAIRS, b"SEC AND G/10", b"SEC AND CM/S"), r"does not say the number of points, or their unit"),
+        (changed(PAIRS, b"SEC AND G/10", b"SEC AND CM/S"), r"does not give the number of points, or their unit"),
         (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS =      0"), r"announces 0 numbers of data"),
         (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS = 999999"), r"announces 1999998 numbers"),
     ],
 )  # fmt: skip
 def test_v1_damage(data: bytes, message: str) -> None:
     with pytest.raises(RecordError, match=message):
-        csmip_v1.read(data, "made")
+        csmip.VOLUME_1.read(data, "made")
 
 
 @pytest.mark.parametrize(
@@ -168,7 +170,7 @@ def test_v1_damage(data: bytes, message: str) -> None:
 )  # fmt: skip
 def test_v2_damage(data: bytes, message: str) -> None:
     with pytest.raises(RecordError, match=message):
-        csmip_v2.read(data, "made")
+        csmip.VOLUME_2.read(data, "made")
 
 
 def test_a_peak_that_is_not_the_header_s_is_noted() -> None:

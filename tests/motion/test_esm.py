@@ -10,7 +10,7 @@ from tests.motion.writers import esm as write
 
 
 def read_one(data: bytes) -> Record:
-    (record,) = esm.read(data, "made")
+    (record,) = esm.FORMAT.read(data, "made")
     return record
 
 
@@ -46,7 +46,7 @@ def test_headers_that_say_little() -> None:
         (write(DATA_TYPE="VELOCITY"), r"it holds velocity, not accelerations\. Give the \.ACC\. file of the same"),
         (write(DATA_TYPE="ACCELERATION RESPONSE SPECTRUM"), r"it holds acceleration response spectrum, not"),
         (write(UNITS="furlong"), r"'furlong' is no known unit of acceleration\. Get the file again"),
-        (write(NDATA=""), r"the header does not say NDATA and SAMPLING_INTERVAL_S\. Get the file again"),
+        (write(NDATA=""), r"the header does not give NDATA and SAMPLING_INTERVAL_S\. Get the file again"),
         (write(NDATA="2000000000"), r"announces 2000000000 numbers of data, expected 1 to 8000000"),
         (write(NDATA="1e300"), r"announces 1e\+300 numbers of data"),
         (write(SAMPLING_INTERVAL_S="0"), r"the time step is 0 s"),

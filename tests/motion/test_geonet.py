@@ -11,7 +11,7 @@ from tests.motion.writers import geonet as write
 
 @pytest.mark.parametrize("corrected", [False, True])
 def test_header(corrected: bool) -> None:
-    record, _, up = geonet.read(write(*THREE, corrected=corrected), "made")
+    record, _, up = geonet.FORMAT.read(write(*THREE, corrected=corrected), "made")
     assert (record.channel, record.azimuth_deg, record.corrected) == ("N90E", 90.0, corrected)
     assert (up.channel, up.azimuth_deg, up.vertical) == ("Up", None, True)
     assert (record.station, record.event) == ("Town Hall (WTMC)", "5 km south-west of Waiau")
@@ -21,12 +21,12 @@ def test_header(corrected: bool) -> None:
 
 
 def test_quadrants() -> None:
-    (record,) = geonet.read(write(Signal(wave(), 242.0)), "made")
+    (record,) = geonet.FORMAT.read(write(Signal(wave(), 242.0)), "made")
     assert (record.channel, record.azimuth_deg) == ("S62W", 242.0)
 
 
 def test_a_dead_component_does_not_lose_the_others() -> None:
-    records = geonet.read(write(EAST, Signal(np.zeros(400), 360.0)), "made")
+    records = geonet.FORMAT.read(write(EAST, Signal(np.zeros(400), 360.0)), "made")
     assert len(records) == 1
     assert records[0].notes[0].startswith("channel 2 of the file is left out: every sample is 0 m/s2")
 
@@ -50,4 +50,4 @@ DATA, RAW = write(EAST), write(EAST, corrected=False)
 )
 def test_damage(data: bytes, message: str) -> None:
     with pytest.raises(RecordError, match=message):
-        geonet.read(data, "made")
+        geonet.FORMAT.read(data, "made")

@@ -11,7 +11,7 @@ from tests.motion.writers import knet as write
 
 
 def read_one(data: bytes) -> Record:
-    (record,) = knet.read(data, "made")
+    (record,) = knet.FORMAT.read(data, "made")
     return record
 
 

@@ -11,7 +11,7 @@ DATA = at2()
 
 
 def read_one(data: bytes) -> Record:
-    (record,) = peer_at2.read(data, "made")
+    (record,) = peer_at2.FORMAT.read(data, "made")
     return record
 
 
@@ -49,9 +49,9 @@ def test_a_few_numbers_beyond_are_left_out() -> None:
         (at2(kind="VELOCITY", unit="CM/S"), r"it holds velocity, not accelerations\. Give the \.AT2 file of the same"),
         (at2(kind="DISPLACEMENT", unit="CM"), r"it holds displacement, not accelerations"),
         (at2(unit="FURLONGS"), r"'FURLONGS' is no known unit of acceleration\. Get the file again"),
-        (b"hello", r"the header does not say what the file holds\. Get the file again"),
-        (DATA.replace(b"NPTS=", b"NUTS="), r"line 4 does not say the number of points and their step"),
-        (DATA.replace(b"0.0100", b"0.0.00"), r"line 4 does not say the number of points and their step"),
+        (b"hello", r"the header does not name what the file holds\. Get the file again"),
+        (DATA.replace(b"NPTS=", b"NUTS="), r"line 4 does not give the number of points and their step"),
+        (DATA.replace(b"0.0100", b"0.0.00"), r"line 4 does not give the number of points and their step"),
         (DATA.replace(b"0.0100", b"0.0000"), r"the time step is 0 s"),
         (DATA.replace(b"NPTS=   400", b"NPTS=   0"), r"announces 0 numbers of data"),
         (DATA.replace(b"NPTS=   400", b"NPTS= 999999999"), r"announces 999999999 numbers of data, expected 1 to 80"),

@@ -102,7 +102,7 @@ UNKNOWN_UNIT = (
         (csv_text("time [s],north [cm/s]"), UNKNOWN_UNIT.format(r" \[cm/s\]")),
         (csv_text("time,north [g]"), r"line 1: 'time' needs its unit, seconds: time \[s\]"),
         (csv_text("time [ms],north [g]"), r"line 1: 'time \[ms\]' needs its unit, seconds"),
-        ("time [s]\n0.0\n", r"line 1: there is no channel beside time\. Add one, such as: north \[cm/s2\]"),
+        ("time [s]\n0.0\n", r"line 1: there is no channel next to time\. Add one, such as: north \[cm/s2\]"),
         (csv_text("time [s],a [g],A [gal]"), r"line 1: two channels are called 'a'\. Give each its own name"),
         (csv_text(last="1.0,1x2"), r"line 22: '1x2' is not a number"),
         (csv_text(last="1.0,nan"), r"line 22: 'nan' is not a number"),

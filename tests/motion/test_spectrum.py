@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from assess.motion.record import FloatArray
 from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum, run_rows
+from assess.progress import SILENT
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
 
 PERIODS = build_periods(0.05, 10.0, 60)
@@ -251,13 +252,13 @@ def test_periods_are_even_in_their_logarithm() -> None:
 @pytest.mark.parametrize("threads", [1, 3])
 def test_every_row_is_worked_once(threads: int) -> None:
     done: list[int] = []
-    run_rows(done.append, 20, threads)
+    run_rows(done.append, 20, threads, SILENT)
     assert sorted(done) == list(range(20))
 
 
 def test_an_error_in_a_thread_is_raised() -> None:
     with pytest.raises(ZeroDivisionError):
-        run_rows(lambda row: 1 // row, 4, 2)
+        run_rows(lambda row: 1 // row, 4, 2, SILENT)
 
 
 @pytest.mark.parametrize("periods", [[], [[1.0]], 1.0, [0.0], [-1.0, 1.0], [1.0, math.nan], [math.inf]])

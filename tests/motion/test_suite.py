@@ -18,7 +18,7 @@ from tests.shaking import write_record
 TIME = np.arange(400)
 WAVE = np.sin(TIME / 20) * np.exp(-TIME / 150)
 
-FEW_TOLD = "{} are few: the intervals of the chances are wide"
+FEW_NOTE = "{} motions are few: the probabilities have wide intervals"
 
 
 def _names(folder: Path) -> list[str]:
@@ -30,7 +30,7 @@ def test_motions_are_treated_and_in_the_order_of_steps_and_names(tmp_path: Path)
         write_record(tmp_path / f"{name}.csv", 0.2 * WAVE, step)
     suite = read_suite(tmp_path)
     assert [name for name, _ in suite.motions] == ["b.csv", "c.csv", "a.csv"]
-    assert (len(suite), suite.folder, suite.notes) == (3, tmp_path.name, (FEW_TOLD.format(3),))
+    assert (len(suite), suite.folder, suite.notes) == (3, tmp_path.name, (FEW_NOTE.format(3),))
     shutil.copy(MARKET / "891018_1.cra-1.0210a.smc", tmp_path / "x.smc")
     (motion,) = [motion for name, motion in read_suite(tmp_path).motions if name == "x.smc"]
     np.testing.assert_array_equal(motion.acceleration, read_motion("a").acceleration)
@@ -47,7 +47,7 @@ def test_vertical_channels_are_left_out_and_named(tmp_path: Path) -> None:
     suite = read_suite(tmp_path)
     assert "a.smc" in [name for name, _ in suite.motions]
     note, few = suite.notes
-    assert few == FEW_TOLD.format(len(suite))
+    assert few == FEW_NOTE.format(len(suite))
     assert note.startswith("vertical channels are left out: ")
     assert len(suite) + note.count(".smc#") == 3
 

@@ -315,7 +315,6 @@ class Sample:
     signals: Sequence[Signal]
     corrected: bool
     within: float
-    needs_obspy: bool = False
 
 
 SAMPLES: Mapping[str, Callable[[], Sample]] = {
@@ -332,8 +331,8 @@ SAMPLES: Mapping[str, Callable[[], Sample]] = {
     "esm": lambda: Sample("esm", esm(), [EAST], True, 1e-8),
     "geonet v1a": lambda: Sample("geonet", geonet(*THREE, corrected=False), THREE, False, 1e-4),
     "geonet v2a": lambda: Sample("geonet", geonet(*THREE), THREE, True, 1e-4),
-    "sac g": lambda: Sample("sac", sac(unit="g", factor=1 / GRAVITY), [EAST], False, 1e-6, True),
-    "sac big-endian": lambda: Sample("sac", sac(UP, order=">", meaning=8, factor=1e9), [UP], False, 1e-6, True),
-    "miniseed": lambda: Sample("miniseed", mseed(*THREE), THREE, False, 1e-6, True),
+    "sac g": lambda: Sample("sac", sac(unit="g", factor=1 / GRAVITY), [EAST], False, 1e-6),
+    "sac big-endian": lambda: Sample("sac", sac(UP, order=">", meaning=8, factor=1e9), [UP], False, 1e-6),
+    "miniseed": lambda: Sample("miniseed", mseed(*THREE), THREE, False, 1e-6),
 }
 """A file of every format and kind."""

@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
+from assess.errors import CancelledError
 from assess.motion.formats import read_records
+from assess.progress import Progress
 from assess.rocking import block, ensemble, kernel
 from assess.rocking.ensemble import Rocking, rock_blocks
 from assess.units import GRAVITY
@@ -532,12 +535,12 @@ def test_the_batch_below_is_worth_comparing(found: Rocking) -> None:
     assert (found.impacts > 10).any()
 
 
-@pytest.mark.parametrize("tile", [1, 7, 100, 10_000])
+@pytest.mark.parametrize("tile", [1, 50, 100, 10_000])
 @pytest.mark.parametrize("threads", [1, 2, 3, 4])
 def test_neither_threads_nor_tiles_change_a_bit(
     found: Rocking, monkeypatch: pytest.MonkeyPatch, threads: int, tile: int
 ) -> None:
-    monkeypatch.setattr(ensemble, "TILE", tile)
+    monkeypatch.setattr(ensemble, "TILE", tile * (MOTIONS.shape[1] + 2))
     assert alike(found, rock_blocks(BREADTHS, HEIGHTS, MOTIONS, 0.01, threads=threads))
 
 
@@ -574,24 +577,36 @@ def test_restitution_is_housners_unless_given(found: Rocking) -> None:
     assert not np.array_equal(found.rotation[::2], other.rotation[::2])
 
 
-def test_progress_is_told_to_the_last_pair(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ensemble, "TILE", 50)
-    for threads in (1, 2):
-        told: list[int] = []
-        rock_blocks(BREADTHS, HEIGHTS, MOTIONS, 0.01, threads=threads, tell=told.append)
-        assert sum(told) == 480
-        assert max(told) <= 50
+class StopsAt(Progress):
+    """Cancels at the n-th check; counts them."""
+
+    def __init__(self, last: int) -> None:
+        super().__init__()
+        self.last, self.checks = last, 0
+
+    def check(self) -> None:
+        self.checks += 1
+        if self.checks >= self.last:
+            raise CancelledError
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_what_the_listener_raises_ends_the_work(monkeypatch: pytest.MonkeyPatch, threads: int) -> None:
-    monkeypatch.setattr(ensemble, "TILE", 50)
+def test_a_cancel_is_obeyed_before_the_next_tile(monkeypatch: pytest.MonkeyPatch, threads: int) -> None:
+    monkeypatch.setattr(ensemble, "TILE", 50 * (MOTIONS.shape[1] + 2))
+    counted = StopsAt(10**9)
+    rock_blocks(BREADTHS, HEIGHTS, MOTIONS, 0.01, threads=threads, progress=counted)
+    assert counted.checks == 12  # 480 pairs, at most 50 in a tile of whole motions
+    began: list[int] = []
+    rock = kernel.rock
 
-    def interrupt(_: int) -> None:
-        raise KeyboardInterrupt
+    def rock_counted(*inputs: Any) -> int:
+        began.append(1)
+        return int(rock(*inputs))
 
-    with pytest.raises(KeyboardInterrupt):
-        rock_blocks(BREADTHS, HEIGHTS, MOTIONS, 0.01, threads=threads, tell=interrupt)
+    monkeypatch.setattr(kernel, "rock", rock_counted)
+    with pytest.raises(CancelledError):
+        rock_blocks(BREADTHS, HEIGHTS, MOTIONS, 0.01, threads=threads, progress=StopsAt(4))
+    assert len(began) == 3
 
 
 # --- long steps ---
@@ -684,6 +699,7 @@ def test_el_centro(monkeypatch: pytest.MonkeyPatch) -> None:
     assert theirs.rotation[0, :2] == pytest.approx([0.3288, 0.5170], abs=2e-4)
 
 
+@pytest.mark.slow
 def test_the_number_of_lanes_changes_nothing(monkeypatch):
     rng = np.random.default_rng(11)
     motions = np.cumsum(rng.normal(size=(9, 800)), axis=1)

@@ -56,6 +56,7 @@ def test_the_table_is_worth_comparing():
     assert len({row["record"] for row in ROWS}) >= 20
 
 
+@pytest.mark.slow
 def test_the_table_is_what_the_reference_says():
     """25 pairs of few impacts, which take it the least time and do not hang on rounding."""
     few = [row for row in ROWS if 0 < int(row["impacts"]) <= 40 and row["robust"] == "1"]
@@ -66,6 +67,7 @@ def test_the_table_is_what_the_reference_says():
         assert one.rotation == pytest.approx(float(row["max_rotation_ratio"]), rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("robust", ["0", "1"])
 def test_robust_is_what_the_reference_says(robust):
     """A pair is robust if it does the same at all of seven amplitudes within 2 %."""

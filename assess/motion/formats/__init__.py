@@ -1,23 +1,42 @@
-"""Files of recorded motion. The formats are found by looking into this folder: a file with a FORMAT is a format."""
+"""Files of recorded motion. The formats are found by looking into this folder: each `Format` in a module is one."""
 
 import importlib
 import pkgutil
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 from assess.errors import RecordError
 from assess.motion.formats._archive import is_archive, read_archive
-from assess.motion.formats._choice import list_addresses, select, tell_apart
+from assess.motion.formats._choice import list_addresses, rename_duplicates, select
 from assess.motion.formats._format import Format
-from assess.motion.record import Record
+from assess.motion.record import Baseline, Motion, Record, treat
+from assess.progress import SILENT, Progress
 
-__all__ = ["Format", "all_formats", "list_addresses", "read_records", "select"]
+__all__ = [
+    "Channel",
+    "Format",
+    "all_formats",
+    "list_addresses",
+    "parse_records",
+    "read_bytes",
+    "read_channel",
+    "read_channels",
+    "read_records",
+    "select",
+]
 
 LARGEST_FILE = 64_000_000
 """Bytes; the largest records of single buildings have a few million."""
 HEAD = 65_536
 """Bytes by which a format is recognised."""
 
+_NO_FILE = {
+    FileNotFoundError: "there is no such file. Check the name and the folder",
+    IsADirectoryError: "this is a folder. Name one of the files in it",
+    # Windows reports folders like this, too.
+    PermissionError: "it is a folder, is open in another program, or you have no right to read it",
+}
 _FOREIGN = {
     b"\xff\xfe": "It is saved as UTF-16: save it as CSV UTF-8.",
     b"\xfe\xff": "It is saved as UTF-16: save it as CSV UTF-8.",
@@ -37,63 +56,121 @@ def all_formats() -> tuple[Format, ...]:
     """Return every format of this folder, by key."""
     names = [module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_")]
     modules = [importlib.import_module(f"{__name__}.{name}") for name in names]
-    return tuple(sorted((module.FORMAT for module in modules), key=lambda found: found.key))
+    found = {value.key: value for module in modules for value in vars(module).values() if isinstance(value, Format)}
+    return tuple(found[key] for key in sorted(found))
 
 
-def read_records(path: Path) -> tuple[Record, ...]:
+def read_records(path: Path, *, progress: Progress = SILENT) -> tuple[Record, ...]:
     """Read every channel of a file of recorded motion, whatever its format, or of all those in a zip archive.
 
     Raises
     ------
     RecordError
-        If the file cannot be read or used; the message names the file, what is the matter, and the mend.
+        If the file cannot be read or used; the message names the file, what is the matter, and how to fix it.
     """
-    try:
-        data = _read_bytes(path)
-        read = read_archive(data, path.name, _read_member) if is_archive(data) else _read(data, path.name)
-        return tell_apart(read)
-    except RecordError as error:
-        raise RecordError(f"{path.name or path}: {error}") from error
+    progress.check()
+    return parse_records(read_bytes(path), path.name, progress=progress)
 
 
-def _read_bytes(path: Path) -> bytes:
+def read_bytes(path: Path) -> bytes:
+    """Return the bytes of a file, but no more than show that it is too large; RecordError if it cannot be read."""
     try:
         with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-    except FileNotFoundError:
-        raise RecordError("there is no such file. Check the name and the folder") from None
-    except IsADirectoryError:
-        raise RecordError("this is a folder. Name one of the files in it") from None
-    except PermissionError:
-        # Windows says this of folders, too.
-        raise RecordError("it is a folder, is open in another program, or you have no right to read it") from None
+            return file.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
-        raise RecordError(f"the file cannot be read ({error})") from None
-    if not data:
-        raise RecordError("the file is empty. Get it again")
-    if len(data) > LARGEST_FILE:
-        raise RecordError(
-            f"the file is larger than {LARGEST_FILE / 1e6:.0f} MB. Cut it to the shaking, or split its channels"
-        )
-    return data
+        why = next((text for kind, text in _NO_FILE.items() if isinstance(error, kind)), None)
+        raise RecordError(f"{path.name or path}: {why or f'the file cannot be read ({error})'}") from None
 
 
-def _read(data: bytes, file: str) -> tuple[Record, ...]:
-    found = _find_format(data[:HEAD])
-    if found is None:
-        why = next((reason for start, reason in _FOREIGN.items() if data.startswith(start)), _PLAIN_CSV)
-        known = ", ".join(candidate.title for candidate in all_formats())
-        raise RecordError(f"the content is of no known format (known: {known}; also in zip archives). {why}")
-    return found.read(data, file)
+def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tuple[Record, ...]:
+    """Read every channel of a file from its bytes, as `read_records` does; `name` is how messages call the file.
+
+    Raises
+    ------
+    RecordError
+        If they cannot be read or used.
+    """
+    try:
+        if not data:
+            raise RecordError("the file is empty. Get it again")
+        if len(data) > LARGEST_FILE:
+            most = f"{LARGEST_FILE / 1e6:.0f} MB"
+            raise RecordError(f"the file is larger than {most}. Cut it to the shaking, or split its channels")
+        if is_archive(data):
+            return rename_duplicates(read_archive(data, name, _read_member, progress))
+        found = _find_format(data[:HEAD])
+        if found is None:
+            raise _unsupported(data)
+        return rename_duplicates(found.read(data, name))
+    except RecordError as error:
+        raise RecordError(f"{name}: {error}") from error
+
+
+def _unsupported(data: bytes) -> RecordError:
+    why = next((reason for start, reason in _FOREIGN.items() if data.startswith(start)), _PLAIN_CSV)
+    known = ", ".join(candidate.title for candidate in all_formats())
+    return RecordError(f"the file format is not supported (supported: {known}; also in zip archives). {why}")
 
 
 def _read_member(data: bytes, file: str) -> tuple[Record, ...]:
     """Read a file of an archive: there may be many of no known format, and they are left out."""
     found = _find_format(data[:HEAD])
     if found is None:
-        raise RecordError("of no known format")
+        raise RecordError("unsupported file format")
     return found.read(data, file)
 
 
 def _find_format(head: bytes) -> Format | None:
     return next((candidate for candidate in all_formats() if candidate.recognises(head)), None)
+
+
+class Channel(NamedTuple):
+    """One channel: what to write into a workbook to name it, as its file has it, and as treated."""
+
+    name: str
+    record: Record
+    motion: Motion
+
+
+def read_channels(name: str) -> list[Channel]:
+    """Return the channels of ``FILE``, or the one of ``FILE#channel``, as they are and as treated.
+
+    Raises
+    ------
+    RecordError
+        If the file cannot be read, or has no such channel.
+    """
+    path, channel = _split(name)
+    if channel is not None:
+        return [read_channel(name)]
+    records = read_records(path)
+    texts = [""] if len(records) == 1 else [f"#{text}" for text in list_addresses(records)]
+    return [Channel(f"{path.name}{text}", record, treat(record)) for text, record in zip(texts, records, strict=True)]
+
+
+def read_channel(name: str, baseline: Baseline = "standard") -> Channel:
+    """Return the channel of ``FILE#channel``, or the only one of ``FILE``.
+
+    Raises
+    ------
+    RecordError
+        If the file cannot be read, has no such channel, or has several and none is named; the message lists them.
+    """
+    path, channel = _split(name)
+    record = select(read_records(path), channel)
+    return Channel(path.name if channel is None else f"{path.name}#{channel}", record, treat(record, baseline))
+
+
+def _split(name: str) -> tuple[Path, str | None]:
+    """Return the file and the channel that a name means: a file may have a # in its own name."""
+    if "#" not in name or _is_there(Path(name)):
+        return Path(name), None
+    file, _, channel = name.partition("#")
+    return Path(file), channel
+
+
+def _is_there(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # a name that is too long
+        return False

@@ -2,12 +2,13 @@
 
 import io
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from assess.errors import RecordError
-from assess.language import Text, fill
+from assess.i18n import fill
 from assess.motion.record import Record
+from assess.progress import SILENT, Progress
 
 MOST_UNPACKED = 256_000_000
 """Bytes that are unpacked of one file that a user names; a set of a large building has 30 million."""
@@ -20,7 +21,7 @@ DEEPEST = 3
 MOST_RATIO, RATIO_FROM = 200, 1_000_000
 """Unpacked over packed size [-] that is believed, of members with more than so many bytes; text packs to a tenth."""
 LISTED, LONGEST_REASON = 8, 160
-"""Members that an error lists, and the characters of what it says of each."""
+"""Members that an error lists, and the characters of each reason."""
 
 _STARTS = (b"PK\x03\x04", b"PK\x05\x06")
 _ENTRY = b"PK\x01\x02"
@@ -42,11 +43,11 @@ class _Found:
 
 
 def is_archive(head: bytes) -> bool:
-    """Tell whether a file that starts with `head` is a zip archive (or a workbook, which is one, too)."""
+    """Return whether a file that starts with `head` is a zip archive (or a workbook, which is one, too)."""
     return head.startswith(_STARTS)
 
 
-def read_archive(data: bytes, file: str, read: ReadMember) -> tuple[Record, ...]:
+def read_archive(data: bytes, file: str, read: ReadMember, progress: Progress = SILENT) -> tuple[Record, ...]:
     """Read every channel of every member that `read` can read, inner archives included.
 
     Parameters
@@ -57,6 +58,8 @@ def read_archive(data: bytes, file: str, read: ReadMember) -> tuple[Record, ...]
         Its name; that of a member's record is ``file/inner.zip/folder/member``.
     read : callable
         Reads the bytes of one member, given its name.
+    progress : Progress
+        Asked before each member whether to stop.
 
     Raises
     ------
@@ -64,41 +67,38 @@ def read_archive(data: bytes, file: str, read: ReadMember) -> tuple[Record, ...]
         If nothing in it can be read, it is locked, or it unpacks to more than a set of records can have.
     """
     found = _Found()
-    _read_members(data, file, read, found, depth=1)
-    listed = "; ".join(found.reasons[:LISTED])
-    more = f"; and {len(found.reasons) - LISTED} more" if len(found.reasons) > LISTED else ""
+    _read_members(data, file, read, found, progress, depth=1)
+    listed, more = "; ".join(found.reasons[:LISTED]), len(found.reasons) - LISTED
+    if found.records and not found.reasons:
+        return tuple(found.records)
     if found.records:
-        first, *others = found.records
+        note = fill("left out of the archive: {members}", members=listed)
+        if more > 0:
+            note = fill("left out of the archive: {members}; and {more} more", members=listed, more=more)
         # Once in a set, or each of its channels would repeat it in a report.
-        left = (_note_left(found.reasons),) if found.reasons else ()
-        return (replace(first, notes=(*first.notes, *left)), *others)
+        first, *others = found.records
+        return (replace(first, notes=(*first.notes, note)), *others)
     if not found.reasons:
         raise RecordError("the zip archive is empty. Get it again")
-    raise RecordError(f"nothing in the zip archive can be read as a record: {listed}{more}")
-
-
-def _note_left(reasons: Sequence[str]) -> Text:
-    """Say which members are left out, and why."""
-    listed, more = "; ".join(reasons[:LISTED]), len(reasons) - LISTED
-    if more > 0:
-        return fill("left out of the archive: {members}; and {more} more", members=listed, more=more)
-    return fill("left out of the archive: {members}", members=listed)
+    others_too = f"; and {more} more" if more > 0 else ""
+    raise RecordError(f"nothing in the zip archive can be read as a record: {listed}{others_too}")
 
 
 class _BombError(RecordError):
     """About an archive of which nothing further is read."""
 
 
-def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, depth: int) -> None:
+def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, progress: Progress, depth: int) -> None:
     if depth > DEEPEST:
         raise RecordError(f"archives lie more than {DEEPEST} deep in one another: unpack it")
     with _open(data) as archive:
         for member in _list_members(archive, found):
+            progress.check()
             name = member.filename.replace("\\", "/")
             try:
                 content, place = _unpack(archive, member, found), f"{file}/{name}"
                 if is_archive(content):
-                    _read_members(content, place, read, found, depth + 1)
+                    _read_members(content, place, read, found, progress, depth + 1)
                 else:
                     found.records += [replace(record, file=place) for record in read(content, name)]
             except _BombError:
@@ -145,7 +145,7 @@ def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) ->
     room = min(LARGEST_MEMBER, MOST_UNPACKED - found.unpacked)
     try:
         with archive.open(member) as file:
-            # Of a member that is larger than it says, no more is unpacked than it says.
+            # Of a member that is larger than its directory entry, no more than that is unpacked.
             content = file.read(min(room, member.file_size) + 1)
     except Exception as error:  # see above
         raise _damaged("it", error) from error

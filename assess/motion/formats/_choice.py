@@ -14,7 +14,7 @@ LISTED = 12
 def select(records: Sequence[Record], channel: str | None = None) -> Record:
     """Return the one record that `channel` names: the part after # where a user writes ``file#channel``.
 
-    In a zip archive, channels of the same name are told apart by the member they are in:
+    In a zip archive, channels of the same name are distinguished by the member they are in:
     ``set.zip#CHAN01.V2/1``, with as many folders and inner archives before it as it takes:
     ``set.zip#Free Field.zip/CHAN01.V2/1``. The member alone, ``set.zip#CHAN01.V2``, is enough where it has one channel.
 
@@ -36,14 +36,16 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
         if len(records) == 1:
             return records[0]
         names = list_addresses(records)
-        raise RecordError(f"{file} holds {len(records)} channels: {_list(names)}. Write which, as {file}#{names[0]}")
+        raise RecordError(
+            f"{file} holds {len(records)} channels: {_list(names)}. Name one of them, such as {file}#{names[0]}"
+        )
     wanted = channel.strip().casefold()
     # The whole path of a member comes first: the same file may lie in a folder, too.
     whole = [record for record in records if wanted in _whole(record)]
     named = whole or [record for record in records if wanted in _spellings(record)]
     if len(named) > 1:
         meant = _list([name for name, record in zip(list_addresses(records), records, strict=True) if record in named])
-        raise RecordError(f"{file} has {len(named)} channels {channel.strip()!r}. Write which: {meant}")
+        raise RecordError(f"{file} has {len(named)} channels {channel.strip()!r}. Name one of them: {meant}")
     if named:
         return named[0]
     # Names come first: a channel may be called by its azimuth, "45". Where some are numbers, a number is a name.
@@ -54,15 +56,15 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     raise RecordError(f"{file} has no channel {channel.strip()!r}. It holds: {_list(list_addresses(records))}")
 
 
-def tell_apart(records: Sequence[Record]) -> tuple[Record, ...]:
+def rename_duplicates(records: Sequence[Record]) -> tuple[Record, ...]:
     """Give channels of one file that have the same name different ones: "HNE", "HNE (2)"."""
     seen: Counter[tuple[str, str]] = Counter()
-    told = []
+    renamed = []
     for record in records:
         own = (record.file.casefold(), record.channel.casefold())
         seen[own] += 1
-        told.append(replace(record, channel=f"{record.channel} ({seen[own]})") if seen[own] > 1 else record)
-    return tuple(told)
+        renamed.append(replace(record, channel=f"{record.channel} ({seen[own]})") if seen[own] > 1 else record)
+    return tuple(renamed)
 
 
 def _ways(record: Record) -> Iterator[str]:

@@ -1,9 +1,22 @@
-"""What a format of recorded motion is."""
+"""What a format of recorded motion is, and the record that every reader builds."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
-from assess.motion.record import Record
+from assess.errors import RecordError
+from assess.i18n import Text, fill
+from assess.motion.record import FloatArray, Record, Series, check_samples, check_time_step, peak
+
+T = TypeVar("T")
+
+MOST_NOTES = 4
+"""Notes on single channels that are left out."""
+HEADER_PEAK_WITHIN = 0.02
+"""Headers print two to four digits of the peak; a larger difference [-] is noted."""
+
+Direction = tuple[float | None, bool]
+"""Azimuth [deg], None where it is unknown, and whether the channel is vertical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +30,7 @@ class Format:
     title : str
         As shown to people.
     recognises : callable
-        Tells from the first bytes of a file whether it is of this format. The name of a file decides nothing.
+        Whether the first bytes of a file are of this format. The name of a file decides nothing.
     read : callable
         From the whole file and its name to its channels; raises RecordError, and nothing else, whatever the bytes. The
         message need not name the file.
@@ -27,3 +40,105 @@ class Format:
     title: str
     recognises: Callable[[bytes], bool]
     read: Callable[[bytes, str], tuple[Record, ...]]
+
+
+def build_record(
+    title: str,
+    file: str,
+    series: Series,
+    *,
+    corrected: bool,
+    own: FloatArray | None = None,
+    channel: str = "",
+    direction: Direction = (None, False),
+    location: str = "",
+    station: str = "",
+    event: str = "",
+    start: str = "",
+    header_pfa: float | None = None,
+    has_offset: bool = False,
+    notes: Sequence[str] = (),
+) -> Record:
+    """Return the record of one channel; see `Record` for the parameters that are not named here.
+
+    Parameters
+    ----------
+    title, file : str
+        Title of the format, name of the file.
+    series : Series
+        Evenly spaced samples [m/s2].
+    own : (n,) array, optional
+        The file's own samples [m/s2], where they are not evenly spaced.
+    direction : (float or None, bool)
+        Azimuth [deg] and whether it is vertical.
+    has_offset : bool
+        Whether the samples carry the instrument's offset: the peak is then that about their mean.
+    notes : sequence of str
+        Further notes than those of the series.
+    """
+    own = series.values if own is None else own
+    file_pfa = peak(own - own.mean() if has_offset else own)
+    return Record(
+        file=file,
+        format=title,
+        channel=channel or "1",
+        location=location,
+        azimuth_deg=direction[0],
+        vertical=direction[1],
+        station=station,
+        event=event,
+        start=start,
+        corrected=corrected,
+        time_step=series.time_step,
+        acceleration=series.values,
+        file_pfa=file_pfa,
+        header_pfa=header_pfa,
+        notes=(*series.notes, *notes, *_note_peak(header_pfa, file_pfa)),
+    )
+
+
+def _note_peak(header_pfa: float | None, file_pfa: float) -> tuple[Text, ...]:
+    """Return a note where the peak printed in the header [m/s2] is not that of the data [m/s2]."""
+    if header_pfa is None or abs(header_pfa - file_pfa) <= HEADER_PEAK_WITHIN * file_pfa:
+        return ()
+    note = fill(
+        "the header prints a peak of {printed:.4g} cm/s2, the data have {found:.4g} cm/s2",
+        printed=100 * header_pfa,
+        found=100 * file_pfa,
+    )
+    return (note,)
+
+
+def even_series(values: FloatArray, time_step: float, notes: Sequence[str] = ()) -> Series:
+    """Return samples that the file says are evenly spaced, checked."""
+    check_samples(values)
+    check_time_step(time_step)
+    return Series(float(f"{time_step:.12g}"), values, tuple(notes))
+
+
+def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -> tuple[Record, ...]:
+    """Read every named part that can be read; why the others cannot is noted on those.
+
+    Raises
+    ------
+    RecordError
+        If none can be read.
+    """
+    records, reasons = [], []
+    for name, part in parts:
+        try:
+            records.append(read(part))
+        except RecordError as error:
+            reasons.append((name, str(error)))
+    if not records and len(reasons) == 1:
+        raise RecordError(reasons[0][1])
+    if not records:
+        listed = "; ".join(f"{name}: {reason}" for name, reason in reasons[:MOST_NOTES])
+        raise RecordError(f"none of its {len(reasons)} channels can be read: {listed}")
+    notes = [
+        fill("{part} of the file is left out: {reason}", part=name, reason=reason)
+        for name, reason in reasons[:MOST_NOTES]
+    ]
+    if len(reasons) > MOST_NOTES:
+        notes.append(fill("{count} more channels of the file are left out", count=len(reasons) - MOST_NOTES))
+    return tuple(replace(record, notes=(*record.notes, *notes)) for record in records)

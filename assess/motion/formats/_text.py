@@ -1,40 +1,32 @@
-"""What the readers of text files share: lines, numbers in columns, units, directions, channels that are left out."""
+"""The reader that all text formats share.
+
+A format states where the fields of its header stand (`fields`: lines, and a pattern with a named group for each field)
+and how its data are laid out (`Columns`, or words with blanks between them); `text_format` makes the format of it.
+"""
 
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import islice, pairwise
-from typing import TypeVar
 
 import numpy as np
 
 from assess.errors import RecordError
-from assess.language import Text, fill, nfill
-from assess.motion.record import MOST_SAMPLES, FloatArray, Record, Series, check_samples, check_time_step
-from assess.units import ACCELERATION, GRAVITY, read_unit
-
-T = TypeVar("T")
+from assess.i18n import Text, fill, nfill
+from assess.motion.formats._format import Format, keep_readable
+from assess.motion.formats._values import read_real
+from assess.motion.record import MOST_SAMPLES, FloatArray, Record
 
 LONGEST_TEXT = 160
 """Characters kept of a line of a header."""
 MOST_LINES = 10_000_000
 """Lines of a file; with one sample to a line there are no more than MOST_SAMPLES of them, and two marks end each."""
-MOST_NOTES = 4
-"""Notes on single channels that are left out."""
 MOST_BEYOND = 0.01
 """Share of the data that may stand beyond the count in the header [-]."""
-HEADER_PEAK_WITHIN = 0.02
-"""Headers print two to four digits of the peak; a larger difference [-] is noted."""
 
-_MORE_UNITS = {"mm/s2": 0.001, "g/10": GRAVITY / 10, "mg": GRAVITY / 1000, "in/s2": 0.0254}
 _FORMAT = re.compile(r"\(\s*(\d{1,3})\s*[EFGI]\s*(\d{1,2})(?:\.\d+)?\s*\)", re.IGNORECASE)
 _WORD = re.compile(r"\S+")
-_UP = re.compile(r"(up|down|dn|dwn|ver|vert|vertical|v|z|ud|u-d|u)", re.IGNORECASE)
-_DEGREES = re.compile(r"(\d{1,3}(?:\.\d*)?)\s*(?:deg\w*\.?|°)?", re.IGNORECASE | re.ASCII)
-_QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*(?:deg\w*\.?|°)?\s*([EW])", re.IGNORECASE | re.ASCII)
-_POINTS = {"n": 0.0, "north": 0.0, "ns": 0.0, "n-s": 0.0, "s": 180.0, "south": 180.0,
-           "e": 90.0, "east": 90.0, "ew": 90.0, "e-w": 90.0, "w": 270.0, "west": 270.0}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,14 +63,85 @@ def split_lines(data: bytes) -> list[str]:
     """
     if data.count(b"\n") + data.count(b"\r") > MOST_LINES:
         raise RecordError(f"the file has more than {MOST_LINES} lines: cut it to the shaking")
-    # Not str.splitlines, which also splits at characters that may stand inside a name.
-    return data.decode("latin-1").replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = split_text(data.decode("latin-1"))
+    return lines if lines[-1] or len(lines) == 1 else lines[:-1]
 
 
-def split_sections(lines: Sequence[str], starts: Callable[[str], bool]) -> list[Section]:
-    """Cut a file at every line that starts a channel; what stands before the first is left out."""
-    places = [place for place, line in enumerate(lines) if starts(line[:LONGEST_TEXT])]
-    return [Section(lines[place:end], place) for place, end in pairwise([*places, len(lines)])]
+def split_text(text: str) -> list[str]:
+    """Return the lines of a text; `str.splitlines` also splits at characters that may stand inside a name."""
+    return _with_line_feeds(text).split("\n")
+
+
+def _with_line_feeds(text: str) -> str:
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def text_format(
+    key: str,
+    title: str,
+    *,
+    recognised: re.Pattern[str],
+    read_channel: Callable[[Section, str], Record],
+    starts: re.Pattern[str] | None = None,
+    missing: str = "",
+    choose: Callable[[list[Section]], list[Section]] = list,
+) -> Format:
+    """Return the format of a text file.
+
+    Parameters
+    ----------
+    key, title : str
+        As of `Format`.
+    recognised : pattern
+        Matches the beginning of a file, whose lines end with a line feed here.
+    read_channel : callable
+        From a channel's section of the file and the name of the file to its record.
+    starts : pattern, optional
+        Matches the first line of each channel; what stands before the first is left out. None where a file has one
+        channel.
+    missing : str
+        What is wrong with a file that has no such line.
+    choose : callable, optional
+        Returns the sections that are to be read; raises RecordError where there are none.
+    """
+
+    def recognises(head: bytes) -> bool:
+        return recognised.match(_with_line_feeds(head.decode("latin-1"))) is not None
+
+    def read(data: bytes, file: str) -> tuple[Record, ...]:
+        lines = split_lines(data)
+        if starts is None:
+            return (read_channel(Section(lines), file),)
+        places = [place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT])]
+        if not places:
+            raise RecordError(f"{missing}. Get the file again")
+        sections = choose([Section(lines[place:end], place) for place, end in pairwise([*places, len(lines)])])
+        numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(sections, start=1))
+        return keep_readable(numbered, lambda section: read_channel(section, file))
+
+    return Format(key=key, title=title, recognises=recognises, read=read)
+
+
+Fields = Sequence[tuple[range, re.Pattern[str]]]
+"""Lines of a header, counted from 0, and the pattern whose named groups are fields of it."""
+
+
+def fields(*rows: tuple[int | range, str]) -> Fields:
+    """Return a table of fields: the line, or the lines of which the first that matches counts, and the pattern."""
+    return [
+        (lines if isinstance(lines, range) else range(lines, lines + 1), re.compile(pattern, re.IGNORECASE))
+        for lines, pattern in rows
+    ]
+
+
+def read_fields(section: Section, table: Fields, first: int = 0) -> dict[str, str]:
+    """Return the fields of a header whose lines are counted from `first` on; "" for a field that is not there."""
+    header: dict[str, str] = {}
+    for lines, pattern in table:
+        hits = (pattern.search(section.text(first + line)) for line in lines)
+        hit = next((hit for hit in hits if hit), None)
+        header |= {name: ((hit[name] or "") if hit else "").strip() for name in pattern.groupindex}
+    return header
 
 
 def read_format(text: str, default: Columns) -> Columns:
@@ -89,8 +152,8 @@ def read_format(text: str, default: Columns) -> Columns:
     return Columns(int(found[1]), int(found[2]))
 
 
-def read_columns(section: Section, start: int, count: int, columns: Columns) -> FloatArray:
-    """Return `count` numbers in `columns`, from the section's line at `start` on.
+def read_columns(section: Section, start: int, count: int, columns: Columns, factor: float = 1.0) -> FloatArray:
+    """Return `count` numbers in `columns`, from the section's line at `start` on, times `factor`.
 
     Raises
     ------
@@ -100,15 +163,17 @@ def read_columns(section: Section, start: int, count: int, columns: Columns) -> 
     _check_count(count)
     whole = columns.per_line * columns.width
     rows = section.lines[start : start + math.ceil(count / columns.per_line)]
-    fields = [row[at : at + columns.width] for row in rows for at in range(0, min(whole, len(row)), columns.width)]
-    fields = _trim(fields, count)
-    if len(fields) < count:
-        raise _cut_short(count, len(fields))
-    return _convert(fields, section, start, columns.per_line)
+    cells = [row[at : at + columns.width] for row in rows for at in range(0, min(whole, len(row)), columns.width)]
+    cells = cells[:count]
+    while cells and not cells[-1].strip():
+        cells.pop()
+    if len(cells) < count:
+        raise _cut_short(count, len(cells))
+    return _scale(convert(cells, section, start, columns.per_line), factor)
 
 
-def read_words(section: Section, start: int, count: float) -> tuple[FloatArray, tuple[str, ...]]:
-    """Return `count` numbers with blanks between them, and a note on those beyond; see `read_columns`."""
+def read_words(section: Section, start: int, count: float, factor: float) -> tuple[FloatArray, tuple[str, ...]]:
+    """Return `count` numbers with blanks between them times `factor`, and a note on those beyond, as `read_columns`."""
     _check_count(count)
     count = round(count)
     most = count + int(MOST_BEYOND * count)
@@ -119,8 +184,8 @@ def read_words(section: Section, start: int, count: float) -> tuple[FloatArray, 
         raise _cut_short(count, len(words))
     if len(words) > most:
         raise RecordError(f"the header announces {count} numbers of data, there are more. Get the file again")
-    beyond = len(words) - count
-    return _convert(words[:count], section, start, None), note_beyond(beyond, count)
+    values = _scale(convert(words[:count], section, start, None), factor)
+    return values, note_beyond(len(words) - count, count)
 
 
 def note_beyond(beyond: int, count: int) -> tuple[Text, ...]:
@@ -134,9 +199,8 @@ def note_beyond(beyond: int, count: int) -> tuple[Text, ...]:
     return (note,) if beyond else ()
 
 
-def scaled(values: FloatArray, factor: float) -> FloatArray:
-    """Return `values` times `factor`; what becomes infinite is refused where samples are checked."""
-    with np.errstate(over="ignore"):
+def _scale(values: FloatArray, factor: float) -> FloatArray:
+    with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
         return values * factor
 
 
@@ -147,121 +211,26 @@ def _check_count(count: float) -> None:
         )
 
 
-def _trim(fields: list[str], count: int) -> list[str]:
-    """Return the first `count` fields, without those at the end that are blank."""
-    fields = fields[:count]
-    while fields and not fields[-1].strip():
-        fields.pop()
-    return fields
-
-
 def _cut_short(announced: int, there: int) -> RecordError:
     return RecordError(
         f"the header announces {announced} numbers of data, there are {there}: cut short. Get the file again"
     )
 
 
-def _convert(fields: Sequence[str], section: Section, start: int, per_line: int | None) -> FloatArray:
-    try:
-        return np.array(fields, dtype=np.float64)
-    except ValueError:
-        place = next((place for place, text in enumerate(fields) if read_real(text) is None), 0)
-        text = fields[place].strip()
-        what = f"{text[:40]!r} is not a number" if text else "a number is missing"
-        where = f"number {place + 1} of the data" if per_line is None else ""
-        where = where or f"line {section.number(start + place // (per_line or 1))}"
-        raise RecordError(f"{where}: {what}. Get the file again") from None
-
-
-def read_real(text: str) -> float | None:
-    """Return the number that `text` is, None where it is none."""
-    try:
-        return float(text)
-    except ValueError:
-        return None
-
-
-def read_finite(text: str | None) -> float | None:
-    """Return the finite number that `text` is, None where it is none."""
-    number = read_real(text or "")
-    return number if number is not None and math.isfinite(number) else None
-
-
-def read_acceleration_unit(text: str) -> float | None:
-    """Return the factor from the unit that `text` names to m/s2, None where it is no unit of acceleration."""
-    spelt = read_unit(text.replace("**", "").replace("^", "")).replace("sec", "s").replace("/s/s", "/s2").strip(".")
-    return ACCELERATION.get(spelt, _MORE_UNITS.get(spelt))
-
-
-def read_direction(text: str) -> tuple[float | None, bool]:
-    """Return the azimuth [deg] that `text` names, None where it names none, and whether it names the vertical."""
-    text = text.strip()
-    if _UP.fullmatch(text):
-        return None, True
-    quadrant = _QUADRANT.fullmatch(text)
-    if quadrant:
-        off = float(quadrant[2]) * (1 if quadrant[3].upper() == "E" else -1)
-        return (off if quadrant[1].upper() == "N" else 180 - off) % 360, False
-    degrees = _DEGREES.fullmatch(text)
-    if degrees:
-        return (float(degrees[1]) if float(degrees[1]) <= 360 else None), False
-    return _POINTS.get(text.lower()), False
-
-
-def direction_of_code(code: str) -> tuple[float | None, bool]:
-    """Return azimuth [deg] and vertical of a SEED channel code (HNE): its last letter."""
-    return read_direction(code[-1:]) if code[-1:] in {"N", "E", "Z"} else (None, False)
-
-
-def even_series(values: FloatArray, time_step: float, notes: Sequence[str] = ()) -> Series:
-    """Return samples that the file says are evenly spaced, checked."""
-    check_samples(values)
-    check_time_step(time_step)
-    return Series(float(f"{time_step:.12g}"), values, tuple(notes))
-
-
-def note_peak(header_pfa: float | None, file_pfa: float) -> tuple[str, ...]:
-    """Return a note where the peak printed in the header [m/s2] is not that of the data [m/s2]."""
-    if header_pfa is None or abs(header_pfa - file_pfa) <= HEADER_PEAK_WITHIN * file_pfa:
-        return ()
-    note = fill(
-        "the header prints a peak of {printed:.4g} cm/s2, the data have {found:.4g} cm/s2",
-        printed=100 * header_pfa,
-        found=100 * file_pfa,
-    )
-    return (note,)
-
-
-def read_sections(sections: Iterable[Section], read: Callable[[Section], Record]) -> tuple[Record, ...]:
-    """Read every channel that can be read, each from its section of the file; see `keep_readable`."""
-    return keep_readable(
-        ((fill("channel {number}", number=number), section) for number, section in enumerate(sections, start=1)), read
-    )
-
-
-def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -> tuple[Record, ...]:
-    """Read every named part that can be read; what is the matter with the others is noted on those.
+def convert(cells: Sequence[str], section: Section, start: int, per_line: int | None) -> FloatArray:
+    """Return cells of the section's lines from `start` on as numbers; `per_line` is None where lines do not count.
 
     Raises
     ------
     RecordError
-        If none can be read.
+        If one is no number; the message names its line or its place.
     """
-    records, reasons = [], []
-    for name, part in parts:
-        try:
-            records.append(read(part))
-        except RecordError as error:
-            reasons.append((name, str(error)))
-    if not records and len(reasons) == 1:
-        raise RecordError(reasons[0][1])
-    if not records:
-        listed = "; ".join(f"{name}: {reason}" for name, reason in reasons[:MOST_NOTES])
-        raise RecordError(f"none of its {len(reasons)} channels can be read: {listed}")
-    notes = [
-        fill("{part} of the file is left out: {reason}", part=name, reason=reason)
-        for name, reason in reasons[:MOST_NOTES]
-    ]
-    if len(reasons) > MOST_NOTES:
-        notes.append(fill("{count} more channels of the file are left out", count=len(reasons) - MOST_NOTES))
-    return tuple(replace(record, notes=(*record.notes, *notes)) for record in records)
+    try:
+        return np.array(cells, dtype=np.float64)
+    except ValueError:
+        place = next((place for place, text in enumerate(cells) if read_real(text) is None), 0)
+        text = cells[place].strip()
+        what = f"{text[:40]!r} is not a number" if text else "a number is missing"
+        where = f"number {place + 1} of the data" if per_line is None else ""
+        where = where or f"line {section.number(start + place // (per_line or 1))}"
+        raise RecordError(f"{where}: {what}. Get the file again") from None

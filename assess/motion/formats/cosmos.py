@@ -8,28 +8,14 @@ version 1.20.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from assess.errors import RecordError
-from assess.motion.formats._format import Format
-from assess.motion.formats._text import (
-    LONGEST_TEXT,
-    Columns,
-    Section,
-    even_series,
-    note_peak,
-    read_acceleration_unit,
-    read_columns,
-    read_direction,
-    read_finite,
-    read_format,
-    read_sections,
-    scaled,
-    split_lines,
-    split_sections,
-)
-from assess.motion.record import Record, Series, peak
+from assess.motion.formats._format import Direction, build_record, even_series
+from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
+from assess.motion.formats._values import read_acceleration_unit, read_direction, read_peak
+from assess.motion.record import Record, Series
 from assess.units import ACCELERATION, GRAVITY
 
 TITLE = "COSMOS"
@@ -38,113 +24,96 @@ TEXT = 13
 """Lines of text."""
 UNITS = {2: GRAVITY, 4: 0.01, 7: 0.0254, 10: ACCELERATION["gal"], 11: GRAVITY / 1000}
 """Factor of each code of a unit of acceleration to m/s2."""
+HEADER = fields(
+    (1, r"(?P<event>.*)"),
+    (4, r"^statn\s+no:\s*(?P<number>\S+)\s+code:\s*(?P<code>\S*)\s*(?P<station>.*)"),
+    (7, r"^rcrd start time:\s*(?P<start>\S+,?\s*[\d:.]+(?:\s+[A-Z]+\b)?)"),
+    (
+        8,
+        r"^sta\s+cha\w*:?\s*(?P<channel>\w+)\s*:\s*(?P<direction>.*?)\s*\(.*?\)\s*(?:location:\s*(?P<location>.*))?",
+    ),
+    (10, r"\bmax\s*=\s*(?P<peak>[-+.\dE]+)\s*(?P<peak_unit>[^\s,]+)"),
+)
 
 # Places in the blocks of numbers, counted from 0; the format's description counts from 1.
 STAGE, AZIMUTH = 0, 53
 RAW_STEP, STEP = 33, 61
 CORRECTED = 2
+BLOCKS = {"integer": Columns(10, 8), "real": Columns(5, 15)}
+"""How the numbers of the header stand where no format is printed."""
 
+_START = re.compile(r"(?P<kind>[^\n(]*)\(format v", re.IGNORECASE)
 _WANTED = re.compile(r"^(?!.*spectr).*accel", re.IGNORECASE)
-_HEADER = re.compile(r"\s*(?P<count>\d{1,6})\s+(?P<what>integer|real)[- ]header values", re.IGNORECASE)
+_BLOCK = re.compile(r"\s*(?P<count>\d{1,6})\s+(?P<what>integer|real)[- ]header values", re.IGNORECASE)
 _DATA = re.compile(r"\s*(?P<count>\d{1,9})\s+\D.*\bunits\s*=\s*(?P<unit>[^,(]*)\((?P<code>\d{1,4})\)", re.IGNORECASE)
-_STATION = re.compile(r"statn\s+no:\s*(\S+)\s+code:\s*(\S*)\s*(.*)", re.IGNORECASE)
-_RECORD_START = re.compile(r"rcrd start time:\s*(\S+,?\s*[\d:.]+(?:\s+[A-Z]+\b)?)", re.IGNORECASE)
-_CHANNEL = re.compile(
-    r"sta\s+cha\w*:?\s*(?P<number>\w+)\s*:\s*(?P<direction>.*?)\s*\(.*?\)\s*(?:location:\s*(?P<location>.*))?",
-    re.IGNORECASE,
-)
-_PEAK = re.compile(r"\bmax\s*=\s*([-+.\dE]+)\s*([^\s,]+)", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
-class _Header:
-    """One channel's header; `data` is the place [-] of the line before its data, None where there is none."""
+class _Numbers:
+    """The numbers of one channel's header; `data` is the place [-] of the line before its data, None without one."""
 
     integers: Sequence[float]
     reals: Sequence[float]
     data: int | None
 
 
-def recognises(head: bytes) -> bool:
-    """Tell whether the first line of `head` names a version of the COSMOS format."""
-    return _kind(split_lines(head[:LONGEST_TEXT])[0]) is not None
-
-
-def read(data: bytes, file: str) -> tuple[Record, ...]:
-    """Read the accelerations of a COSMOS file of volume 1 or 2.
-
-    Raises
-    ------
-    RecordError
-        If there are none, or none can be read.
-    """
-    sections = split_sections(split_lines(data), lambda line: _kind(line) is not None)
-    kinds = [_kind(section.lines[0]) or "" for section in sections]
+def _choose(sections: list[Section]) -> list[Section]:
+    """Return the sections that hold accelerations."""
+    found = [_START.match(section.lines[0]) for section in sections]
+    kinds = [hit["kind"].strip() if hit else "" for hit in found]
     wanted = [section for section, kind in zip(sections, kinds, strict=True) if _WANTED.search(kind)]
-    if not sections:
-        raise RecordError("no line names a version of the COSMOS format. Get the file again")
     if not wanted:
         raise RecordError(
             f"it holds no accelerations, but: {kinds[0][:40] or 'nothing named'}. "
             "Give the acceleration file of the same channel"
         )
-    return read_sections(wanted, lambda section: _read_channel(section, file))
+    return wanted
 
 
-def _kind(line: str) -> str | None:
-    """Return what the first line of a header says that it holds, None if `line` is none."""
-    kind, _, version = line[:LONGEST_TEXT].partition("(")
-    return kind.strip() if version.lower().startswith("format v") else None
-
-
-def _read_header(section: Section) -> _Header:
+def _read_numbers(section: Section) -> _Numbers:
     numbers: dict[str, Sequence[float]] = {"integer": (), "real": ()}
     for place, line in enumerate(section.lines[: 10 * TEXT]):
-        found = _HEADER.match(line)
+        found = _BLOCK.match(line)
         if found:
-            columns = read_format(line, Columns(10, 8) if found["what"].lower() == "integer" else Columns(5, 15))
-            numbers[found["what"].lower()] = list(read_columns(section, place + 1, int(found["count"]), columns))
+            what = found["what"].lower()
+            columns = read_format(line, BLOCKS[what])
+            numbers[what] = list(read_columns(section, place + 1, int(found["count"]), columns))
     # Comments may hold any text, but start with "|" and not with a number.
     after = range(TEXT, len(section.lines))
     data = next((place for place in after if _DATA.match(section.text(place))), None)
-    return _Header(numbers["integer"], numbers["real"], data)
+    return _Numbers(numbers["integer"], numbers["real"], data)
 
 
-def _read_data(section: Section, header: _Header) -> Series:
+def _read_data(section: Section, header: _Numbers) -> Series:
     title = section.text(header.data or 0)
     found = _DATA.match(title)
     if header.data is None or found is None or len(header.integers) <= AZIMUTH or len(header.reals) <= STEP:
-        raise RecordError("the header is not whole. Get the file again")
+        raise RecordError("the header is incomplete. Get the file again")
     factor = _factor(found["unit"].strip(), int(found["code"]))
-    numbers = read_columns(section, header.data + 1, int(found["count"]), read_format(title, Columns(8, 10)))
+    columns = read_format(title, Columns(8, 10))
+    values = read_columns(section, header.data + 1, int(found["count"]), columns, factor)
     # The second is that of the data [ms], the first that of the recorder [s]: they differ where data are resampled.
     step = header.reals[STEP] / 1000 if header.reals[STEP] > 0 else header.reals[RAW_STEP]
-    return even_series(scaled(numbers, factor), step)
+    return even_series(values, step)
 
 
 def _read_channel(section: Section, file: str) -> Record:
-    header = _read_header(section)
-    series = _read_data(section, header)
-    own = series.values
-    azimuth, vertical, channel, location = _read_orientation(section, header)
-    station, header_pfa = _STATION.match(section.text(4)), _read_peak(section)
-    start = _RECORD_START.match(section.text(7))
-    return Record(
-        file=file,
-        format=TITLE,
-        channel=channel,
-        location=location,
-        azimuth_deg=azimuth,
-        vertical=vertical,
-        station=f"{station[3].strip()} ({station[2] or station[1]})" if station else "",
-        event=" ".join(section.text(1).split()),
-        start=start[1] if start else "",
-        corrected=header.integers[STAGE] == CORRECTED,
-        time_step=series.time_step,
-        acceleration=own,
-        file_pfa=peak(own),
-        header_pfa=header_pfa,
-        notes=note_peak(header_pfa, peak(own)),
+    numbers = _read_numbers(section)
+    series = _read_data(section, numbers)
+    header = read_fields(section, HEADER)
+    code = header["code"] or header["number"]
+    return build_record(
+        TITLE,
+        file,
+        series,
+        corrected=numbers.integers[STAGE] == CORRECTED,
+        channel=header["channel"] and (header["channel"].lstrip("0") or "0"),
+        direction=_read_direction(header, numbers.integers[AZIMUTH]),
+        location=header["location"],
+        station=f"{header['station']} ({code})" if code else "",
+        event=" ".join(header["event"].split()),
+        start=header["start"],
+        header_pfa=read_peak(header["peak"], read_acceleration_unit(header["peak_unit"])),
     )
 
 
@@ -161,21 +130,19 @@ def _factor(unit: str, code: int) -> float:
     return factor
 
 
-def _read_orientation(section: Section, header: _Header) -> tuple[float | None, bool, str, str]:
-    """Return azimuth [deg], vertical, the channel's name and its location."""
-    found = _CHANNEL.match(section.text(8))
-    azimuth, vertical = read_direction(found["direction"]) if found else (None, False)
-    code = header.integers[AZIMUTH]
+def _read_direction(header: Mapping[str, str], code: float) -> Direction:
+    azimuth, vertical = read_direction(header["direction"])
     if azimuth is None and not vertical:
-        azimuth, vertical = (code if 1 <= code <= 360 else None), 400 <= code <= 402
-    name = found["number"] if found else "1"
-    return azimuth, vertical, name.lstrip("0") or "0", (found["location"] or "").strip() if found else ""
+        return (code if 1 <= code <= 360 else None), 400 <= code <= 402
+    return azimuth, vertical
 
 
-def _read_peak(section: Section) -> float | None:
-    found = _PEAK.search(section.text(10))
-    number, factor = (read_finite(found[1]), read_acceleration_unit(found[2])) if found else (None, None)
-    return abs(number) * factor if number is not None and factor is not None else None
-
-
-FORMAT = Format(key="cosmos", title=TITLE, recognises=recognises, read=read)
+FORMAT = text_format(
+    "cosmos",
+    TITLE,
+    recognised=_START,
+    starts=_START,
+    missing="no line names a version of the COSMOS format",
+    choose=_choose,
+    read_channel=_read_channel,
+)

@@ -9,82 +9,47 @@ Source: GNS Science, New Zealand, GeoNet strong-motion data, formats V1A and V2A
 import re
 
 from assess.errors import RecordError
-from assess.motion.formats._format import Format
-from assess.motion.formats._text import (
-    Columns,
-    Section,
-    even_series,
-    note_peak,
-    read_acceleration_unit,
-    read_columns,
-    read_direction,
-    read_finite,
-    read_sections,
-    scaled,
-    split_lines,
-    split_sections,
-)
-from assess.motion.record import Record, peak
+from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, text_format
+from assess.motion.formats._values import read_acceleration_unit, read_direction, read_finite, read_peak
+from assess.motion.record import Record
 
 TITLE = "GeoNet"
 
-TEXT, HEADER = 16, 26
-"""Lines of text, and of text and numbers together."""
-COLUMNS = Columns(10, 8)
-
-# Places in the block of numbers, counted from 0: line and column.
+TEXT, DATA = 16, 26
+"""Lines at which the numbers of the header, and the data, begin."""
 RAW_COUNT, COUNT, STEP = (3, 0), (3, 3), (6, 5)
-
-_RECOGNISED = re.compile(r"(?:un)?corrected accelerogram [^\n]*\n+site [^\n]*\n", re.IGNORECASE)
-_START = re.compile(r"(un)?corrected accelerogram ", re.IGNORECASE)
-_PEAK = re.compile(r"acceleration:\s*peak\s+([-+.\d]+)\s*(\S+)", re.IGNORECASE)
-_RAW_UNIT = re.compile(r"raw readings in units of\s+([\d.]+)\s+(\S+)", re.IGNORECASE)
-
-
-def recognises(head: bytes) -> bool:
-    """Tell whether `head` begins with an accelerogram and its site."""
-    return _RECOGNISED.match(head[:400].decode("latin-1").replace("\r", "\n")) is not None
-
-
-def read(data: bytes, file: str) -> tuple[Record, ...]:
-    """Read every component of a GeoNet file.
-
-    Raises
-    ------
-    RecordError
-        If no component can be read.
-    """
-    sections = split_sections(split_lines(data), lambda line: _START.match(line) is not None)
-    if not sections:
-        raise RecordError('no line says "accelerogram". Get the file again')
-    return read_sections(sections, lambda section: _read_channel(section, file))
+"""Places in the numbers of the header, counted from 0: line and column."""
+COLUMNS = Columns(10, 8)
+HEADER = fields(
+    (0, r"^(?P<raw>un)?"),
+    (1, r"^\S+\s+(?P<site>\S+)"),
+    (2, r"(?P<station>.*)"),
+    (6, r"(?P<event>.*)"),
+    (7, r"(?P<start>.*)"),
+    (10, r"raw readings in units of\s+(?P<multiple>[\d.]+)\s+(?P<raw_unit>\S+)"),
+    (12, r"^(?:component)?\s*(?P<component>\S*)"),
+    (13, r"acceleration:\s*peak\s+(?P<peak>[-+.\d]+)\s*(?P<unit>\S+)"),
+)
 
 
 def _read_channel(section: Section, file: str) -> Record:
-    corrected = not section.text(0).lower().startswith("un")
+    header = read_fields(section, HEADER)
+    corrected = not header["raw"]
     count = _read_number(section, *(COUNT if corrected else RAW_COUNT))
-    factor, header_pfa = _read_units(section, corrected)
-    own = scaled(read_columns(section, HEADER, int(count), COLUMNS), factor)
-    series = even_series(own, _read_number(section, *STEP))
-    component = section.text(12).removeprefix("Component").split()
-    azimuth, vertical = read_direction(component[0]) if component else (None, False)
-    site = section.text(1).split()
-    return Record(
-        file=file,
-        format=TITLE,
-        channel=component[0] if component else "1",
-        location="",
-        azimuth_deg=azimuth,
-        vertical=vertical,
-        station=f"{section.text(2)} ({site[1]})" if len(site) > 1 else section.text(2),
-        event=section.text(6),
-        start=" ".join(section.text(7).split()),
+    factor, header_pfa = _read_units(section, header)
+    own = read_columns(section, DATA, int(count), COLUMNS, factor)
+    return build_record(
+        TITLE,
+        file,
+        even_series(own, _read_number(section, *STEP)),
         corrected=corrected,
-        time_step=series.time_step,
-        acceleration=own,
-        file_pfa=peak(own),
+        channel=header["component"],
+        direction=read_direction(header["component"]),
+        station=f"{header['station']} ({header['site']})" if header["site"] else header["station"],
+        event=header["event"],
+        start=" ".join(header["start"].split()),
         header_pfa=header_pfa,
-        notes=note_peak(header_pfa, peak(own)),
     )
 
 
@@ -97,20 +62,25 @@ def _read_number(section: Section, line: int, column: int) -> float:
     return number
 
 
-def _read_units(section: Section, corrected: bool) -> tuple[float, float | None]:
+def _read_units(section: Section, header: dict[str, str]) -> tuple[float, float]:
     """Return the factor to m/s2, and the peak printed in the header [m/s2]."""
-    found, raw = _PEAK.search(section.text(13)), _RAW_UNIT.search(section.text(10))
-    factor = read_acceleration_unit(found[2]) if found else None
-    number = read_finite(found[1]) if found else None
-    if factor is None or number is None:
+    factor = read_acceleration_unit(header["unit"])
+    header_pfa = read_peak(header["peak"], factor)
+    if factor is None or header_pfa is None:
         raise RecordError(f"line {section.number(13)}: the peak and its unit cannot be read. Get the file again")
-    if corrected:
-        return factor, abs(number) * factor
-    multiple = read_finite(raw[1]) if raw else None
-    unit = read_acceleration_unit(raw[2]) if raw else None
+    if not header["raw"]:
+        return factor, header_pfa
+    multiple, unit = read_finite(header["multiple"]), read_acceleration_unit(header["raw_unit"])
     if not multiple or unit is None:
         raise RecordError(f"line {section.number(10)}: the unit cannot be read. Get the file again")
-    return multiple * unit, abs(number) * factor
+    return multiple * unit, header_pfa
 
 
-FORMAT = Format(key="geonet", title=TITLE, recognises=recognises, read=read)
+FORMAT = text_format(
+    "geonet",
+    TITLE,
+    recognised=re.compile(r"(?:un)?corrected accelerogram [^\n]*\n+site [^\n]*\n", re.IGNORECASE),
+    starts=re.compile(r"(un)?corrected accelerogram ", re.IGNORECASE),
+    missing='no line says "accelerogram"',
+    read_channel=_read_channel,
+)

@@ -14,9 +14,10 @@ import re
 from datetime import datetime, timedelta
 
 from assess.errors import RecordError
-from assess.motion.formats._format import Format
-from assess.motion.formats._text import Section, even_series, note_peak, read_finite, read_words, scaled, split_lines
-from assess.motion.record import FloatArray, Record, peak
+from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._text import Section, read_words, text_format
+from assess.motion.formats._values import read_finite, read_peak
+from assess.motion.record import Record
 from assess.units import ACCELERATION
 
 TITLE = "K-NET/KiK-net"
@@ -27,7 +28,6 @@ HEADER, NAME = 17, 18
 DELAY = timedelta(seconds=15)
 """From the first sample to the record time."""
 
-_KEYS = ("Origin Time", "Lat.", "Long.")
 _DIRECTIONS = {"n-s": ("NS", 0.0), "e-w": ("EW", 90.0), "u-d": ("UD", None),
                "1": ("NS1", 0.0), "2": ("EW1", 90.0), "3": ("UD1", None),
                "4": ("NS2", 0.0), "5": ("EW2", 90.0), "6": ("UD2", None)}  # fmt: skip
@@ -35,51 +35,26 @@ _SCALE = re.compile(r"([\d.]+)\s*\(gal\)\s*/\s*([\d.]+)", re.IGNORECASE)
 _NUMBER = re.compile(r"[\d.]+")
 
 
-def recognises(head: bytes) -> bool:
-    """Tell whether the first three lines of `head` are named as in K-NET."""
-    lines = split_lines(head[:500])
-    return len(lines) >= len(_KEYS) and all(line.startswith(key) for line, key in zip(lines, _KEYS, strict=False))
-
-
-def read(data: bytes, file: str) -> tuple[Record, ...]:
-    """Read the one channel of a K-NET or KiK-net file.
-
-    Raises
-    ------
-    RecordError
-        If the file is damaged or cut short.
-    """
-    section = Section(split_lines(data))
+def _read_channel(section: Section, file: str) -> Record:
     header = {line[:NAME].strip(): line[NAME : 10 * NAME].strip() for line in section.lines[:HEADER]}
     rate, seconds = _number(header, "Sampling Freq(Hz)"), _number(header, "Duration Time(s)")
-    counts, notes = read_words(section, HEADER, rate * seconds)
-    own = scaled(counts, _read_scale(header))
-    series = even_series(own, 1 / rate, notes)
-    header_pfa = read_finite(header.get("Max. Acc. (gal)"))
+    values, notes = read_words(section, HEADER, rate * seconds, _read_scale(header))
     direction = header.get("Dir.", "")
-    channel, azimuth = _DIRECTIONS.get(direction.lower(), (direction or "1", None))
-    record = Record(
-        file=file,
-        format=TITLE,
+    channel, azimuth = _DIRECTIONS.get(direction.lower(), (direction, None))
+    return build_record(
+        TITLE,
+        file,
+        even_series(values, 1 / rate, notes),
+        corrected=False,
         channel=channel,
+        direction=(azimuth, channel.startswith("UD")),
         location={"1": "borehole", "2": "surface"}.get(channel[2:], ""),
-        azimuth_deg=azimuth,
-        vertical=channel.startswith("UD"),
         station=header.get("Station Code", ""),
         event=f"{header.get('Origin Time', '')} M{header.get('Mag.', '')}",
         start=_read_start(header.get("Record Time", "")),
-        corrected=False,
-        time_step=series.time_step,
-        acceleration=own,
-        file_pfa=_peak_about_mean(own),
-        header_pfa=None if header_pfa is None else header_pfa * GAL,
-        notes=(*series.notes, *note_peak(None if header_pfa is None else header_pfa * GAL, _peak_about_mean(own))),
+        header_pfa=read_peak(header.get("Max. Acc. (gal)", ""), GAL),
+        has_offset=True,
     )
-    return (record,)
-
-
-def _peak_about_mean(values: FloatArray) -> float:
-    return peak(values - values.mean())
 
 
 def _number(header: dict[str, str], key: str) -> float:
@@ -109,4 +84,9 @@ def _read_start(text: str) -> str:
     return f"{time:%Y-%m-%d %H:%M:%S} JST"
 
 
-FORMAT = Format(key="knet", title=TITLE, recognises=recognises, read=read)
+FORMAT = text_format(
+    "knet",
+    TITLE,
+    recognised=re.compile(r"Origin Time[^\n]*\nLat\.[^\n]*\nLong\."),
+    read_channel=_read_channel,
+)

@@ -1,40 +1,70 @@
-"""miniSEED: channels of a data centre, read by ObsPy.
+"""miniSEED 2: channels of a data centre, in records of some hundred bytes, each with a header of its own.
 
-The format has no field for a unit. Whole numbers are counts of the digitiser and are refused. Real numbers of an
-accelerometer (second letter N of the channel's code, as in HNE) are taken as m/s2: what ObsPy's
-``remove_response(output="ACC")`` leaves. A gap within a channel is bridged by a straight line and noted.
+The format has no field for a unit. Whole numbers, packed or not, are counts of the digitiser and are refused, so that
+only real numbers have to be unpacked. Those of an accelerometer (second letter N of the channel's code, as in HNE) are
+taken as m/s2: what ObsPy's ``remove_response(output="ACC")`` leaves. A gap within a channel is bridged by a straight
+line and noted.
 
 Source: International Federation of Digital Seismograph Networks (2012). SEED reference manual, version 2.4.
 """
 
 import re
-from collections.abc import Sequence
-from typing import Any
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
 
 import numpy as np
 
 from assess.errors import RecordError
-from assess.language import fill
-from assess.motion.formats._format import Format
-from assess.motion.formats._obspy import read_traces, start_of
-from assess.motion.formats._text import direction_of_code, even_series, keep_readable
-from assess.motion.record import FloatArray, Record, Series, build_series, peak
+from assess.i18n import Text, fill, nfill
+from assess.motion.formats._format import Format, build_record, even_series, keep_readable
+from assess.motion.formats._values import direction_of_code
+from assess.motion.record import FloatArray, Record, Series, build_series
 
 TITLE = "miniSEED"
 
+REALS = {4: "f4", 5: "f8"}
+"""Encodings of real numbers."""
+TEXT = 0
+"""Encoding of characters, as in the log of a recorder; all others are of whole numbers."""
+ENCODING, RATE, MICROSECONDS = 1000, 100, 1001
+"""Types of blockettes: encoding, order of bytes and length of the record; the exact rate; microseconds of its start."""
+CORRECTED_TIME = 0x02
+"""Flag of a header to whose time the correction was applied."""
+SHORTEST = 128
+"""Bytes of the shortest record; where none starts, the next place that is tried is as far on."""
+JOINED = 0.5
+"""Records that follow each other within this many steps [-] are without a gap."""
+
 _START = re.compile(rb"[\d \0]{6}[DRQM][ \0]", re.ASCII)
-_FIXED_HEADER = 48
-_TAKEN = fill('the file does not say its unit: taken as m/s2, which ObsPy\'s remove_response(output="ACC") leaves')
+_HEADER = "HHBBBBHHhhBBBBiHH"
+_HEADER_FROM, _HEADER_TO = 20, 48
+_TAKEN = fill('the file does not give its unit: taken as m/s2, which ObsPy\'s remove_response(output="ACC") leaves')
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """The samples of one record; none where they are not real numbers."""
+
+    names: tuple[str, str, str, str]
+    start: datetime
+    rate: float
+    encoding: int
+    samples: FloatArray
+
+    @property
+    def id(self) -> str:
+        return ".".join(self.names)
+
+    @property
+    def code(self) -> str:
+        return self.names[3]
 
 
 def recognises(head: bytes) -> bool:
-    """Tell whether `head` begins with the number and quality of a record of SEED, and a day of a year."""
-    if len(head) < _FIXED_HEADER or not _START.match(head):
-        return False
-    big, little = (
-        (int.from_bytes(head[20:22], order), int.from_bytes(head[22:24], order)) for order in ("big", "little")
-    )
-    return any(1900 <= year <= 2100 and 1 <= day <= 366 for year, day in (big, little))
+    """Return whether `head` begins with the number and quality of a record of SEED, and a day of a year."""
+    return _byte_order(head, 0) is not None
 
 
 def read(data: bytes, file: str) -> tuple[Record, ...]:
@@ -43,52 +73,148 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     Raises
     ------
     RecordError
-        If no channel holds accelerations, the file is damaged, or ObsPy is not installed.
+        If no channel holds accelerations, or the file is damaged.
     """
-    traces, notes = read_traces(data, "MSEED")
-    channels: dict[str, list[Any]] = {}
-    for trace in traces:
-        channels.setdefault(str(trace.id), []).append(trace)
-    codes = [str(parts[0].stats.channel) for parts in channels.values()]
+    channels: dict[str, list[_Part]] = {}
+    skipped = 0
+    for part in _read_parts(data):
+        if isinstance(part, int):
+            skipped += part
+        else:
+            channels.setdefault(part.id, []).append(part)
+    if not channels:
+        raise RecordError("it has no whole record of miniSEED. Get the file again")
+    codes = [parts[0].code for parts in channels.values()]
+    notes = _note_skipped(skipped)
     return keep_readable(
-        channels.items(), lambda parts: _read_channel(file, parts, notes, codes.count(str(parts[0].stats.channel)) > 1)
+        channels.items(), lambda parts: _read_channel(file, parts, notes, codes.count(parts[0].code) > 1)
     )
 
 
-def _read_channel(file: str, parts: Sequence[Any], notes: Sequence[str], whole_name: bool) -> Record:
-    """Read one channel from its traces; `whole_name` where other channels have the same code."""
-    stats = parts[0].stats
-    code = str(stats.channel)
+def _note_skipped(count: int) -> tuple[Text, ...]:
+    note = nfill(
+        "{n} byte that is no whole record of miniSEED was left out",
+        "{n} bytes that are no whole records of miniSEED were left out",
+        count,
+    )
+    return (note,) if count else ()
+
+
+def _byte_order(data: bytes, at: int) -> str | None:
+    """Return "<" or ">" of the record at a place [bytes], None where none starts there."""
+    if len(data) < at + _HEADER_TO or not _START.match(data, at):
+        return None
+    for order in "><":
+        year, day = struct.unpack_from(f"{order}HH", data, at + _HEADER_FROM)
+        if 1900 <= year <= 2100 and 1 <= day <= 366:
+            return order
+    return None
+
+
+def _read_parts(data: bytes) -> Iterator[_Part | int]:
+    """Yield the parts of a file in their order; for what is none, the number of bytes."""
+    at = 0
+    while at < len(data):
+        order = _byte_order(data, at)
+        found = _read_part(data, at, order) if order else None
+        if found is None:
+            yield min(SHORTEST, len(data) - at)
+            at += SHORTEST
+        else:
+            part, length = found
+            at += length
+            if part is not None:
+                yield part
+
+
+def _read_part(data: bytes, at: int, order: str) -> tuple[_Part | None, int] | None:
+    """Return the part whose record is at a place, None if it has no samples, and the record's length [bytes].
+
+    None where the record is damaged, cut short, or does not name how its samples are encoded.
+    """
+    year, day, hour, minute, second, _, ticks, count, factor, multiplier, flags, _, _, _, correction, begin, place = (
+        struct.unpack_from(f"{order}{_HEADER}", data, at + _HEADER_FROM)
+    )
+    blockettes = dict(_list_blockettes(data, at, place, order))
+    try:
+        encoding, big, power = struct.unpack_from("BBB", data, blockettes[ENCODING])
+        length = 1 << power if power < 32 else 0
+        exact = struct.unpack_from(f"{order}f", data, blockettes[RATE])[0] if RATE in blockettes else 0.0
+        late = struct.unpack_from("xb", data, blockettes[MICROSECONDS])[0] if MICROSECONDS in blockettes else 0
+        start = datetime(year, 1, 1, hour, minute) + timedelta(
+            days=day - 1,
+            seconds=second,
+            microseconds=100 * (ticks + (0 if flags & CORRECTED_TIME else correction)) + late,
+        )
+    except (KeyError, struct.error, ValueError, OverflowError):
+        return None
+    if length < SHORTEST or at + length > len(data):
+        return None
+    rate = exact if exact > 0 else _nominal_rate(factor, multiplier)
+    if not count or not rate > 0:
+        return None, length
+    form, samples = REALS.get(encoding), np.zeros(0)
+    if form is not None:
+        if not _HEADER_TO <= begin <= length - count * int(form[1]):
+            return None
+        samples = np.frombuffer(data, f"{'>' if big else '<'}{form}", count, at + begin)
+    return _Part(_read_names(data, at), start, rate, encoding, samples), length
+
+
+def _list_blockettes(data: bytes, at: int, place: int, order: str) -> Iterator[tuple[int, int]]:
+    """Yield the type of each blockette of a record, and the place of what follows its own header [bytes]."""
+    while place >= _HEADER_TO and at + place + 4 <= len(data):
+        kind, following = struct.unpack_from(f"{order}HH", data, at + place)
+        yield kind, at + place + 4
+        if following <= place:
+            return
+        place = following
+
+
+def _nominal_rate(factor: int, multiplier: int) -> float:
+    """Return the samples per second; a factor or a multiplier below zero divides."""
+    if not factor or not multiplier:
+        return 0.0
+    rate = float(factor) if factor > 0 else -1.0 / factor
+    return rate * multiplier if multiplier > 0 else -rate / multiplier
+
+
+def _read_names(data: bytes, at: int) -> tuple[str, str, str, str]:
+    """Return network, station, location and channel."""
+    text = data[at + 8 : at + 20].decode("latin-1").replace("\0", " ")
+    return text[10:12].strip(), text[:5].strip(), text[5:7].strip(), text[7:10].strip()
+
+
+def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole_name: bool) -> Record:
+    """Read one channel from its parts; `whole_name` where other channels have the same code."""
+    first = parts[0]
+    network, station, location, code = first.names
     _check_samples_type(code, parts)
     series, own = _join(parts, notes)
-    azimuth, vertical = direction_of_code(code)
-    return Record(
-        file=file,
-        format=TITLE,
-        channel=str(parts[0].id) if whole_name else code or "1",
-        location=str(stats.location),
-        azimuth_deg=azimuth,
-        vertical=vertical,
-        station=".".join(filter(None, (str(stats.network), str(stats.station)))),
-        event="",
-        start=start_of(parts[0]),
+    return build_record(
+        TITLE,
+        file,
+        series,
+        own=own,
         corrected=False,
-        time_step=series.time_step,
-        acceleration=series.values,
-        file_pfa=peak(own - own.mean()),
-        header_pfa=None,
-        notes=(*series.notes, _TAKEN),
+        channel=first.id if whole_name else code,
+        direction=direction_of_code(code),
+        location=location,
+        station=".".join(filter(None, (network, station))),
+        start=f"{first.start:%Y-%m-%d %H:%M:%S} UTC",
+        has_offset=True,
+        notes=(_TAKEN,),
     )
 
 
-def _check_samples_type(code: str, parts: Sequence[Any]) -> None:
-    kinds = {part.data.dtype.kind for part in parts}
-    if "i" in kinds or "u" in kinds:
+def _check_samples_type(code: str, parts: Sequence[_Part]) -> None:
+    encodings = {part.encoding for part in parts}
+    if encodings - {TEXT, *REALS}:
         raise RecordError(
             "it holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
             '(stream.remove_response(inventory, output="ACC")) and save that as miniSEED, or as plain CSV in m/s2'
         )
-    if kinds != {"f"}:
+    if TEXT in encodings:
         raise RecordError("it holds no numbers. Give a channel of an accelerometer")
     if code[1:2] != "N":
         raise RecordError(
@@ -97,18 +223,29 @@ def _check_samples_type(code: str, parts: Sequence[Any]) -> None:
         )
 
 
-def _join(parts: Sequence[Any], notes: Sequence[str]) -> tuple[Series, FloatArray]:
+def _join(parts: Sequence[_Part], notes: Sequence[str]) -> tuple[Series, FloatArray]:
     """Return the channel's samples [m/s2] evenly spaced, and as they are in the file."""
+    runs: list[list[_Part]] = []
+    for part in parts:
+        if runs and _follows(runs[-1][-1], part):
+            runs[-1].append(part)
+        else:
+            runs.append([part])
     with np.errstate(invalid="ignore"):  # what is not a number is refused further on
-        own = np.concatenate([np.asarray(part.data, dtype=np.float64) for part in parts])
-    if len(parts) == 1:
-        return even_series(own, float(parts[0].stats.delta), notes), own
-    start = parts[0].stats.starttime
-    times = [
-        float(part.stats.starttime - start) + np.arange(part.data.size) * float(part.stats.delta) for part in parts
-    ]
+        values = [np.concatenate([part.samples for part in run], dtype=np.float64) for run in runs]
+    own, steps = np.concatenate(values), [1 / run[0].rate for run in runs]
+    if len(runs) == 1:
+        return even_series(own, steps[0], notes), own
+    starts = [(run[0].start - parts[0].start).total_seconds() for run in runs]
+    times = [start + np.arange(run.size) * step for start, run, step in zip(starts, values, steps, strict=True)]
     series = build_series(np.concatenate(times), own)
     return Series(series.time_step, series.values, (*notes, *series.notes)), own
+
+
+def _follows(before: _Part, part: _Part) -> bool:
+    """Return whether a record goes on where the one before it ended."""
+    passed = (part.start - before.start).total_seconds()
+    return part.rate == before.rate and abs(passed * part.rate - before.samples.size) <= JOINED
 
 
 FORMAT = Format(key="miniseed", title=TITLE, recognises=recognises, read=read)

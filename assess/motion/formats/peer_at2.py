@@ -9,89 +9,54 @@ Source: Pacific Earthquake Engineering Research Center, NGA ground motion databa
 import re
 
 from assess.errors import RecordError
-from assess.motion.formats._format import Format
-from assess.motion.formats._text import (
-    Section,
-    even_series,
-    read_acceleration_unit,
-    read_direction,
-    read_finite,
-    read_words,
-    scaled,
-    split_lines,
-)
-from assess.motion.record import Record, peak
+from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._text import Section, fields, read_fields, read_words, text_format
+from assess.motion.formats._values import read_direction, read_finite, require_unit
+from assess.motion.record import Record
 
 TITLE = "PEER AT2"
 
-HEADER = 4
-"""Lines before the data."""
-
-_KIND = re.compile(
-    r"\b(?P<kind>acceleration|velocity|displacement) time (?:series|history) in units of (?P<unit>[\w/*^]+)",
-    re.IGNORECASE,
+DATA = 4
+"""Line at which the data begin."""
+_KIND = r"\b(?P<kind>acceleration|velocity|displacement) time (?:series|history) in units of (?P<unit>[\w/*^]+)"
+HEADER = fields(
+    (range(DATA), _KIND),
+    (1, r"(?P<title>.*)"),
+    (3, r"npts\s*=\s*(?P<count>\d{1,9})\s*,?\s*dt\s*=\s*(?P<step>[\d.]+)"),
+    (3, r"^(?P<old_count>\d{1,9})\s+(?P<old_step>[\d.]+)\s+npts\s*,\s*dt\b"),
 )
-_NEW = re.compile(r"npts\s*=\s*(?P<count>\d{1,9})\s*,?\s*dt\s*=\s*(?P<step>[\d.]+)", re.IGNORECASE)
-_OLD = re.compile(r"\s*(?P<count>\d{1,9})\s+(?P<step>[\d.]+)\s+npts\s*,\s*dt\b", re.IGNORECASE)
 _YEAR = re.compile(r"[\d/. -]+|\w+ \d+ ?,? ?\d{4}")
 
 
-def recognises(head: bytes) -> bool:
-    """Tell whether one of the first four lines of `head` says "... time series in units of"."""
-    section = Section(split_lines(head[:2000]))
-    return any(_KIND.search(section.text(place)) for place in range(HEADER))
-
-
-def read(data: bytes, file: str) -> tuple[Record, ...]:
-    """Read the one channel of an AT2 file.
-
-    Raises
-    ------
-    RecordError
-        If the file holds anything but accelerations, or is damaged or cut short.
-    """
-    section = Section(split_lines(data))
-    _check_kind(section)
-    numbers = _NEW.search(section.text(HEADER - 1)) or _OLD.match(section.text(HEADER - 1))
-    step = read_finite(numbers["step"]) if numbers else None
-    if numbers is None or step is None:
-        raise RecordError(f"line {HEADER} does not say the number of points and their step. Get the file again")
-    values, notes = read_words(section, HEADER, int(numbers["count"]))
-    own = scaled(values, _check_kind(section))
-    series = even_series(own, step, notes)
-    event, station, component = _read_title(section.text(1))
-    azimuth, vertical = read_direction(component.split("(")[0])
-    record = Record(
-        file=file,
-        format=TITLE,
-        channel=component.split("(")[0].strip() or "1",
-        location="",
-        azimuth_deg=azimuth,
-        vertical=vertical,
+def _read_channel(section: Section, file: str) -> Record:
+    header = read_fields(section, HEADER)
+    factor = _read_factor(header)
+    count, step = header["count"] or header["old_count"], read_finite(header["step"] or header["old_step"])
+    if not count or step is None:
+        raise RecordError(f"line {DATA} does not give the number of points and their step. Get the file again")
+    values, notes = read_words(section, DATA, int(count), factor)
+    event, station, component = _read_title(header["title"])
+    component = component.split("(")[0].strip()
+    return build_record(
+        TITLE,
+        file,
+        even_series(values, step, notes),
+        corrected=True,
+        channel=component,
+        direction=read_direction(component),
         station=station,
         event=event,
-        start="",
-        corrected=True,
-        time_step=series.time_step,
-        acceleration=own,
-        file_pfa=peak(own),
-        header_pfa=None,
-        notes=series.notes,
     )
-    return (record,)
 
 
-def _check_kind(section: Section) -> float:
+def _read_factor(header: dict[str, str]) -> float:
     """Return the factor from the file's unit to m/s2; raise RecordError unless it holds accelerations."""
-    found = next((hit for hit in (_KIND.search(section.text(place)) for place in range(HEADER)) if hit), None)
-    if found is None:
-        raise RecordError("the header does not say what the file holds. Get the file again")
-    kind, factor = found["kind"].lower(), read_acceleration_unit(found["unit"])
+    kind = header["kind"].lower()
+    if not kind:
+        raise RecordError("the header does not name what the file holds. Get the file again")
     if kind != "acceleration":
         raise RecordError(f"it holds {kind}, not accelerations. Give the .AT2 file of the same channel")
-    if factor is None:
-        raise RecordError(f"{found['unit'][:20]!r} is no known unit of acceleration. Get the file again")
-    return factor
+    return require_unit(header["unit"])
 
 
 def _read_title(line: str) -> tuple[str, str, str]:
@@ -103,4 +68,9 @@ def _read_title(line: str) -> tuple[str, str, str]:
     return event, ", ".join(others), component
 
 
-FORMAT = Format(key="peer_at2", title=TITLE, recognises=recognises, read=read)
+FORMAT = text_format(
+    "peer_at2",
+    TITLE,
+    recognised=re.compile(rf"(?:[^\n]*\n){{0,{DATA - 1}}}[^\n]*{_KIND}", re.IGNORECASE),
+    read_channel=_read_channel,
+)

@@ -11,14 +11,15 @@ Cells are separated by commas, semicolons or tabs; with the last two, numbers ma
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from assess.errors import RecordError
-from assess.language import fill
-from assess.motion.formats._format import Format
-from assess.motion.record import FloatArray, Record, build_series, peak
+from assess.i18n import fill
+from assess.motion.formats._format import Format, build_record
+from assess.motion.formats._text import split_text
+from assess.motion.record import FloatArray, Record, build_series
 from assess.units import ACCELERATION, TIME, read_unit
 
 TITLE = "plain CSV"
@@ -51,11 +52,11 @@ class _Table:
 
 
 def recognises(head: bytes) -> bool:
-    """Tell whether the first line of `head` that is no comment starts with a heading for time."""
+    """Return whether the first line of `head` that is no comment starts with a heading for time."""
     # UTF-16 and binary files have zeros; text has none.
     if b"\0" in head:
         return False
-    first = re.split(r"[,;\t]", _heading_line(_lines(_decode(head)))[1], maxsplit=1)[0].strip(' \t"').lower()
+    first = re.split(r"[,;\t]", _heading_line(split_text(_decode(head)))[1], maxsplit=1)[0].strip(' \t"').lower()
     return first.startswith("time") and first[4:].lstrip()[:1] in {"", "["}
 
 
@@ -85,11 +86,6 @@ def _decode(data: bytes) -> str:
         return data.decode("latin-1")
 
 
-def _lines(text: str) -> list[str]:
-    # Not str.splitlines, which also splits at characters that may stand inside a name.
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-
-
 def _is_comment(line: str) -> bool:
     # A spreadsheet puts a comment that holds commas into quotes.
     return line.lstrip(' \t"').startswith("#")
@@ -107,7 +103,7 @@ def _heading_line(lines: Sequence[str]) -> tuple[int, str]:
 
 
 def _take_apart(text: str) -> _Table:
-    lines = _lines(text)
+    lines = split_text(text)
     place, heading = _heading_line(lines)
     if place < 0:
         raise RecordError("there is no row of headings, such as: time [s], north [cm/s2]")
@@ -131,20 +127,16 @@ def _read_comment(line: str) -> tuple[str, str] | None:
 
 
 def _read_columns(headings: Sequence[str], line: int) -> tuple[_Column, ...]:
-    _check_time_heading(headings[0], line)
+    if _take_unit(headings[0])[1] not in TIME:
+        raise RecordError(f"line {line}: {headings[0][:80]!r} needs its unit, seconds: time [s]")
     columns = tuple(_read_column(heading, line) for heading in headings[1:])
     names = [column.name.casefold() for column in columns]
     if not columns:
-        raise RecordError(f"line {line}: there is no channel beside time. Add one, such as: north [cm/s2]")
+        raise RecordError(f"line {line}: there is no channel next to time. Add one, such as: north [cm/s2]")
     twice = next((column.name for column in columns if names.count(column.name.casefold()) > 1), None)
     if twice is not None:
         raise RecordError(f"line {line}: two channels are called {twice!r}. Give each its own name")
     return columns
-
-
-def _check_time_heading(heading: str, line: int) -> None:
-    if _take_unit(heading)[1] not in TIME:
-        raise RecordError(f"line {line}: {heading[:80]!r} needs its unit, seconds: time [s]")
 
 
 def _read_column(heading: str, line: int) -> _Column:
@@ -238,23 +230,19 @@ def _build_record(
         series = build_series(times, own)
     except RecordError as error:
         raise RecordError(f"channel {column.name!r}: {error}") from None
-    vertical = azimuth == np.inf
-    return Record(
-        file=file,
-        format=TITLE,
+    vertical, comments = azimuth == np.inf, table.comments
+    return build_record(
+        TITLE,
+        file,
+        replace(series, notes=(*_note_comments(comments), *series.notes)),
+        own=own,
+        corrected=_read_corrected(comments),
         channel=column.name,
-        location=table.comments.get("location", ""),
-        azimuth_deg=None if vertical else azimuth,
-        vertical=vertical,
-        station=table.comments.get("station", ""),
-        event=table.comments.get("event", ""),
-        start=table.comments.get("start", ""),
-        corrected=_read_corrected(table.comments),
-        time_step=series.time_step,
-        acceleration=series.values,
-        file_pfa=peak(own),
-        header_pfa=None,
-        notes=(*_note_comments(table.comments), *series.notes),
+        direction=(None if vertical else azimuth, vertical),
+        location=comments.get("location", ""),
+        station=comments.get("station", ""),
+        event=comments.get("event", ""),
+        start=comments.get("start", ""),
     )
 
 

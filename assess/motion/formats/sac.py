@@ -1,6 +1,6 @@
-"""SAC, binary: one channel to a file, read by ObsPy.
+"""SAC, binary: one channel to a file.
 
-A SAC file has no field for the unit of its samples. It is taken from the first of these that says it:
+A SAC file has no field for the unit of its samples. It is taken from the first of these that names it:
 
 1. KUSER0, KUSER1 or KUSER2, free text of 8 characters, where it is a unit of acceleration: g, m/s2, cm/s2, gal;
 2. IDEP, the type of the samples, where it is IACC: the manual has accelerations in nm/s2.
@@ -12,23 +12,32 @@ Source: Lawrence Livermore National Laboratory and IRIS, SAC user's manual, data
 """
 
 import struct
-from typing import Any
+from dataclasses import dataclass
+from datetime import datetime, timedelta
 
 import numpy as np
 
 from assess.errors import RecordError
-from assess.language import fill
-from assess.motion.formats._format import Format
-from assess.motion.formats._obspy import read_traces, start_of
-from assess.motion.formats._text import direction_of_code, even_series, read_acceleration_unit
+from assess.i18n import fill
+from assess.motion.formats._format import Direction, Format, build_record, even_series
+from assess.motion.formats._values import direction_of_code, read_acceleration_unit
 from assess.motion.record import FloatArray, Record, peak
 
 TITLE = "SAC"
 
-HEADER = 632
-"""Bytes: 70 real numbers, 40 whole numbers, 192 characters."""
-VERSION, COUNT, KIND, MEANING, EVEN = (4 * place for place in (76, 79, 85, 86, 105))
-"""Places of NVHDR, NPTS, IFTYPE, IDEP and LEVEN [bytes]."""
+HEADER, FOOTER = 632, 176
+"""Bytes: 70 real numbers, 40 whole numbers, 192 characters; and what follows the data in version 7."""
+REALS = {"delta": 0, "begin": 5, "azimuth": 57, "tilt": 58}
+"""Places of DELTA, B, CMPAZ and CMPINC among the real numbers."""
+INTEGERS = {"year": 70, "day": 71, "hour": 72, "minute": 73, "second": 74, "millisecond": 75,
+            "version": 76, "count": 79, "kind": 85, "meaning": 86, "even": 105}  # fmt: skip
+"""Places of NZYEAR to NZMSEC, NVHDR, NPTS, IFTYPE, IDEP and LEVEN, of four bytes each."""
+TEXTS = {"station": (0, 8), "event": (8, 16), "place": (24, 8), "kuser0": (136, 8), "kuser1": (144, 8),
+         "kuser2": (152, 8), "channel": (160, 8), "network": (168, 8)}  # fmt: skip
+"""Places and lengths of KSTNM, KEVNM, KHOLE, KUSER0 to KUSER2, KCMPNM and KNETWK among the characters."""
+TEXTS_FROM = 440
+UNKNOWN = -12345
+
 VERSIONS, TIME_SERIES = {6, 7}, 1
 KINDS = {1, 2, 3, 4, 51}
 """Time series, two kinds of spectra, pairs, and a grid."""
@@ -38,15 +47,25 @@ NM_S2 = 1e-9
 LEAST = 0.001
 """Peak [m/s2] below which nanometres per second squared are not believed."""
 
-_MEND = (
+_FIX = (
     "Write the unit into the header's field KUSER0 (g, m/s2, cm/s2; in ObsPy: trace.stats.sac.kuser0 = 'g'), "
     "or save the record as plain CSV"
 )
 
 
+@dataclass(frozen=True, slots=True)
+class _Header:
+    """The fields that are read, and the order of bytes; None or "" where a field is unknown."""
+
+    order: str
+    reals: dict[str, float | None]
+    integers: dict[str, int]
+    texts: dict[str, str]
+
+
 def recognises(head: bytes) -> bool:
-    """Tell whether `head` is the header of a SAC file, of either order of bytes."""
-    return len(head) >= HEADER and _byte_order(head) is not None
+    """Return whether `head` is the header of a SAC file, of either order of bytes."""
+    return _read_header(head) is not None
 
 
 def read(data: bytes, file: str) -> tuple[Record, ...]:
@@ -55,96 +74,102 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     Raises
     ------
     RecordError
-        If the unit is not known, the file is damaged, or ObsPy is not installed.
+        If the unit is not known, or the file is damaged.
     """
-    _check_header(data)
-    traces, notes = read_traces(data, "SAC")
-    trace = traces[0]
-    header = trace.stats.get("sac", {})
+    header = _read_header(data)
+    if header is None:
+        raise RecordError("the header is none of a SAC file. Get the file again")
+    _check_header(header, len(data))
     with np.errstate(all="ignore"):  # what becomes infinite is refused further on
-        values = np.asarray(trace.data, dtype=np.float64)
-        factor, note = _read_unit(header, values)
-        own = values * factor
-    series = even_series(own, float(f"{float(trace.stats.delta):.7g}"), (*notes, note))
-    azimuth, vertical = _read_direction(header)
-    code = str(header.get("kcmpnm", "")).strip()
-    place = str(header.get("khole", "")).strip()
-    record = Record(
-        file=file,
-        format=TITLE,
-        channel=code or "1",
-        location=place,
-        azimuth_deg=azimuth,
-        vertical=vertical,
-        station=".".join(filter(None, (str(header.get(key, "")).strip() for key in ("knetwk", "kstnm")))),
-        event=str(header.get("kevnm", "")).strip(),
-        start=start_of(trace) if "nzyear" in header else "",
+        samples = np.frombuffer(data, f"{header.order}f4", header.integers["count"], HEADER).astype(np.float64)
+        factor, note = _read_unit(header, samples)
+        series = even_series(samples * factor, float(f"{header.reals['delta'] or 0.0:.7g}"), (note,))
+    record = build_record(
+        TITLE,
+        file,
+        series,
         corrected=False,
-        time_step=series.time_step,
-        acceleration=own,
-        file_pfa=peak(own - own.mean()),
-        header_pfa=None,
-        notes=series.notes,
+        channel=header.texts["channel"],
+        direction=_read_direction(header),
+        location=header.texts["place"],
+        station=".".join(filter(None, (header.texts["network"], header.texts["station"]))),
+        event=header.texts["event"],
+        start=_read_start(header),
+        has_offset=True,
     )
     return (record,)
 
 
-def _whole(data: bytes, order: str, place: int) -> int:
-    return int(struct.unpack_from(f"{order}i", data, place)[0])
-
-
-def _byte_order(data: bytes) -> str | None:
-    """Return "<" or ">", None where the header is none of SAC's."""
-    for order in "<>":
-        if (
-            _whole(data, order, VERSION) in VERSIONS
-            and _whole(data, order, KIND) in KINDS
-            and _whole(data, order, EVEN) in {0, 1}
-        ):
-            return order
+def _read_header(data: bytes) -> _Header | None:
+    """Return the header, None where it is none of SAC's."""
+    for order in "<>" if len(data) >= HEADER else "":
+        numbers = {name: int(struct.unpack_from(f"{order}i", data, 4 * place)[0]) for name, place in INTEGERS.items()}
+        if numbers["version"] in VERSIONS and numbers["kind"] in KINDS and numbers["even"] in {0, 1}:
+            reals = {name: float(struct.unpack_from(f"{order}f", data, 4 * place)[0]) for name, place in REALS.items()}
+            known = {name: None if value == UNKNOWN else value for name, value in reals.items()}
+            return _Header(order, known, numbers, {name: _read_text(data, *place) for name, place in TEXTS.items()})
     return None
 
 
-def _check_header(data: bytes) -> None:
-    order = _byte_order(data) if len(data) >= HEADER else None
-    if order is None:
-        raise RecordError("the header is none of a SAC file. Get the file again")
-    if _whole(data, order, KIND) != TIME_SERIES or _whole(data, order, EVEN) != 1:
+def _read_text(data: bytes, start: int, length: int) -> str:
+    text = data[TEXTS_FROM + start : TEXTS_FROM + start + length].decode("latin-1").partition("\0")[0].strip()
+    return "" if text == str(UNKNOWN) else text
+
+
+def _check_header(header: _Header, size: int) -> None:
+    numbers = header.integers
+    if numbers["kind"] != TIME_SERIES or numbers["even"] != 1:
         raise RecordError("it holds no evenly sampled time series. Give the record itself")
-    count, there = _whole(data, order, COUNT), (len(data) - HEADER) // 4
-    if not 0 < count <= there:
-        raise RecordError(f"the header announces {count} numbers of data, there are {there}. Get the file again")
-    meaning = OTHER_MEANINGS.get(_whole(data, order, MEANING))
+    count, there = numbers["count"], (size - HEADER - FOOTER * (numbers["version"] == max(VERSIONS))) / 4
+    if count <= 0 or count != there:
+        raise RecordError(f"the header announces {count} numbers of data, there are {there:.10g}. Get the file again")
+    meaning = OTHER_MEANINGS.get(numbers["meaning"])
     if meaning:
         raise RecordError(f"it holds {meaning}, not accelerations. Give the acceleration of the same channel")
 
 
-def _read_unit(header: Any, values: FloatArray) -> tuple[float, str]:
+def _read_unit(header: _Header, values: FloatArray) -> tuple[float, str]:
     """Return the factor to m/s2, and a note on where it is from."""
     for key in ("kuser0", "kuser1", "kuser2"):
-        text = str(header.get(key, "")).strip()
+        text = header.texts[key]
         factor = read_acceleration_unit(text)
         if factor is not None:
             note = fill("the unit is that of the header's field {field}: {unit}", field=key.upper(), unit=text)
             return factor, note
-    if header.get("idep") != ACCELERATION:
-        raise RecordError(f"the file does not say its unit. {_MEND}")
-    as_said = NM_S2 * peak(values - values.mean())
-    if not as_said >= LEAST:
+    if header.integers["meaning"] != ACCELERATION:
+        raise RecordError(f"the file does not give its unit. {_FIX}")
+    in_nm = NM_S2 * peak(values - values.mean())
+    if not in_nm >= LEAST:
         raise RecordError(
             "the header says acceleration (IDEP), which means nm/s2, but that makes the peak "
-            f"{100 * as_said:.2g} cm/s2: the unit is another. {_MEND}"
+            f"{100 * in_nm:.2g} cm/s2: the unit is another. {_FIX}"
         )
     return NM_S2, fill("the unit is nm/s2, what the type of the samples (IDEP) means")
 
 
-def _read_direction(header: Any) -> tuple[float | None, bool]:
-    azimuth, tilt = header.get("cmpaz"), header.get("cmpinc")
-    if tilt is not None and float(tilt) in {0.0, 180.0}:
+def _read_direction(header: _Header) -> Direction:
+    azimuth, tilt = header.reals["azimuth"], header.reals["tilt"]
+    if tilt in {0.0, 180.0}:
         return None, True
-    if tilt is not None and float(tilt) == 90.0 and azimuth is not None and 0 <= float(azimuth) <= 360:
-        return float(azimuth), False
-    return direction_of_code(str(header.get("kcmpnm", "")).strip())
+    if tilt == 90.0 and azimuth is not None and 0 <= azimuth <= 360:
+        return azimuth, False
+    return direction_of_code(header.texts["channel"])
+
+
+def _read_start(header: _Header) -> str:
+    """Return when the record starts, B after the reference time; "" where its header has no date that can be."""
+    numbers, begin = header.integers, header.reals["begin"] or 0.0
+    try:
+        start = datetime(numbers["year"], 1, 1) + timedelta(
+            days=numbers["day"] - 1,
+            hours=numbers["hour"],
+            minutes=numbers["minute"],
+            seconds=numbers["second"] + begin,
+            milliseconds=numbers["millisecond"],
+        )
+    except (ValueError, OverflowError):
+        return ""
+    return f"{start:%Y-%m-%d %H:%M:%S} UTC"
 
 
 FORMAT = Format(key="sac", title=TITLE, recognises=recognises, read=read)

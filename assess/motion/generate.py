@@ -3,13 +3,14 @@
 A realisation is white noise under the target's envelopes, passed through a filter that makes the mean spectrum of the
 ensemble that of the target. Each realisation's own spectrum scatters about it as the noise does, which keeps the
 variability from record to record. What a filter cannot do is done in two more steps: high peaks of velocity and of
-acceleration are bent, all by one rule, until their means are those of the target; then wavelets mend the ordinates of
-the mean that are still off. `tight` mends those of each realisation instead, and fixes its PFA: it hides variability.
+acceleration are bent, all by one rule, until their means are those of the target; then wavelets correct the
+ordinates of the mean that are still off. `tight` corrects those of each realisation instead, and fixes its PFA, which
+hides variability.
 Nothing drifts: velocity grows from zero and fades to it.
 
 Filtering noise until its spectrum fits: Gasparini DA, Vanmarcke EH (1976). Simulated earthquake motions compatible with
 prescribed response spectra. MIT, Department of Civil Engineering, R76-4. The envelope of each octave, the bending and
-the wavelets on the mean are ours.
+the wavelets on the mean are of this program.
 """
 
 import math
@@ -25,21 +26,22 @@ from assess.motion.record import CORNER, FloatArray
 from assess.motion.spectrum import pseudo_acceleration, run_rows
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.wavelets import Wavelets, adjust, build_wavelets
+from assess.progress import SILENT, Progress
 
 CALIBRATED = 100
 """Realisations by whose mean everything is set; further ones pass through the same steps."""
-FILTERINGS, MENDINGS, TIGHT_MENDINGS = 12, 20, 30
+FILTERINGS, CORRECTIONS, TIGHT_CORRECTIONS = 12, 20, 30
 """Rounds of filtering, and of wavelets."""
-FILTERED, MENDED = 0.8, 0.6
+FILTERED, CORRECTED = 0.8, 0.6
 """Share of the logarithm of a ratio that is applied in one round [-]."""
 APART = 7
 """A round of wavelets takes the ordinate that is most off among this many neighbours: two would act on one cycle."""
 WITHIN = 0.02
-"""Ordinates this close to the target [-] are not mended."""
+"""Ordinates this close to the target [-] are not corrected."""
 BEYOND = 1.2
-"""Ordinates are mended up to this ratio beyond the periods at which the match is judged [-]."""
-MOST_MENDED = 1.3
-"""Ratio up to which a round mends an ordinate [-]."""
+"""Ordinates are corrected up to this ratio beyond the periods at which the match is judged [-]."""
+MOST_CORRECTED = 1.3
+"""Ratio up to which a round corrects an ordinate [-]."""
 LIFTED = 0.1
 """What all rounds together lift at most of the PFA of a generic floor [-]: its spectrum may not allow more."""
 ROLL_OFF = 8
@@ -52,13 +54,13 @@ class Generator:
 
     Parameters
     ----------
-    target, grid, seed, axis, is_tight, threads
+    target, grid, seed, axis, is_tight, threads, progress
         As given to `build_generator`.
     gains : (f,) array
         The filter [-].
     bend : Bend
         How peaks are bent.
-    mendings : tuple of ((m,) array, float)
+    corrections : tuple of ((m,) array, float)
         Rounds of wavelets: ratios of the spectrum, and of PFA [-]; none where each realisation has its own.
     scale : float
         Factor on the whole motion [-]; other than 1 only where a generic spectrum and its PFA disagree.
@@ -78,11 +80,12 @@ class Generator:
     threads: int
     gains: FloatArray
     bend: Bend
-    mendings: tuple[tuple[FloatArray, float], ...] = ()
+    corrections: tuple[tuple[FloatArray, float], ...] = ()
     scale: float = 1.0
     made: FloatArray | None = None
     fit: Fit | None = None
     spectra: Spectra | None = None
+    progress: Progress = SILENT
 
     def realise(self, first: int = 0, count: int = CALIBRATED) -> FloatArray:
         """Return realisations `first` to `first + count - 1`: accelerations [m/s2], (count, n).
@@ -100,22 +103,29 @@ class Generator:
     def _noise(self, first: int, count: int) -> NDArray[np.complex128]:
         return draw_noise(
             self.target.envelopes, self.grid.time_step, seed=self.seed, axis=self.axis,
-            first=first, count=count, threads=self.threads,
+            first=first, count=count, threads=self.threads, progress=self.progress,
         )  # fmt: skip
 
     def _batch(self, first: int, count: int) -> FloatArray:
         motions, _ = _synthesise(self._noise(first, count), self)
-        mender = build_wavelets(self.target.periods, self.grid.time_step)
-        for ratios, lift in self.mendings:
-            _mend(motions, np.broadcast_to(ratios, (count, ratios.size)), mender, self.threads)
-            lift_peaks(motions, np.full(count, lift), self.threads)
+        wavelets = build_wavelets(self.target.periods, self.grid.time_step)
+        for ratios, lift in self.corrections:
+            _correct(motions, np.broadcast_to(ratios, (count, ratios.size)), wavelets, self)
+            lift_peaks(motions, np.full(count, lift), self.threads, self.progress)
         if self.is_tight:
             _tighten(motions, self)
         return self.scale * motions
 
 
 def build_generator(
-    target: Target, grid: Grid, *, seed: int, axis: str, is_tight: bool = False, threads: int = 1
+    target: Target,
+    grid: Grid,
+    *,
+    seed: int,
+    axis: str,
+    is_tight: bool = False,
+    threads: int = 1,
+    progress: Progress = SILENT,
 ) -> Generator:
     """Find the filter, the bending and the wavelets that make an ensemble meet its target.
 
@@ -132,21 +142,28 @@ def build_generator(
     is_tight : bool
         Match each realisation on its own, which hides the variability from record to record.
     threads : int
-        Work is shared out among as many; they do not change a result.
+        Number of threads that share the work; it does not change a result.
+    progress : Progress
+        Asked often, here and in `Generator.realise`, whether to stop.
+
+    Raises
+    ------
+    CancelledError
+        If the caller stops the work.
     """
     start = Generator(
-        target=target, grid=grid, seed=seed, axis=axis, is_tight=is_tight, threads=threads,
+        target=target, grid=grid, seed=seed, axis=axis, is_tight=is_tight, threads=threads, progress=progress,
         gains=_first_gains(target, grid), bend=Bend(),
     )  # fmt: skip
     generator, motions = _find_filter(start._noise(0, CALIBRATED), start)
     if is_tight:
         _tighten(motions, generator)
     else:
-        generator = replace(generator, mendings=_find_mendings(motions, generator))
+        generator = replace(generator, corrections=_find_corrections(motions, generator))
     if target.is_generic:
         scale = target.pfa / float(np.abs(motions).max(axis=1).mean())
         generator, motions = replace(generator, scale=scale), scale * motions
-    fit, spectra = measure_match(generator.target, motions, grid.time_step, threads)
+    fit, spectra = measure_match(generator.target, motions, grid.time_step, threads, progress)
     return replace(generator, made=motions, fit=fit, spectra=spectra)
 
 
@@ -166,7 +183,7 @@ def _over_frequency(frequencies: FloatArray, periods: FloatArray, values: FloatA
 
 def _find_filter(noise: NDArray[np.complex128], generator: Generator) -> tuple[Generator, FloatArray]:
     """Return the generator with gains, bend and the spectrum to match, and the motions that it makes of `noise`."""
-    target, grid, threads = generator.target, generator.grid, generator.threads
+    target, grid = generator.target, generator.grid
     frequencies = filter_frequencies(grid.count, grid.time_step)
     level = target.velocity_level
     for number in range(FILTERINGS + 1):
@@ -174,9 +191,9 @@ def _find_filter(noise: NDArray[np.complex128], generator: Generator) -> tuple[G
         pseudo = target.capped(level)
         if number == FILTERINGS:
             break
-        mean = pseudo_acceleration(motions, grid.time_step, target.periods, threads=threads).mean(axis=0)
+        mean = _pseudo(motions, generator).mean(axis=0)
         errors = np.log(pseudo / mean)
-        if number == 0:  # the level alone: only then can peaks be told from it
+        if number == 0:  # the level alone: only then can peaks be judged by it
             generator = replace(generator, gains=generator.gains * math.exp(float(np.median(errors))))
             continue
         pfa_error, pfv_error = (
@@ -191,6 +208,12 @@ def _find_filter(noise: NDArray[np.complex128], generator: Generator) -> tuple[G
     return replace(generator, target=replace(target, pseudo=pseudo, velocity_level=level)), motions
 
 
+def _pseudo(motions: FloatArray, generator: Generator) -> FloatArray:
+    """Return the pseudo-acceleration [m/s2] of each motion at the target's periods, (k, m)."""
+    periods, step = generator.target.periods, generator.grid.time_step
+    return pseudo_acceleration(motions, step, periods, threads=generator.threads, progress=generator.progress)
+
+
 def _synthesise(noise: NDArray[np.complex128], generator: Generator) -> tuple[FloatArray, FloatArray]:
     """Return filtered, bent and tapered motions [m/s2], (k, n), and their PFA [m/s2] and PFV [m/s], (k, 2)."""
     from scipy.fft import irfft
@@ -199,9 +222,12 @@ def _synthesise(noise: NDArray[np.complex128], generator: Generator) -> tuple[Fl
     length = filter_length(grid.count, grid.time_step)
     frequencies = filter_frequencies(grid.count, grid.time_step)
     filtered = noise * generator.gains
+    generator.progress.check()
     acceleration = irfft(filtered, length, axis=1, workers=threads)
+    generator.progress.check()
     integrated = filtered / (2j * np.pi * np.maximum(frequencies, 1e-9))
     velocity = irfft(integrated, length, axis=1, workers=threads)
+    generator.progress.check()
     taper, slope = build_taper(grid)
     motions, peaks = np.empty((len(noise), grid.count)), np.empty((len(noise), 2))
     pfv = target.pfv if target.pfv > 0 else 1.0  # not bent where it is unknown
@@ -212,54 +238,54 @@ def _synthesise(noise: NDArray[np.complex128], generator: Generator) -> tuple[Fl
             bend.acceleration, bend.velocity, motions[row], peaks[row],
         )  # fmt: skip
 
-    run_rows(finish, len(noise), threads)
+    run_rows(finish, len(noise), threads, generator.progress)
     return motions, peaks
 
 
-def _find_mendings(motions: FloatArray, generator: Generator) -> tuple[tuple[FloatArray, float], ...]:
-    """Mend the mean spectrum of `motions` and their mean PFA, in place; return the rounds."""
+def _find_corrections(motions: FloatArray, generator: Generator) -> tuple[tuple[FloatArray, float], ...]:
+    """Correct the mean spectrum of `motions` and their mean PFA, in place; return the rounds."""
     target, grid = generator.target, generator.grid
-    mender = build_wavelets(target.periods, grid.time_step)
+    wavelets = build_wavelets(target.periods, grid.time_step)
     found: list[tuple[FloatArray, float]] = []
-    for _ in range(MENDINGS):
-        mean = pseudo_acceleration(motions, grid.time_step, target.periods, threads=generator.threads).mean(axis=0)
+    for _ in range(CORRECTIONS):
+        mean = _pseudo(motions, generator).mean(axis=0)
         ratios = _worst(target.pseudo / mean, target)
-        _mend(motions, np.broadcast_to(ratios, (len(motions), mean.size)), mender, generator.threads)
+        _correct(motions, np.broadcast_to(ratios, (len(motions), mean.size)), wavelets, generator)
         lift = target.pfa / float(np.abs(motions).max(axis=1).mean())
         if target.is_generic:
-            so_far = math.prod(one for _, one in found)
-            lift = min(max(lift, (1 - LIFTED) / so_far), (1 + LIFTED) / so_far)
-        lift_peaks(motions, np.full(len(motions), lift), generator.threads)
+            applied = math.prod(one for _, one in found)
+            lift = min(max(lift, (1 - LIFTED) / applied), (1 + LIFTED) / applied)
+        lift_peaks(motions, np.full(len(motions), lift), generator.threads, generator.progress)
         found.append((ratios, lift))
     return tuple(found)
 
 
 def _worst(wanted: FloatArray, target: Target) -> FloatArray:
-    """Return what a round mends of the ratios wanted, (..., m): the ordinates most off among their neighbours."""
+    """Return what a round corrects of the ratios wanted, (..., m): the ordinates most off among their neighbours."""
     from scipy.ndimage import maximum_filter1d
 
     periods, longest = target.periods, matched_to(target.periods, target.pseudo)
     off = np.where((periods > JUDGED_FROM / BEYOND) & (periods < longest * BEYOND), np.abs(np.log(wanted)), 0.0)
     return np.where(
         (off > WITHIN) & (off == maximum_filter1d(off, APART, axis=-1)),
-        np.clip(wanted**MENDED, 1 / MOST_MENDED, MOST_MENDED),
+        np.clip(wanted**CORRECTED, 1 / MOST_CORRECTED, MOST_CORRECTED),
         1.0,
     )
 
 
-def _mend(motions: FloatArray, ratios: FloatArray, mender: Wavelets, threads: int) -> None:
-    def mend_row(row: int) -> None:
-        adjust(motions[row], ratios[row], mender.samples, mender.start, mender.peak, mender.at, mender.step)
+def _correct(motions: FloatArray, ratios: FloatArray, wavelets: Wavelets, generator: Generator) -> None:
+    def correct_row(row: int) -> None:
+        adjust(motions[row], ratios[row], wavelets.samples, wavelets.start, wavelets.peak, wavelets.at, wavelets.step)
         settle(motions[row], motions[row].sum())
 
-    run_rows(mend_row, len(motions), threads)
+    run_rows(correct_row, len(motions), generator.threads, generator.progress)
 
 
 def _tighten(motions: FloatArray, generator: Generator) -> None:
-    """Mend each motion's own spectrum and PFA, in place."""
+    """Correct each motion's own spectrum and PFA, in place."""
     target, grid = generator.target, generator.grid
-    mender = build_wavelets(target.periods, grid.time_step)
-    for _ in range(TIGHT_MENDINGS):
-        own = pseudo_acceleration(motions, grid.time_step, target.periods, threads=generator.threads)
-        _mend(motions, _worst(target.pseudo / own, target), mender, generator.threads)
-        lift_peaks(motions, target.pfa / np.abs(motions).max(axis=1), generator.threads)
+    wavelets = build_wavelets(target.periods, grid.time_step)
+    for _ in range(TIGHT_CORRECTIONS):
+        own = _pseudo(motions, generator)
+        _correct(motions, _worst(target.pseudo / own, target), wavelets, generator)
+        lift_peaks(motions, target.pfa / np.abs(motions).max(axis=1), generator.threads, generator.progress)

@@ -195,10 +195,13 @@ def load_catalogue(code: str, folder: Path | None = None) -> Catalogue:
     InputError
         If a catalogue cannot be read, or a text lacks or invents a ``{name}``.
     """
+    has_own = folder is not None and (folder / "texts" / f"{code}.po").is_file()
+    if code == ENGLISH.code and not has_own:
+        return ENGLISH  # the standard one says each text as it stands in the code
     from babel.numbers import get_decimal_symbol, get_group_symbol
 
     found, plural = _read(resources.templates() / "texts" / f"{code}.po")
-    if folder is not None and (folder / "texts" / f"{code}.po").is_file():
+    if folder is not None and has_own:
         found |= _read(folder / "texts" / f"{code}.po")[0]
     return Catalogue(code, found, plural, get_decimal_symbol(code), get_group_symbol(code))
 

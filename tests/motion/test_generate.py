@@ -9,12 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from assess.motion import compatible
-from assess.motion.compatible import CALIBRATED, Generator, build_generator
+from assess.errors import CancelledError
+from assess.motion import generate
 from assess.motion.fit import Fit
+from assess.motion.generate import CALIBRATED, Generator, build_generator
 from assess.motion.record import FloatArray, Motion
 from assess.motion.spectrum import response_spectrum
 from assess.motion.target import Grid, Target, build_grid, generic_target, matched_to, recorded_target
+from assess.progress import Progress
 from assess.units import GRAVITY
 from tests.motion.motions import GROUND, ROOF, TWELFTH, cut, make_motion, read_motion
 
@@ -60,8 +62,8 @@ def measure(target: Target, motions: FloatArray, pfv: float | None = None) -> Fi
     )
 
 
-def check_told(fit: Fit | None, figures: Figures) -> None:
-    """Assert that a fit says the same as the figures; its periods are others."""
+def check_fit(fit: Fit | None, figures: Figures) -> None:
+    """Assert that a fit agrees with the figures, which are of other periods."""
     assert fit is not None
     for name in ("pfa_ratio", "pfa_scatter", "pfv_scatter"):
         assert getattr(fit, name) == pytest.approx(getattr(figures, name), rel=1e-9)
@@ -82,7 +84,7 @@ def build(motion: Motion, *, seed: int = 1, axis: str = "X", is_tight: bool = Fa
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> int:
     """Set everything by 20 realisations instead of 100, where the match of their mean is not what is looked at."""
-    monkeypatch.setattr(compatible, "CALIBRATED", 20)
+    monkeypatch.setattr(generate, "CALIBRATED", 20)
     return 20
 
 
@@ -90,7 +92,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> int:
 
 
 @pytest.mark.parametrize(
-    "name", ["a", *(pytest.param(name, marks=pytest.mark.slow) for name in "beik"), ROOF, TWELFTH, GROUND]
+    "name", ["a", *(pytest.param(name, marks=pytest.mark.slow) for name in (*"beik", ROOF, TWELFTH, GROUND))]
 )
 def test_ensembles_match_their_record(name: str) -> None:
     generator = build(read_motion(name))
@@ -102,12 +104,13 @@ def test_ensembles_match_their_record(name: str) -> None:
     assert figures.pfa_scatter > 0.05
     assert figures.spectrum_scatter > 0.1
     assert figures.drift < 0.01
-    check_told(generator.fit, figures)
+    check_fit(generator.fit, figures)
     assert generator.fit is not None
     assert generator.fit.count == CALIBRATED == 100
     assert generator.scale == 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "axis"), [(2, "X"), (1, "Y"), (123456789, "Y")])
 def test_so_they_do_with_other_draws(seed: int, axis: str) -> None:
     generator = build(cut(TWELFTH, 0, 15), seed=seed, axis=axis)
@@ -130,7 +133,7 @@ def test_tight_ones_hide_the_scatter(name: str, start: float, end: float) -> Non
     assert figures.pfv_ratio == pytest.approx(1, abs=0.2)
     assert figures.spectrum_scatter < 0.1
     assert figures.drift < 0.01
-    check_told(generator.fit, figures)
+    check_fit(generator.fit, figures)
 
 
 def test_realisations_beyond_those_calibrated_match_too() -> None:
@@ -244,17 +247,17 @@ def test_a_generic_spectrum_is_matched(period: float | None) -> None:
     assert figures.pfa_scatter > 0.05
     assert figures.spectrum_scatter > 0.1
     assert figures.drift < 0.01
-    check_told(generator.fit, figures)
+    check_fit(generator.fit, figures)
 
 
-def test_where_pfa_and_spectrum_cannot_both_be_had_pfa_wins_and_the_misfit_is_told(few: int) -> None:
+def test_where_pfa_and_spectrum_cannot_both_be_had_pfa_takes_precedence_and_the_misfit_is_reported(few: int) -> None:
     """No motion has PSA/PFA of 4 at 6 s and at 1 s, and PSA falling with 24 PFA/T beyond."""
     generator = build_generic(period=6.0)
     figures = measure(generator.target, generator.realise(0, few))
     assert figures.pfa_ratio == pytest.approx(1, rel=1e-9)
     assert figures.mean_deviation > 0.1
     assert figures.drift < 0.01
-    check_told(generator.fit, figures)
+    check_fit(generator.fit, figures)
     assert generator.scale < 0.95
 
 
@@ -270,13 +273,13 @@ def test_where_pfa_and_spectrum_cannot_both_be_had_pfa_wins_and_the_misfit_is_to
     ids=str,
 )
 def test_a_given_pfv_is_matched(monkeypatch: pytest.MonkeyPatch, known: dict[str, float]) -> None:
-    monkeypatch.setattr(compatible, "CALIBRATED", 50)
+    monkeypatch.setattr(generate, "CALIBRATED", 50)
     generator = build_generic(**known)
     figures = measure(generator.target, generator.realise(0, 50))
     assert figures.pfv_ratio == pytest.approx(1, abs=0.15)
     assert figures.pfa_ratio == pytest.approx(1, rel=1e-9)
     assert figures.drift < 0.01
-    check_told(generator.fit, figures)
+    check_fit(generator.fit, figures)
 
 
 # --- odd input ---
@@ -309,6 +312,7 @@ ODD = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ODD)
 def test_odd_records_still_give_sensible_motions(name: str) -> None:
     """The mean spectrum and PFA are matched; PFV may be off by a third, and a cut record's long periods by 30 %."""
@@ -321,7 +325,7 @@ def test_odd_records_still_give_sensible_motions(name: str) -> None:
     assert figures.pfa_ratio == pytest.approx(1, abs=0.05)
     assert 0.6 < figures.pfv_ratio < 1.3
     assert figures.drift < 0.01
-    check_told(generator.fit, figures)
+    check_fit(generator.fit, figures)
 
 
 @pytest.mark.usefixtures("few")
@@ -335,6 +339,7 @@ def test_a_faint_record_is_matched_as_a_strong_one_is() -> None:
         assert getattr(faint.fit, name) == pytest.approx(getattr(strong.fit, name), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_two_minutes_are_matched(few: int) -> None:
     motion = make_motion(np.tile(read_motion("a").acceleration, 3)[:24_001], STEP)
     generator = build(motion)
@@ -354,3 +359,35 @@ def test_no_pfv_is_bent_where_none_is_known() -> None:
     assert generator.bend.velocity == 0.0
     assert generator.fit is not None
     assert math.isnan(generator.fit.pfv_ratio)
+
+
+class StopsAt(Progress):
+    """Cancels at the n-th check, and counts them."""
+
+    def __init__(self, last: int) -> None:
+        super().__init__()
+        self.last, self.checks = last, 0
+
+    def check(self) -> None:
+        self.checks += 1
+        if self.checks >= self.last:
+            raise CancelledError
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_cancel_is_obeyed_wherever_the_work_is(few: int, threads: int) -> None:
+    grid = build_grid([SHORT])
+    target = recorded_target(SHORT, grid)
+
+    def work(progress: Progress) -> None:
+        generator = build_generator(target, grid, seed=1, axis="X", threads=threads, progress=progress)
+        generator.realise(few, 2)
+
+    counted = StopsAt(10**9)
+    work(counted)
+    assert counted.checks > 50 * few
+    for last in np.linspace(1, counted.checks, 12, dtype=int):
+        stopping = StopsAt(int(last))
+        with pytest.raises(CancelledError):
+            work(stopping)
+        assert stopping.checks <= last + 2 * few  # the rows in hand, not another round of the work

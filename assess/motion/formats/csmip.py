@@ -1,0 +1,169 @@
+"""CSMIP volumes 1 (uncorrected) and 2 (corrected accelerations, velocities, displacements), several channels to a file.
+
+Layout: lines of text (13 in volume 1; in volume 2 one more before them and eleven after), whole numbers (16I5, 100 of
+them), real numbers (8F10, 50 or 100 of them), the data, and a line "/&". Then the next channel follows, with its own
+header.
+
+The data of volume 1 are evenly spaced (a line of their own says the rate, the unit and the format), or, in files from
+film, pairs of time [s] and acceleration [g/10] in 10F7.3. RENADIC of the Universidad de Chile writes the same.
+
+Of volume 2 only the accelerations are read: each treatment integrates them in the same way. The velocities printed in
+files before about 1995 were filtered again after that, so that their peaks differ by up to 4 % from the integral's.
+
+Source: California Strong Motion Instrumentation Program (1985). Standard tape format for CSMIP strong-motion data
+tapes. Report OSMS 85-03; checked against files processed in 1983 to 2012.
+"""
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+
+from assess.errors import RecordError
+from assess.motion.formats._format import build_record, even_series
+from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
+from assess.motion.formats._values import read_acceleration_unit, read_direction, read_finite, read_peak
+from assess.motion.record import FloatArray, Record, Series, build_series
+from assess.units import ACCELERATION, GRAVITY
+
+V1, V2 = "CSMIP V1", "CSMIP V2"
+
+TEXT_V1, TEXT_V2 = 13, 25
+"""Lines of text."""
+DATA_V1 = 27
+"""Line at which the data of volume 1 begin: after the text, 7 lines of whole and 7 of real numbers."""
+PAIRS, EVEN, CORRECTED = Columns(10, 7), Columns(8, 9), Columns(8, 10)
+"""How the data stand where no format is printed: pairs and evenly spaced of volume 1, volume 2."""
+
+# The right half of a line, after a wide gap, is about the processing.
+TEXT = fields(
+    (1, r"(?P<event>.*?)(?:\s{3,}|$)"),
+    (2, r"(?P<date>.*?)(?:\s{3,}|$)"),
+    (3, r"(?:trigger|start)\s+time:\s*(?P<start>[-\d/]+,?\s+[\d:.]+\s*\w*)"),
+    (4, r"^station\s+no\.?\s*(?P<station_number>\d+)\s"),
+    (5, r"(?P<station>.*?)(?:\s{3,}|$)"),
+    (
+        6,
+        r"^chan\w*\s*(?P<number>\d+)\s*:\s*(?P<direction>.*?)\s*"
+        r"(?:\(\s*sta\s*chn:\s*(?P<drawn_as>\w+)\s*\))?\s*(?:location:\s*(?P<location>.*))?$",
+    ),
+)
+"""Counted from the line "Uncorrected accelerogram data", which both volumes have."""
+PEAK_V1 = fields((range(9, TEXT_V1), r"max\s*=\s*(?P<peak>[-+.\dE]+)\s*g\b"))
+PEAK_V2 = fields((range(TEXT_V2), r"peak\s+acceleration\s*=\s*(?P<peak>[-+.\dE]+)"))
+TITLE_V1 = fields(
+    (
+        DATA_V1,
+        r"^(?P<count>\d{1,9})\s+accel\w*\s+points\s+at\s+(?P<rate>[\d.]+)\s*pts/sec\s+in\s+units\s+of\s+(?P<unit>[\w/]+)",
+    )
+)
+TITLE_V2 = fields(
+    (0, r"^(?P<count>\d{1,9})\s+points of accel data equally spaced at\s+(?P<step>[\d.]+)\s*sec"),
+    (0, r"(?:units:|,\s*in)\s*(?P<unit>cm/sec/sec|cm/sec2|g)\b"),
+)
+
+_COUNT = re.compile(r"no\.\s*of points\s*=\s*(\d{1,9})\b", re.IGNORECASE)
+_UNIT = re.compile(r"\bare\s+sec\s+and\s+(g(?:\s*/\s*10)?)\b", re.IGNORECASE)
+_DATA_V2 = re.compile(r"\s*\d{1,9}\s+points of accel data equally spaced at\s+[\d.]+\s*sec", re.IGNORECASE)
+_START_V1 = re.compile(r"\s*uncorrected accelerogram data\b", re.IGNORECASE)
+_SPECTRA = re.compile(r"\s*response and fourier", re.IGNORECASE)
+
+
+def _read_v1(section: Section, file: str) -> Record:
+    own, series = _read_data_v1(section)
+    header_pfa = read_peak(read_fields(section, PEAK_V1)["peak"], GRAVITY)
+    return _build(V1, file, read_fields(section, TEXT), series, own, header_pfa)
+
+
+def _read_data_v1(section: Section) -> tuple[FloatArray, Series]:
+    """Return the file's own samples [m/s2], and the same evenly spaced."""
+    title = read_fields(section, TITLE_V1)
+    if not title["count"]:
+        return _read_pairs(section)
+    rate, factor = read_finite(title["rate"]), read_acceleration_unit(title["unit"])
+    if not rate or factor is None:
+        place = section.number(DATA_V1)
+        raise RecordError(f"line {place}: the rate or the unit cannot be read. Get the file again")
+    columns = read_format(section.text(DATA_V1), EVEN)
+    own = read_columns(section, DATA_V1 + 1, int(title["count"]), columns, factor)
+    return own, even_series(own, 1 / rate)
+
+
+def _read_pairs(section: Section) -> tuple[FloatArray, Series]:
+    header = "\n".join(section.lines[:TEXT_V1])
+    points, unit = _COUNT.search(header), _UNIT.search(header)
+    if not points or not unit:
+        raise RecordError("the header does not give the number of points, or their unit. Get the file again")
+    numbers = read_columns(section, DATA_V1, 2 * int(points[1]), PAIRS)
+    with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
+        own = numbers[1::2] * (read_acceleration_unit(unit[1]) or np.nan)
+    return own, build_series(numbers[0::2], own)
+
+
+def _read_v2(section: Section, file: str) -> Record:
+    places = range(TEXT_V2, len(section.lines))
+    place = next((place for place in places if _DATA_V2.match(section.lines[place])), None)
+    if place is None:
+        raise RecordError('no line says "points of accel data equally spaced at". Get the file again')
+    title = read_fields(section, TITLE_V2, place)
+    factor, step = read_acceleration_unit(title["unit"]), read_finite(title["step"])
+    if step is None or factor is None:
+        raise RecordError(f"line {section.number(place)}: the time step or the unit cannot be read. Get the file again")
+    columns = read_format(section.text(place), CORRECTED)
+    own = read_columns(section, place + 1, int(title["count"]), columns, factor)
+    header_pfa = read_peak(read_fields(section, PEAK_V2)["peak"], ACCELERATION["cm/s2"])
+    return _build(V2, file, read_fields(section, TEXT, first=1), even_series(own, step), own, header_pfa)
+
+
+def _build(
+    title: str, file: str, text: Mapping[str, str], series: Series, own: FloatArray, header_pfa: float | None
+) -> Record:
+    """Return a record of which `text` are the lines of text.
+
+    A channel goes by its number in the building, as on the drawings of the station, where the file has it, else by
+    the recorder's.
+    """
+    number = text["drawn_as"] or text["number"]
+    return build_record(
+        title,
+        file,
+        series,
+        own=own,
+        corrected=title == V2,
+        channel=number and (number.lstrip("0") or "0"),
+        direction=read_direction(text["direction"]),
+        location=text["location"],
+        station=f"{text['station']} ({text['station_number']})" if text["station_number"] else text["station"],
+        event=text["event"],
+        start=text["start"] or text["date"],
+        header_pfa=header_pfa,
+    )
+
+
+def _refuse_spectra(sections: list[Section]) -> list[Section]:
+    if _SPECTRA.match(sections[0].lines[0]):
+        raise RecordError(
+            "it holds response spectra (volume 3), not accelerations. Give volume 2 or 1 of the same channels"
+        )
+    return [section for section in sections if not _SPECTRA.match(section.lines[0])]
+
+
+VOLUME_1 = text_format(
+    "csmip_v1",
+    V1,
+    recognised=_START_V1,
+    starts=_START_V1,
+    missing='no line says "Uncorrected accelerogram data"',
+    read_channel=_read_v1,
+)
+VOLUME_2 = text_format(
+    "csmip_v2",
+    V2,
+    recognised=re.compile(
+        rf"\s*corrected accelerogram\b[^\n]*\n\s*uncorrected accelerogram data\b|{_SPECTRA.pattern}", re.IGNORECASE
+    ),
+    starts=re.compile(rf"\s*corrected accelerogram\b|{_SPECTRA.pattern}", re.IGNORECASE),
+    missing='no line says "Corrected accelerogram"',
+    choose=_refuse_spectra,
+    read_channel=_read_v2,
+)
