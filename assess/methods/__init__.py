@@ -1,12 +1,18 @@
-"""The methods, found by looking into this folder: a file that defines METHOD is a method."""
+"""The methods, found in this folder: a file that defines METHOD is one. Consumers ask for roles, never for keys."""
 
 import importlib
 import pkgutil
 from functools import cache
 
-from assess.methods._method import Cases, Method, Outcome, Range, Reference
+from assess.methods._info import Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference, Role
+from assess.methods._method import Cases, Example, Joint, LiveCells, Method, Outcome
+from assess.methods._simulate import LOOKS, LOOKS_Z, interval_width, make_batches, rock_cases, run_side_by_side
 
-__all__ = ["Cases", "Method", "Outcome", "Range", "Reference", "all_methods"]
+__all__ = [
+    "LOOKS", "LOOKS_Z", "Cases", "Column", "Example", "FittedOn", "Joint", "LiveCells", "Method", "MethodInfo",
+    "Outcome", "Parameter", "Range", "Reason", "Reference", "adopted_formula", "all_methods", "interval_width",
+    "make_batches", "rock_cases", "run_side_by_side", "simulation",
+]  # fmt: skip
 
 
 @cache
@@ -15,3 +21,19 @@ def all_methods() -> tuple[Method, ...]:
     names = [module.name for module in pkgutil.iter_modules(__path__) if not module.name.startswith("_")]
     modules = [importlib.import_module(f"{__name__}.{name}") for name in names]
     return tuple(sorted((module.METHOD for module in modules), key=lambda method: method.order))
+
+
+def adopted_formula() -> Method:
+    """Return the formula whose value is adopted where nothing was simulated."""
+    return _find("adopted formula")
+
+
+def simulation() -> Method:
+    """Return the method that integrates the rocking of pieces."""
+    return _find("simulation")
+
+
+@cache
+def _find(role: Role) -> Method:
+    (found,) = (method for method in all_methods() if method.role == role)
+    return found

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from assess.errors import InputError
-from assess.methods._fitted_model import PREFIX, Fitted, Polynomial, Probit
-from assess.methods._fitted_texts import build_method
-from assess.methods._method import Method, Range
+from assess.methods._fitted_model import PREFIX, QUANTITIES, Fitted, Polynomial, Probit, build_method
+from assess.methods._method import FittedOn, Method, Range
 
 __all__ = ["Fitted", "Polynomial", "Probit", "parse_model", "read_model", "write_model"]
 
@@ -25,9 +24,8 @@ LARGEST = 1e30
 LONGEST_TITLE, LONGEST_DATA = 60, 120
 
 TOP = ("format", "key", "title", "kind", "fitted_on", "range", "errors")
-RANGES = {"breadth_to_height": "", "pfa_g": "g", "height_cm": "cm", "pfv_cm_s": "cm/s", "pfv_over_pfa_s": "s"}
-"""Keys of the validity, and their units."""
-ERRORS = ("leave_one_out_rmse", "leave_one_out_standard_error", "constant_rmse")
+ERRORS = {"leave_one_out_rmse": "error", "leave_one_out_standard_error": "spread", "constant_rmse": "constant"}
+"""Keys of the errors, and their names in `FittedOn`."""
 KINDS = {"polynomial": ("base", "terms"), "probit": ("b0", "b1", "b2")}
 KEY = re.compile(rf"{PREFIX}[a-z0-9_]{{1,40}}(?<!_raw)(?<!_flags)", re.ASCII)
 """The endings are those of columns that stand beside a method's value."""
@@ -41,16 +39,15 @@ def write_model(model: Fitted) -> str:
     InputError
         If it holds what could not be read back, as a number that is not finite.
     """
-    ranges = (model.breadth_to_height, model.pfa, model.height, model.pfv, model.pfv_to_pfa)
-    errors = (model.error, model.error_spread, model.error_constant)
+    top = {"key": model.key, "title": model.title, "kind": model.kind, "fitted_on": model.fitted.data}
     lines = [
-        "# A model of the chance of overturning, fitted by assess. To show it in reports: assess run --method FILE",
+        "# A model of the chance of overturning, fitted by assess. `assess run` shows it next to the methods.",
         f"format = {FORMAT}",
-        *(f"{name} = {json.dumps(getattr(model, name), ensure_ascii=False)}" for name in TOP[1:5]),
+        *(f"{name} = {json.dumps(text, ensure_ascii=False)}" for name, text in top.items()),
         "\n[range]",
-        *(f"{name} = [{_number(one.low)}, {_number(one.high)}]" for name, one in zip(RANGES, ranges, strict=True)),
+        *(f"{name} = [{_number(one.low)}, {_number(one.high)}]" for name, one in model.ranges.items()),
         "\n[errors]",
-        *(f"{name} = {_number(one)}" for name, one in zip(ERRORS, errors, strict=True)),
+        *(f"{name} = {_number(getattr(model.fitted, field))}" for name, field in ERRORS.items()),
         f"\n[{model.kind}]",
         *_write_formula(model.formula),
     ]
@@ -76,7 +73,7 @@ def read_model(path: Path) -> Method:
     Raises
     ------
     InputError
-        If it cannot be used: the message names the file, the key and the mend.
+        If it cannot be used: the message names the file, the key and how to fix it.
     """
     text = _read_text(path)
     digest = hashlib.sha256(text.encode()).hexdigest()
@@ -84,71 +81,60 @@ def read_model(path: Path) -> Method:
 
 
 def _read_text(path: Path) -> str:
-    """Return the text of a file; raises InputError where it is none, too large, or may not be read."""
+    """Return the text of a file; raises InputError where it is not a text file, too large or not readable."""
     try:
+        if not path.exists():
+            raise InputError(f"{path}: there is no such file. Check the name.")
         if not path.is_file():
-            told = (
-                "it is no file: name the .toml that `assess study fit` wrote."
-                if path.exists()
-                else "there is no such file. Check the name."
-            )
-            raise InputError(f"{path}: {told}")
+            raise InputError(f"{path}: it is not a file: name the .toml that `assess study fit` wrote.")
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
-        raise InputError(f"{path}: it cannot be read: {error}. Check who may read it.") from None
+        raise InputError(f"{path}: it cannot be read: {error}. Check its permissions.") from None
     if len(data) > MOST_BYTES:
-        raise InputError(f"{path}: it is larger than {MOST_BYTES >> 10} kB, so no fitted model. Name another file.")
+        raise InputError(f"{path}: it is larger than {MOST_BYTES >> 10} kB, which no fitted model is. Name another.")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
-        raise InputError(f"{path}: it is no text in UTF-8. Name the .toml file that a study wrote.") from None
+        raise InputError(f"{path}: it is not a UTF-8 text. Name the .toml file that a study wrote.") from None
 
 
 def parse_model(text: str, file: str) -> Fitted:
-    """Return the model of a file's text; raises InputError that names `file`, the key and the mend."""
+    """Return the model of a file's text; raises InputError that names `file`, the key and how to fix it."""
     try:
         found = tomllib.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:  # also: a number of thousands of digits
-        told = str(error).partition(";")[0]
+        detail = str(error).partition(";")[0]
         raise InputError(
-            f"{file}: it is no TOML: {told}. Mend the line, or have the study write the file again."
+            f"{file}: it is not valid TOML: {detail}. Correct the line, or have the study write the file again."
         ) from None
     if found.get("format") != FORMAT or isinstance(found.get("format"), bool):
-        told = _show(found["format"]) if "format" in found else "missing"
-        raise InputError(f"{file}: format is {told}, expected {FORMAT}. Have a study of this version write the file.")
+        given = _show(found["format"]) if "format" in found else "missing"
+        raise InputError(f"{file}: format is {given}, expected {FORMAT}. Have a study of this version write the file.")
     kind = found.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
-        told = _show(kind) if "kind" in found else "missing"
-        raise InputError(f"{file}: kind is {told}, expected one of: {', '.join(KINDS)}.")
+        given = _show(kind) if "kind" in found else "missing"
+        raise InputError(f"{file}: kind is {given}, expected one of: {', '.join(KINDS)}.")
     return _build(file, found, kind)
 
 
 def _build(file: str, found: dict[str, Any], kind: str) -> Fitted:
     top = _Table(file, "", found, (*TOP, kind))
-    ranges = _Table(file, "range.", found["range"], tuple(RANGES))
-    errors = _Table(file, "errors.", found["errors"], ERRORS)
+    limits = _Table(file, "range.", found["range"], tuple(QUANTITIES))
+    errors = _Table(file, "errors.", found["errors"], tuple(ERRORS))
     formula = _Table(file, f"{kind}.", found[kind], KINDS[kind])
-    by_height, pfa, height, pfv, pfv_to_pfa = (ranges.ends(name, unit) for name, unit in RANGES.items())
-    error, spread, constant = (errors.number(name, 0.0) for name in ERRORS)
+    numbers = {field: errors.number(name, 0.0) for name, field in ERRORS.items()}
     return Fitted(
         key=_read_key(top),
         title=top.text("title", LONGEST_TITLE),
-        fitted_on=top.text("fitted_on", LONGEST_DATA),
         formula=_read_polynomial(formula) if kind == "polynomial" else _read_probit(formula),
-        breadth_to_height=by_height,
-        pfa=pfa,
-        height=height,
-        pfv=pfv,
-        pfv_to_pfa=pfv_to_pfa,
-        error=error,
-        error_spread=spread,
-        error_constant=constant,
+        fitted=FittedOn(data=top.text("fitted_on", LONGEST_DATA), **numbers),
+        ranges={name: limits.ends(name, one.unit) for name, one in QUANTITIES.items()},
     )
 
 
 class _Table:
-    """A table of the file, of which every fault is told with its key."""
+    """A table of the file, whose faults are reported with their keys."""
 
     def __init__(self, file: str, name: str, values: object, keys: Sequence[str]) -> None:
         self.file, self.name = file, name
@@ -242,5 +228,5 @@ def _read_term(table: _Table, key: str, term: object) -> tuple[int, int, float]:
 
 def _show(value: object) -> str:
     """Return a value of the file short enough for a message, without what a terminal would act on."""
-    told = ascii(value) if not isinstance(value, int) or abs(value) < 10**40 else "a number of over 40 digits"
-    return told if len(told) <= 60 else f"{told[:57]}..."
+    text = ascii(value) if not isinstance(value, int) or abs(value) < 10**40 else "a number of over 40 digits"
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -11,14 +11,30 @@ The groups PFA/(g tan α) and p PFV/(g tan α) are those of Dimitrakopoulos and 
 """
 
 import string
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import partial, reduce
 from typing import Literal
 
 import numpy as np
 
-from assess.methods._method import BoolArray, Cases, FloatArray, Outcome, Range, normal_cdf
+from assess.i18n import Text, fill, join
+from assess.methods._expression import localise, show_pfa, show_ratio
+from assess.methods._method import (
+    PFV_FLAGS,
+    BoolArray,
+    Cases,
+    Column,
+    Example,
+    FittedOn,
+    FloatArray,
+    Method,
+    Outcome,
+    Range,
+    Reason,
+    Reference,
+    normal_cdf,
+)  # fmt: skip
 from assess.rocking.block import frequency_parameter
 from assess.settings import Settings
 from assess.units import ACCELERATION, GRAVITY, LENGTH, VELOCITY
@@ -29,6 +45,10 @@ Powers = tuple[int, int]
 
 PREFIX = "fitted_"
 """How the key of every such method begins."""
+LAST = 1000
+"""Place in the order of reports: after all published methods."""
+LONGEST = 40
+"""Characters of what a model was fitted on in its title, which heads columns."""
 
 
 def expand(base: Base, powers: Sequence[Powers], x: FloatArray, y: FloatArray) -> list[FloatArray]:
@@ -97,6 +117,25 @@ class Probit:
         return np.where(np.isnan(A) | np.isnan(V), np.nan, np.where((A > 0) & (V > 0), chance, 0.0))
 
 
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A quantity of the data of a fit: its name in `Method.valid`, its unit there, and its values for n cases, (n,)."""
+
+    name: str
+    unit: str
+    measure: Callable[[Cases], FloatArray]
+
+
+QUANTITIES: Mapping[str, Quantity] = {
+    "breadth_to_height": Quantity("breadth_to_height", "", lambda cases: cases.breadth_to_height),
+    "pfa_g": Quantity("pfa", "g", lambda cases: cases.pfa / ACCELERATION["g"]),
+    "height_cm": Quantity("height", "cm", lambda cases: cases.height / LENGTH["cm"]),
+    "pfv_cm_s": Quantity("pfv", "cm/s", lambda cases: cases.pfv / VELOCITY["cm/s"]),
+    "pfv_over_pfa_s": Quantity("PFV/PFA", "s", lambda cases: cases.pfv / cases.pfa),
+}
+"""The quantities whose ranges a model states, by their key in its file."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fitted:
     """A fitted model.
@@ -105,30 +144,19 @@ class Fitted:
     ----------
     key, title : str
         The key begins with `PREFIX`.
-    fitted_on : str
-        Buildings, motions, runs and seed, in words.
     formula : Polynomial or Probit
         With its coefficients.
-    breadth_to_height, pfa, height, pfv, pfv_to_pfa : Range
-        What it was fitted to [-], [g], [cm], [cm/s], [s]; the last is PFV over PFA.
-    error, error_spread : float
-        Root mean square error where a building is left out of the fit, and its standard error [-].
-    error_constant : float
-        That of a constant, the mean chance of the other buildings [-].
+    fitted : FittedOn
+        Buildings, motions, runs and seed, in words, and the errors where a building is left out of the fit.
+    ranges : mapping of str to Range
+        What it was fitted to, by the keys of `QUANTITIES`.
     """
 
     key: str
     title: str
-    fitted_on: str
     formula: Polynomial | Probit
-    breadth_to_height: Range
-    pfa: Range
-    height: Range
-    pfv: Range
-    pfv_to_pfa: Range
-    error: float
-    error_spread: float
-    error_constant: float
+    fitted: FittedOn
+    ranges: Mapping[str, Range]
 
     @property
     def kind(self) -> str:
@@ -138,15 +166,8 @@ class Fitted:
     def holds(self, cases: Cases) -> BoolArray:
         """Tell for each of n cases whether it lies inside the data (n,); where PFV is unknown it does not."""
         with np.errstate(all="ignore"):
-            pfv_to_pfa = cases.pfv / cases.pfa
-        held: Sequence[BoolArray] = (
-            self.breadth_to_height.holds(cases.breadth_to_height),
-            self.pfa.holds(cases.pfa / ACCELERATION["g"]),
-            self.height.holds(cases.height / LENGTH["cm"]),
-            self.pfv.holds(cases.pfv / VELOCITY["cm/s"]),
-            self.pfv_to_pfa.holds(pfv_to_pfa),
-        )
-        return reduce(np.logical_and, held)
+            held = [one.holds(QUANTITIES[key].measure(cases)) for key, one in self.ranges.items()]
+        return np.asarray(reduce(np.logical_and, held))
 
     def evaluate(self, cases: Cases, settings: Settings) -> Outcome:
         """Return the chance of n cases, with the unbounded value and the cautions."""
@@ -158,3 +179,152 @@ class Fitted:
         if isinstance(self.formula, Probit):
             flags |= {"pfv_unknown": np.isnan(cases.pfv), "pfv_estimated": known & cases.pfv_estimated}
         return Outcome(value, {"raw": raw}, flags)
+
+
+# ---------------------------------------------------------------- as a method
+
+
+def build_method(model: Fitted, source: str) -> Method:
+    """Return a model as a method; `source` says where it comes from."""
+    is_probit = isinstance(model.formula, Probit)
+    fitted, equations = model.fitted, _write_equations(model.formula)
+    return Method(
+        key=model.key,
+        title=fill("{name} (fitted on {data})", name=model.title, data=_shorten(fitted.data)),
+        short_title=model.title,
+        kind="probability",
+        order=LAST,
+        predicts=PREDICTS_BY_SIZE if is_probit else PREDICTS,
+        reference=Reference(authors="", year="", title=model.title, source=source, remark=_describe(fitted)),
+        needs=frozenset({"breadth", "height", "pfa", *(("pfv",) if is_probit else ())}),
+        valid={QUANTITIES[key].name: _round(one) for key, one in model.ranges.items()},
+        evaluate=model.evaluate,
+        steps=partial(_work, equations),
+        columns=(Column("raw", "Unbounded value"),),
+        equations=equations,
+        assumptions=(_judge(fitted), COMPARED, *(OF_PROBIT if is_probit else OF_POLYNOMIAL), BLOCK),
+        flags=FLAGS | (FLAGS_OF_PROBIT if is_probit else FLAGS_OF_POLYNOMIAL),
+        reasons=_list_reasons(fitted),
+        fitted=fitted,
+    )
+
+
+def _work(equations: Sequence[str], example: Example) -> list[str]:
+    """Put what the model reads next to its equation and coefficients, which hold for any piece."""
+    velocity = [] if np.isnan(example.pfv) else [localise(f"PFV = {example.pfv:.6g} cm/s")]
+    result = localise(f"R = {example.number('raw'):.4f}")
+    return [show_ratio(example), show_pfa(example), *velocity, *equations, result]
+
+
+PREDICTS = (
+    "The chance that a free-standing piece overturns, from its breadth-to-height ratio and the peak floor "
+    "acceleration alone."
+)
+PREDICTS_BY_SIZE = (
+    "The chance that a free-standing piece overturns, from its size and the peak acceleration and velocity "
+    "of the floor."
+)
+BLOCK = (
+    "The piece is free-standing, rigid and homogeneous, its centroid at mid-height; it does not slide; vertical motion "
+    "is left out."
+)
+"""Texts that published methods have as well."""
+COMPARED = fill("A model of the user's own, no published method: shown for comparison, it counts for no adopted risk.")
+OF_PROBIT = (
+    fill("The ranges given are those of the data that it was fitted to; outside them it is marked as extrapolated."),
+    fill(
+        "The chance never falls as PFA or PFV grows; of two pieces of one B/H, the larger is never the easier to "
+        "overturn."
+    ),
+)
+OF_POLYNOMIAL = (
+    fill(
+        "The ranges given are those of the data that it was fitted to; outside them it is marked as extrapolated, and "
+        "where PFV is unknown as well: PFV/PFA may then lie outside."
+    ),
+    fill("A surface, not a law: it ignores size, and may fall where the motion grows or the piece gets thinner."),
+)
+FLAGS = {"clipped": "the formula gave less than 0 or more than 1, and was set to 0 or 1"}
+FLAGS_OF_POLYNOMIAL = {
+    "extrapolated": fill("outside the data that it was fitted to, or PFV is unknown, so that it may be outside")
+}
+FLAGS_OF_PROBIT = {
+    "extrapolated": fill("outside the data that it was fitted to"),
+    **PFV_FLAGS,
+}
+
+
+APPROXIMATES = (
+    "The fitted model gives {value} at B/H {breadth_to_height} and PFA {pfa_g} g: it approximates what was computed on "
+    "the buildings that it was fitted to."
+)
+NO_BETTER = (
+    "For a building that it was not fitted to, it is no better than a constant, one chance for every piece and motion."
+)
+BEYOND = "The piece or its motion lies outside the data that the model was fitted to, or PFV is unknown."
+REASONS = (APPROXIMATES, NO_BETTER, BEYOND)
+"""Texts of reasons, for the catalogues."""
+
+
+def _list_reasons(fitted: FittedOn) -> tuple[Reason, ...]:
+    no_better = [Reason(NO_BETTER)] if fitted.is_no_better else []
+    return (Reason(APPROXIMATES), *no_better, Reason(BEYOND, flag="extrapolated"))
+
+
+def _shorten(data: str) -> str:
+    """Return the first part of what a model was fitted on, which heads a column: the buildings."""
+    first = data.partition(", ")[0]
+    return first if len(first) <= LONGEST else f"{first[: LONGEST - 1]}…"
+
+
+def _round(one: Range) -> Range:
+    """Return a range as it is shown, to three digits."""
+    return Range(float(f"{one.low:.3g}"), float(f"{one.high:.3g}"), one.unit)
+
+
+def _describe(fitted: FittedOn) -> Text:
+    errors = fill(
+        "Fitted to computed chances on {data}; where a building is left out of the fit, the error for it is "
+        "{error:.3f} (root mean square, standard error {spread:.3f}); a constant, the mean chance of the other "
+        "buildings, has {constant:.3f}.",
+        data=fitted.data, error=fitted.error, spread=fitted.spread, constant=fitted.constant,
+    )  # fmt: skip
+    return join(" ", (errors, _judge(fitted)))
+
+
+def _judge(fitted: FittedOn) -> Text:
+    """Return in words how a model does beside a constant."""
+    if fitted.is_no_better:
+        return fill(
+            "Beware: for a building that it was not fitted to, it is no better than a constant, that is, one chance "
+            "for every piece and motion."
+        )
+    if fitted.constant - fitted.error < fitted.spread:
+        return fill(
+            "Beware: for a building that it was not fitted to, it is hardly better than a constant, that is, one "
+            "chance for every piece and motion: the two errors differ by less than the standard error."
+        )
+    return fill(
+        "For a building that it was not fitted to, it is better than a constant, that is, one chance for every piece "
+        "and motion."
+    )
+
+
+def _write_equations(formula: Polynomial | Probit) -> tuple[str, ...]:
+    if isinstance(formula, Probit):
+        lines = ("R = Φ(b_0 + b_1 ln[PFA/(g·B/H)] + b_2 ln[p·PFV/(g·B/H)])", "p = √(3g/(4r)), r = ½·√(B² + H²)")
+        return (*lines, _write_numbers(("b_0", "b_1", "b_2"), (formula.b0, formula.b1, formula.b2)))
+    total = write_sum(formula.base, formula.powers, "(B/H)", "PFA")
+    letters, numbers = string.ascii_lowercase[: len(formula.terms)], [c for _, _, c in formula.terms]
+    starts = range(0, len(numbers), 3)
+    return (
+        fill("R = {total}, PFA in cm/s²", total=total),
+        *(_write_numbers(letters[at : at + 3], numbers[at : at + 3]) for at in starts),
+    )
+
+
+def _write_numbers(names: Sequence[str], values: Sequence[float]) -> Text:
+    """Return ``a = 1.5; b = 2``, which a report writes with its own decimal sign."""
+    return join(
+        "; ", [fill("{name} = {value:.9g}", name=one, value=value) for one, value in zip(names, values, strict=True)]
+    )

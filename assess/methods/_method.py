@@ -1,15 +1,22 @@
 """What a method is: one published way to tell whether a piece of furniture overturns."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, Protocol, Self
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from assess.methods._info import ESTIMATED, PFV_FLAGS, Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference
+from assess.progress import SILENT, Progress
 from assess.settings import Settings
-from assess.units import ROUNDING
+
+__all__ = [
+    "ALIKE", "ESTIMATED", "NORMAL_CDF", "PFV_FLAGS", "BoolArray", "Cases", "Column", "Ensemble", "Example",
+    "FittedOn", "FloatArray", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome", "Parameter",
+    "Range", "Reason", "Reference", "normal_cdf",
+]  # fmt: skip
 
 if TYPE_CHECKING:
     from assess.motion.fit import Fit, Spectra
@@ -19,8 +26,6 @@ BoolArray = NDArray[np.bool_]
 
 ALIKE = 9
 """Decimals to which two PFA [g] or two probabilities are held against each other when one of them has to govern."""
-DECIMALS = 3
-"""Of the errors of fitted models, as they are shown."""
 
 
 class Ensemble(Protocol):
@@ -41,8 +46,8 @@ class Ensemble(Protocol):
         """The recorded motion (n,) [m/s2] and its time step [s], where one is known."""
         ...
 
-    def open(self, threads: int) -> "Motions":
-        """Prepare the motions; what that takes is given back when the result is dropped."""
+    def open(self, threads: int, progress: Progress = SILENT) -> "Motions":
+        """Prepare the motions; their memory is released with the result."""
         ...
 
 
@@ -124,47 +129,6 @@ class Cases:
         return self.breadth / self.height
 
 
-@dataclass(frozen=True, slots=True)
-class Range:
-    """Where a method has been checked: both ends belong to it. `unit` is how the ends are written."""
-
-    low: float
-    high: float
-    unit: str = ""
-
-    def holds(self, values: FloatArray) -> BoolArray:
-        """Tell for each of `values` (in this range's own unit) whether it lies inside; NaN does not."""
-        above, below = values >= self.low * (1 - ROUNDING), values <= self.high * (1 + ROUNDING)
-        return np.asarray(above & below, dtype=np.bool_)
-
-
-@dataclass(frozen=True, slots=True)
-class Reference:
-    """The publication: who, when, what and where; `doi` where one is known.
-
-    `remark` is what is not bibliographic, in sentences: the place in the publication, or how it came to be known.
-    Reports translate it; the rest stands as the publication has it.
-    """
-
-    authors: str
-    year: str
-    title: str
-    source: str
-    doi: str = ""
-    remark: str = ""
-
-    @property
-    def bibliographic(self) -> str:
-        """The reference without its remark: the same in every language."""
-        year = f" ({self.year})" if self.year else ""
-        lead = f"{self.authors}{year}. " if self.authors else ""
-        source = f" {self.source}." if self.source else ""
-        return f"{lead}{self.title}.{source}" + (f" doi:{self.doi}" if self.doi else "")
-
-    def __str__(self) -> str:
-        return f"{self.bibliographic} {self.remark}".strip()
-
-
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Joint:
     """What m cases did motion by motion under one ensemble: motion k is one earthquake for the whole building.
@@ -221,79 +185,86 @@ class Outcome:
     joints: Sequence[Joint] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FittedOn:
-    """What a model was fitted on, in words, and its root mean square errors where a building is left out [-].
+Detail = float | str | bool | None
+"""One value of `Outcome.detail`; None is unknown."""
 
-    `spread` is the standard error of `error`; `constant` is the error of a constant, the mean chance of the others.
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Example:
+    """One case that is worked through in a report: sizes [cm], peaks [cm/s2] and [cm/s], NaN where unknown.
+
+    `value`, `detail` and `flags` are what the method found; `restitution` is the building's own [-], NaN for Housner's.
     """
 
-    data: str
-    error: float
-    spread: float
-    constant: float
+    breadth: float
+    height: float
+    pfa: float
+    pfv: float
+    restitution: float
+    settings: Settings
+    value: float
+    detail: Mapping[str, Detail]
+    flags: Collection[str]
 
-    @property
-    def is_no_better(self) -> bool:
-        """Whether a constant does as well, to the decimals that are shown."""
-        return round(self.error, DECIMALS) >= round(self.constant, DECIMALS)
+    def number(self, name: str) -> float:
+        """Return a number of `detail`; NaN where it is unknown."""
+        value = self.detail[name]
+        return math.nan if value is None else float(value)
 
 
-@dataclass(frozen=True, slots=True)
-class Method:
-    """One method: what it is called, needs and assumes, and the function that evaluates it.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LiveCells:
+    """What a live formula may read, as operands that accept operators and numpy functions.
+
+    `parameters` are the method's own, by setting. A `pfv_cm_s` that is no number is unknown (`numpy.isnan`).
+    """
+
+    breadth_to_height: Any
+    height_cm: Any
+    pfa_g: Any
+    pfv_cm_s: Any
+    parameters: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Method(MethodInfo):
+    """One method: what it says of itself, and the functions that evaluate it.
 
     Parameters
     ----------
-    key, title : str
-        Name in results.json and in reports.
-    kind : "probability" or "criterion"
-        A probability has a class; a criterion is met or not met.
-    order : int
-        Place in reports.
-    predicts : str
-        One sentence: what a reader learns from it.
-    reference : Reference
-        The publication.
-    needs : frozenset of str
-        Fields of `Cases` it cannot do without.
-    valid : mapping of str to Range
-        Where it has been checked, by quantity.
-    equations, assumptions, departures : tuple of str
-        In the symbols of the publication; for the methods appendix.
-    flags : mapping of flag to str
-        Every flag it can raise, and what that means.
-    words : pair of str
-        A criterion's outcome in words: met, not met.
-    tier : "screening" or "verification"
-        Whether it tells at once for every case, or integrates those that have an ensemble.
     evaluate : callable
-        ``evaluate(cases, settings) -> Outcome``; inputs are left untouched.
-    fitted : FittedOn, optional
-        Of a model that a study fitted; None of a published method.
+        ``evaluate(cases, settings) -> Outcome``; inputs are left untouched. That of the simulation takes the keyword
+        arguments ``threads: int = 1`` and ``stage: Stage | None = None`` as well, of which each ensemble is a part.
+    steps : callable, optional
+        ``steps(example) -> sequence of texts``: the calculation for one piece, with its numbers. A step that computes
+        reads ``symbol = numbers = result [unit]``, so that a reader with a calculator finds the result again. Each is
+        passed through `assess.i18n.gettext` where it is shown.
+    live : callable, optional
+        ``live(cells) -> mapping``: the expression of "value", and of columns, from `LiveCells`.
     """
 
-    key: str
-    title: str
-    kind: Literal["probability", "criterion"]
-    order: int
-    predicts: str
-    reference: Reference
-    needs: frozenset[str]
-    evaluate: Callable[[Cases, Settings], Outcome]
-    valid: Mapping[str, Range] = field(default_factory=dict)
-    equations: tuple[str, ...] = ()
-    assumptions: tuple[str, ...] = ()
-    departures: tuple[str, ...] = ()
-    flags: Mapping[str, str] = field(default_factory=dict)
-    words: tuple[str, str] = ("", "")
-    tier: Literal["screening", "verification"] = "screening"
-    fitted: FittedOn | None = None
+    evaluate: Callable[..., Outcome]
+    steps: Callable[[Example], Sequence[str]] | None = None
+    live: Callable[[LiveCells], Mapping[str, Any]] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "is_live", self.live is not None)
+
+    @property
+    def info(self) -> MethodInfo:
+        """The method without its functions: it can be pickled."""
+        return MethodInfo(**{one.name: getattr(self, one.name) for one in fields(MethodInfo)})
 
 
-_erfc = np.frompyfunc(math.erfc, 1, 1)
+def _normal_cdf(x: float) -> float:
+    return 0.5 * math.erfc(-x / math.sqrt(2))
 
 
-def normal_cdf(x: FloatArray) -> FloatArray:
+NORMAL_CDF = np.frompyfunc(_normal_cdf, 1, 1)
+"""Standard normal distribution function as a numpy function; `normal_cdf` gives floats."""
+
+
+def normal_cdf(x: Any) -> Any:
     """Standard normal distribution function of `x` [-], accurate in both tails; NaN stays NaN."""
-    return np.asarray(0.5 * np.asarray(_erfc(-x / math.sqrt(2)), dtype=np.float64))
+    found = NORMAL_CDF(x)
+    return np.asarray(found, dtype=np.float64) if isinstance(found, (float, np.ndarray)) else found

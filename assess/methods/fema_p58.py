@@ -23,9 +23,26 @@ method of ASCE 43-05, Appendix A, at a rotation of α, with the Newmark-Hall med
 5 % damping).
 """
 
+from typing import Any
+
 import numpy as np
 
-from assess.methods._method import Cases, FloatArray, Method, Outcome, Range, Reference, normal_cdf
+from assess.i18n import Text
+from assess.methods._expression import G, note_estimate, number, show
+from assess.methods._method import (
+    ESTIMATED,
+    PFV_FLAGS,
+    Cases,
+    Column,
+    Example,
+    FloatArray,
+    Method,
+    Outcome,
+    Range,
+    Reason,
+    Reference,
+    normal_cdf,
+)  # fmt: skip
 from assess.rocking.block import STOCKY, critical_angle, restitution
 from assess.settings import Settings
 from assess.units import GRAVITY, VELOCITY
@@ -37,19 +54,25 @@ CHECKED_BREADTH_TO_HEIGHT = Range(0.155, 0.625)
 
 
 # Velocity of an impulse that just overturns the block (West, Ishiyama)
-def _impulse_velocity(H: FloatArray, alpha: FloatArray, g: float) -> FloatArray:
-    V_imp: FloatArray = np.sqrt(4 / 3 * g * H * (1 / np.cos(alpha) - 1) / np.cos(alpha) ** 2)
-    return V_imp
+def _impulse_velocity(H: Any, alpha: Any, g: Any) -> Any:
+    return np.sqrt(4 / 3 * g * H * (1 / np.cos(alpha) - 1) / np.cos(alpha) ** 2)
 
 
 # ASCE 43-05, Appendix A: damping that loses as much as the impacts do
-def _effective_damping(C_R: FloatArray) -> FloatArray:
-    gamma: FloatArray = -2 * np.log(C_R)
+def _gamma(C_R: Any) -> Any:
+    return -2 * np.log(C_R)
+
+
+def _damping(gamma: Any) -> Any:
     return gamma / np.sqrt(4 * np.pi**2 + gamma**2)
 
 
+def _effective_damping(C_R: Any) -> Any:
+    return _damping(_gamma(C_R))
+
+
 # Newmark and Hall: median amplification of velocity
-def _velocity_amplification(beta_e: FloatArray) -> FloatArray:
+def _velocity_amplification(beta_e: Any) -> Any:
     return 2.31 - 0.41 * np.log(100 * beta_e)
 
 
@@ -76,9 +99,34 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     return Outcome(value, {"median_pfv_cm_s": median / VELOCITY["cm/s"]}, flags)
 
 
+def steps(example: Example) -> list[Text]:
+    """Work the median velocity from the piece's size, then the chance at the floor's."""
+    B, H, PFV = (number(one, ".6g") for one in (example.breadth, example.height, example.pfv))
+    alpha: Any = critical_angle(B, H)
+    C_R: Any = restitution(B, H)
+    V_imp = _impulse_velocity(H, number(float(alpha.value), ".6f"), number(G, ".3f"))
+    gamma = _gamma(number(float(C_R.value), ".6f"))
+    beta_e = _damping(number(float(gamma.value), ".6f"))
+    median = number(float(V_imp.value), ".6g") / _velocity_amplification(number(float(beta_e.value), ".6f"))
+    z = np.log(PFV / number(example.number("median_pfv_cm_s"), ".6g")) / BETA
+    return [
+        *note_estimate(example),
+        show("α = atan(B/H)", alpha, ".6f", "rad"),
+        show("V_imp = √[(4/3)·g·H·(1/cos α - 1)/cos² α]", V_imp, ".6g", "cm/s"),
+        show("C_R = 1 - 1.5·sin² α", C_R, ".6f"),
+        show("γ = -2·ln C_R", gamma, ".6f"),
+        show("β_e = γ/√(4π² + γ²)", beta_e, ".6f"),
+        show("PFV50 = V_imp/[2.31 - 0.41·ln(100·β_e)]", median, ".6g", "cm/s"),
+        show("z = ln(PFV/PFV50)/β", z, ".4f"),
+        show("P = Φ(z)", normal_cdf(number(float(z.value), ".4f")), ".4f"),
+    ]
+
+
 METHOD = Method(
     key="fema_p58",
     title="FEMA P-58 contents",
+    short_title="FEMA P-58",
+    symbol="P",
     kind="probability",
     order=60,
     predicts="The chance that unanchored contents overturn, from their size and the peak floor velocity.",
@@ -92,6 +140,25 @@ METHOD = Method(
     needs=frozenset({"breadth", "height", "pfv"}),
     valid={"breadth_to_height": CHECKED_BREADTH_TO_HEIGHT},
     evaluate=evaluate,
+    steps=steps,
+    columns=(Column("median_pfv_cm_s", "Median PFV", "cm/s", ".1f"),),
+    reasons=(
+        Reason(
+            "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which rocking can start; FEMA P-58 depends on velocity "
+            "only and knows no such threshold: it still gives {value}.",
+            side="above",
+            can_rock=False,
+        ),
+        Reason(
+            "FEMA P-58 depends on velocity only: PFV is {pfv_cm_s} cm/s, its median for such pieces {median_pfv_cm_s} "
+            "cm/s.",
+        ),
+        Reason(ESTIMATED, flag="pfv_estimated"),
+        Reason(
+            "B/H {breadth_to_height} lies outside that of the published medians of FEMA P-58.",
+            flag="extrapolated",
+        ),
+    ),
     equations=(
         "P = Φ(ln(PFV/PFV50)/β), β = 0.5;  PFV50 = V_imp/[2.31 - 0.41 ln(100 β_e)]",
         "V_imp = √[(4/3) g H (1/cos α - 1)/cos² α], α = atan(B/H)",
@@ -110,8 +177,7 @@ METHOD = Method(
         "rock.",
     ),
     flags={
-        "pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here",
-        "pfv_estimated": "peak floor velocity estimated from PFA and the building's period",
+        **PFV_FLAGS,
         "does_not_rock": "not evaluated: B/H is 1.41 or more, so the piece does not rock",
         "extrapolated": "outside the B/H of the nine published medians (0.155 to 0.625)",
     },

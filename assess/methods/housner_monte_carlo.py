@@ -17,25 +17,38 @@ Rigid, free-standing pieces that neither slide nor bounce, with B/H below 1.41, 
 Departures
 ----------
 N is 200 by default; the paper's is 100, of which none fallen cannot show "low". With N "auto", the interval is that of
-six looks. What the piece does under the recorded motion itself is found too.
+six checks. What the piece does under the recorded motion itself is found too.
 """
 
-from collections.abc import Callable, Iterator
+import math
 from dataclasses import dataclass
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.methods._method import BoolArray, Cases, Ensemble, FloatArray, Joint, Method, Motions, Outcome, Reference
-from assess.risk import NORMAL_95, classify_all, wilson_interval
-from assess.rocking.block import STOCKY
+from assess.i18n import Text, fill
+from assess.methods._expression import number, show
+from assess.methods._method import (
+    BoolArray,
+    Cases,
+    Column,
+    Ensemble,
+    Example,
+    FloatArray,
+    Joint,
+    Method,
+    Motions,
+    Outcome,
+    Reason,
+    Reference,
+)  # fmt: skip
+from assess.methods._simulate import LOOKS, interval_width, make_batches, rock_cases, run_side_by_side
+from assess.progress import SILENT, Progress, Stage
+from assess.risk import classify_all, wilson_end, wilson_interval
+from assess.rocking.block import STOCKY, critical_angle, frequency_parameter, radius, restitution
 from assess.settings import AUTO, Settings
+from assess.units import GRAVITY, LENGTH
 
-LOOKS = (125, 250, 500, 1000, 2500, 5000)
-"""Numbers of motions at which "auto" looks whether the interval of a piece lies within one class."""
-LOOKS_Z = 2.64
-"""Half width of the intervals of "auto" [-]: 95 % for all six looks together (Bonferroni, 0.83 % each)."""
 BATCH = 500
 """Motions made at once."""
 MOST_PAIRS = 2_000_000
@@ -43,28 +56,19 @@ MOST_PAIRS = 2_000_000
 SHOWN = 3
 """Motions kept for reports."""
 
-_Result = TypeVar("_Result")
-Tell = Callable[[str, int, float], None]
-"""Called with "motions", "rocking" or "done", the number of the ensemble, and the share of it that is done [-]."""
 
-
-def interval_width(settings: Settings) -> float:
-    """Return z, the half width of the intervals in standard deviations [-]."""
-    return LOOKS_Z if settings.runs == AUTO else NORMAL_95
-
-
-def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, tell: Tell | None = None) -> Outcome:
-    """Integrate the cases that have an ensemble; the others have no value."""
+def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage | None = None) -> Outcome:
+    """Integrate the cases that have an ensemble, each of which is one part of `stage`; the others have no value."""
     known = (cases.ensemble >= 0) & (cases.breadth_to_height < STOCKY)
     found = _Found.empty(cases.breadth.size)
     owns = [(number, np.flatnonzero(known & (cases.ensemble == number))) for number in range(len(cases.ensembles))]
     owns = [(number, own) for number, own in owns if own.size]
     side_by_side = min(threads, len(owns))
+    stage = stage or Stage(SILENT, "verification", "", len(cases.ensembles))
 
     def work(number: int, own: NDArray[np.intp]) -> tuple[Joint, tuple[FloatArray, FloatArray]]:
-        inner, ensemble = max(1, threads // side_by_side), cases.ensembles[number]
-        joint = _integrate(cases, own, number, ensemble, settings, inner, tell or _say_nothing)
-        return joint, _under_record(cases, own, ensemble, inner)
+        run = _Run(cases, own, number, settings, max(1, threads // side_by_side), stage)
+        return run.integrate(), run.under_record()
 
     joints = []
     for joint, record in run_side_by_side(work, owns, side_by_side):
@@ -96,26 +100,6 @@ def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[J
     return Outcome(np.where(done, found.overturned / runs, np.nan), detail, flags, tuple(joints))
 
 
-def run_side_by_side(work: Callable[..., _Result], tasks: list[Any], threads: int) -> Iterator[_Result]:
-    """Yield the results of `work` in the order of `tasks`, several of which are worked on at once.
-
-    Never in the thread that called: a Ctrl-C that meets a compilation there would be lost.
-    """
-    if not tasks:
-        return
-    from concurrent.futures import ThreadPoolExecutor
-
-    pool = ThreadPoolExecutor(threads)
-    try:
-        yield from [future.result() for future in [pool.submit(work, *task) for task in tasks]]
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)  # after Ctrl-C nobody waits for what is left
-
-
-def _say_nothing(what: str, number: int, share: float) -> None:
-    """Keep to oneself how far it is."""
-
-
 @dataclass(slots=True)
 class _Found:
     """What was found, case by case."""
@@ -138,43 +122,60 @@ class _Found:
         self.generic[joint.cases], self.weak[joint.cases] = ensemble.is_generic, ensemble.is_weak
 
 
-def _integrate(
-    cases: Cases, own: NDArray[np.intp], number: int, ensemble: Ensemble, settings: Settings, threads: int, tell: Tell
-) -> Joint:
-    """Integrate the cases `own` under one ensemble, look by look; those that are decided leave."""
-    tell("motions", number, 0.0)
-    motions = ensemble.open(threads)
-    looks = LOOKS if settings.runs == AUTO else (int(settings.runs),)
-    fell, rotation = np.zeros((own.size, 0), np.bool_), np.zeros((own.size, 0), np.float32)
-    size = min(BATCH, max(1, MOST_PAIRS // own.size))
-    runs, going = np.zeros(own.size, dtype=np.int64), np.arange(own.size)
-    for first, last in zip((0, *looks), looks, strict=False):
-        wider = ((0, 0), (0, last - first))
-        fell, rotation = np.pad(fell, wider), np.pad(rotation, wider)
-        for at, batch, time_step in make_batches(motions, first, last, size):
-            tell("rocking", number, at / looks[-1])
-            one = rock_cases(cases, own[going], batch, time_step, threads)
-            fell[going, at : at + len(batch)], rotation[going, at : at + len(batch)] = one
-            tell("motions", number, (at + len(batch)) / looks[-1])
-        runs[going] = last
-        going = going[_is_open(fell[going], settings)]
-        if not going.size:
-            break
-    tell("done", number, 1.0)
-    return Joint(
-        ensemble=number, cases=own, runs=runs, fell=fell, rotation=rotation,
-        examples=_examples(motions, fell.shape[1]), fit=motions.fit,
-        spectra=motions.spectra and motions.spectra.first(fell.shape[1]),
-    )  # fmt: skip
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """The cases `own` under ensemble `number`."""
 
+    cases: Cases
+    own: NDArray[np.intp]
+    number: int
+    settings: Settings
+    threads: int
+    stage: Stage
 
-def make_batches(motions: Motions, first: int, last: int, size: int) -> Iterator[tuple[int, FloatArray, float]]:
-    """Yield motions `first` to `last` - 1: the number of the first of a batch, the batch, its time step."""
-    at = first
-    for start in range(first, last, size):
-        for batch, time_step in motions.realise(start, min(size, last - start)):
-            yield at, batch, time_step
-            at += len(batch)
+    @property
+    def ensemble(self) -> Ensemble:
+        return self.cases.ensembles[self.number]
+
+    @property
+    def progress(self) -> Progress:
+        return self.stage.progress
+
+    def integrate(self) -> Joint:
+        """Integrate the cases, check by check with runs="auto"; those that are decided leave."""
+        motions = self.ensemble.open(self.threads, self.progress)
+        checks = LOOKS if self.settings.runs == AUTO else (int(self.settings.runs),)
+        fell, rotation = np.zeros((self.own.size, 0), np.bool_), np.zeros((self.own.size, 0), np.float32)
+        runs, going = np.zeros(self.own.size, dtype=np.int64), np.arange(self.own.size)
+        size = min(BATCH, max(1, MOST_PAIRS // self.own.size))
+        for first, last in zip((0, *checks), checks, strict=False):
+            wider = ((0, 0), (0, last - first))
+            fell, rotation = np.pad(fell, wider), np.pad(rotation, wider)
+            for at, batch, time_step in make_batches(motions, first, last, size):
+                here = slice(at, at + len(batch))
+                fell[going, here], rotation[going, here] = self._rock(self.own[going], batch, time_step)
+                self.stage.at(here.stop / checks[-1], self.number)
+            runs[going] = last
+            going = going[_is_open(fell[going], self.settings)]
+            if not going.size:
+                break
+        self.stage.at(1.0, self.number)
+        return Joint(
+            ensemble=self.number, cases=self.own, runs=runs, fell=fell, rotation=rotation,
+            examples=_examples(motions, fell.shape[1]), fit=motions.fit,
+            spectra=motions.spectra and motions.spectra.first(fell.shape[1]),
+        )  # fmt: skip
+
+    def under_record(self) -> tuple[FloatArray, FloatArray]:
+        """Return whether each case overturns under the record itself, and how far it turns; NaN without a record."""
+        if self.ensemble.record is None:
+            return np.full(self.own.size, np.nan), np.full(self.own.size, np.nan)
+        motion, time_step = self.ensemble.record
+        fell, rotation = self._rock(self.own, motion[np.newaxis], time_step)
+        return fell[:, 0].astype(np.float64), rotation[:, 0]
+
+    def _rock(self, own: NDArray[np.intp], motions: FloatArray, time_step: float) -> tuple[BoolArray, FloatArray]:
+        return rock_cases(self.cases, own, motions, time_step, self.threads, self.progress)
 
 
 def _examples(motions: Motions, count: int) -> list[tuple[NDArray[np.float32], float]]:
@@ -183,37 +184,58 @@ def _examples(motions: Motions, count: int) -> list[tuple[NDArray[np.float32], f
 
 
 def _is_open(fell: BoolArray, settings: Settings) -> BoolArray:
-    """Tell which cases' intervals reach over more than one class."""
+    """Return which cases' intervals reach over more than one class."""
     low, high = wilson_interval(fell.sum(axis=1), fell.shape[1], interval_width(settings))
     return np.asarray(classify_all(low) != classify_all(high), dtype=np.bool_)
 
 
-def rock_cases(
-    cases: Cases, own: NDArray[np.intp], motions: FloatArray, time_step: float, threads: int
-) -> tuple[BoolArray, FloatArray]:
-    """Return whether each of the cases `own` overturns under each motion, and how far it turns: (m, k) each."""
-    from assess.rocking.ensemble import rock_blocks
-
-    found = rock_blocks(
-        cases.breadth[own], cases.height[own], motions, time_step, restitution=cases.restitution[own], threads=threads
-    )
-    return found.overturned, found.rotation
+def steps(example: Example) -> list[Text]:
+    """Work the numbers of the block, then the share of motions that overturn it, and its interval."""
+    return [*_work_block(example), *_work_share(example), *_work_record(example)]
 
 
-def _under_record(
-    cases: Cases, own: NDArray[np.intp], ensemble: Ensemble, threads: int
-) -> tuple[FloatArray, FloatArray]:
-    """Return whether each case overturns under the recorded motion itself, and how far it turns; NaN without one."""
-    if ensemble.record is None:
-        return np.full(own.size, np.nan), np.full(own.size, np.nan)
-    motion, time_step = ensemble.record
-    fell, rotation = rock_cases(cases, own, motion[np.newaxis], time_step, threads)
-    return fell[:, 0].astype(np.float64), rotation[:, 0]
+def _work_block(example: Example) -> list[Text]:
+    B, H = (number(one * LENGTH["cm"], ".6g") for one in (example.breadth, example.height))
+    limit = number(GRAVITY, ".5f") * B / H
+    return [
+        show("α = atan(B/H)", critical_angle(B, H), ".6f", "rad"),
+        show("r = ½·√(B² + H²)", radius(B, H), ".5f", "m"),
+        show("p = √(3g/4r)", frequency_parameter(B, H), ".4f", "rad/s"),
+        show("η = 1 - 1.5·sin² α", restitution(B, H), ".4f")
+        if math.isnan(example.restitution)
+        else fill("η = {eta:g}, as set for the building.", eta=example.restitution),
+        show("g·B/H", limit, ".4f", "m/s²"),
+        fill("The piece starts to rock where the floor's acceleration exceeds {limit:.4f} m/s².", limit=limit.value),
+    ]
+
+
+def _work_share(example: Example) -> list[Text]:
+    k, n, z = example.number("overturned"), example.number("runs"), interval_width(example.settings)
+    share, runs, width = number(example.value, ".5f"), number(n, ".0f"), number(z, ".4f")
+    numbers = {"low": example.number("low"), "high": example.number("high"), "z": z}
+    return [
+        fill("It overturned under {k:,} of {n:,} motions.", k=int(k), n=int(n)),
+        show("R = k/N", number(k, ".0f") / runs, ".4f"),
+        show("R_low", wilson_end(share, runs, width, is_high=False), ".4f"),
+        show("R_high", wilson_end(share, runs, width, is_high=True), ".4f"),
+        fill("The 95 % interval reaches from {low:.4f} to {high:.4f} (Wilson, z = {z:.2f}).", **numbers),
+    ]
+
+
+def _work_record(example: Example) -> list[Text]:
+    fell = example.number("record_overturned")
+    if math.isnan(fell):
+        return []
+    if fell:
+        return [fill("Under the recorded motion itself it overturns, so its class is at least high.")]
+    return [fill("Under the recorded motion itself it does not overturn.")]
 
 
 METHOD = Method(
     key="housner_monte_carlo",
     title="Housner Monte Carlo",
+    short_title="Housner Monte Carlo",
+    role="simulation",
     kind="probability",
     order=70,
     predicts="The chance that a free-standing piece overturns, from its rocking integrated under many motions that are "
@@ -227,7 +249,38 @@ METHOD = Method(
     ),
     needs=frozenset({"breadth", "height", "ensemble"}),
     evaluate=evaluate,
-    tier="verification",
+    steps=steps,
+    columns=(
+        Column("runs", "Motions", kind="count", format=",.0f"),
+        Column("overturned", "Overturned", kind="count", format=",.0f"),
+        Column("low", "Lower end of the interval"),
+        Column("high", "Upper end of the interval"),
+        Column("record_overturned", "Overturns under the record", kind="truth", format=".0f"),
+        Column("record_rotation", "Largest rotation under the record over the critical angle", format=".2f"),
+    ),
+    reasons=(
+        Reason(
+            "Direct integration follows each piece through whole motions of the floor, with its size: {overturned} of "
+            "{runs} motions overturn it.",
+        ),
+        Reason(
+            "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which rocking can start; the integrated motions that "
+            "overturn the piece have higher peaks of their own.",
+            side="above",
+            can_rock=False,
+        ),
+        Reason(
+            "PFA is {pfa_to_start} times g·B/H: rocking can start, but a short peak need not overturn the piece, and "
+            "under most of the integrated motions it comes back to rest.",
+            side="below",
+            can_rock=True,
+        ),
+        Reason(
+            "Only peaks of this floor are known: the integrated motions follow a generic spectrum.",
+            flag="generic_spectrum",
+        ),
+        Reason("The motions that were integrated are weaker than the floor's.", flag="weak_motions"),
+    ),
     equations=(
         "I₀·θ″ + m·g·r·sin(-α - θ) = -m·a_g·r·cos(-α - θ), θ < 0   (1)",
         "I₀·θ″ + m·g·r·sin(α - θ) = -m·a_g·r·cos(α - θ), θ > 0   (2), I₀ = (4/3)·m·r², tan α = B/H, r = ½·√(B² + H²)",
@@ -245,7 +298,7 @@ METHOD = Method(
         "The interval is Wilson's, 95 % (z = 1.96): it covers the number of motions only, not the model, the floor "
         "motion or the earthquake.",
         'With N "auto", motions are added at 125, 250, 500, 1,000, 2,500 and 5,000, and a piece is done once its '
-        "interval (z = 2.64: 95 % for all six looks together) lies within one class.",
+        "interval (z = 2.64: 95 % for all six checks together) lies within one class.",
     ),
     departures=(
         'N is 200 by default; the paper\'s is 100. None of 100 fallen cannot show "low": the interval then reaches to '
@@ -255,9 +308,9 @@ METHOD = Method(
     ),
     flags={
         "fell_in_record": "it overturns under the recorded motion itself, so its class is at least high",
-        "generic_spectrum": "the motions of this floor were made for a generic spectrum: verification may raise a "
+        "generic_spectrum": "the motions of this floor were made for a generic spectrum: simulation may raise a "
         "class, never lower it",
-        "weak_motions": "the user's own motions are weaker than the floor's: verification may raise a class, never "
+        "weak_motions": "the user's own motions are weaker than the floor's: simulation may raise a class, never "
         "lower it",
         "undecided": "after 5,000 motions its interval still reaches over more than one class",
         "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",

@@ -19,18 +19,23 @@ The velocity limit is taken in its rounded form, as in Japanese practice (4 of t
 original paper was not at hand. Where PFA alone is below its limit the answer is known without PFV.
 """
 
+import math
+from typing import Any
+
 import numpy as np
 
-from assess.methods._method import Cases, FloatArray, Method, Outcome, Reference
+from assess.i18n import Text, fill
+from assess.methods._expression import G, compare, number, show, show_ratio
+from assess.methods._method import PFV_FLAGS, Cases, Column, Example, Method, Outcome, Reference
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, VELOCITY
 
 
-def _acceleration_limit(B_H: FloatArray, g: float) -> FloatArray:
+def _acceleration_limit(B_H: Any, g: Any) -> Any:
     return g * B_H
 
 
-def _velocity_limit(B: FloatArray, H: FloatArray) -> FloatArray:
+def _velocity_limit(B: Any, H: Any) -> Any:
     return 10 * B / np.sqrt(H)
 
 
@@ -47,9 +52,25 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     return Outcome(value, detail, flags)
 
 
+def steps(example: Example) -> list[Text]:
+    """Work both limits."""
+    limit_A = _acceleration_limit(number(example.breadth / example.height, ".5f"), number(G, ".3f"))
+    limit_V = _velocity_limit(number(example.breadth, ".6g"), number(example.height, ".6g"))
+    return [
+        show_ratio(example),
+        show("g·B/H", limit_A, ".6g", "cm/s²"),
+        compare("PFA", example.pfa, limit_A, "cm/s²", is_above=example.pfa > limit_A.value),
+        show("10·B/√H", limit_V, ".6g", "cm/s"),
+        fill("PFV is unknown, but need not be known.")
+        if math.isnan(example.pfv)
+        else compare("PFV", example.pfv, limit_V, "cm/s", is_above=example.pfv > limit_V.value),
+    ]
+
+
 METHOD = Method(
     key="ishiyama",
     title="Ishiyama criterion",
+    short_title="Ishiyama",
     kind="criterion",
     order=40,
     predicts="Whether the floor's peak acceleration and velocity both exceed the least that can overturn a "
@@ -62,6 +83,11 @@ METHOD = Method(
     ),
     needs=frozenset({"breadth", "height", "pfa", "pfv"}),
     evaluate=evaluate,
+    steps=steps,
+    columns=(
+        Column("threshold_pfa_g", "Lower limit of PFA", "g"),
+        Column("threshold_pfv_cm_s", "Lower limit of PFV", "cm/s", ".1f"),
+    ),
     equations=("Overturning possible where PFA > g·(B/H) and PFV > 10·B/√H (cm, cm/s)",),
     assumptions=(
         "The piece is free-standing, rigid and homogeneous, its centroid at mid-height, and it does not slide.",
@@ -73,9 +99,6 @@ METHOD = Method(
         "Where the acceleration alone is below its limit, overturning is not expected whatever the velocity, known "
         "or not.",
     ),
-    flags={
-        "pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here",
-        "pfv_estimated": "peak floor velocity estimated from PFA and the building's period",
-    },
+    flags=PFV_FLAGS,
     words=("overturning possible", "overturning not expected"),
 )

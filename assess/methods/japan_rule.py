@@ -17,9 +17,13 @@ Departures
 A piece within rounding of the limit (1e-9) is on it, and must be fixed.
 """
 
+from typing import Any
+
 import numpy as np
 
-from assess.methods._method import Cases, FloatArray, Method, Outcome, Reference
+from assess.i18n import Text, fill
+from assess.methods._expression import number, show
+from assess.methods._method import Cases, Column, Example, Method, Outcome, Reference
 from assess.settings import Settings
 from assess.units import LENGTH, ROUNDING
 
@@ -27,7 +31,7 @@ LIMIT = 4.0
 """B/√H [cm^0.5] up to which a piece must be fixed."""
 
 
-def _breadth_over_root_height(B: FloatArray, H: FloatArray) -> FloatArray:
+def _breadth_over_root_height(B: Any, H: Any) -> Any:
     return B / np.sqrt(H)
 
 
@@ -38,9 +42,22 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     return Outcome(value, {"breadth_over_root_height": ratio})
 
 
+def steps(example: Example) -> list[Text]:
+    """Work B/√H against its limit."""
+    ratio = _breadth_over_root_height(number(example.breadth, ".6g"), number(example.height, ".6g"))
+    numbers = {"ratio": float(ratio.value), "limit": LIMIT}
+    return [
+        show("B/√H", ratio, ".4f", "(cm)"),
+        fill("{ratio:.4f} is not above {limit:g}.", **numbers)
+        if example.value
+        else fill("{ratio:.4f} is above {limit:g}.", **numbers),
+    ]
+
+
 METHOD = Method(
     key="japan_rule",
     title="Japanese rule",
+    short_title="Japanese rule",
     kind="criterion",
     order=50,
     predicts="Whether a piece is so slender for its height that Japanese practice wants it fixed, whatever the "
@@ -54,6 +71,8 @@ METHOD = Method(
     ),
     needs=frozenset({"breadth", "height"}),
     evaluate=evaluate,
+    steps=steps,
+    columns=(Column("breadth_over_root_height", "B/√H", "cm^0.5", ".2f"),),
     equations=("Must be fixed where B/√H ≤ 4 (cm)",),
     assumptions=(
         "B is the shorter plan side.",

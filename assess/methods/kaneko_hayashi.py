@@ -29,15 +29,29 @@ Departures
 """
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
-from assess.methods._method import Cases, FloatArray, Method, Outcome, Reference, normal_cdf
+from assess.i18n import Text, fill
+from assess.methods._expression import G, note_estimate, number, show, show_pfa, show_ratio
+from assess.methods._method import (
+    ESTIMATED,
+    PFV_FLAGS,
+    Cases,
+    Column,
+    Example,
+    LiveCells,
+    Method,
+    Outcome,
+    Parameter,
+    Reason,
+    Reference,
+    normal_cdf,
+)  # fmt: skip
 from assess.settings import Settings
-from assess.units import ACCELERATION, GRAVITY, LENGTH, ROUNDING, VELOCITY
-
-G = GRAVITY / ACCELERATION["cm/s2"]
-"""g of equation (6) [cm/s2]."""
+from assess.units import ACCELERATION, LENGTH, ROUNDING, VELOCITY
 
 VELOCITY_FACTOR, VELOCITY_POWER = 10.0, 2.5
 """10 and 2.5 of λ_V, equation (6)."""
@@ -50,28 +64,37 @@ NEAR_SWITCH = 1.1
 
 
 # Equation (6), first
-def _eq6_lambda_a(B_H: FloatArray, g: float) -> FloatArray:
+def _eq6_lambda_a(B_H: Any, g: float) -> Any:
     return np.log(B_H * g * (1 + B_H))
 
 
 # Equation (6), second
-def _eq6_lambda_v(B: FloatArray, H: FloatArray) -> FloatArray:
-    return np.log(VELOCITY_FACTOR * B / np.sqrt(H) * (1 + B / H) ** VELOCITY_POWER)
+def _eq6_lambda_v(B: Any, H: Any, B_H: Any) -> Any:
+    return np.log(VELOCITY_FACTOR * B / np.sqrt(H) * (1 + B_H) ** VELOCITY_POWER)
 
 
 # Equation (7), first
-def _eq7_floor_frequency(PFA: FloatArray, PFV: FloatArray) -> FloatArray:
+def _eq7_floor_frequency(PFA: Any, PFV: Any) -> Any:
     return PFA / (2 * np.pi * PFV)
 
 
 # Equation (7), second
-def _eq7_boundary_frequency(B: FloatArray, H: FloatArray) -> FloatArray:
-    return BOUNDARY_FACTOR / np.sqrt(H) * (1 + B / H) ** BOUNDARY_POWER
+def _eq7_boundary_frequency(H: Any, B_H: Any) -> Any:
+    return BOUNDARY_FACTOR / np.sqrt(H) * (1 + B_H) ** BOUNDARY_POWER
 
 
 # Equation (5), either line
-def _eq5(alpha: float, ln_P: FloatArray, lambda_: FloatArray, zeta: float) -> FloatArray:
+def _eq5(alpha: Any, ln_P: Any, lambda_: Any, zeta: Any) -> Any:
     return alpha * normal_cdf((ln_P - lambda_) / zeta)
+
+
+def _risk(B: Any, H: Any, B_H: Any, PFA: Any, PFV: Any, alpha: Any, zeta_A: Any, zeta_V: Any) -> Any:
+    """Equation (5) in cm and s; where PFV is unknown, its upper bound over every PFV."""
+    lambda_A, lambda_V = _eq6_lambda_a(B_H, G), _eq6_lambda_v(B, H, B_H)
+    R_A, R_V = _eq5(alpha, np.log(PFA), lambda_A, zeta_A), _eq5(alpha, np.log(PFV), lambda_V, zeta_V)
+    bound = np.maximum(R_A, _eq5(alpha, np.log(PFA), lambda_A, zeta_V))
+    switched = np.where(_eq7_floor_frequency(PFA, PFV) > _eq7_boundary_frequency(H, B_H), R_V, R_A)
+    return np.where(np.isnan(PFV), bound, switched)
 
 
 @np.errstate(all="ignore")
@@ -80,19 +103,14 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     B, H = cases.breadth / LENGTH["cm"], cases.height / LENGTH["cm"]
     PFA, PFV = cases.pfa / ACCELERATION["cm/s2"], cases.pfv / VELOCITY["cm/s"]
     alpha, zeta_A, zeta_V = settings.slide_coefficient, settings.zeta_acceleration, settings.zeta_velocity
-
-    lambda_A, lambda_V = _eq6_lambda_a(B / H, G), _eq6_lambda_v(B, H)
-    F_f, F_b = _eq7_floor_frequency(PFA, PFV), _eq7_boundary_frequency(B, H)
-    R_A, R_V = _eq5(alpha, np.log(PFA), lambda_A, zeta_A), _eq5(alpha, np.log(PFV), lambda_V, zeta_V)
-    bound = np.maximum(R_A, _eq5(alpha, np.log(PFA), lambda_A, zeta_V))
-
-    known = ~np.isnan(R_A)
+    value = _risk(B, H, B / H, PFA, PFV, alpha, zeta_A, zeta_V)
+    F_f, F_b = _eq7_floor_frequency(PFA, PFV), _eq7_boundary_frequency(H, B / H)
+    known = ~np.isnan(value)
     branch = np.select([~known, np.isnan(PFV), F_f > F_b], ["", "bound", "pfv"], default="pfa")
-    value = np.select([branch == "bound", branch == "pfv"], [bound, R_V], default=R_A)
     detail = {
         "branch": branch,
-        "median_pfa_g": np.exp(lambda_A) / G,
-        "median_pfv_cm_s": np.exp(lambda_V),
+        "median_pfa_g": np.exp(_eq6_lambda_a(B / H, G)) / G,
+        "median_pfv_cm_s": np.exp(_eq6_lambda_v(B, H, B / H)),
         "floor_frequency_hz": F_f,
         "boundary_frequency_hz": F_b,
     }
@@ -105,11 +123,70 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     return Outcome(value, detail, flags)
 
 
+def live(cells: LiveCells) -> Mapping[str, Any]:
+    """Return the value; 0 without shaking, where a spreadsheet has no logarithm."""
+    B_H, H, PFA, own = cells.breadth_to_height, cells.height_cm, cells.pfa_g * G, cells.parameters
+    alpha, zeta_A, zeta_V = (own[name] for name in ("slide_coefficient", "zeta_acceleration", "zeta_velocity"))
+    risk = _risk(B_H * H, H, B_H, PFA, cells.pfv_cm_s, alpha, zeta_A, zeta_V)
+    return {"value": np.where(cells.pfa_g <= 0, 0, risk)}
+
+
+def steps(example: Example) -> list[Text]:
+    """Work equations (5) to (7), or the upper bound where PFV is unknown."""
+    x, PFA = number(example.breadth / example.height, ".5f"), number(example.pfa, ".6g")
+    lambda_A = _eq6_lambda_a(x, number(G, ".3f"))
+    shown = number(float(lambda_A.value), ".5f")
+    found = [show_ratio(example), show_pfa(example), show("λ_A = ln[(B/H)·g·(1 + B/H)]", lambda_A, ".5f")]
+    work = _work_bound if math.isnan(example.pfv) else _work_switch
+    return [*found, *work(example, x, PFA, shown)]
+
+
+def _work_bound(example: Example, x: Any, PFA: Any, lambda_A: Any) -> list[Text]:
+    settings = example.settings
+    k = PFA / np.exp(lambda_A)
+    z = np.log(number(float(k.value), ".5f"))
+    phi_A, phi_V = (normal_cdf(z / zeta) for zeta in (settings.zeta_acceleration, settings.zeta_velocity))
+    largest = max(phi_A.value, phi_V.value)
+    return [
+        fill("PFV is unknown: the largest risk that any PFV could give is taken."),
+        show("k = PFA/exp(λ_A)", k, ".5f"),
+        show("Φ(ln k/ζ_A)", phi_A, ".4f"),
+        show("Φ(ln k/ζ_V)", phi_V, ".4f"),
+        fill("The larger of the two counts, times the slide coefficient α."),
+        show("R", settings.slide_coefficient * number(float(largest), ".4f"), ".4f"),
+    ]
+
+
+def _work_switch(example: Example, x: Any, PFA: Any, lambda_A: Any) -> list[Text]:
+    settings, by_velocity = example.settings, example.detail["branch"] == "pfv"
+    B, H, PFV = (number(one, ".6g") for one in (example.breadth, example.height, example.pfv))
+    lambda_V = _eq6_lambda_v(B, H, x)
+    if by_velocity:
+        note = fill("F_f is above F_b: the second line of equation (5) applies, that of the velocity.")
+        symbols, zeta = "z = (ln PFV - λ_V)/ζ_V", settings.zeta_velocity
+        z = (np.log(PFV) - number(float(lambda_V.value), ".5f")) / zeta
+    else:
+        note = fill("F_f is not above F_b: the first line of equation (5) applies, that of the acceleration.")
+        symbols, zeta = "z = (ln PFA - λ_A)/ζ_A", settings.zeta_acceleration
+        z = (np.log(PFA) - lambda_A) / zeta
+    return [
+        *note_estimate(example),
+        show("λ_V = ln[10·B/√H·(1 + B/H)^2.5]", lambda_V, ".5f"),
+        show("F_f = PFA/(2π·PFV)", _eq7_floor_frequency(PFA, PFV), ".4f", "Hz"),
+        show("F_b = 15.6/√H·(1 + B/H)^-1.5", _eq7_boundary_frequency(H, x), ".4f", "Hz"),
+        note,
+        show(symbols, z, ".4f"),
+        show("R = α·Φ(z)", settings.slide_coefficient * normal_cdf(number(float(z.value), ".4f")), ".4f"),
+    ]
+
+
 METHOD = Method(
     key="kaneko_hayashi",
     title="Kaneko-Hayashi formula",
+    short_title="Kaneko-Hayashi",
     kind="probability",
     order=20,
+    selects=True,
     predicts="The chance that a free-standing piece overturns, from its size and the peak acceleration and velocity "
     "of the floor.",
     reference=Reference(
@@ -123,6 +200,54 @@ METHOD = Method(
     ),
     needs=frozenset({"breadth", "height", "pfa"}),
     evaluate=evaluate,
+    steps=steps,
+    live=live,
+    columns=(
+        Column("branch", "Branch", kind="text", format=""),
+        Column("median_pfa_g", "Median PFA", "g"),
+        Column("median_pfv_cm_s", "Median PFV", "cm/s", ".1f"),
+        Column("floor_frequency_hz", "Floor frequency F_f", "Hz", ".2f"),
+        Column("boundary_frequency_hz", "Boundary frequency F_b", "Hz", ".2f"),
+    ),
+    parameters=(
+        Parameter("zeta_acceleration", "ζ_A", "zeta_a"),
+        Parameter("zeta_velocity", "ζ_V", "zeta_v"),
+        Parameter("slide_coefficient", "α", "slide_alpha"),
+    ),
+    reasons=(
+        Reason(
+            "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which rocking can start; the Kaneko-Hayashi formula "
+            "depends on velocity here and knows no such threshold: it still gives {value}.",
+            side="above",
+            column="branch",
+            equals="pfv",
+            can_rock=False,
+        ),
+        Reason(
+            "PFV is unknown: the Kaneko-Hayashi formula shows the largest risk that any velocity could give; the risk "
+            "at the true velocity may be much lower. PFA is {pfa_g} g, its median {median_pfa_g} g.",
+            column="branch",
+            equals="bound",
+        ),
+        Reason(
+            "The Kaneko-Hayashi formula depends on velocity here (F_f {floor_frequency_hz} Hz, above F_b "
+            "{boundary_frequency_hz} Hz): PFV is {pfv_cm_s} cm/s, its median for such pieces {median_pfv_cm_s} cm/s.",
+            column="branch",
+            equals="pfv",
+        ),
+        Reason(
+            "The Kaneko-Hayashi formula depends on acceleration here (F_f {floor_frequency_hz} Hz, not above F_b "
+            "{boundary_frequency_hz} Hz): PFA is {pfa_g} g, its median for such pieces {median_pfa_g} g.",
+            column="branch",
+            equals="pfa",
+        ),
+        Reason(
+            "F_f {floor_frequency_hz} Hz lies within 10 % of F_b {boundary_frequency_hz} Hz, where the Kaneko-Hayashi "
+            "formula jumps between acceleration and velocity: a slightly different size or motion may change it much.",
+            flag="near_switch",
+        ),
+        Reason(ESTIMATED, flag="pfv_estimated"),
+    ),
     equations=(
         "R = α·Φ((ln PFA - λ_A)/ζ_A) where F_f ≤ F_b;  R = α·Φ((ln PFV - λ_V)/ζ_V) where F_f > F_b   (5)",
         "λ_A = ln[(B/H) g (1 + B/H)];  λ_V = ln[10 B/√H (1 + B/H)^2.5]   (6)",
@@ -146,7 +271,7 @@ METHOD = Method(
     ),
     flags={
         "pfv_unknown_upper_bound": "peak floor velocity unknown: the largest risk over every velocity is shown",
-        "pfv_estimated": "peak floor velocity estimated from PFA and the building's period",
+        "pfv_estimated": PFV_FLAGS["pfv_estimated"],
         "near_switch": "within 10 % of the frequency at which the formula jumps from acceleration to velocity",
         "slides": "friction is below B/H: the piece would slide before it rocks, which the result does not count in "
         "its favour",

@@ -27,11 +27,15 @@ safer:
 The small residue of the cap (B/H 0.1526 to 0.154) lies where equation (9) is above 1, so the clip hides it.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from assess.methods._method import Cases, FloatArray, Method, Outcome, Range, Reference
+from assess.i18n import Text, fill
+from assess.methods._expression import G, localise, number, plain, show, show_pfa, show_ratio
+from assess.methods._method import Cases, Column, Example, LiveCells, Method, Outcome, Range, Reason, Reference
 from assess.settings import Settings
 from assess.units import ACCELERATION
 
@@ -51,7 +55,7 @@ class Coefficients:
 COEFFICIENTS = Coefficients(
     a=-0.97758451, b=0.30856415, c=0.0032112873, d=-0.018590461, e=-0.000001941, f=-0.00010152672
 )
-"""As printed under equation (9); formulas elsewhere (live columns of the workbook) are made from them."""
+"""As printed under equation (9)."""
 
 THIN_PFA_CAP = 640.0
 """Largest PFA [cm/s2] that `turning_breadth_to_height` reads: our departure, not the paper's."""
@@ -59,51 +63,125 @@ THIN_PFA_CAP = 640.0
 CHECKED_BREADTH_TO_HEIGHT = Range(0.14, 0.39)
 CHECKED_PFA = Range(0.10, 0.90, "g")
 
+SYMBOLS = ("b/(B/H)", "c·PFA", "d/(B/H)²", "e·PFA²", "f·PFA/(B/H)")
+
+
+def _list_coefficients(names: str) -> Text:
+    return localise(", ".join(f"{name} = {plain(getattr(COEFFICIENTS, name))}" for name in names))
+
+
+# Equation (9), term by term
+def _terms(B_H: Any, PFA: Any) -> tuple[Any, ...]:
+    k = COEFFICIENTS
+    return k.a, k.b / B_H, k.c * PFA, k.d / B_H**2, k.e * PFA**2, k.f * PFA / B_H
+
 
 # Equation (9)
-def _eq9(B_H: FloatArray, PFA: FloatArray) -> FloatArray:
-    k = COEFFICIENTS
-    return k.a + k.b / B_H + k.c * PFA + k.d / B_H**2 + k.e * PFA**2 + k.f * PFA / B_H
+def _eq9(B_H: Any, PFA: Any) -> Any:
+    a, *others = _terms(B_H, PFA)
+    return sum(others, a)
 
 
-def turning_breadth_to_height(PFA: FloatArray) -> FloatArray:
+def turning_breadth_to_height(PFA: Any) -> Any:
     """B/H* [-], where equation (9) is largest over B/H for a PFA [cm/s2]; the PFA it reads is capped."""
     b, d, f = COEFFICIENTS.b, COEFFICIENTS.d, COEFFICIENTS.f
     return -2 * d / (b + f * np.minimum(PFA, THIN_PFA_CAP))
 
 
-def turning_pfa(B_H: FloatArray) -> FloatArray:
+def turning_pfa(B_H: Any) -> Any:
     """PFA* [cm/s2], where equation (9) is largest over PFA for a B/H [-]."""
     c, e, f = COEFFICIENTS.c, COEFFICIENTS.e, COEFFICIENTS.f
     return (c + f / B_H) / (-2 * e)
 
 
+def _unclipped(B_H: Any, PFA: Any) -> Any:
+    """Equation (9) with departures 1 and 2."""
+    B_H_used = np.maximum(B_H, turning_breadth_to_height(PFA))
+    return _eq9(B_H_used, np.minimum(PFA, turning_pfa(B_H_used)))
+
+
+def _clip(OR: Any) -> Any:
+    return np.maximum(0.0, np.minimum(1.0, OR))
+
+
+@np.errstate(all="ignore")
 def evaluate(cases: Cases, settings: Settings) -> Outcome:
-    """Evaluate equation (9) with its departures; `raw` beside it is without them."""
+    """Evaluate equation (9) with its departures; `raw` is without them."""
     B_H, PFA = cases.breadth_to_height, cases.pfa / ACCELERATION["cm/s2"]
-    with np.errstate(all="ignore"):
-        B_H_star = turning_breadth_to_height(PFA)
-        B_H_used = np.maximum(B_H, B_H_star)
-        PFA_star = turning_pfa(B_H_used)
-        unclipped = _eq9(B_H_used, np.minimum(PFA, PFA_star))
-        raw = _eq9(B_H, PFA)
-    value = np.clip(unclipped, 0.0, 1.0)
+    B_H_star, unclipped = turning_breadth_to_height(PFA), _unclipped(B_H, PFA)
+    value = _clip(unclipped)
     known = ~np.isnan(value)
     inside = CHECKED_BREADTH_TO_HEIGHT.holds(B_H) & CHECKED_PFA.holds(cases.pfa / ACCELERATION["g"])
     flags = {
         "extrapolated": known & ~inside,
-        "held": PFA_star < PFA,
+        "held": turning_pfa(np.maximum(B_H, B_H_star)) < PFA,
         "thin": B_H_star > B_H,
         "clipped": known & (value != unclipped),
     }
-    return Outcome(value, {"raw": raw}, flags)
+    return Outcome(value, {"raw": _eq9(B_H, PFA)}, flags)
+
+
+def live(cells: LiveCells) -> Mapping[str, Any]:
+    """Return the value and equation (9) as printed."""
+    B_H, PFA = cells.breadth_to_height, cells.pfa_g * G
+    return {"value": _clip(_unclipped(B_H, PFA)), "raw": _eq9(B_H, PFA)}
+
+
+def steps(example: Example) -> list[Text]:
+    """Work equation (9) term by term, then the departures from it."""
+    x, y = number(example.breadth / example.height, ".5f"), number(example.pfa, ".6g")
+    a, *terms = _terms(x, y)
+    rounded = [number(float(term.value), ".4f") for term in terms]
+    listed = [show(symbol, term, ".4f") for symbol, term in zip(SYMBOLS, terms, strict=True)]
+    printed = show("OR_9", sum(rounded, number(a, ".8f")), ".4f")
+    return [
+        show_ratio(example),
+        show_pfa(example),
+        _list_coefficients("a"),
+        *listed,
+        printed,
+        *_work_departures(example),
+    ]
+
+
+def _work_departures(example: Example) -> list[Text]:
+    """Return how the departures apply: thin pieces, strong motion, the bounds 0 and 1."""
+    x, y = number(example.breadth / example.height, ".5f"), number(example.pfa, ".6g")
+    is_thin, is_held = "thin" in example.flags, "held" in example.flags
+    turning_x = turning_breadth_to_height(y)
+    found = [
+        show("B/H* = -2d/(b + f·min(PFA, 640))", turning_x, ".5f"),
+        fill("B/H lies below B/H*, where equation (9) would give a thinner piece a lower risk: B/H* is used instead.")
+        if is_thin
+        else fill("B/H is not below B/H*: it is used as it is."),
+    ]
+    x = number(float(turning_x.value), ".5f") if is_thin else x
+    turning_y = turning_pfa(x)
+    found += [
+        show("PFA* = (c + f/(B/H))/(-2e)", turning_y, ".6g", "cm/s²"),
+        fill("PFA lies above PFA*, beyond which equation (9) would fall again: PFA* is used instead.")
+        if is_held
+        else fill("PFA is not above PFA*: it is used as it is."),
+    ]
+    used = _eq9(x, number(float(turning_y.value), ".6g") if is_held else y)
+    found += [show("OR", used, ".4f")] if is_thin or is_held else []
+    if "clipped" in example.flags:
+        above = fill("A probability lies between 0 and 1: the result is above 1 and is set to 1.")
+        below = fill("A probability lies between 0 and 1: the result is below 0 and is set to 0.")
+        found.append(above if used.value > 1 else below)
+    return found
 
 
 METHOD = Method(
     key="proposed_or",
     title="Proposed OR formula",
+    short_title="OR",
+    symbol="OR",
+    role="adopted formula",
     kind="probability",
     order=10,
+    selects=True,
+    selecting_flags=("extrapolated",),
     predicts="The chance that a free-standing piece overturns, from its breadth-to-height ratio and the peak floor "
     "acceleration alone.",
     reference=Reference(
@@ -116,10 +194,34 @@ METHOD = Method(
     needs=frozenset({"breadth", "height", "pfa"}),
     valid={"breadth_to_height": CHECKED_BREADTH_TO_HEIGHT, "pfa": CHECKED_PFA},
     evaluate=evaluate,
+    steps=steps,
+    live=live,
+    columns=(Column("raw", "OR as printed"),),
     equations=(
         "OR = a + b/(B/H) + c·PFA + d/(B/H)² + e·PFA² + f·PFA/(B/H)   (9), PFA in cm/s²",
-        "a = -0.97758451, b = 0.30856415, c = 0.0032112873",
-        "d = -0.018590461, e = -0.000001941, f = -0.00010152672",
+        *(_list_coefficients(names) for names in ("abc", "def")),
+    ),
+    reasons=(
+        Reason(
+            "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which rocking can start; the proposed formula is a "
+            "surface fitted to results and knows no such threshold: it still gives {value}.",
+            side="above",
+            can_rock=False,
+        ),
+        Reason(
+            "The proposed formula depends on B/H {breadth_to_height} and PFA {pfa_g} g only and gives {value}, "
+            "whatever the size of the piece and the velocity of the floor.",
+        ),
+        Reason(
+            "B/H {breadth_to_height} is below the range of the proposed formula: its value is that of the B/H of "
+            "largest risk.",
+            flag="thin",
+        ),
+        Reason(
+            "B/H {breadth_to_height} at PFA {pfa_g} g lies outside the range in which the proposed formula was "
+            "checked.",
+            flag="extrapolated",
+        ),
     ),
     assumptions=(
         "The piece is free-standing, rigid and homogeneous, its centroid at mid-height; it does not slide; vertical "

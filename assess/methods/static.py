@@ -18,15 +18,19 @@ Departures
 None.
 """
 
+from typing import Any
+
 import numpy as np
 
-from assess.methods._method import Cases, FloatArray, Method, Outcome, Reference
+from assess.i18n import Text
+from assess.methods._expression import G, compare, number, show, show_ratio
+from assess.methods._method import Cases, Column, Example, Method, Outcome, Reference
 from assess.settings import Settings
 from assess.units import ACCELERATION
 
 
 # Section 2.1: a_g / g > B/H
-def _threshold(B_H: FloatArray, g: float) -> FloatArray:
+def _threshold(B_H: Any, g: Any) -> Any:
     return g * B_H
 
 
@@ -38,9 +42,20 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     return Outcome(value, {"threshold_pfa_g": threshold / ACCELERATION["g"]})
 
 
+def steps(example: Example) -> list[Text]:
+    """Work PFA > g·B/H."""
+    limit = _threshold(number(example.breadth / example.height, ".5f"), number(G, ".3f"))
+    return [
+        show_ratio(example),
+        show("g·B/H", limit, ".6g", "cm/s²"),
+        compare("PFA", example.pfa, limit, "cm/s²", is_above=bool(example.value)),
+    ]
+
+
 METHOD = Method(
     key="static",
     title="Static criterion (Milne, West)",
+    short_title="Static",
     kind="criterion",
     order=30,
     predicts="Whether the floor shakes hard enough for a free-standing piece to start rocking; it need not overturn "
@@ -54,6 +69,9 @@ METHOD = Method(
     ),
     needs=frozenset({"breadth", "height", "pfa"}),
     evaluate=evaluate,
+    steps=steps,
+    tells_rocking=True,
+    columns=(Column("threshold_pfa_g", "PFA at which rocking starts", "g"),),
     equations=("Rocking starts where PFA > g·(B/H)",),
     assumptions=(
         "The centroid is at mid-height, the piece is rigid and free-standing, and it does not slide.",

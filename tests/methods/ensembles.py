@@ -6,6 +6,7 @@ import numpy as np
 
 from assess.methods._method import FloatArray
 from assess.motion.fit import Fit, Spectra
+from assess.progress import SILENT, Progress
 
 STEP = 0.01
 SAMPLES = 300
@@ -37,7 +38,7 @@ class MadeUp:
         """The recorded motion, and its time step."""
         return (make_motion(self.seed, 10**6), STEP) if self.has_record else None
 
-    def open(self, threads: int) -> "MadeUp":
+    def open(self, threads: int, progress: Progress = SILENT) -> "MadeUp":
         """Note with how many threads."""
         self.opened.append(threads)
         return self

@@ -2,6 +2,8 @@
 
 import dataclasses
 import importlib
+import pickle
+import re
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.methods import Cases, Method, Outcome, all_methods
+from assess.i18n import placeholders
+from assess.methods import Cases, Method, Outcome, adopted_formula, all_methods, simulation
+from assess.methods._info import FACTS
 from assess.settings import Settings
 from assess.units import GRAVITY
 from tests.methods.ensembles import MadeUp
@@ -87,22 +91,44 @@ def assert_no_less(method: Method, milder: Cases, harsher: Cases) -> None:
 
 
 def test_order_of_reports():
-    assert [method.key for method in all_methods()][:6] == [
-        "proposed_or",
-        "kaneko_hayashi",
-        "static",
-        "ishiyama",
-        "japan_rule",
-        "fema_p58",
-    ]
     orders = [method.order for method in all_methods()]
     assert orders == sorted(set(orders))
+    assert all_methods()[0] is adopted_formula()
+
+
+class TestRoles:
+    def test_one_method_has_each(self):
+        roles = [method.role for method in all_methods()]
+        assert roles.count("adopted formula") == roles.count("simulation") == 1
+        assert adopted_formula().role == "adopted formula"
+        assert simulation().role == "simulation"
+
+    def test_the_adopted_formula_serves_the_workbook_and_the_choice_of_pieces(self):
+        formula = adopted_formula()
+        assert formula.is_live
+        assert formula.selects
+        assert {"breadth_to_height", "pfa"} <= formula.valid.keys()
+        assert formula.kind == "probability"
+
+    def test_the_simulation_gives_what_adoption_reads(self):
+        outcome = evaluate(simulation(), random_batch(20))
+        assert {"low", "high", "runs", "overturned", "record_overturned", "record_rotation"} <= outcome.detail.keys()
+        assert {"generic_spectrum", "weak_motions", "fell_in_record", "undecided", "does_not_rock"} <= set(
+            outcome.flags
+        )
+        assert simulation().tier == "verification"
+
+    def test_one_criterion_tells_whether_a_piece_can_rock(self):
+        (method,) = (method for method in all_methods() if method.tells_rocking)
+        assert evaluate(method, Cases.of(breadth=0.5, height=2.0, pfa=[2.4, 2.5])).value.tolist() == [0.0, 1.0]
 
 
 @METHODS
 class TestDescription:
     def test_every_text_is_filled(self, method):
         assert method.title
+        assert method.short_title
+        assert method.steps is not None
         assert method.predicts.endswith(".")
         assert method.equations
         assert method.assumptions
@@ -118,6 +144,47 @@ class TestDescription:
     def test_needs_are_fields_of_cases(self, method):
         assert method.needs
         assert method.needs <= set(FIELDS)
+
+    def test_columns_are_the_details_in_their_order(self, method):
+        detail = evaluate(method, random_batch(20)).detail
+        assert [column.name for column in method.columns] == list(detail)
+        for column in method.columns:
+            values = detail[column.name]
+            assert (values.dtype.kind == "U") == (column.kind == "text")
+            if column.kind != "text":
+                assert format(float(values[0]), column.format)
+            assert column.label
+
+    def test_reasons_name_what_there_is(self, method):
+        known = {*FACTS, "value", *(column.name for column in method.columns)}
+        sides = {"above", "below", ""}
+        for reason in method.reasons:
+            assert placeholders(reason.text) <= known
+            assert reason.side in sides
+            assert reason.flag in {"", *method.flags}
+            assert reason.column in {"", *(column.name for column in method.columns if column.kind == "text")}
+
+    def test_some_reason_applies_wherever_it_gives_a_probability(self, method):
+        if method.kind == "criterion":
+            return
+        outcome = evaluate(method, random_batch())
+        for at in np.flatnonzero(~np.isnan(outcome.value)):
+            detail = {name: values[at].item() for name, values in outcome.detail.items()}
+            flags = [flag for flag, raised in outcome.flags.items() if raised[at]]
+            assert any(one.applies("above", detail, flags, can_rock=True) for one in method.reasons)
+
+    def test_parameters_are_settings(self, method):
+        for one in method.parameters:
+            assert getattr(SETTINGS, one.setting) > 0
+            assert re.fullmatch("[a-z_]+", one.cell)
+
+    def test_info_is_the_method_without_functions(self, method):
+        info = pickle.loads(pickle.dumps(method.info))
+        assert info == method.info
+        assert (info.key, info.columns, info.tier, info.is_live) == (
+            method.key, method.columns, method.tier, method.live is not None,
+        )  # fmt: skip
+        assert len(pickle.dumps(method.info)) < 12_000
 
     def test_a_criterion_has_words_and_a_probability_none(self, method):
         assert all(method.words) is (method.kind == "criterion")
@@ -200,7 +267,7 @@ class TestUnknown:
     def test_no_shaking(self, method):
         still = Cases.of(breadth=[0.1, 0.3, 1.0, 3.0], height=1.0, pfa=0.0, pfv=[0.0, 0.0, np.nan, 0.0])
         value = evaluate(method, still).value
-        if {"pfa", "pfv"} & method.needs and method.key != "proposed_or":  # it gives some risk, see its own test
+        if {"pfa", "pfv"} & method.needs and method.role != "adopted formula":  # it gives some risk, see its own test
             assert np.all((value == 0) | np.isnan(value))
 
 

@@ -2,16 +2,19 @@
 
 import dataclasses
 import itertools
+import threading
 from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
-from assess.methods import Cases, Outcome
+from assess.errors import CancelledError
+from assess.methods import LOOKS, LOOKS_Z, Cases, Outcome, interval_width
 from assess.methods._method import FloatArray
-from assess.methods.housner_monte_carlo import BATCH, LOOKS, LOOKS_Z, METHOD, Tell, evaluate, interval_width
+from assess.methods.housner_monte_carlo import BATCH, METHOD, evaluate
 from assess.motion.fit import Fit, Spectra
+from assess.progress import SILENT, Progress, Report
 from assess.risk import classify_all, wilson_interval
 from assess.rocking.ensemble import rock_blocks
 from assess.settings import Settings
@@ -35,7 +38,7 @@ class Pushes:
     spectra: Spectra | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)
 
-    def open(self, threads: int) -> "Pushes":
+    def open(self, threads: int, progress: Progress = SILENT) -> "Pushes":
         return self
 
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
@@ -297,7 +300,7 @@ def test_equal_pieces_do_the_same() -> None:
 @pytest.mark.parametrize("where", ["open", "realise"])
 def test_what_an_ensemble_raises_comes_through(threads: int, where: str) -> None:
     class Broken(MadeUp):
-        def open(self, threads: int) -> MadeUp:
+        def open(self, threads: int, progress: Progress = SILENT) -> MadeUp:
             if where == "open":
                 raise RuntimeError("cannot open")
             return self
@@ -312,17 +315,24 @@ def test_what_an_ensemble_raises_comes_through(threads: int, where: str) -> None
 
 @pytest.mark.parametrize("settings", [Settings(runs=1200), AUTO], ids=["1200", "auto"])
 @pytest.mark.parametrize("threads", [1, 2])
-def test_it_tells_how_far_it_is(threads: int, settings: Settings) -> None:
-    told: list[tuple[str, int, float]] = []
-    tell: Tell = lambda *what: told.append(what)  # noqa: E731
-    evaluate(_cases([0, 1], Pushes((0.0,)), Pushes((12.0,))), settings, threads=threads, tell=tell)
-    for number in (0, 1):
-        own = [(what, share) for what, which, share in told if which == number]
-        shares = [share for _, share in own]
-        assert own[0] == ("motions", 0.0)
-        assert own[-1] == ("done", 1.0)
-        assert shares == sorted(shares)
-        assert {what for what, _ in own} == {"motions", "rocking", "done"}
+def test_it_reports_how_far_it_is(threads: int, settings: Settings) -> None:
+    reports: list[Report] = []
+    with Progress(reports.append).stage("verification", "", 2) as stage:
+        evaluate(_cases([0, 1], Pushes((0.0,)), Pushes((12.0,))), settings, threads=threads, stage=stage)
+    shares = [one.share for one in reports]
+    assert shares == sorted(shares)
+    assert shares[0] == 0.0
+    assert shares[-1] == 1.0
+    assert len(shares) > 4
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_it_stops_between_batches(threads: int) -> None:
+    cancel = threading.Event()
+    progress = Progress(lambda report: cancel.set() if report.share > 0 else None, cancel)
+    ensembles = Pushes((0.0,)), Pushes((12.0,))
+    with pytest.raises(CancelledError), progress.stage("verification", "", 2) as stage:
+        evaluate(_cases([0, 1], *ensembles), Settings(runs=10 * BATCH), threads=threads, stage=stage)
 
 
 def test_its_description_tells_what_it_does() -> None:

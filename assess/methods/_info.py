@@ -1,0 +1,241 @@
+"""What a method says of itself: texts and numbers only, without functions, so that results can carry it."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from assess.units import ROUNDING
+
+Role = Literal["adopted formula", "simulation", "other"]
+Side = Literal["", "above", "below"]
+
+DECIMALS = 3
+"""Of the errors of fitted models, as they are shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Where a method has been checked: both ends belong to it. `unit` is how the ends are written."""
+
+    low: float
+    high: float
+    unit: str = ""
+
+    def holds(self, values: Any) -> Any:
+        """Tell for each of `values` (n,), in this range's own unit, whether it lies inside; NaN does not."""
+        return (values >= self.low * (1 - ROUNDING)) & (values <= self.high * (1 + ROUNDING))
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The publication: who, when, what and where; `doi` where one is known.
+
+    `remark` is what is not bibliographic, in sentences: the place in the publication, or how it came to be known.
+    Reports translate it; the rest stands as the publication has it.
+    """
+
+    authors: str
+    year: str
+    title: str
+    source: str
+    doi: str = ""
+    remark: str = ""
+
+    @property
+    def bibliographic(self) -> str:
+        """The reference without its remark: the same in every language."""
+        year = f" ({self.year})" if self.year else ""
+        lead = f"{self.authors}{year}. " if self.authors else ""
+        source = f" {self.source}." if self.source else ""
+        return f"{lead}{self.title}.{source}" + (f" doi:{self.doi}" if self.doi else "")
+
+    def __str__(self) -> str:
+        return f"{self.bibliographic} {self.remark}".strip()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FittedOn:
+    """What a model was fitted on, in words, and its root mean square errors where a building is left out [-].
+
+    `spread` is the standard error of `error`; `constant` is the error of a constant, the mean chance of the others.
+    """
+
+    data: str
+    error: float
+    spread: float
+    constant: float
+
+    @property
+    def is_no_better(self) -> bool:
+        """Whether a constant does as well, to the decimals that are shown."""
+        return round(self.error, DECIMALS) >= round(self.constant, DECIMALS)
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A result that a method gives in `Outcome.detail` beside its value.
+
+    `name` is its key in results.json; `label` its heading in English; `unit` that of the values as they stand; `format`
+    how Python formats one value. ``kind`` "truth" is 1, 0 or unknown; "text" has no format.
+    """
+
+    name: str
+    label: str
+    unit: str = ""
+    format: str = ".3f"
+    kind: Literal["number", "count", "truth", "text"] = "number"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A field of `Settings` that a method reads: its symbol, and the name of the cell that holds it in workbooks."""
+
+    setting: str
+    symbol: str
+    cell: str
+
+
+FACTS: Mapping[str, str] = {
+    "pfa_g": ".3f", "pfv_cm_s": ".1f", "breadth_to_height": ".3f", "height_cm": ".0f", "pfa_to_start": ".2f",
+}  # fmt: skip
+"""Numbers of a piece and its motion that a `Reason` may name, and their formats; ``pfa_to_start`` is PFA/(g·B/H)."""
+
+
+ESTIMATED = (
+    "PFV {pfv_cm_s} cm/s was not given: it is an estimate from PFA and the building's period T1, on which every method "
+    "that depends on velocity relies."
+)
+"""The reason that several methods give where the flag ``pfv_estimated`` is raised."""
+PFV_FLAGS: Mapping[str, str] = {
+    "pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here",
+    "pfv_estimated": "peak floor velocity estimated from PFA and the building's period",
+}
+"""Flags of several methods that depend on velocity, and what they mean."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """A typical reason why a method differs from another, with the conditions under which it applies.
+
+    Parameters
+    ----------
+    text : str
+        A sentence with ``{names}``: of `FACTS`, of the method's columns, and ``{value}``, the method's probability as a
+        percentage. A report fills them with numbers, or with ranges for several pieces.
+    side : "above", "below" or ""
+        Applies where the method gives the higher or the lower class of the two; "": in both cases.
+    flag : str
+        Applies where the method raised this flag; "": always.
+    column, equals : str
+        Applies where the method's column has this text; "": always.
+    can_rock : bool, optional
+        Applies where PFA exceeds g·B/H (True), or does not (False).
+    """
+
+    text: str
+    side: Side = ""
+    flag: str = ""
+    column: str = ""
+    equals: str = ""
+    can_rock: bool | None = None
+
+    def applies(self, side: Side, detail: Mapping[str, object], flags: Collection[str], *, can_rock: bool) -> bool:
+        """Tell whether it applies to a piece on which the method is on `side`, with its `detail` and `flags`."""
+        return (
+            self.side in ("", side)
+            and (not self.flag or self.flag in flags)
+            and (not self.column or detail[self.column] == self.equals)
+            and self.can_rock in (None, can_rock)
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MethodInfo:
+    """One method in texts and numbers.
+
+    Parameters
+    ----------
+    key, title : str
+        Name in results.json and in reports.
+    short_title : str
+        Heading of a narrow column.
+    symbol : str
+        Of its value in equations: "OR", "R", "P".
+    role : "adopted formula", "simulation" or "other"
+        The value of the adopted formula counts where nothing was simulated; the simulation integrates the cases that
+        have an ensemble. There is one of each.
+    kind : "probability" or "criterion"
+        A probability has a class; a criterion is met or not met.
+    order : int
+        Place in reports.
+    predicts : str
+        One sentence: what a reader learns from it.
+    reference : Reference
+        The publication.
+    needs : frozenset of str
+        Fields of `Cases` it cannot do without.
+    selects : bool
+        Whether pieces of its classes high and very high are simulated with ``verify="high"``.
+    selecting_flags : tuple of str
+        Flags that have a piece simulated with ``verify="high"`` whatever its class.
+    is_live : bool
+        Whether the workbook computes it (`Method.live`); tables of pieces and the map of risk show these methods.
+    tells_rocking : bool
+        Whether it is the criterion by which a piece can start to rock at all.
+    valid : mapping of str to Range
+        Where it has been checked, by quantity.
+    equations, assumptions, departures : tuple of str
+        In the symbols of the publication; for the methods appendix.
+    flags : mapping of flag to str
+        Every flag it can raise, and what that means.
+    words : pair of str
+        A criterion's outcome in words: met, not met.
+    columns : tuple of Column
+        Every name in `Outcome.detail`, in the order of results.
+    parameters : tuple of Parameter
+        The settings that it reads.
+    reasons : tuple of Reason
+        Why it typically differs from other methods, the most important first.
+    fitted : FittedOn, optional
+        Of a model that a study fitted; None of a published method.
+    """
+
+    key: str
+    title: str
+    short_title: str
+    kind: Literal["probability", "criterion"]
+    order: int
+    predicts: str
+    reference: Reference
+    needs: frozenset[str]
+    symbol: str = "R"
+    role: Role = "other"
+    selects: bool = False
+    selecting_flags: tuple[str, ...] = ()
+    is_live: bool = False
+    tells_rocking: bool = False
+    valid: Mapping[str, Range] = field(default_factory=dict)
+    equations: tuple[str, ...] = ()
+    assumptions: tuple[str, ...] = ()
+    departures: tuple[str, ...] = ()
+    flags: Mapping[str, str] = field(default_factory=dict)
+    words: tuple[str, str] = ("", "")
+    columns: tuple[Column, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    reasons: tuple[Reason, ...] = ()
+    fitted: FittedOn | None = None
+
+    @property
+    def tier(self) -> Literal["screening", "verification"]:
+        """Whether it is evaluated at once for every case, or integrates those that have an ensemble."""
+        return "verification" if self.role == "simulation" else "screening"
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """Every text that is translated, but those that are made by `assess.i18n.fill`, which are collected there."""
+        own = (self.title, self.short_title, self.predicts, self.reference.remark)
+        marks = (flag.replace("_", " ") for flag in self.flags)
+        lists = (*self.equations, *self.assumptions, *self.departures, *self.flags.values(), *self.words)
+        labels = (column.label for column in self.columns)
+        found = (*own, *lists, *marks, *labels, *(reason.text for reason in self.reasons))
+        return tuple(text for text in found if type(text) is str and any(character.isalpha() for character in text))

@@ -1,0 +1,67 @@
+"""What simulations of many pieces under many motions share: batches, threads, and how many motions are enough."""
+
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.methods._method import BoolArray, Cases, FloatArray, Motions
+from assess.progress import SILENT, Progress
+from assess.risk import NORMAL_95
+from assess.settings import AUTO, Settings
+
+LOOKS = (125, 250, 500, 1000, 2500, 5000)
+"""Numbers of motions at which runs="auto" checks whether the interval of a piece lies within one class."""
+LOOKS_Z = 2.64
+"""Half width of the intervals of "auto" [-]: 95 % for all six checks together (Bonferroni, 0.83 % each)."""
+
+_Result = TypeVar("_Result")
+
+
+def interval_width(settings: Settings) -> float:
+    """Return z, the half width of the intervals in standard deviations [-]."""
+    return LOOKS_Z if settings.runs == AUTO else NORMAL_95
+
+
+def run_side_by_side(work: Callable[..., _Result], tasks: list[Any], threads: int) -> Iterator[_Result]:
+    """Yield the results of `work` in the order of `tasks`, several of which are worked on at once.
+
+    Never in the calling thread: a Ctrl-C that arrives during a compilation would be lost there.
+    """
+    if not tasks:
+        return
+    from concurrent.futures import ThreadPoolExecutor
+
+    pool = ThreadPoolExecutor(threads)
+    try:
+        yield from [future.result() for future in [pool.submit(work, *task) for task in tasks]]
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)  # after Ctrl-C nobody waits for the rest
+
+
+def make_batches(motions: Motions, first: int, last: int, size: int) -> Iterator[tuple[int, FloatArray, float]]:
+    """Yield motions `first` to `last` - 1: the number of the first of a batch, the batch, its time step."""
+    at = first
+    for start in range(first, last, size):
+        for batch, time_step in motions.realise(start, min(size, last - start)):
+            yield at, batch, time_step
+            at += len(batch)
+
+
+def rock_cases(
+    cases: Cases,
+    own: NDArray[np.intp],
+    motions: FloatArray,
+    time_step: float,
+    threads: int,
+    progress: Progress = SILENT,
+) -> tuple[BoolArray, FloatArray]:
+    """Return whether each of the cases `own` overturns under each motion, and how far it turns: (m, k) each."""
+    from assess.rocking.ensemble import rock_blocks
+
+    found = rock_blocks(
+        cases.breadth[own], cases.height[own], motions, time_step,
+        restitution=cases.restitution[own], threads=threads, progress=progress,
+    )  # fmt: skip
+    return found.overturned, found.rotation
