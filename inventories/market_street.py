@@ -1,11 +1,11 @@
 """Build `market-street.xlsx`: 575 Market Street, San Francisco, in the Loma Prieta earthquake.
 
 The floor motions are those recorded in the building (`records/575-market/README.md`). The floor plan and the furniture
-are an example: nobody counted what stood there. Run it with ``python inventories/market_street.py``.
+are an example: no inventory of the building exists. Run it with ``python inventories/market_street.py``.
 
-The records serve every floor; what a code's profile needs beside them stands in the workbook, too, so that it runs with
-``--scenario "ASCE 7-22"`` as well. Height is 175 m (573 ft), as commonly given for the tower; it is described at
-https://buildingsdb.com/CA/san-francisco/575-market-street-tower. The elevations of the floors are an example
+The records serve every floor; the workbook also holds what a code's profile needs, so that it runs with
+``--scenario "ASCE 7-22"`` as well. Height is 175 m (573 ft), the value commonly given for the tower, which is described
+at https://buildingsdb.com/CA/san-francisco/575-market-street-tower. The elevations of the floors are an example
 assumption: floors evenly spread by their number, the ground floor as the first and the roof as the 43rd. Storeys (40
 are commonly given, the records number levels up to 42) and the period stay blank.
 
@@ -23,8 +23,8 @@ from math import inf
 from pathlib import Path
 from typing import Any, Literal
 
-from assess.inventory.blank import Content, Rows, read_catalogue, write_workbook
-from assess.live_values import with_live
+from assess.pipeline.live_values import with_live
+from assess.workbook.template import Content, Rows, read_catalogue, write_workbook
 
 Wall = Literal["S", "N", "W", "E"]
 Box = tuple[float, float, float, float]
@@ -96,7 +96,7 @@ ROOMS = {"42": _OFFICE, "34": _OFFICE, "25": _OFFICE, "G": _GROUND}
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Pieces alike, side by side along a wall of a room, or `off` [m] in front of it and parallel to it.
+    """Equal pieces side by side along a wall of a room, or `off` [m] in front of it and parallel to it.
 
     `start` is measured along the wall from its west or south end [m]; `more` holds further cells of the rows.
     """
@@ -298,7 +298,7 @@ WIDTHS: Mapping[str, tuple[float, float]] = {
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A segment of a route: in which room furniture can stand beside it, and its row without the floor."""
+    """A segment of a route: the room whose furniture can stand next to it, and its row without the floor."""
 
     room: str
     row: Mapping[str, Any]
@@ -380,13 +380,13 @@ def _pieces(floor: str, run: Run) -> Iterator[dict[str, Any]]:
 
 
 def _distance(piece: Box, line: Box) -> float:
-    """Clear distance of a piece and a line along X or Y; endless where it does not stand beside it."""
+    """Clear distance of a piece and a line along X or Y; infinite where it does not stand next to it."""
     gaps = [max(0.0, piece[at] - line[at + 2], line[at] - piece[at + 2]) for at in (0, 1)]
     along, across = gaps if line[1] == line[3] else reversed(gaps)
     return across if along == 0 else inf
 
 
-def _beside_route(row: Mapping[str, Any]) -> dict[str, Any]:
+def _next_to_route(row: Mapping[str, Any]) -> dict[str, Any]:
     """Name the segment that a piece can reach when it falls: its edge in the same room is nearer than its height."""
     near = []
     for one in SEGMENTS:
@@ -406,7 +406,7 @@ def item_rows() -> list[dict[str, Any]]:
     rows = []
     for floor in ROOMS:
         placed = (piece for run in FURNITURE[floor] for piece in _pieces(floor, run))
-        own = [{"importance": "property", **row, **_beside_route(row)} for row in placed]
+        own = [{"importance": "property", **row, **_next_to_route(row)} for row in placed]
         own += [row for row in LOOSE if row["floor"] == floor]
         rows += [{"item": f"{floor}-{number:02d}", **row} for number, row in enumerate(own, 1)]
     return rows
@@ -437,7 +437,7 @@ def content() -> Content:
 
 
 def build(path: Path = PATH) -> None:
-    """Write the workbook; the records must lie beside it."""
+    """Write the workbook; the records must lie in its folder."""
     write_workbook(path, with_live(content(), folder=path.parent))
 
 

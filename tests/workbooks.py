@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Any
 
 import assess
-from assess.inventory.blank import Content, Units, write_workbook
-from assess.results import Assessment
+from assess.results import Results
 from assess.settings import Settings
+from assess.workbook.template import Content, Units, write_workbook
 
 RECORDS = Path(__file__).parents[1] / "samples" / "records"
 
@@ -36,6 +36,6 @@ def write(
     return path
 
 
-def assessed(path: Path, *args: Any, settings: Settings = UNVERIFIED, **named: Any) -> Assessment:
+def assessed(path: Path, *args: Any, settings: Settings = UNVERIFIED, **named: Any) -> Results:
     """Write such a workbook and assess it, by the formulas alone where no settings are given."""
     return assess.run(assess.read_inventory(write(path, *args, **named)), settings)

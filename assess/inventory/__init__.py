@@ -1,1 +1,0 @@
-"""The workbook and the inventory that it holds."""

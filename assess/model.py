@@ -1,0 +1,429 @@
+"""The inventory: what a workbook holds, checked, in SI units."""
+
+import hashlib
+import posixpath
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from functools import lru_cache, partial
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from assess.errors import Problem, RecordError
+from assess.i18n import fill, find_language
+from assess.motion.formats import parse_records, select
+from assess.motion.record import Record
+from assess.units import LENGTH, to_edge
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Axis = Literal["X", "Y"]
+
+NEAR_AXIS = 15.0
+"""Up to this angle [deg] from an axis a piece, or a record, counts as lying along it."""
+
+ASSUMABLE = ("breadth", "width", "height", "axis", "friction", "quantity", "anchored")
+"""Fields of an item that may be filled in where the workbook leaves them blank."""
+
+_FRAMED = (
+    "item", "floor", "room", "description", "type", "quantity", "breadth", "width", "height", "axis", "angle_deg",
+    "x", "y", "friction", "importance", "anchored", "route", "segment", "edge_distance", "notes",
+)  # fmt: skip
+"""Fields in the order of `Inventory.frame`."""
+
+
+def angle_between(one: float, other: float) -> float:
+    """Return the smallest angle between two undirected lines [deg]."""
+    return abs((one - other + 90) % 180 - 90)
+
+
+def axis_of(angle: float) -> Axis | None:
+    """Return the axis that a line at `angle` [deg] from X lies along, None where it lies between the two."""
+    if angle_between(angle, 0) <= NEAR_AXIS:
+        return "X"
+    return "Y" if angle_between(angle, 90) <= NEAR_AXIS else None
+
+
+def split_names(text: str | None) -> list[str]:
+    """Return the names in a cell that holds several, split by semicolons."""
+    return [name for part in (text or "").split(";") if (name := part.strip())]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Building:
+    """The building and the earthquake; a blank text or None where the workbook says nothing.
+
+    Lengths in m, `period` in s, accelerations in m/s2, `azimuth_deg` clockwise from north. `cells` tells in which cell
+    of the sheet a field stands.
+    """
+
+    building: str = ""
+    address: str = ""
+    use: str = ""
+    client: str = ""
+    storeys: int | None = None
+    height: float | None = None
+    period: float | None = None
+    azimuth_deg: float | None = None
+    prepared_by: str = ""
+    checked_by: str = ""
+    approved_by: str = ""
+    revision: str = ""
+    report_date: str = ""
+    organisation: str = ""
+    logo: Path | None = None
+    scenario: str = ""
+    scenario_kind: str = ""
+    ground_pga: float | None = None
+    sds: float | None = None
+    friction: float | None = None
+    restitution: float | None = None
+    language: str = ""
+    cells: Mapping[str, str] = field(default_factory=dict)
+
+    def cell(self, name: str) -> str:
+        """Address of a field; "" where the sheet lacks it."""
+        return self.cells.get(name, "")
+
+
+class FloorRecord:
+    """One recorded motion that a floor names, referred to by the hash of its file.
+
+    It pickles without its waveform, unless it comes from no file; two are equal where their hashes and channels are.
+
+    Parameters
+    ----------
+    name : str
+        The text of the floor's cell (one of those split by ;).
+    record : Record, optional
+        The waveform, once it has been read.
+    file, channel : str
+        The file as the cell names it, and its channel; "" for the only one.
+    sha256 : str
+        Hash of the file's bytes; "" where the waveform comes from no file.
+    path : Path, optional
+        Where the file is, if it is in a folder.
+    """
+
+    __slots__ = ("_record", "channel", "file", "name", "path", "sha256")
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        record: Record | None = None,
+        file: str = "",
+        channel: str = "",
+        sha256: str = "",
+        path: Path | None = None,
+    ) -> None:
+        self.name, self.file, self.channel, self.sha256, self.path = name, file, channel, sha256, path
+        self._record = record
+
+    @property
+    def record(self) -> Record:
+        """The waveform; after unpickling it is read again from its file on first use.
+
+        Raises
+        ------
+        RecordError
+            If the file is gone or has changed since the workbook was read.
+        """
+        if self._record is None:
+            self._record = select(_read_again(self.path, self.file, self.sha256), self.channel or None)
+        return self._record
+
+    def with_bytes(self, data: bytes) -> "FloorRecord":
+        """Return it with its waveform read from the bytes of its file; raises RecordError if they are others."""
+        record = select(_parse_checked(data, self.file, self.sha256), self.channel or None)
+        return FloorRecord(record=record, **self._address())
+
+    def _address(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in ("name", "file", "channel", "sha256", "path")}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, FloorRecord):
+            return NotImplemented
+        one, two = (part._address() | {"path": None} for part in (self, other))
+        if one != two or self.sha256:
+            return one == two
+        mine, its = self.record, other.record
+        return mine.time_step == its.time_step and mine.acceleration.tobytes() == its.acceleration.tobytes()
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.file, self.channel, self.sha256))
+
+    def __repr__(self) -> str:
+        return f"<FloorRecord {self.name}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return partial(FloorRecord, **self._address(), record=None if self.sha256 else self._record), ()
+
+
+@lru_cache(maxsize=2)  # channels of one file follow one another
+def _read_again(path: Path | None, file: str, sha256: str) -> tuple[Record, ...]:
+    if path is None:
+        raise RecordError(
+            fill("{file}: its recorded motion is not loaded: pass its bytes to `with_records`.", file=file)
+        )
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        why = error.strerror or error
+        raise RecordError(fill("{file} cannot be read again: {why}.", file=path, why=why)) from None
+    return _parse_checked(data, file, sha256)
+
+
+def _parse_checked(data: bytes, file: str, sha256: str) -> tuple[Record, ...]:
+    if hashlib.sha256(data).hexdigest() != sha256:
+        raise RecordError(fill("{file} has changed since the workbook was read: read the workbook again.", file=file))
+    return parse_records(data, Path(file.replace("\\", "/")).name)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Floor:
+    """One floor. `elevation` [m], `pfa` [m/s2] and `pfv` [m/s] by axis where given, `records` by axis.
+
+    `cells` tells in which cell of the sheet a field stands.
+    """
+
+    row: int
+    floor: str
+    name: str = ""
+    elevation: float | None = None
+    pfa: Mapping[Axis, float] = field(default_factory=dict)
+    pfv: Mapping[Axis, float] = field(default_factory=dict)
+    records: Mapping[Axis, tuple[FloorRecord, ...]] = field(default_factory=dict)
+    plan: Path | None = None
+    cells: Mapping[str, str] = field(default_factory=dict)
+
+    def cell(self, name: str) -> str:
+        """Address of a field; the first column where the sheet lacks it."""
+        return self.cells.get(name, f"A{self.row}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Item:
+    """One row of furniture. Sizes, positions and distances in m; `angle_deg` anticlockwise from X to Breadth.
+
+    `assumed` names the fields that were blank in the workbook and were filled in: sizes from the catalogue, the axis
+    from the angle. A blank `friction` is the building's: see `Inventory.complete`.
+    `extra` holds what stood in columns that `assess` does not know; `more` the values of columns of the schema that
+    have no field here, since nothing is computed with them.
+    """
+
+    row: int
+    item: str
+    floor: str
+    room: str = ""
+    description: str = ""
+    type: str = ""
+    quantity: int = 1
+    breadth: float
+    width: float | None = None
+    height: float
+    axis: Axis | None = None
+    anchored: str = "unknown"
+    friction: float | None = None
+    x: float | None = None
+    y: float | None = None
+    angle_deg: float | None = None
+    route: str = ""
+    segment: str = ""
+    edge_distance: float | None = None
+    importance: str = ""
+    notes: str = ""
+    assumed: tuple[str, ...] = ()
+    extra: tuple[str, ...] = ()
+    more: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """A room, door, stair or exit; position in m."""
+
+    row: int
+    place: str
+    floor: str
+    x: float | None = None
+    y: float | None = None
+    kind: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Segment:
+    """One segment of an evacuation route; widths in m.
+
+    `room` names the rooms that it runs through, split by ;: walls keep pieces of others away. Blank: not known.
+    """
+
+    row: int
+    route: str
+    segment: str
+    floor: str = ""
+    start: str = ""
+    end: str = ""
+    room: str = ""
+    clear_width: float | None = None
+    required_width: float | None = None
+    occupants: int | None = None
+    notes: str = ""
+
+    @property
+    def rooms(self) -> tuple[str, ...]:
+        """The rooms that it runs through, each by its name."""
+        return tuple(split_names(self.room))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CatalogueType:
+    """A type of furniture with its sizes [m]."""
+
+    row: int
+    type: str
+    breadth: float | None = None
+    width: float | None = None
+    height: float | None = None
+    source: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Inventory:
+    """A building's furniture, its floors and how they shake.
+
+    Parameters
+    ----------
+    source : Path
+        The workbook.
+    sha256 : str
+        Hash of the workbook's bytes.
+    building, floors, items, places, routes, catalogue
+        The sheets.
+    problems : tuple of Problem
+        Warnings and notes; errors as well where it was read with ``strict=False``.
+    extra_columns : tuple of str
+        Headers of the columns of Items that `assess` does not know.
+    files : mapping of str to str
+        Hashes (SHA-256) of the recorded motions, by name.
+    language : str
+        Code of the workbook's language: that of more than half of the sheets it has, by their names; else English.
+    sheets : mapping of str to str
+        The workbook's own names of its sheets, by the English ones.
+    letters : mapping of str to mapping of str to str
+        In which column of a sheet a field stands: letters by field, by the English name of the sheet.
+    data : bytes, optional
+        The workbook's bytes; neither compared nor pickled.
+    """
+
+    source: Path
+    sha256: str
+    building: Building
+    floors: tuple[Floor, ...]
+    items: tuple[Item, ...]
+    places: tuple[Place, ...] = ()
+    routes: tuple[Segment, ...] = ()
+    catalogue: tuple[CatalogueType, ...] = ()
+    problems: tuple[Problem, ...] = ()
+    extra_columns: tuple[str, ...] = ()
+    files: Mapping[str, str] = field(default_factory=dict)
+    language: str = "en"
+    sheets: Mapping[str, str] = field(default_factory=dict)
+    letters: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    data: bytes | None = field(default=None, compare=False)
+
+    @property
+    def report_language(self) -> str:
+        """Code of the language of the reports: what Building asks for, else the workbook's own."""
+        return find_language(self.building.language or self.language)
+
+    @property
+    def errors(self) -> tuple[Problem, ...]:
+        """The errors, if it was read with ``strict=False``."""
+        return tuple(one for one in self.problems if one.severity == "error")
+
+    def friction_of(self, item: Item) -> float | None:
+        """Return the coefficient of friction of an item: its own, else the building's; None where it cannot slide."""
+        return self.building.friction if item.friction is None else item.friction
+
+    def assumed_of(self, item: Item) -> tuple[str, ...]:
+        """Return the fields of an item that were blank and are filled in, the building's friction with them."""
+        given = {*item.assumed}
+        if item.friction is None and self.building.friction is not None:
+            given.add("friction")
+        return tuple(name for name in ASSUMABLE if name in given)
+
+    def complete(self, item: Item) -> Item:
+        """Return an item as it is assessed: with the building's friction where its own is blank."""
+        if item.friction is not None or self.building.friction is None:
+            return item
+        return replace(item, friction=self.friction_of(item), assumed=self.assumed_of(item))
+
+    def with_records(self, files: Mapping[str, bytes]) -> "Inventory":
+        """Return the inventory with the waveforms of its floors read from bytes, by the names in `files`.
+
+        Raises
+        ------
+        RecordError
+            If the bytes of a file are not those that were there when the workbook was read.
+        """
+        given = {_file_key(name): data for name, data in files.items()}
+
+        def load(one: FloorRecord) -> FloorRecord:
+            return one.with_bytes(given[_file_key(one.file)]) if one.sha256 and _file_key(one.file) in given else one
+
+        floors = (
+            replace(floor, records={axis: tuple(map(load, ones)) for axis, ones in floor.records.items()})
+            for floor in self.floors
+        )
+        return replace(self, floors=tuple(floors))
+
+    def read_bytes(self) -> bytes | None:
+        """Return the workbook's bytes, as they were read; None where they are gone, or it was built in code."""
+        if self.data is not None:
+            return self.data
+        try:
+            data = self.source.read_bytes()
+        except OSError:
+            return None
+        return data if hashlib.sha256(data).hexdigest() == self.sha256 else None
+
+    def place(self, problem: Problem) -> Problem:
+        """Return a problem with the workbook's own name of its sheet."""
+        return replace(problem, sheet=self.sheets.get(problem.sheet, problem.sheet))
+
+    def frame(self) -> "pd.DataFrame":
+        """Return the items as a table, one row an item, units in the names as in items.csv."""
+        import pandas as pd
+
+        return pd.DataFrame([self._record(item) for item in self.items]).set_index("item", drop=False)
+
+    def _record(self, item: Item) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for name in _FRAMED:
+            value = getattr(item, name)
+            if name in ("breadth", "width", "height"):
+                found[f"{name}_cm"] = None if value is None else to_edge(value, LENGTH["cm"])
+            else:
+                found[f"{name}_m" if name in ("x", "y", "edge_distance") else name] = value
+        return found | {"friction": self.friction_of(item), "assumed": list(self.assumed_of(item))}
+
+    def __repr__(self) -> str:
+        return f"<Inventory {self.source.name}: {len(self.items):,} items on {len(self.floors):,} floors>"
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        name, problems = escape(self.building.building or self.source.name), len(self.problems)
+        return (
+            f"<p><b>{name}</b>: {len(self.items):,} items on {len(self.floors):,} floors, {len(self.routes):,} route "
+            f"segments, {problems:,} problems reported. <code>frame()</code> lists the items.</p>"
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        kept = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "data"}
+        return partial(Inventory, **kept), ()
+
+
+def _file_key(name: str) -> str:
+    return posixpath.normpath(name.replace("\\", "/"))

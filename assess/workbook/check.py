@@ -1,0 +1,250 @@
+"""Rows to problems: names, floors, the catalogue and the furniture. What concerns routes is in `check_routes`.
+
+A check is a pure function: it takes the tables and yields what does not fit together. `run_checks` runs them in order
+and notes the cells of errors, so that what has been reported once is not reported again as something else.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from assess.errors import Problem
+from assess.i18n import Text, fill, nfill
+from assess.units import ROUNDING
+from assess.workbook.names import find_near, key
+from assess.workbook.parse import Row, Table, Tables
+from assess.workbook.resolve import AXES, build_catalogue, defined, filled_sizes, turned_axis
+
+Check = Callable[[Tables], Iterable[Problem]]
+
+
+def run_checks(tables: Tables, checks: Sequence[Check]) -> tuple[Tables, list[Problem]]:
+    """Run checks in order; return the tables with the cells of errors noted, and the problems."""
+    problems: list[Problem] = []
+    for check in checks:
+        found = list(check(tables))
+        problems += found
+        tables = {sheet: table.with_failed(found) for sheet, table in tables.items()}
+    return tables, problems
+
+
+# ---------------------------------------------------------------- names
+
+
+def duplicates(table: Table, *names: str) -> Iterator[tuple[Row, Row]]:
+    """Yield every row whose fields another row above it has alike, and the first such row."""
+    first: dict[tuple[str, ...], Row] = {}
+    for row in table.with_all(*names):
+        before = first.setdefault(tuple(key(row.get(name)) for name in names), row)
+        if before is not row:
+            yield row, before
+
+
+def check_unique(table: Table) -> Iterator[Problem]:
+    """Report every name that the first column of a table defines a second time."""
+    name = table.sheet.columns[0].name
+    for row, before in duplicates(table, name):
+        cell = table.cell(name, before.number)
+        values = {"label": table.label(name), "name": row.quote(name), "cell": cell}
+        message = fill("duplicate {label} {name}, also in {cell}.", **values)
+        yield table.problem(name, row, message, fill("Give each its own name."))
+
+
+def check_wildcards(table: Table) -> Iterator[Problem]:
+    """Warn of names that a spreadsheet's look-up takes for patterns, so that a live column may take another row."""
+    name = table.sheet.columns[0].name
+    for row in table.with_all(name):
+        if any(sign in row.get(name) for sign in "*?~"):
+            values = {"column": fill(table.label(name)), "name": row.quote(name)}
+            message = fill("{column} {name} holds *, ? or ~, which Excel's look-ups read as patterns.", **values)
+            fix = fill("Rename it: the live columns may show another row's values.")
+            yield table.problem(name, row, message, fix, "warning")
+
+
+def check_references(table: Table, tables: Tables) -> Iterator[Problem]:
+    """Report names that the first column of another sheet does not define.
+
+    A missing column, or a missing sheet that is required, has been reported; a sheet that is not is reported here,
+    once for the whole column.
+    """
+    for column in table.sheet.columns:
+        name = column.name
+        if column.source:
+            source, named = tables[column.source], table.with_all(name)
+            if source.found and source.sheet.columns[0].name in source.places:
+                known = defined(source)
+                yield from (
+                    _unknown(table, name, row, source, known) for row in named if key(row.get(name)) not in known
+                )
+            elif named and not source.found and not source.sheet.required:
+                yield _lacks_sheet(table, name, named, source.sheet.name)
+
+
+def _unknown(table: Table, name: str, row: Row, source: Table, known: dict[str, str]) -> Problem:
+    values = {"label": table.label(name), "name": row.quote(name), "sheet": source.sheet.name}
+    fix, near = (
+        fill("Choose one of the {sheet} sheet, or add it there.", **values),
+        find_near(key(row.get(name)), known),
+    )
+    if near:
+        values["near"] = known[near]
+        fix = fill("Choose one of the {sheet} sheet, or add it there. Did you mean {near}?", **values)
+    return table.problem(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
+
+
+def _lacks_sheet(table: Table, name: str, named: Sequence[Row], sheet: str) -> Problem:
+    message = nfill(
+        "{label} {name} is named, but there is no {sheet} sheet.",
+        "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet.",
+        len(named), label=table.label(name), name=named[0].quote(name), sheet=sheet,
+    )  # fmt: skip
+    return table.problem(name, named[0], message, fill("Add the sheet, or clear the column."))
+
+
+# ---------------------------------------------------------------- catalogue and floors
+
+
+def check_catalogue(tables: Tables) -> Iterator[Problem]:
+    """Check the types of furniture."""
+    table = tables["Catalogue"]
+    yield from check_unique(table)
+    yield from check_wildcards(table)
+    for row in table.rows:
+        yield from _check_plan_sides(table, row, row.get("breadth"), row.get("width"))
+
+
+def check_floors(tables: Tables) -> Iterator[Problem]:
+    """Check the names of the floors, and that something tells how each shakes, whatever the scenario."""
+    table = tables["Floors"]
+    yield from check_unique(table)
+    yield from check_wildcards(table)
+    building = tables["Building"]  # what is filled in there counts, be it usable or not
+    yield from _check_demands(table, has_ground=any(building.says(row, "ground_pga", "sds") for row in building.rows))
+
+
+def _check_demands(table: Table, *, has_ground: bool) -> Iterator[Problem]:
+    """Report floors that nothing can serve; what cannot be read has been reported."""
+    rows = table.with_all("floor")
+    known = [row for row in rows if table.says(row, "pfa_x", "pfa_y", "record_x", "record_y")]
+    heights = [level for row in known if (level := row.get("elevation")) is not None]
+    is_sure = not any(table.spoilt("elevation", row) for row in known)
+    for row in rows:
+        level = row.get("elevation")
+        if row in known or (level is None and table.spoilt("elevation", row)):
+            continue
+        has_neighbours = level is not None and bool(heights) and min(heights) <= level <= max(heights)
+        if level is None or not (has_ground or has_neighbours or not is_sure):
+            message, fix = describe_unserved(row.quote("floor"), has_elevation=level is not None)
+            where = "elevation" if has_ground else "pfa_x"
+            yield table.problem(where if where in table.places else "floor", row, message, fix)
+
+
+def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[Text, Text]:
+    """Say of a floor, its name in quotes, that its motion is not known, and what would give it."""
+    if has_elevation:
+        message = fill(
+            "floor {floor} has neither a record nor a PFA, lies between no two floors that have one and an Elevation, "
+            "and Building gives no Ground PGA or SDS.",
+            floor=floor,
+        )
+        return message, fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA in Building.")
+    message = fill(
+        "floor {floor} has neither a record nor a PFA, and no Elevation from which its motion could be derived.",
+        floor=floor,
+    )
+    fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA in Building.")
+    return message, fix
+
+
+def check_velocities(tables: Tables) -> Iterator[Problem]:
+    """Report a PFV that would not be used: the floor may shake more than its PFA says."""
+    table = tables["Floors"]
+    for row in table.with_all("floor"):
+        for axis in AXES:
+            name, letter = f"pfv_{axis.lower()}", axis.lower()
+            if row.get(name) is not None and not table.says(row, f"pfa_{letter}", f"record_{letter}"):
+                message = fill("PFV {axis} is filled in without PFA {axis} and would not be used.", axis=axis)
+                yield table.problem(name, row, message, fill("Fill in PFA {axis}, or clear PFV {axis}.", axis=axis))
+
+
+# ---------------------------------------------------------------- furniture
+
+
+def check_item_names(tables: Tables) -> Iterator[Problem]:
+    """Check that items have names of their own, a floor that is there, and a type and a route that are."""
+    table = tables["Items"]
+    yield from check_unique(table)
+    yield from check_references(table, tables)
+
+
+def check_items(tables: Tables) -> Iterator[Problem]:
+    """Check each piece by itself: its sizes, its position, its axis."""
+    table = tables["Items"]
+    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+    lacking: dict[str, list[Row]] = {}
+    is_listed = tables["Catalogue"].found
+    for row in table.rows:
+        sizes = filled_sizes(table, row, types)
+        for name in ("breadth", "height"):
+            if name in sizes or table.spoilt(name, row):
+                continue
+            if name not in table.places:
+                lacking.setdefault(name, []).append(row)  # reported once for the column, not in every row
+            elif not table.spoilt("type", row) and (is_listed or row.get("type") is None):
+                values = {"label": table.label(name), "type": table.label("type")}
+                message = fill("{label} is blank and no {type} gives it.", **values)
+                yield table.problem(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
+        yield from _check_sizes(table, row, sizes)
+        yield from _check_position(table, row)
+        yield from _check_axis(table, row)
+    for name, rows in lacking.items():
+        yield _describe_no_column(table, name, rows)
+
+
+def _describe_no_column(table: Table, name: str, rows: Sequence[Row]) -> Problem:
+    header = table.sheet.column(name).header()
+    message = nfill(
+        "the column {header} is missing, and row {row} has no Type that gives it.",
+        "the column {header} is missing, and {n:,} rows, from row {row} on, have no Type that gives it.",
+        len(rows), header=header, row=str(rows[0].number),
+    )  # fmt: skip
+    return table.problem_at_top(message, fill("Add the column, or give those rows such a Type."))
+
+
+def _check_plan_sides(table: Table, row: Row, breadth: float | None, width: float | None) -> Iterator[Problem]:
+    """Report a Breadth that is greater than the Width: Breadth is the shorter plan side."""
+    if breadth is not None and width is not None and breadth > width * (1 + ROUNDING):
+        label = table.label("breadth")
+        message = fill(
+            "{label} {breadth:g} cm is greater than {other} {width:g} cm.",
+            label=label, breadth=breadth * 100, other=table.label("width"), width=width * 100,
+        )  # fmt: skip
+        fix = fill("{label} is the shorter plan side: exchange the two.", label=label)
+        yield table.problem("breadth", row, message, fix)
+
+
+def _check_sizes(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Problem]:
+    breadth, height = sizes.get("breadth"), sizes.get("height")
+    yield from _check_plan_sides(table, row, breadth, sizes.get("width"))
+    if breadth is not None and height is not None and breadth > height * (1 + ROUNDING):
+        values = {"breadth": breadth * 100, "height": height * 100}
+        message = fill("Breadth {breadth:g} cm is greater than Height {height:g} cm.", **values)
+        yield table.problem("breadth", row, message, fill("Are the two exchanged?"), "warning")
+
+
+def _check_position(table: Table, row: Row) -> Iterator[Problem]:
+    x, y, quantity = row.get("x"), row.get("y"), row.get("quantity")
+    if (x is not None or y is not None) and (quantity or 1) > 1:
+        label = table.label("quantity")
+        message = fill("{label} is {quantity} on a row with a position.", label=label, quantity=quantity)
+        yield table.problem("quantity", row, message, fill("Write one row a piece, or clear X and Y."))
+    if (x is None) != (y is None) and not (table.spoilt("x", row) or table.spoilt("y", row)):
+        fix = fill("Fill in the other, or clear both.")
+        yield table.problem("y" if y is None else "x", row, fill("a position needs both X and Y."), fix, "warning")
+
+
+def _check_axis(table: Table, row: Row) -> Iterator[Problem]:
+    """Warn of an axis that the angle contradicts: one of the two is a slip, and one of them may be the milder."""
+    axis, turned = row.get("axis"), turned_axis(row)
+    if axis is not None and turned is not None and axis != turned:
+        values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
+        message = fill("Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values)
+        yield table.problem("axis", row, message, fill("Correct one of the two."), "warning")

@@ -1,0 +1,390 @@
+"""Rows to problems: evacuation routes, the places that they join, and the furniture next to them."""
+
+import difflib
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot, inf
+
+from assess.errors import Problem
+from assess.i18n import fill, nfill
+from assess.model import split_names
+from assess.workbook.check import check_references, check_unique, duplicates
+from assess.workbook.names import key
+from assess.workbook.parse import Row, Table, Tables
+from assess.workbook.resolve import Segments, defined, defined_by, list_segments, places_by_name
+from assess.workbook.schema import DEFAULT_WIDTH
+from assess.workbook.values import shorten
+
+SAME_POINT, SAME_WIDTH = 0.01, 1e-6
+"""Up to these distances [m] two places are at one point, and two widths are the same."""
+OUT = ("exit", "stair")
+"""Kinds of places at which a way out of a floor ends."""
+NEAR, NEAR_WORD = 0.75, 0.8
+"""From these ratios on a name may be a slip of another, and one word of several a slip of another [-]."""
+MOST_NEAR, MOST_NAMED = 10, 3
+"""So many near names are compared; so many rooms are named in one sentence."""
+
+
+def check_places(tables: Tables) -> Iterator[Problem]:
+    """Check the names and the floors of places."""
+    yield from check_unique(tables["Places"])
+    yield from check_references(tables["Places"], tables)
+
+
+# ---------------------------------------------------------------- segments
+
+
+def check_segment_names(tables: Tables) -> Iterator[Problem]:
+    """Check that segments name floors and places that are there, and that no route has two of one name."""
+    table = tables["Routes"]
+    yield from check_references(table, tables)
+    for row, before in duplicates(table, "route", "segment"):
+        values = {"label": table.label("segment"), "segment": row.quote("segment"), "other": table.label("route")}
+        values |= {"route": row.quote("route"), "cell": table.cell("segment", before.number)}
+        message = fill("duplicate {label} {segment} of {other} {route}, also in {cell}.", **values)
+        yield table.problem("segment", row, message, fill("Give each its own name."))
+
+
+def check_segments(tables: Tables) -> Iterator[Problem]:
+    """Check each segment by itself: its widths, its ends, its length and its floor."""
+    table, places = tables["Routes"], tables["Places"]
+    known = places_by_name(places)
+    yield from _check_clear_width(table)
+    for row in table.rows:
+        yield from _check_joined(table, row)
+        yield from _check_widths(table, row)
+        start, end = (known.get(key(table.sound(name, row) or "")) for name in ("start", "end"))
+        if start and end:
+            yield from _check_length(table, row, start, end)
+            yield from _check_floor(table, row, [places.sound("floor", start), places.sound("floor", end)])
+
+
+def _check_clear_width(table: Table) -> Iterator[Problem]:
+    """Warn of segments whose clear width is blank: once where the sheet lacks the column."""
+    message = fill(
+        "Clear width is blank: it is taken as the required width, so anything that reaches into it blocks it."
+    )
+    fix = fill("Fill in Clear width.")
+    lack = [row for row in table.rows if table.lacks(row, "clear_width")]
+    if "clear_width" in table.places:
+        yield from (table.problem("clear_width", row, message, fix, "warning") for row in lack)
+    elif lack:
+        yield table.problem_at_top(message, fix, "warning")
+
+
+def _check_joined(table: Table, row: Row) -> Iterator[Problem]:
+    """Warn of a segment that has one end alone."""
+    lone_start = fill("From is filled in without To: the segment is evaluated, but joins nothing in the network.")
+    lone_end = fill("To is filled in without From: the segment is evaluated, but joins nothing in the network.")
+    for given, blank, message in (("start", "end", lone_start), ("end", "start", lone_end)):
+        if table.lacks(row, blank) and row.get(given) is not None:
+            yield table.problem(blank, row, message, fill("Fill in the other, or clear both."), "warning")
+
+
+def _check_widths(table: Table, row: Row) -> Iterator[Problem]:
+    """Warn of a segment that is narrower than it must be with nothing fallen."""
+    clear, required = row.get("clear_width"), row.get("required_width")
+    if clear is None or table.spoilt("required_width", row) or (required or DEFAULT_WIDTH) <= clear + SAME_WIDTH:
+        return
+    message, fix = fill(
+        "Required width {required:.4g} m is wider than Clear width {clear:.4g} m: the segment is blocked with "
+        "nothing fallen.", required=required or DEFAULT_WIDTH, clear=clear,
+    ), fill("Are the two exchanged?")  # fmt: skip
+    if required is None:
+        message, fix = fill(
+            "Required width is blank and taken as {default:.4g} m, which is wider than Clear width {clear:.4g} m: the "
+            "segment is blocked with nothing fallen.", default=DEFAULT_WIDTH, clear=clear,
+        ), fill("Fill in the width that must stay free.")  # fmt: skip
+    yield table.problem("required_width", row, message, fix, "warning")
+
+
+def _check_length(table: Table, row: Row, start: Row, end: Row) -> Iterator[Problem]:
+    """Report a segment that begins where it ends."""
+    labels = {"one": table.label("start"), "other": table.label("end")}
+    if start is end:
+        message = fill("{one} and {other} are the same place: the segment has no length.", **labels)
+        yield table.problem("end", row, message, fill("Choose another place, or delete the row."))
+    elif start.get("floor") == end.get("floor") and hypot(*_apart(start, end)) <= SAME_POINT:
+        message = fill("{one} and {other} are at the same point of the plan: the segment has no length.", **labels)
+        yield table.problem("end", row, message, fill("Correct their positions in Places, or choose another place."))
+
+
+def _apart(start: Row, end: Row) -> Iterator[float]:
+    """Yield the distances of two places along X and Y [m]; endless where one has no position."""
+    for name in ("x", "y"):
+        one, other = start.get(name), end.get(name)
+        yield inf if one is None or other is None else other - one
+
+
+def _check_floor(table: Table, row: Row, floors: Sequence[str | None]) -> Iterator[Problem]:
+    """Report a floor that neither place lies on."""
+    own = table.sound("floor", row)
+    if None in floors or own is None or own in floors:
+        return
+    message = fill(
+        "{label} {floor} is that of neither {one} nor {other}, which lie on {floors}.",
+        label=table.label("floor"), floor=shorten(own), one=table.label("start"), other=table.label("end"),
+        floors=fill("{one} and {two}", one=shorten(floors[0]), two=shorten(floors[1]))
+        if floors[0] != floors[1] else shorten(floors[0]),
+    )  # fmt: skip
+    yield table.problem("floor", row, message, fill("Correct it, or clear the cell."))
+
+
+# ---------------------------------------------------------------- the network
+
+
+def check_network(tables: Tables) -> Iterator[Problem]:
+    """Warn of rooms that are on no route, and of routes that lead to no exit.
+
+    Neither where a place is named that is not known: it may be the very one that seems to be left out.
+    """
+    table, places = tables["Routes"], tables["Places"]
+    wrong = any(table.spoilt(name, row) for row in table.rows for name in ("start", "end"))
+    if not table.rows or not places.rows or wrong:
+        return
+    known = places.with_all("place")
+    ends = {key(row.get(name) or "") for row in table.rows for name in ("start", "end")}
+    yield from _warn_unjoined(
+        places, [row for row in known if row.get("kind") == "room" and key(row.get("place")) not in ends]
+    )
+    joined = table.with_all("start", "end")
+    ends = {key(row.get(name)) for row in joined for name in ("start", "end")}
+    kinds = {
+        OUT[0] if places.spoilt("kind", row) else row.get("kind") for row in known if key(row.get("place")) in ends
+    }
+    if joined and not kinds & {*OUT}:
+        message = fill("no place of Kind exit or stair is joined by any segment, so no room is evaluated.")
+        yield table.problem("end", joined[0], message, fill("Fill in the Kind of the places that lead out."), "warning")
+
+
+def _warn_unjoined(places: Table, rooms: Sequence[Row]) -> Iterator[Problem]:
+    if rooms:
+        message = nfill(
+            "the room {rooms} is not on any route: whether it keeps an exit is not evaluated.",
+            "{n} rooms are not on any route, such as {rooms}: whether they keep an exit is not evaluated.",
+            len(rooms),
+            rooms=", ".join(row.quote("place") for row in rooms[:MOST_NAMED]),
+        )
+        fix = fill("Let a segment begin or end at every room, or leave it out of Places.")
+        yield places.problem("place", rooms[0], message, fix, "warning")
+
+
+# ---------------------------------------------------------------- furniture next to routes
+
+
+def check_next_to_routes(tables: Tables) -> Iterator[Problem]:
+    """Check what Items says of routes."""
+    items, routes = tables["Items"], tables["Routes"]
+    segments = list_segments(routes)
+    for row in items.rows:
+        if row.get("edge_distance") is not None and not items.says(row, "route", "segment"):
+            message = fill("Edge distance is filled in without a Route: it is not used.")
+            fix = fill("Fill in the Route, or clear the cell.")
+            yield items.problem("edge_distance", row, message, fix, "warning")
+        yield from _check_segment(items, row, routes, segments)
+
+
+def _check_segment(items: Table, row: Row, routes: Table, segments: Segments) -> Iterator[Problem]:
+    route, segment = items.sound("route", row), items.sound("segment", row)
+    own = segments.get(key(route or ""), {})
+    if segment and items.lacks(row, "route"):
+        part, whole = items.label("segment"), items.label("route")
+        message = fill("a {part} is named without its {whole}.", part=part, whole=whole)
+        yield items.problem("segment", row, message, fill("Fill in {whole}.", whole=whole))
+    elif own and segment and key(segment) in own:
+        yield from _check_item_floor(items, row, "segment", {routes.sound("floor", own[key(segment)])})
+    elif own and segment and not _has_unnamed(routes, route):
+        values = {"label": items.label("route"), "route": shorten(route), "segment": shorten(segment)}
+        message = fill("{label} {route} has no segment {segment}.", **values)
+        fix = fill("Add it to {sheet}, or clear the cell.", sheet=routes.sheet.name)
+        yield items.problem("segment", row, message, fix)
+    elif own and not segment and not items.spoilt("segment", row):
+        yield from _check_item_floor(items, row, "route", {routes.sound("floor", one) for one in own.values()})
+
+
+def _has_unnamed(routes: Table, route: str) -> bool:
+    """Tell whether a route has a segment whose name is wrong or blank, which has been reported: it may be the one."""
+    own = (row for row in routes.with_all("route") if key(row.get("route")) == key(route))
+    return any(row.get("segment") is None for row in own)
+
+
+def _check_item_floor(items: Table, row: Row, name: str, floors: set[str | None]) -> Iterator[Problem]:
+    """Report a route, or a segment, that is on other floors than the item; one without a floor is on any."""
+    own = items.sound("floor", row)
+    if own is None or None in floors or own in floors:
+        return
+    message = fill(
+        "{label} {name} is not on floor {floor} but on {others}.",
+        label=items.label(name), name=row.quote(name), floor=shorten(own),
+        others=", ".join(sorted(map(shorten, floors))),
+    )  # fmt: skip
+    fix = fill("Choose one of the item's floor, or correct the {label}.", label=items.label("floor"))
+    yield items.problem(name, row, message, fix)
+
+
+@dataclass(frozen=True, slots=True)
+class _OnPlan:
+    """A segment with those of its places that are known, by end, and the floor that it is on.
+
+    `may_be_drawn` also where what would tell that has been reported as wrong.
+    """
+
+    row: Row
+    places: Mapping[str, Row]
+    floor: str
+    may_be_drawn: bool
+
+
+def check_positions(tables: Tables) -> Iterator[Problem]:
+    """Warn, once a floor that has segments, of pieces that cannot count, and note the segments that cannot be drawn."""
+    items, segments = tables["Items"], list(_on_plan(tables))
+    for floor in dict.fromkeys(one.floor for one in segments):
+        rows = [row for row in items.rows if items.sound("floor", row) == floor]
+        free = [row for row in rows if items.lacks(row, "route")]
+        yield from _warn_unplaced(items, floor, rows, [row for row in free if not items.says(row, "x", "y")])
+        if not any(one.may_be_drawn for one in segments if one.floor == floor):
+            yield from _warn_no_plan(items, floor, [row for row in free if _is_placed(items, row)])
+    yield from _note_undrawn(tables, segments)
+
+
+def _on_plan(tables: Tables) -> Iterator[_OnPlan]:
+    """Yield the segments that lie on one floor, which is that of their places where they name none."""
+    routes, places = tables["Routes"], tables["Places"]
+    known = places_by_name(places)
+    for row in routes.rows:
+        names = {name: key(routes.sound(name, row) or "") for name in ("start", "end")}
+        own = {name: known[place] for name, place in names.items() if place in known}
+        on = {floor for place in own.values() if (floor := places.sound("floor", place)) is not None}
+        floor = routes.sound("floor", row) or (min(on) if len(on) == 1 else None)
+        if floor is not None and len(on) <= 1 and not routes.spoilt("floor", row):
+            wrong = {name for name in names if routes.spoilt(name, row)}
+            drawn = {name for name, place in own.items() if _says_all(places, place)}
+            yield _OnPlan(row, own, floor, len(wrong | drawn) == len(names))
+
+
+def _is_placed(table: Table, row: Row) -> bool:
+    return table.sound("x", row) is not None and table.sound("y", row) is not None
+
+
+def _says_all(table: Table, row: Row) -> bool:
+    """Tell whether a position is filled in, be it right or wrong."""
+    return table.says(row, "x") and table.says(row, "y")
+
+
+def _count_pieces(rows: Iterable[Row]) -> int:
+    """Return how many pieces rows of Items stand for; one each where the quantity is blank or wrong."""
+    return sum(row.get("quantity") or 1 for row in rows)
+
+
+def _warn_unplaced(items: Table, floor: str, rows: Sequence[Row], lost: Sequence[Row]) -> Iterator[Problem]:
+    if lost:
+        message = nfill(
+            "{n} of {total} pieces of floor {floor} has neither a position nor a Route: whether it falls onto a route "
+            "is not known, and it is not counted.",
+            "{n} of {total} pieces of floor {floor} have neither a position nor a Route: whether they fall onto a "
+            "route is not known, and they are not counted.",
+            _count_pieces(lost),
+            total=_count_pieces(rows),
+            floor=shorten(floor),
+        )
+        yield items.problem("x", lost[0], message, fill("Fill in X, Y and Angle, or name the Route."), "warning")
+
+
+def _warn_no_plan(items: Table, floor: str, lost: Sequence[Row]) -> Iterator[Problem]:
+    if lost:
+        message = nfill(
+            "{n} piece of floor {floor} has a position, but no segment of that floor has both its places placed, and "
+            "it names no Route: it is not counted.",
+            "{n} pieces of floor {floor} have a position, but no segment of that floor has both its places placed, "
+            "and they name no Route: they are not counted.",
+            _count_pieces(lost),
+            floor=shorten(floor),
+        )
+        yield items.problem("x", lost[0], message, fill("Fill in X and Y of the places, or name the Route."), "warning")
+
+
+def _note_undrawn(tables: Tables, segments: Sequence[_OnPlan]) -> Iterator[Problem]:
+    """Note the segments that cannot be drawn, on floors where furniture can."""
+    items, routes, places = (tables[name] for name in ("Items", "Routes", "Places"))
+    drawn = {items.sound("floor", row) for row in items.rows if _is_placed(items, row)}
+    for one in segments:
+        lack = [name for name, place in one.places.items() if not _says_all(places, place)]
+        if lack and len(one.places) == 2 and one.floor in drawn:
+            message = fill(
+                "{place} has no position in Places: pieces count beside this segment only where they name it.",
+                place=shorten(one.places[lack[0]].get("place")),
+            )
+            yield routes.problem(lack[0], one.row, message, fill("Fill in its X and Y."), "note")
+
+
+# ---------------------------------------------------------------- rooms
+
+
+def check_segment_rooms(tables: Tables) -> Iterator[Problem]:
+    """Warn of a room that neither a piece nor a place has: a slip there would leave out the pieces of the right one."""
+    table = tables["Routes"]
+    known = defined(tables["Places"]) | defined_by(tables["Items"], "room")
+    for row in table.rows:
+        for room in split_names(row.get("room")):
+            near = None if key(room) in known else find_near_room(key(room), known)
+            if near:
+                message = fill(
+                    "no piece is in room {room}, so none counts beside this segment unless it names it.",
+                    room=shorten(room),
+                )
+                yield table.problem("room", row, message, fill("Did you mean {room}?", room=known[near]), "warning")
+
+
+def check_item_rooms(tables: Tables) -> Iterator[Problem]:
+    """Warn, once a name, of a room of no segment that is nearly one of a segment of the same floor.
+
+    Rooms of Routes that have no pieces are left out: their slip has been reported there.
+    """
+    items, routes = tables["Items"], tables["Routes"]
+    known = defined(tables["Places"])
+    stood_in = known.keys() | defined_by(items, "room").keys()
+    every: dict[str, dict[str, str]] = {}
+    for row in routes.rows:
+        for name in split_names(row.get("room")):
+            every.setdefault(routes.sound("floor", row) or "", {}).setdefault(key(name), name)
+    used = {room for rooms in every.values() for room in rooms} | known.keys()
+    rows: dict[str, dict[str, list[Row]]] = {}
+    for row in items.with_all("room", "floor"):
+        room, floor = key(row.get("room")), row.get("floor")
+        if floor in every and room not in used:
+            rows.setdefault(room, {}).setdefault(floor, []).append(row)
+    for room, floors in rows.items():
+        near = {floor: find_near_room(room, [one for one in every[floor] if one in stood_in]) for floor in floors}
+        meant = next((every[floor][one] for floor, one in near.items() if one), None)
+        if meant is not None:
+            yield _warn_room(items, [row for floor, own in floors.items() if near[floor] for row in own], meant)
+
+
+def _warn_room(items: Table, rows: Sequence[Row], meant: str) -> Problem:
+    message = nfill(
+        "Room {room} is not that of any segment, so the piece does not count beside those of {meant} unless it names "
+        "them.",
+        "Room {room} is not that of any segment, so its {n} pieces do not count beside those of {meant} unless they "
+        "name them.",
+        _count_pieces(rows),
+        room=rows[0].quote("room"),
+        meant=shorten(meant),
+    )
+    return items.problem("room", rows[0], message, fill("Did you mean {room}?", room=meant), "warning")
+
+
+def find_near_room(room: str, rooms: Iterable[str]) -> str | None:
+    """Return the room of which a name is most likely a slip, all as names are compared."""
+    near = difflib.get_close_matches(room, list(rooms), MOST_NEAR, NEAR)
+    return next((one for one in near if _could_be(room, one)), None)
+
+
+def _could_be(room: str, other: str) -> bool:
+    """Tell whether a name can be a slip of another: Room 12 is none of Room 11, nor South office of North office."""
+    if re.findall(r"\d+", room) != re.findall(r"\d+", other):
+        return False
+    pairs = list(zip(room.split(), other.split(), strict=False))
+    if len(pairs) < 2 or len(room.split()) != len(other.split()):
+        return True
+    return all(difflib.SequenceMatcher(None, one, two).ratio() >= NEAR_WORD for one, two in pairs)

@@ -1,0 +1,87 @@
+"""The formulas of the rows of Items, which show their classes as one types."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.i18n import gettext
+from assess.methods import Method, adopted_formula
+from assess.model import NEAR_AXIS
+from assess.settings import Settings
+from assess.workbook import formulas as live
+from assess.workbook.lists import LETTERS
+from assess.workbook.schema import ITEMS, LIVE, WORKINGS
+
+FIRST = len(ITEMS.columns)
+"""Place of the first live column, right of the columns to fill in."""
+
+ROW = "\x00"
+"""Stands for the number of the row in the formulas of `LiveRow`, which are the same for every row."""
+
+NO_FLOOR, NO_AXIS, WRONG = "floor?", "axis?", "check"
+"""What the live columns show without a known floor, with an unknown axis, and with sizes that are not numbers."""
+
+
+@dataclass(frozen=True, slots=True)
+class LiveRow:
+    """A row of Items; `last` holds the last row of each table."""
+
+    last: Mapping[str, int]
+
+    def formulas(self) -> list[str]:
+        """Return a formula for each of `schema.LIVE` and `schema.WORKINGS`, with `ROW` for the number of the row."""
+        cells = [f"${xl_col_to_name(FIRST + at)}{ROW}" for at in range(len(LIVE) + len(WORKINGS))]
+        ratio, pfa, *risks, _, axis, pfv, height = cells
+        no_floor, no_axis, wrong = (f'"{gettext(hint)}"' for hint in (NO_FLOOR, NO_AXIS, WRONG))
+        served = f'IF({axis}={no_floor},{axis},IF({axis}="","",{no_axis}))'
+        breadth = self._size("breadth")
+        sizes = f'IFERROR(IF(OR({breadth}<=0,{height}<=0),"",{breadth}*100/{height}),{wrong})'
+        references = {"breadth_to_height": ratio, "height_cm": height, "pfa_g": pfa, "pfv_cm_s": pfv}
+        risk = risks[live.LIVE_METHODS.index(adopted_formula())]
+        return [
+            self._unless_blank(f'IF(sizes_unit<>"",sizes_unit,{sizes})'),
+            self._unless_blank(self._on(axis, "pfa", served)),
+            *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
+            f"=IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa)},{risk})",
+            self._unless_blank(f"IFERROR({self._axis()},{no_floor})"),
+            self._unless_blank(self._on(axis, "pfv", '""')),
+            self._unless_blank(f"IFERROR({self._size('height')}*100,{wrong})"),
+        ]
+
+    def _own(self, name: str) -> str:
+        return f"${LETTERS['Items', name]}{ROW}"
+
+    def _unless_blank(self, formula: str) -> str:
+        return f'=IF({self._own("item")}="","",{formula})'
+
+    def _size(self, name: str) -> str:
+        """Expression for a size in m: the row's own, else its type's, else 0."""
+        own, column, last = self._own(name), LETTERS["Catalogue", name], self.last["Catalogue"]
+        sheet = gettext("Catalogue")
+        listed = f"INDEX({sheet}!${column}$2:${column}${last},MATCH({self._own('type')},list_catalogue,0))"
+        return f'IF({own}="",IFERROR({listed}*unit_catalogue_{name},0),{own}*unit_items_{name})'
+
+    def _axis(self) -> str:
+        """Expression for the axis that governs: the row's own, else its angle's, else the worse of the floor's."""
+        axis, angle, near = f"TRIM({self._own('axis')})", self._own("angle_deg"), f"<={NEAR_AXIS:g}"
+        worse = f"INDEX(floor_best,MATCH({self._own('floor')},list_floors,0))"
+        turned = f'IF(ABS(MOD({angle}+90,180)-90){near},"X",IF(ABS(MOD({angle},180)-90){near},"Y",{worse}))'
+        return f'IF({axis}<>"",{axis},IF({angle}="",{worse},{turned}))'
+
+    def _on(self, axis: str, what: str, otherwise: str) -> str:
+        """Expression for the PFA [g] or PFV [cm/s] along an axis, from the helper columns of Lists."""
+        x, y = (f"INDEX(floor_{what}_{letter},MATCH({self._own('floor')},list_floors,0))" for letter in "xy")
+        return f'IFERROR(IF({axis}="X",{x},IF({axis}="Y",{y},{otherwise})),"{gettext(NO_FLOOR)}")'
+
+
+def _write(method: Method, references: Mapping[str, str]) -> str:
+    """Return the formula of a method with the default settings."""
+    settings = Settings()
+    parameters = {one.setting: f"{getattr(settings, one.setting):.12g}" for one in method.parameters}
+    return live.write_live(method, references, parameters)["value"]
+
+
+def _ready(ratio: str, pfa: str, formula: str) -> str:
+    """Show a result once B/H and PFA are numbers; until then what they say instead."""
+    return f"=IF(ISNUMBER({ratio}),IF(ISNUMBER({pfa}),{formula},{pfa}),{ratio})"

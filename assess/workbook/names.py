@@ -1,0 +1,163 @@
+"""The words of a workbook: headers taken apart, names compared, and sheets, labels and choices in every language.
+
+The code knows the English words. Those of other languages stand in their catalogues, which are loaded only where an
+English word does not match: whoever reads a workbook in English does not wait for them.
+"""
+
+import difflib
+import re
+import unicodedata
+from collections.abc import Collection, Iterator
+from dataclasses import replace
+from functools import cache, lru_cache
+from itertools import chain
+
+from assess.i18n import LANGUAGES, gettext, load_catalogue
+from assess.settings import match_choice
+from assess.units import QUANTITIES, read_unit
+from assess.workbook.schema import HELP, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+
+ENGLISH, *_OTHERS = LANGUAGES
+_BRACKET = re.compile(r"^(?P<label>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$", re.DOTALL)
+
+
+# ---------------------------------------------------------------- how names are compared
+
+
+def split_header(header: str) -> tuple[str, str | None]:
+    """Split ``Height [cm]`` into label and unit; the unit is None where there is no bracket."""
+    match = _BRACKET.match(header.strip())
+    return (match["label"], match["unit"]) if match else (header.strip(), None)
+
+
+@lru_cache(maxsize=4096)  # the same floors and choices stand in row after row
+def key(text: str) -> str:
+    """Return a name as names are compared: letter case and the number of spaces ignored."""
+    return " ".join(unicodedata.normalize("NFKC", text).split()).casefold()
+
+
+def fold(text: str) -> str:
+    """Return a label as labels of one language are compared: letter case and spaces ignored."""
+    return "".join(key(text).split())
+
+
+def plain(text: str) -> str:
+    """Return a label as labels are compared in all languages: as `fold` does, and without accents."""
+    return fold(_bare(text))
+
+
+def _bare(text: str) -> str:
+    """Leave out accents, and the apostrophes that are typed in their place: ``Profondita'``."""
+    if text.isascii() and "'" not in text:
+        return text
+    parts = unicodedata.normalize("NFD", text)
+    return "".join(sign for sign in parts if not unicodedata.combining(sign) and sign not in "'\u2019`\u00b4")
+
+
+def find_near(name: str, names: Collection[str], least: float = 0.75) -> str | None:
+    """Return the one of `names` that a name is most likely a slip of; None if none is near."""
+    near = difflib.get_close_matches(name, names, 1, least)
+    return near[0] if near else None
+
+
+# ---------------------------------------------------------------- sheets and headers
+
+
+@cache
+def translate(sheet: Sheet, code: str) -> Sheet:
+    """Return a sheet with its name and labels in a language; all else, choices too, stays as it is."""
+    if code == ENGLISH:
+        return sheet
+    find = load_catalogue(code).find
+    columns = tuple(replace(column, label=find(column.label), language=code) for column in sheet.columns)
+    return replace(sheet, name=find(sheet.name), columns=columns)
+
+
+def versions(sheet: Sheet) -> Iterator[Sheet]:
+    """Yield a sheet in every language, English first."""
+    return (translate(sheet, code) for code in LANGUAGES)
+
+
+def find_column(sheet: Sheet, label: str) -> Column | None:
+    """Return the column that a label names in any language, with its label in that language."""
+    wanted = plain(label)
+    return next((one for said in versions(sheet) for one in said.columns if plain(one.label) == wanted), None)
+
+
+def find_near_column(sheet: Sheet, own: Sheet, header: str, labels: Collection[str]) -> Column | None:
+    """Return the column of which a header is most likely a slip: Weight [kg] next to Height [cm] is none.
+
+    `own` is the sheet with the names that the workbook gives it, `labels` all labels of the header row.
+    """
+    label, unit = split_header(header)
+    folded = plain(label)
+    for one in chain(own.columns, *(said.columns for said in versions(sheet))):
+        known = plain(one.label)
+        if unit is None and _has_bare_unit(folded, known, one):
+            return one
+        if unit is not None and read_unit(unit) not in QUANTITIES.get(one.quantity, {}):
+            continue
+        if difflib.SequenceMatcher(None, folded, known).ratio() < 0.8:
+            continue
+        if known not in labels or folded[:1] == known[:1]:
+            return one
+    return None
+
+
+def _has_bare_unit(folded: str, known: str, column: Column) -> bool:
+    """Tell whether a header gives its unit without brackets: ``Height (cm)``, ``Height, cm``."""
+    rest = folded.removeprefix(known).strip("()_,;:-/.")
+    return folded.startswith(known) and read_unit(rest) in QUANTITIES.get(column.quantity, {})
+
+
+def find_sheet(name: str) -> tuple[str, str] | None:
+    """Return the English name and the language of the sheet that a name stands for, None for a sheet of one's own."""
+    wanted = plain(name)
+    if wanted in (plain(HELP), plain(LISTS)):
+        return None
+    return next(((names[wanted], code) for code in LANGUAGES if wanted in (names := _sheet_names(code))), None)
+
+
+@cache
+def _sheet_names(code: str) -> dict[str, str]:
+    return {plain(translate(sheet, code).name): sheet.name for sheet in SHEETS}
+
+
+def is_live(sheet: Sheet, label: str) -> bool:
+    """Tell whether a label is one of the columns that Excel computes, which reading leaves out."""
+    wanted = plain(label)
+    if wanted in _live_labels(ENGLISH):
+        return True
+    return find_column(sheet, label) is None and any(wanted in _live_labels(code) for code in _OTHERS)
+
+
+@cache
+def _live_labels(code: str) -> frozenset[str]:
+    labels = [split_header(label)[0] for label in (*LIVE, *WORKINGS)]
+    return frozenset(plain(label if code == ENGLISH else load_catalogue(code).find(label)) for label in labels)
+
+
+# ---------------------------------------------------------------- choices
+
+
+@lru_cache(maxsize=4096)  # the same choices stand in row after row
+def find_choice(text: str, choices: tuple[str, ...]) -> str | None:
+    """Return the choice, in English, that a text means in any language; None if none."""
+    if (choice := match_choice(text, choices)) is not None:
+        return choice
+    for code in _OTHERS:
+        said = {_bare(word): choice for word, choice in zip(say_choices(choices, code), choices, strict=True)}
+        if (word := match_choice(_bare(text), said)) is not None:
+            return said[word]
+    return None
+
+
+def say_choices(choices: tuple[str, ...], code: str) -> tuple[str, ...]:
+    """Return choices in a language."""
+    return choices if code == ENGLISH else tuple(load_catalogue(code).find(choice) for choice in choices)
+
+
+def say_live(label: str) -> str:
+    """Return the header of a column that Excel computes in the language in use."""
+    name, unit = split_header(label)
+    return f"{gettext(name)} [{unit}]" if unit else gettext(name)

@@ -1,0 +1,525 @@
+"""Untrusted bytes to cells: a workbook's sheets as rows of values, with nothing interpreted.
+
+An .xlsx file is a zip of XML. The directory of the zip is checked before anything is unpacked, and every part is
+streamed once through expat with bounds on its size, its tags and the length of a row, so that a hostile or damaged
+file ends in one clear sentence and takes little memory. The limits are far above honest use: 20,000 items take 15 MB.
+"""
+
+import io
+import posixpath
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, Self, TypeVar
+from xml.parsers import expat
+
+from assess.errors import Problem, WorkbookError
+from assess.i18n import fill
+from assess.progress import SILENT, Progress
+
+MAX_FILE, MAX_PARTS, MAX_TOTAL, MAX_RATIO = 100 * 2**20, 2000, 128 * 2**20, 200
+MAX_ROWS, MAX_COLUMNS = 100_000, 256
+"""Rows and columns that are read."""
+SHEET_ROWS, SHEET_COLUMNS = 1_048_576, 16_384
+"""Rows and columns that a sheet of a spreadsheet program has."""
+HEADER_ROWS = 20
+"""The header row of a table is looked for in so many rows from the top."""
+MAX_ROW_BYTES, MAX_TAG, MAX_DEPTH = 2 * 2**20, 4 * 2**20, 1000
+MAX_MERGED = 16_384
+
+_CHUNK = 2**16
+_ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+_TYPES, _WORKBOOK, _RELATIONS = "[Content_Types].xml", "xl/workbook.xml", "xl/_rels/workbook.xml.rels"
+_MAIN = ("sheet.main+xml", "template.main+xml", "sheet.macroEnabled.main+xml", "template.macroEnabled.main+xml")
+_STRICT = "http://purl.oclc.org/ooxml/spreadsheetml/main"
+_SMALL, _STRINGS = (8 * 2**20, 300_000), (24 * 2**20, 1_000_000)
+"""Bytes and tags of the parts that are kept in memory."""
+_DATES = frozenset({*range(14, 23), 45, 46, 47})
+"""Numbers of the built-in formats that show a number as a date or a time."""
+
+DAMAGE = (ValueError, TypeError, LookupError, OSError, EOFError, ArithmeticError, RuntimeError, NotImplementedError,
+          zipfile.BadZipFile, zlib.error, expat.ExpatError)  # fmt: skip
+"""What zipfile, zlib and expat raise on a damaged file."""
+
+UNSAVED = object()
+"""The value of a cell that holds a formula without a saved result."""
+
+Cells = dict[int, Any]
+"""The values of a row by column, from 0; blank cells are left out."""
+
+
+def unreadable(message: str, fix: str) -> WorkbookError:
+    """Build the error for a workbook that cannot be opened at all."""
+    return WorkbookError([Problem("error", "", "", message, fix)])
+
+
+def _damaged(message: str) -> WorkbookError:
+    """Build the error for a part that no spreadsheet program writes."""
+    return unreadable(fill("the workbook is damaged: {why}.", why=message), fill("Open it in Excel and save it again."))
+
+
+def _bomb(name: str) -> WorkbookError:
+    return unreadable(
+        fill(
+            "{name} unpacks to far more than a furniture list needs, as a zip bomb does; it was not opened.",
+            name=name,
+        ),
+        fill("Copy the tables into a new workbook made with `assess new`."),
+    )
+
+
+def read_file(path: Path) -> bytes:
+    """Return the bytes of a workbook; raises WorkbookError if `path` is no file that can be read, or is too large."""
+    try:
+        if path.exists() and not path.is_file():
+            raise unreadable(fill("{path} is a folder, not a workbook.", path=path), fill("Name the .xlsx file in it."))
+        with path.open("rb") as file:
+            head = file.read(len(_OLE))
+            return head + file.read(MAX_FILE + 1) if head.startswith(_ZIP) else head
+    except FileNotFoundError:
+        raise unreadable(fill("{path} does not exist.", path=path), fill("Check the name and the folder.")) from None
+    except (OSError, ValueError) as error:  # ValueError: a zero character in the name
+        why = getattr(error, "strerror", None) or error
+        message = fill("{path} cannot be opened: {why}.", path=path, why=why)
+        raise unreadable(message, fill("Check its name and its access rights.")) from None
+
+
+# ---------------------------------------------------------------- the zip
+
+
+def _open_archive(data: bytes, name: str) -> zipfile.ZipFile:
+    """Open the zip, having checked its first bytes and what its directory declares.
+
+    A declared size is a sound bound: Python's zipfile stops with an error after that many bytes.
+    """
+    if data.startswith(_OLE):
+        raise unreadable(
+            fill("{name} is an old .xls workbook or is protected by a password.", name=name),
+            fill("Open it in Excel and save it as .xlsx without a password."),
+        )
+    if not data.startswith(_ZIP):
+        message = fill("{name} is not an Excel workbook (.xlsx).", name=name)
+        raise unreadable(message, fill("Save it from Excel as .xlsx."))
+    if len(data) > MAX_FILE:
+        message = fill("{name} is larger than {most} MB.", name=name, most=MAX_FILE >> 20)
+        raise unreadable(message, fill("Remove pictures and unused sheets."))
+    try:
+        archive = zipfile.ZipFile(io.BytesIO(data))
+    except DAMAGE:
+        message = fill("{name} is damaged: its zip cannot be read.", name=name)
+        raise unreadable(message, fill("Open it in Excel and save it again.")) from None
+    _check_directory(name, archive.infolist())
+    return archive
+
+
+def _check_directory(name: str, parts: list[zipfile.ZipInfo]) -> None:
+    names = {part.filename for part in parts}
+    if not {_TYPES, _WORKBOOK, _RELATIONS} <= names:
+        message = fill("{name} is a zip file, but not an Excel workbook (.xlsx).", name=name)
+        raise unreadable(message, fill("Save it from Excel as .xlsx."))
+    if any(part.flag_bits & 1 for part in parts):
+        message = fill("{name} is protected by a password.", name=name)
+        raise unreadable(message, fill("Save it without a password."))
+    if len(names) < len(parts):
+        raise _damaged(fill("its zip holds two parts of one name"))
+    if any(part.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) for part in parts):
+        raise _damaged(fill("its zip uses a compression that Excel does not use"))
+    bloated = any(one.file_size > max(2**20, MAX_RATIO * max(one.compress_size, 1)) for one in parts)
+    if bloated or len(parts) > MAX_PARTS or sum(part.file_size for part in parts) > MAX_TOTAL:
+        raise _bomb(name)
+
+
+# ---------------------------------------------------------------- parts as XML
+
+
+class _Part:
+    """One part of the zip as a stream of tags; a kind of part says what it does at each. Prefixes are left out."""
+
+    limits: tuple[int, int] | None = _SMALL
+
+    def __init__(self, archive: zipfile.ZipFile, path: str, name: str, progress: Progress = SILENT) -> None:
+        self.archive, self.path, self.name, self.progress = archive, path, name, progress
+        self.parser = expat.ParserCreate()
+        self.parser.buffer_text = True
+        self.parser.StartElementHandler, self.parser.EndElementHandler = self.enter, self.leave
+        self.parser.CharacterDataHandler = self.text
+        self.parser.EntityDeclHandler = self._refuse_entities
+        self.depth = 0
+
+    def enter(self, tag: str, attributes: dict[str, str]) -> None:
+        """Count an element that begins and take it in by its bare name."""
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise self.too_deep()
+        self.start(tag.rpartition(":")[2], attributes)
+
+    def leave(self, tag: str) -> None:
+        """Count an element that ends and take in its end."""
+        self.depth -= 1
+        self.end(tag.rpartition(":")[2])
+
+    def too_deep(self) -> WorkbookError:
+        """Build the error for more open elements than `MAX_DEPTH`."""
+        return _damaged(fill("{part} nests its elements over {most} deep", part=self.path, most=MAX_DEPTH))
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Take in the beginning of an element."""
+
+    def end(self, tag: str) -> None:
+        """Take in the end of an element."""
+
+    def text(self, data: str) -> None:
+        """Take in text."""
+
+    def _refuse_entities(self, *_: object) -> None:
+        message = fill("{name} declares XML entities, as an attack does.", name=self.name)
+        raise unreadable(message, fill("Save it again from Excel."))
+
+    def feed(self) -> Iterator[int]:
+        """Read the part; yield after every stretch how many bytes have been read."""
+        done = tags = 0
+        if self.limits and self.archive.getinfo(self.path).file_size > self.limits[0]:
+            raise _bomb(self.name)
+        with self.archive.open(self.path) as file:
+            while chunk := file.read(_CHUNK):
+                self.progress.check()
+                done, tags = done + len(chunk), tags + chunk.count(b"<")
+                if self.limits and tags > self.limits[1]:
+                    raise _bomb(self.name)
+                if done == len(chunk) and b"\0" in chunk[:100]:
+                    raise _damaged(fill("{part} is not written in UTF-8", part=self.path))
+                self.parser.Parse(chunk, False)
+                if done - self.parser.CurrentByteIndex > MAX_TAG:  # it is scanned anew with every stretch
+                    raise _damaged(fill("{part} holds a tag of over {most} MB", part=self.path, most=MAX_TAG >> 20))
+                yield done
+        self.parser.Parse(b"", True)
+
+    def read(self) -> Self:
+        """Read the whole part and return itself."""
+        for _ in self.feed():
+            pass
+        return self
+
+
+_Kind = TypeVar("_Kind", bound=_Part)
+
+
+class _Tree(_Part):
+    """A small part as a whole: its elements in their order, each with what encloses it, and its attributes."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.elements: list[tuple[str, str, dict[str, str]]] = []
+        self._open = [""]
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Note an element."""
+        self.elements.append((self._open[-1], tag, attributes))
+        self._open.append(tag)
+
+    def end(self, tag: str) -> None:
+        """Note its end."""
+        self._open.pop()
+
+    def find(self, tag: str, within: str = "") -> Iterator[dict[str, str]]:
+        """Yield the attributes of every element of a name, or of those within another."""
+        found = ((outer, attributes) for outer, name, attributes in self.elements if name == tag)
+        return (attributes for outer, attributes in found if outer == within or not within)
+
+
+class _Strings(_Part):
+    """The texts that cells share."""
+
+    limits = _STRINGS
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.found: list[str] = []
+        self.parts: list[str] = []
+        self.takes = self.is_phonetic = False
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Note whether text that follows is shown."""
+        if tag == "si":
+            self.parts = []
+        self.is_phonetic = self.is_phonetic or tag == "rPh"
+        self.takes = tag == "t" and not self.is_phonetic
+
+    def text(self, data: str) -> None:
+        """Keep text that is shown."""
+        if self.takes:
+            self.parts.append(data)
+
+    def end(self, tag: str) -> None:
+        """Note the end of a text."""
+        self.takes = False
+        self.is_phonetic = self.is_phonetic and tag != "rPh"
+        if tag == "si":
+            self.found.append("".join(self.parts).replace("x005F_", ""))  # a sign by which programs escape a "_x"
+
+
+def _date_format(number: str, codes: Mapping[str, str]) -> str | None:
+    code = codes.get(number, "")
+    if not code:
+        return ("[h]" if number == "46" else "d") if number.isdigit() and int(number) in _DATES else None
+    if not any(letter in "dmhys" for letter in code.lower()):
+        return None
+    from openpyxl.styles.numbers import is_date_format
+
+    return code if is_date_format(code) else None
+
+
+# ---------------------------------------------------------------- sheets
+
+
+@dataclass(frozen=True, slots=True)
+class _Shared:
+    """What the cells of all sheets refer to."""
+
+    strings: list[str] = field(default_factory=list)
+    styles: list[str | None] = field(default_factory=list)
+    is_1904: bool = False
+
+
+class SheetCells(_Part):
+    """The cells of one sheet.
+
+    `rows` yields them once, row by row. After that `last_row` is the last row that holds a value or a formula (0 in
+    an empty sheet), `far` the address of the first value right of the columns that are read ("" if there is none), and
+    `merged` the merged ranges, as in ``A1:C2``.
+    """
+
+    limits = None
+    header_rows, top = HEADER_ROWS, "A1"
+
+    @staticmethod
+    def address(row: int, at: int | None = None) -> str:
+        """Return how messages call a cell, ``C3``; that of the first column where no column is given."""
+        return f"{column_letters(at or 0)}{row}"
+
+    def __init__(self, archive: zipfile.ZipFile, path: str, name: str, shared: _Shared, progress: Progress) -> None:
+        super().__init__(archive, path, name, progress)
+        self.shared = shared
+        self.last_row, self.far, self.merged = 0, "", list[str]()
+        self._ready: list[tuple[int, Cells]] = []
+        self._cells: Cells = {}
+        self._number = self._at = self._count = 0
+        self._row_start: int | None = None
+        self._kind = self._style = self._address = ""
+        self._texts: list[str] | None = None
+        self._tags: set[str] = set()
+        self._takes = False
+
+    def rows(self) -> Iterator[tuple[int, Cells]]:
+        """Yield the number and the cells of each row that holds any, from the top."""
+        for done in self.feed():
+            if self._row_start is not None and done - self._row_start > MAX_ROW_BYTES + _CHUNK:
+                message = fill("{part} holds a row of over {most} MB.", part=self.path, most=MAX_ROW_BYTES >> 20)
+                raise unreadable(message, fill("Delete that row."))
+            yield from self._ready
+            self._ready = []
+        yield from self._ready
+
+    def enter(self, tag: str, attributes: dict[str, str]) -> None:
+        """Open a row or a cell, or note what a cell holds, in one call: a sheet has tens of thousands of elements."""
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise self.too_deep()
+        if ":" in tag:
+            tag = tag.rpartition(":")[2]
+        if tag == "c" and self._row_start is not None:
+            self._open_cell(attributes)
+        elif tag == "row":
+            self._open_row(attributes)
+        elif tag == "mergeCell" and len(self.merged) < MAX_MERGED:
+            self.merged.append(attributes.get("ref", ""))
+        elif self._texts is not None:
+            self._tags.add(tag)
+            self._takes = tag == "v" or (tag == "t" and "rPh" not in self._tags)
+
+    def leave(self, tag: str) -> None:
+        """Close a row or a cell."""
+        self.depth -= 1
+        self._takes = False
+        if ":" in tag:
+            tag = tag.rpartition(":")[2]
+        if tag == "c" and self._texts is not None:
+            self._close_cell("".join(self._texts))
+            self._texts = None
+        elif tag == "rPh":
+            self._tags.discard("rPh")
+        elif tag == "row":
+            self._row_start = None
+            if self._cells:
+                self._ready.append((self._number, self._cells))
+
+    def text(self, data: str) -> None:
+        """Keep the text of a cell."""
+        if self._takes and self._texts is not None:
+            self._texts.append(data)
+
+    def _open_row(self, attributes: dict[str, str]) -> None:
+        previous, number = self._number, attributes.get("r")
+        if number is not None and not (number.isascii() and number.isdigit() and len(number) <= 7):
+            raise _damaged(fill("{part} has a row numbered {number}", part=self.path, number=number[:20]))
+        self._number = previous + 1 if number is None else int(number)
+        if not previous < self._number <= SHEET_ROWS:
+            raise _damaged(fill("the rows of {part} are out of order", part=self.path))
+        self._row_start = self.parser.CurrentByteIndex
+        self._cells, self._at, self._count = {}, 0, 0
+
+    def _open_cell(self, attributes: dict[str, str]) -> None:
+        self._address = attributes.get("r", "")
+        self._at = _column_number(self._address.rstrip("0123456789")) if self._address else self._at + 1
+        self._count += 1
+        if self._at > SHEET_COLUMNS or self._count > SHEET_COLUMNS:
+            raise _damaged(
+                fill("row {row} of {part} has more cells than a sheet has columns", row=self._number, part=self.path)
+            )
+        self._kind, self._style = attributes.get("t", "n"), attributes.get("s", "")
+        self._texts, self._tags = [], set()
+
+    def _close_cell(self, text: str) -> None:
+        if self._tags.isdisjoint(("v", "f", "is")):
+            return
+        self.last_row = self._number
+        if self._at > MAX_COLUMNS:
+            self.far = self.far or self._address or fill("column {at} of row {row}", at=self._at, row=self._number)
+            return
+        value = self._value(text) if text else None
+        if value is None and "f" in self._tags and not (self._kind == "str" and "v" in self._tags):
+            value = UNSAVED
+        if value is not None:
+            self._cells[self._at - 1] = value
+
+    def _value(self, text: str) -> Any:
+        if self._kind == "s":
+            return self.shared.strings[int(text)]
+        if self._kind == "b":
+            return bool(int(text))
+        if self._kind == "n":
+            return self._number_or_date(float(text) if any(sign in text for sign in ".eE") else int(text))
+        if self._kind == "d":
+            from openpyxl.utils.datetime import from_ISO8601
+
+            return from_ISO8601(text)  # type: ignore[no-untyped-call]
+        return text
+
+    def _number_or_date(self, number: float) -> Any:
+        style = int(self._style) if self._style.isdigit() else 0
+        code = self.shared.styles[style] if style < len(self.shared.styles) else None
+        if code is None:
+            return number
+        from openpyxl.styles.numbers import is_timedelta_format
+        from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_excel
+
+        try:
+            epoch = MAC_EPOCH if self.shared.is_1904 else WINDOWS_EPOCH
+            return from_excel(number, epoch, timedelta=is_timedelta_format(code))
+        except (OverflowError, ValueError):
+            return "#VALUE!"
+
+
+@cache
+def _column_number(letters: str) -> int:
+    if not (1 <= len(letters) <= 3 and letters.isascii() and letters.isalpha()):
+        raise ValueError(f"{letters[:20]} is no column")
+    number = 0
+    for letter in letters.upper():
+        number = 26 * number + ord(letter) - ord("A") + 1
+    return number
+
+
+@cache
+def column_letters(at: int) -> str:
+    """Return the letters of a column, counted from 0."""
+    letters, at = "", at + 1
+    while at:
+        at, rest = divmod(at - 1, 26)
+        letters = chr(ord("A") + rest) + letters
+    return letters
+
+
+def _check_kind(types: _Tree, book: _Tree) -> None:
+    """Raise WorkbookError unless the workbook is where every program looks for it, with the usual names of elements."""
+    for one in types.find("Override"):
+        part = one.get("PartName", "").lstrip("/")
+        if part and part != _WORKBOOK and one.get("ContentType", "").endswith(_MAIN):
+            raise _damaged(fill("{part} stands for {expected}", part=part, expected=_WORKBOOK))
+    if any(_STRICT in one.values() for one in book.find("workbook")):
+        message = fill("the workbook is saved as Strict Open XML.")
+        raise unreadable(message, fill("In Excel: Save As, Excel Workbook (.xlsx), without Strict."))
+
+
+def _list_dates(styles: _Tree) -> list[str | None]:
+    """Return, by the number of a style, the format of one that shows a number as a date or a time, else None."""
+    codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
+    return [_date_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
+
+
+class Book:
+    """An opened workbook: `sheets` tells the names of its worksheets in their order; use it in a ``with`` statement.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    name : str
+        How messages call it.
+    progress : Progress
+        Checked while the parts are read.
+
+    Raises
+    ------
+    WorkbookError
+        Also while its sheets are read: if the file is damaged, is no workbook, or is larger than an honest one.
+    """
+
+    def __init__(self, data: bytes, name: str, progress: Progress = SILENT) -> None:
+        self.name, self.progress, self._shared = name, progress, _Shared()
+        self._archive = _open_archive(data, name)
+        with self:
+            types, book = self._part(_Tree, _TYPES), self._part(_Tree, _WORKBOOK)
+            _check_kind(types, book)
+            links = self._links()
+            kinds = dict(links.values())
+            self.sheets = {}
+            for one in book.find("sheet"):
+                link = next((value for name, value in one.items() if name.endswith(":id")), "")
+                if links.get(link, ("",))[0] == "worksheet":
+                    self.sheets[one.get("name", "")] = links[link][1]
+            self._shared = _Shared(
+                self._part(_Strings, kinds["sharedStrings"]).found if "sharedStrings" in kinds else [],
+                _list_dates(self._part(_Tree, kinds["styles"])) if "styles" in kinds else [],
+                any(one.get("date1904") in ("1", "true") for one in book.find("workbookPr")),
+            )
+
+    def _links(self) -> dict[str, tuple[str, str]]:
+        """Return kind and path of the parts that the workbook refers to, by the name of the reference."""
+        present, found = set(self._archive.namelist()), {}
+        for one in self._part(_Tree, _RELATIONS).find("Relationship"):
+            path = posixpath.normpath(posixpath.join("/xl", one.get("Target", ""))).lstrip("/")
+            if path in present and one.get("TargetMode") != "External":
+                found[one.get("Id", "")] = (one.get("Type", "").rpartition("/")[2], path)
+        return found
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        """Turn what a damaged file raises into one sentence."""
+        if isinstance(error, DAMAGE) and not isinstance(error, WorkbookError):
+            message = fill(
+                "{name} is damaged or is no Excel workbook ({kind}).", name=self.name, kind=type(error).__name__
+            )
+            raise unreadable(message, fill("Open it in Excel and save it again.")) from error
+
+    def _part(self, kind: type[_Kind], path: str) -> _Kind:
+        return kind(self._archive, path, self.name, self.progress).read()
+
+    def cells(self, sheet: str) -> SheetCells:
+        """Return the cells of a sheet."""
+        return SheetCells(self._archive, self.sheets[sheet], self.name, self._shared, self.progress)

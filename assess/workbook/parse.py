@@ -1,0 +1,428 @@
+"""Cells to typed rows: every sheet as a table of values in SI, by the fields of `assess.workbook.schema`.
+
+Nothing here changes a row that has been read, and nothing is compared between rows: that is `check` and `resolve`.
+Every problem is collected with its cell and reading goes on, so that one run names them all.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import chain, islice
+from typing import Any
+
+from assess.errors import Problem, Severity
+from assess.i18n import Text, fill
+from assess.units import QUANTITIES, read_unit
+from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
+from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells, column_letters
+from assess.workbook.schema import Column, Sheet
+from assess.workbook.values import CellError, is_blank, read_cell, read_text, shorten
+
+_ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
+
+
+# ---------------------------------------------------------------- rows that are built in code
+
+
+class CodeCells:
+    """Rows given in code, as the cells of a sheet: keys are fields, in the units of an empty workbook, or headers."""
+
+    header_rows, top = 0, ""
+    last_row, far = 0, ""
+    merged: Sequence[str] = ()
+
+    def __init__(self, sheet: Sheet, given: Sequence[Mapping[str, Any]]) -> None:
+        self.sheet, self.given = sheet, given
+        fields = {column.name: column.header() for column in sheet.columns}
+        keys = list(dict.fromkeys(str(name) for row in given for name in row))
+        required = [] if given else [column.name for column in sheet.columns if column.required]
+        self.keys = keys or required
+        self.headers = [fields.get(name, name) for name in self.keys]
+
+    def rows(self) -> Iterator[tuple[int, Cells]]:
+        """Yield the headers, then the rows; for a form the lines of its one row."""
+        if self.sheet.layout == "form":
+            row = self.given[0] if self.given else {}
+            yield from ((at, {0: self.headers[at], 1: _native(row[name])}) for at, name in enumerate(self.keys))
+            return
+        yield 0, dict(enumerate(self.headers))
+        for number, given in enumerate(self.given, 1):
+            yield number, {at: _native(given[name]) for at, name in enumerate(self.keys) if name in given}
+
+    def address(self, row: int, at: int | None = None) -> str:
+        """Return ``row 3 Height``; the header alone for a form and for the headers themselves."""
+        if self.sheet.layout == "form":
+            return split_header(self.headers[row])[0]
+        if at is None or at >= len(self.headers):
+            return f"row {row}" if 0 < row <= len(self.given) else ""
+        return f"row {row} {split_header(self.headers[at])[0]}" if row else self.headers[at]
+
+
+def _native(value: Any) -> Any:
+    """Return a value of numpy or pandas as Python has it; NaN is blank."""
+    value = value.item() if hasattr(value, "item") else value
+    return None if isinstance(value, float) and value != value else value
+
+
+Source = SheetCells | CodeCells
+"""The cells of one sheet; `last_row`, `far` and `merged` are known once `rows` has ended."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of a table: its number, its values by field name (SI), and the texts of the unknown columns."""
+
+    number: int
+    values: Mapping[str, Any]
+    extra: tuple[str, ...] = ()
+
+    def get(self, name: str) -> Any:
+        """Return the value of a field, None where it is blank or could not be read."""
+        return self.values.get(name)
+
+    def quote(self, name: str) -> str:
+        """Return the value of a field as messages quote it."""
+        return shorten(self.values.get(name))
+
+    def filled(self) -> dict[str, Any]:
+        """Return the values that are not blank."""
+        return {name: value for name, value in self.values.items() if value is not None}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """One sheet as it was read; a form is a table of one row.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        With the names that the workbook gives it and its columns; `language` is that of its own name.
+    found : bool
+        Whether the workbook has the sheet.
+    places : mapping of str to int
+        In which column of the sheet a field stands, from 0; in which row, for a form.
+    rows : tuple of Row
+        Those that hold anything.
+    extra : tuple of str
+        Headers of the unknown columns.
+    blind : frozenset of str
+        Fields whose header gives no known unit, which has been reported.
+    failed : frozenset of str
+        Addresses of the cells that have been reported as wrong.
+    source : Source, optional
+        Knows how messages call a cell.
+    """
+
+    sheet: Sheet
+    language: str = ENGLISH
+    found: bool = False
+    places: Mapping[str, int] = field(default_factory=dict)
+    rows: tuple[Row, ...] = ()
+    extra: tuple[str, ...] = ()
+    blind: frozenset[str] = frozenset()
+    failed: frozenset[str] = frozenset()
+    source: Source | None = None
+
+    def cell(self, name: str, row: int) -> str:
+        """Address of a field in a row; the first column where the sheet lacks the field, "" where a form does."""
+        if self.source is None or (self.sheet.layout == "form" and name not in self.places):
+            return ""
+        if self.sheet.layout == "form":
+            return self.source.address(self.places[name], 1)
+        return self.source.address(row, self.places.get(name))
+
+    @property
+    def letters(self) -> dict[str, str]:
+        """In which column of the sheet a field stands, by its letters; nothing for a form, or rows built in code."""
+        is_file = self.source is not None and self.source.top and self.sheet.layout == "table"
+        return {name: column_letters(at) for name, at in self.places.items()} if is_file else {}
+
+    def label(self, name: str) -> str:
+        """Return the label of a field as the workbook has it."""
+        return self.sheet.column(name).label
+
+    def problem(self, name: str, row: Row, message: str, fix: str = "", severity: Severity = "error") -> Problem:
+        """Return a problem of one field of a row."""
+        return Problem(severity, self.sheet.name, self.cell(name, row.number), message, fix)
+
+    def problem_at_top(self, message: str, fix: str, severity: Severity = "error") -> Problem:
+        """Return a problem of the sheet as a whole, at its first cell."""
+        return Problem(severity, self.sheet.name, self.source.top if self.source else "", message, fix)
+
+    def spoilt(self, name: str, row: Row) -> bool:
+        """Tell whether a field of a row was filled in but cannot be used, which has been reported."""
+        if name in self.blind or not self.failed:
+            return name in self.blind
+        return name in self.places and self.cell(name, row.number) in self.failed
+
+    def says(self, row: Row, *names: str) -> bool:
+        """Tell whether one of these fields is filled in, be it usable or not."""
+        return any(row.get(name) is not None or self.spoilt(name, row) for name in names)
+
+    def lacks(self, row: Row, name: str) -> bool:
+        """Tell whether a field is blank."""
+        return not self.says(row, name)
+
+    def sound(self, name: str, row: Row) -> Any:
+        """Return the value of a field that is filled in and can be used, else None."""
+        return None if self.spoilt(name, row) else row.get(name)
+
+    def with_all(self, *names: str) -> list[Row]:
+        """Return the rows that have these fields; why others lack one has been reported."""
+        return [row for row in self.rows if all(row.get(name) is not None for name in names)]
+
+    def with_failed(self, problems: Sequence[Problem]) -> "Table":
+        """Return the table with the cells of errors noted."""
+        cells = {one.cell for one in problems if one.severity == "error" and one.sheet == self.sheet.name}
+        return replace(self, failed=self.failed | cells) if cells - self.failed else self
+
+    def without_faulty(self) -> "Table":
+        """Return the table without the rows of errors; without any where its headers, or the sheet itself, are wrong.
+
+        Of a form only the faulty values are left out.
+        """
+        if self.sheet.layout == "form":
+            faulty = {name for name in self.places if self.cell(name, 0) in self.failed}
+            kept = ({name: value for name, value in row.values.items() if name not in faulty} for row in self.rows)
+            return replace(self, rows=tuple(Row(0, values) for values in kept))
+        numbers, named = {row.number for row in self.rows}, [set(_row_numbers(cell)) for cell in self.failed]
+        if not all(one & numbers for one in named):
+            return replace(self, rows=())
+        faulty_rows = set().union(*named)
+        return replace(self, rows=tuple(row for row in self.rows if row.number not in faulty_rows))
+
+
+def first_row(cell: str) -> int:
+    """Return the number of the first row that an address names, 0 for none."""
+    return next(iter(_row_numbers(cell)), 0)
+
+
+def _row_numbers(cell: str) -> range:
+    """Return the numbers of the rows that an address names."""
+    if (found := _ROWS.search(cell)) is None:
+        return range(0)
+    first = int(found[1] or found[2])
+    return range(first, int(found[3] or first) + 1)
+
+
+Tables = Mapping[str, Table]
+"""The tables by the English names of their sheets."""
+
+
+def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tuple[Table, list[Problem]]:
+    """Read a sheet.
+
+    Parameters
+    ----------
+    english, own : Sheet
+        With its English names, and with the name that the workbook gives it and labels in that language.
+    language : str
+        Code of the language of its name.
+    source : Source
+        Its cells.
+    """
+    parser = _Parser(english, own, source)
+    table = Table(sheet=own, language=language, found=True, source=source)
+    read = parser.read_form() if own.layout == "form" else parser.read_table()
+    if source.last_row > MAX_ROWS or source.far:
+        parser.problems.clear()
+        parser.report(*_describe_far(source))
+        return table.with_failed(parser.problems), parser.problems
+    named = {column.name: column for column in parser.headers.values()}
+    sheet = replace(own, columns=tuple(named.get(column.name, column) for column in own.columns))
+    table = replace(table, sheet=sheet, blind=frozenset(parser.blind), places=parser.places, rows=tuple(read))
+    table = replace(table, extra=tuple(parser.others.values()))
+    return table.with_failed(parser.problems), parser.problems
+
+
+def _describe_far(source: Source) -> tuple[str, Text, Text]:
+    if source.last_row > MAX_ROWS:
+        message = fill("a value far below the table; at most {most:,} rows are read.", most=MAX_ROWS)
+        return source.address(source.last_row), message, fill("Delete the rows below the table.")
+    message = fill("a value far to the right of the table; at most {most} columns are read.", most=MAX_COLUMNS)
+    return source.far, message, fill("Delete the columns right of the table.")
+
+
+class _Parser:
+    """Reads one sheet; holds what every step needs."""
+
+    def __init__(self, english: Sheet, own: Sheet, source: Source) -> None:
+        self.english, self.own, self.source = english, own, source
+        self.problems: list[Problem] = []
+        self.headers: dict[str, Column] = {}  # by the address of the header
+        self.columns: dict[int, Column] = {}
+        self.others: dict[int, str] = {}
+        self.places: dict[str, int] = {}
+        self.units: dict[str, str] = {}
+        self.blind: set[str] = set()
+
+    def report(self, cell: str, message: str, fix: str = "", severity: Severity = "error") -> None:
+        self.problems.append(Problem(severity, self.own.name, cell, message, fix))
+
+    # ------------------------------------------------------------------ forms
+
+    def read_form(self) -> list[Row]:
+        values: dict[str, Any] = {}
+        for number, cells in self.source.rows():
+            header, value = _shown(cells.get(0)), cells.get(1)
+            if is_blank(header):
+                continue
+            cell, text = self.source.address(number, 0), read_text(header)
+            column, is_wrong = self._match(text, cell)
+            if column:
+                self.places[column.name] = number
+                values[column.name] = self._value(column, value, number, 1)
+            elif value is not None and not is_wrong:
+                message = fill("{name} is not known; it is not used.", name=shorten(text))
+                self.report(cell, message, severity="note")
+        return [Row(0, values)]
+
+    # ----------------------------------------------------------------- tables
+
+    def read_table(self) -> list[Row]:
+        rows = self.source.rows()
+        top = list(islice(rows, HEADER_ROWS))  # rows without cells are not among them
+        candidates = [one for one in top if one[0] <= self.source.header_rows]
+        body = chain(top, rows)
+        best = self._best_row(candidates)
+        if best is None:
+            self._report_no_header(is_filled=bool(candidates))
+            for _ in body:  # the rest is read for the bounds of the sheet
+                pass
+            return []
+        number, cells = best
+        self._read_headers(number, cells)
+        found = [row for at, one in body if at > number and at <= MAX_ROWS and (row := self._row(at, one))]
+        for reference in self.source.merged:
+            if _row_numbers(reference) and _row_numbers(reference)[-1] >= number:
+                message = fill("cells are merged inside the table.")
+                self.report(reference, message, fill("Unmerge them and fill each cell."))
+        if self.own.required and not found and not self._missing():
+            self._report_no_rows(self.source.address(number + 1))
+        return found
+
+    def _best_row(self, top: Sequence[tuple[int, Cells]]) -> tuple[int, Cells] | None:
+        """Return the first row that names most columns; other languages count where English falls short."""
+        rows = [[plain(split_header(str(value))[0]) for value in cells.values()] for _, cells in top]
+        known: set[str] = set()
+        best = None
+        for said in versions(self.english):
+            known |= {plain(column.label) for column in said.columns}
+            scores = [sum(label in known for label in labels) for labels in rows]
+            best = scores.index(max(scores)) if any(scores) else None
+            needed = {plain(column.label) for column in said.columns if column.required}
+            if best is not None and needed <= {*rows[best]}:
+                break
+        return None if best is None else top[best]
+
+    def _report_no_header(self, *, is_filled: bool) -> None:
+        if self.own.required or is_filled:
+            needed = [column.header() for column in self.own.columns if column.required]
+            message = fill("no header row was found in the first {rows} rows.", rows=HEADER_ROWS)
+            self.report(self.source.top, message, fill("It needs the headers: {headers}.", headers=", ".join(needed)))
+
+    def _read_headers(self, number: int, cells: Cells) -> None:
+        texts = {at: read_text(value) for at, value in sorted(cells.items()) if _shown(value) is not None}
+        labels = {plain(split_header(text)[0]) for text in texts.values()}
+        for at, text in texts.items():
+            if not text or is_live(self.english, split_header(text)[0]):
+                continue
+            cell = self.source.address(number, at)
+            column, is_wrong = self._match(text, cell, labels)
+            if column:
+                self.columns[at], self.places[column.name] = column, at
+            elif not is_wrong:
+                self.others[at] = text
+                message = fill("the column {name} is not known; it is kept, not used.", name=shorten(text))
+                self.report(cell, message, severity="note")
+        for column in self._missing():
+            message = fill("the column {header} is missing.", header=column.header())
+            self.report(self.source.address(number), message, fill("Add it to the header row."))
+
+    def _missing(self) -> list[Column]:
+        """Return the required columns that no header names."""
+        found = {column.name for column in self.headers.values()}
+        return [column for column in self.own.columns if column.required and column.name not in found]
+
+    def _match(self, header: str, cell: str, labels: set[str] | None = None) -> tuple[Column | None, bool]:
+        """Return the column that a header names, and whether the header was reported as wrong."""
+        is_line = self.own.layout == "form"
+        label, unit = split_header(header)
+        column = find_column(self.english, label)
+        if column is None:
+            near = find_near_column(self.english, self.own, header, labels or set())
+            if near:
+                unknown = fill("the line {name} is not known.", name=shorten(header))
+                if not is_line:
+                    unknown = fill("the column {name} is not known.", name=shorten(header))
+                self.report(cell, unknown, fill("Did you mean {name}?", name=near.header()))
+            return None, near is not None
+        also = next((place for place, one in self.headers.items() if one.name == column.name), None)
+        if also is not None:
+            twice = fill("duplicate line {label}, also in {cell}.", label=column.label, cell=also)
+            if not is_line:
+                twice = fill("duplicate column {label}, also in {cell}.", label=column.label, cell=also)
+            self.report(cell, twice, fill("Delete one of them."))
+            return None, True
+        self.headers[cell] = column
+        self._read_unit(column, unit, cell)
+        return column, False
+
+    def _read_unit(self, column: Column, unit: str | None, cell: str) -> None:
+        spelt = read_unit(unit or "")
+        self.units[column.name] = spelt if column.quantity else ""
+        if column.quantity and spelt not in QUANTITIES[column.quantity]:
+            self.blind.add(column.name)
+            wrong = fill("{label} has no unit.", label=column.label)
+            if unit is not None:
+                wrong = fill("the unit {unit} of {label} is not known.", unit=shorten(unit), label=column.label)
+            fix = fill(
+                "Write the unit that the numbers are in, such as {header}; known units: {units}.",
+                header=column.header(),
+                units=", ".join(QUANTITIES[column.quantity]),
+            )
+            self.report(cell, wrong, fix)
+
+    def _report_no_rows(self, cell: str) -> None:
+        """Report a table without rows: a building may have no furniture, yet no report can do without a floor."""
+        if self.own.columns[0].name == "item":
+            message = fill("the table has no rows: nothing is assessed.")
+            self.report(cell, message, fill("Fill in at least one."), "warning")
+        else:
+            self.report(cell, fill("the table has no rows."), fill("Fill in at least one."))
+
+    def _row(self, number: int, cells: Cells) -> Row | None:
+        if all(is_blank(cells.get(at)) for at in self.columns):
+            stray = next((at for at in self.others if not is_blank(_shown(cells.get(at)))), None)
+            if stray is not None:
+                message = fill("stands in a row without an entry; the row is left out.")
+                self.report(self.source.address(number, stray), message, severity="warning")
+            return None
+        shown = (_shown(cells.get(at)) for at in self.others)
+        extra = tuple("" if is_blank(value) else read_text(value) for value in shown)
+        values = {column.name: self._value(column, cells.get(at), number, at) for at, column in self.columns.items()}
+        return Row(number, values, extra)
+
+    # ------------------------------------------------------------------ cells
+
+    def _value(self, column: Column, value: Any, number: int, at: int) -> Any:
+        """Return a cell's value in SI, None where it is blank or wrong."""
+        if value is None and not column.required:
+            return None
+        if column.kind == "number" and column.name in self.blind and value is not UNSAVED:
+            return None  # the unit in the header is not known, and has been reported there
+        try:
+            found, remark = read_cell(column, value, self.units[column.name])
+        except CellError as error:
+            self.report(self.source.address(number, at), error.message, error.fix)
+            return None
+        if remark is not None:
+            self.report(self.source.address(number, at), *remark, "warning")
+        if found is None and column.required:
+            message = fill("{label} is blank.", label=column.label)
+            self.report(self.source.address(number, at), message, fill("Fill it in, or delete the row."))
+        return found
+
+
+def _shown(value: Any) -> Any:
+    return None if value is UNSAVED else value

@@ -1,0 +1,263 @@
+"""A workbook to the inventory: bytes, cells, typed rows, problems, in that order."""
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from assess.errors import InputError, Problem, WorkbookError
+from assess.i18n import fill
+from assess.model import Inventory, Place, Segment
+from assess.progress import SILENT, Progress
+from assess.workbook import check, check_routes
+from assess.workbook.check import Check
+from assess.workbook.names import ENGLISH, find_near, find_sheet, key, plain, translate, versions
+from assess.workbook.open import Book, read_file
+from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
+from assess.workbook.records import FileReader
+from assess.workbook.resolve import (
+    build_building,
+    build_catalogue,
+    build_floors,
+    build_items,
+    build_rows,
+    leave_out,
+    resolve,
+)
+from assess.workbook.schema import SHEETS, Sheet
+
+IN_CODE = "inventory.xlsx"
+"""What an inventory without a file is called in reports."""
+
+Rows = Mapping[str, Sequence[Mapping[str, Any]] | Mapping[str, Any]]
+"""Rows in code: by the name of the sheet, each a value by field or header."""
+
+
+def read_inventory(
+    source: str | Path | bytes | Rows,
+    *,
+    records: Mapping[str, bytes] | str | Path | None = None,
+    strict: bool = True,
+    progress: Progress = SILENT,
+) -> Inventory:
+    """Read and check a workbook, or rows that are given in code.
+
+    Parameters
+    ----------
+    source : str, Path, bytes or mapping
+        The .xlsx (or .xlsm, whose macros are never run), its bytes, or rows by sheet: ``{"Items": [{"item": "A1",
+        "Height [m]": 1.8}], "Floors": [...], "Building": {...}}``. A key is a field of `assess.workbook.schema`, its
+        value in the unit of an empty workbook's header, or a header with its unit.
+    records : mapping of str to bytes, or path of a folder, optional
+        The recorded motions and pictures that the workbook names: their bytes by name, or the folder that holds them.
+        By default they are looked for in the folder of the workbook.
+    strict : bool
+        Whether an error stops the reading. If not, faulty rows are left out, and `Inventory.problems` holds the errors.
+    progress : Progress
+        Reports the stage "reading"; obeys a cancel.
+
+    Returns
+    -------
+    Inventory
+        In SI units, with the warnings and notes of the check.
+
+    Raises
+    ------
+    WorkbookError
+        If it cannot be opened as a workbook or, if `strict`, anything in it cannot be used; its `problems` name every
+        sheet and cell.
+    """
+    path = Path(source) if isinstance(source, str | Path) else Path(IN_CODE)
+    with progress.stage("reading", path.name) as stage:
+        data = read_file(path) if isinstance(source, str | Path) else source if isinstance(source, bytes) else None
+        if isinstance(source, Mapping):
+            tables, problems = _tables_in_code(source)
+        else:
+            tables, problems = read_tables(data or b"", path.name, progress)
+        hashed = data if data is not None else json.dumps(source, sort_keys=True, default=str).encode()
+        stage.at(0.5)
+        files = Path(records) if isinstance(records, str | Path) else records
+        if files is None and isinstance(source, str | Path):
+            files = path.resolve().parent
+        reader = FileReader(files, progress)
+        tables, problems = _check(tables, problems, reader, strict=strict)
+    return Inventory(
+        source=path,
+        sha256=hashlib.sha256(hashed).hexdigest(),
+        data=data,
+        problems=tuple(problems),
+        **_build(tables, reader),
+    )
+
+
+def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Tables, list[Problem]]:
+    """Read every sheet of a workbook.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    name : str
+        How messages call it.
+    progress : Progress
+        Checked while it is read.
+
+    Raises
+    ------
+    WorkbookError
+        If the file cannot be opened as a workbook at all.
+    """
+    with Book(data, name, progress) as book:
+        found, language, problems = _find_sheets(list(book.sheets))
+        return _parse({name: (book.cells(own), code) for name, (own, code) in found.items()}, language, problems)
+
+
+def _parse(
+    found: Mapping[str, tuple[Source, str]], language: str, problems: Sequence[Problem]
+) -> tuple[Tables, list[Problem]]:
+    """Return a table for every sheet: those that are `found` by their cells and language; and all problems."""
+    tables, listed = {}, [*problems]
+    for sheet in SHEETS:
+        if sheet.name in found:
+            cells, code = found[sheet.name]
+            tables[sheet.name], more = parse_sheet(sheet, translate(sheet, code), code, cells)
+            listed += more
+        else:
+            tables[sheet.name] = Table(sheet=translate(sheet, language))
+    return {name: table.with_failed(listed) for name, table in tables.items()}, listed
+
+
+def _find_sheets(present: Sequence[str]) -> tuple[dict[str, tuple[str, str]], str, list[Problem]]:
+    """Return name and language of each sheet by its English name, the workbook's language, and what is wrong."""
+    known = [(name, *found) for name in present if (found := find_sheet(name))]
+    own: dict[str, tuple[str, str]] = {}
+    problems = []
+    for sheet in SHEETS:
+        names = [(name, code) for name, english, code in known if english == sheet.name]
+        if names:
+            own[sheet.name] = names[0]
+        if len(names) > 1:
+            problems.append(_describe_twice(translate(sheet, names[0][1]).name, [name for name, _ in names]))
+    language = find_language([code for _, code in own.values()])
+    unknown = [name for name in present if name not in {name for name, *_ in known}]
+    for sheet in (one for one in SHEETS if one.name not in own):
+        problems += _describe_missing(sheet, language, unknown)
+    return own, language, problems
+
+
+def find_language(codes: Sequence[str]) -> str:
+    """Return the language of most of the sheets, English where no other has more than half."""
+    return next((code for code in codes if codes.count(code) * 2 > len(codes)), ENGLISH)
+
+
+def _describe_twice(sheet: str, names: Sequence[str]) -> Problem:
+    spelt = {plain(name): name for name in names}
+    message = fill("there are {n} sheets of this name.", n=len(names))
+    if len(spelt) > 1:
+        one, other = list(spelt.values())[:2]
+        message = fill("the sheets {one} and {other} are the same in two languages.", one=one, other=other)
+    return Problem("error", sheet, "", message, fill("Delete all but one, or rename them."))
+
+
+def _describe_missing(sheet: Sheet, language: str, unknown: Sequence[str]) -> Iterable[Problem]:
+    """Report a sheet that is missing, or that is there under a name that is nearly its own."""
+    by_name = {plain(name): name for name in reversed(unknown)}
+    for name in (said.name for said in versions(sheet)) if unknown else ():
+        if near := find_near(plain(name), by_name):
+            message = fill("there is no sheet named {name}.", name=name)
+            yield Problem("error", by_name[near], "", message, fill("Did you mean {name}? Rename it.", name=name))
+            return
+    if sheet.required:
+        fix = fill("Add it, or start from a workbook made with `assess new`.")
+        yield Problem("error", translate(sheet, language).name, "", fill("the sheet is missing."), fix)
+
+
+def _tables_in_code(rows: Rows) -> tuple[Tables, list[Problem]]:
+    """Read rows that are given in code.
+
+    Raises
+    ------
+    InputError
+        If a sheet is not known, or its rows are no rows.
+    """
+    given: dict[str, tuple[Source, str]] = {}
+    for name, content in rows.items():
+        found = find_sheet(name)
+        if found is None:
+            names = ", ".join(sheet.name for sheet in SHEETS)
+            raise InputError(fill("the sheet {name} is not known, expected: {names}.", name=repr(name), names=names))
+        listed = [content] if isinstance(content, Mapping) else list(content)
+        if not all(isinstance(row, Mapping) for row in listed):
+            raise InputError(fill("{name}: every row has to be a mapping of fields to values.", name=name))
+        english = next(sheet for sheet in SHEETS if sheet.name == found[0])
+        given[found[0]] = (CodeCells(english, listed), found[1])
+    missing = (one for sheet in SHEETS if sheet.name not in given for one in _describe_missing(sheet, ENGLISH, ()))
+    return _parse(given, ENGLISH, [*missing])
+
+
+# ---------------------------------------------------------------- tables to the inventory
+
+
+def _checks(files: FileReader) -> tuple[Check, ...]:
+    """Return all checks in the order in which their problems are listed."""
+    return (
+        files.check_logo,
+        check.check_catalogue,
+        check.check_floors,
+        files.check_records,
+        check.check_velocities,
+        files.check_plans,
+        check_routes.check_places,
+        check_routes.check_segment_names,
+        check_routes.check_segments,
+        check_routes.check_segment_rooms,
+        check_routes.check_network,
+        check.check_item_names,
+        check_routes.check_next_to_routes,
+        check_routes.check_positions,
+        check_routes.check_item_rooms,
+        check.check_items,
+    )
+
+
+def _check(tables: Tables, found: list[Problem], files: FileReader, *, strict: bool) -> tuple[Tables, list[Problem]]:
+    """Return the tables with names resolved, and without what is faulty, and all problems.
+
+    Raises
+    ------
+    WorkbookError
+        If `strict` and there is an error.
+    """
+    tables, more = check.run_checks(resolve(tables), _checks(files))
+    problems = [*found, *more]
+    if not any(one.severity == "error" for one in problems):
+        return tables, problems
+    order = {table.sheet.name: at for at, table in enumerate(tables.values())}
+    problems.sort(key=lambda one: (order.get(one.sheet, -1), first_row(one.cell)))
+    if strict:
+        raise WorkbookError(problems, _language(tables))
+    tables, more = leave_out(tables)
+    return tables, [*problems, *more]
+
+
+def _language(tables: Tables) -> str:
+    return find_language([table.language for table in tables.values() if table.found])
+
+
+def _build(tables: Tables, files: FileReader) -> dict[str, Any]:
+    """Return the parts of the inventory."""
+    catalogue = build_catalogue(tables["Catalogue"])
+    return {
+        "building": build_building(tables["Building"], files.logo),
+        "floors": build_floors(tables["Floors"], files.records, files.plans),
+        "items": build_items(tables["Items"], {key(one.type): one for one in catalogue}),
+        "places": build_rows(Place, tables["Places"], "place", "floor"),
+        "routes": build_rows(Segment, tables["Routes"], "route", "segment"),
+        "catalogue": catalogue,
+        "extra_columns": tables["Items"].extra,
+        "files": files.hashes,
+        "language": _language(tables),
+        "sheets": {name: table.sheet.name for name, table in tables.items()},
+        "letters": {name: table.letters for name, table in tables.items()},
+    }

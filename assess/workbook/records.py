@@ -1,0 +1,246 @@
+"""Files that the workbook names: recorded motions, the logo, plans. Only files inside one folder are touched.
+
+A name is judged as text first, by the rules of both Windows and POSIX, before the file system sees it: resolving a
+network path would already talk to another machine.
+"""
+
+import hashlib
+import posixpath
+import unicodedata
+from collections.abc import Generator, Iterator, Mapping
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from assess.errors import Problem, RecordError
+from assess.i18n import fill
+from assess.model import NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
+from assess.motion.formats import parse_records, read_bytes, select
+from assess.motion.record import Record
+from assess.progress import Progress
+from assess.workbook.parse import Row, Table, Tables
+from assess.workbook.resolve import AXES
+from assess.workbook.values import CellError, shorten
+
+MAX_PICTURE = 10 * 2**20
+_PICTURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff")
+_RESERVED = frozenset(
+    {"CON", "PRN", "AUX", "NUL", *(f"{port}{number}" for port in ("COM", "LPT") for number in range(10))}
+)
+
+Files = Mapping[str, bytes] | Path | None
+"""Where files are looked for: handed over as bytes by name, in a folder, or nowhere."""
+
+
+class FileReader:
+    """Reads the files that a workbook names, each once, and checks them as the functions of `check` do.
+
+    Parameters
+    ----------
+    files : mapping of str to bytes, or Path, optional
+        The files by name, or the folder in which they are.
+    progress : Progress
+        Checked before every file.
+
+    Attributes
+    ----------
+    hashes : dict of str to str
+        SHA-256 of the recorded motions, by the name of the file.
+    records : dict
+        The recorded motions of the floors, by the number of their row and axis.
+    plans : dict of int to Path
+        The plans of the floors, by the number of their row.
+    logo : Path, optional
+        The building's logo.
+    """
+
+    def __init__(self, files: Files, progress: Progress) -> None:
+        self.folder = files.resolve() if isinstance(files, Path) else None
+        given = files if isinstance(files, Mapping) else {}
+        self.given = {posixpath.normpath(_posix(name)): data for name, data in given.items()}
+        self.progress = progress
+        self.hashes: dict[str, str] = {}
+        self.records: dict[tuple[int, Axis], tuple[FloorRecord, ...]] = {}
+        self.plans: dict[int, Path] = {}
+        self.logo: Path | None = None
+        self._read: dict[str, tuple[tuple[Record, ...] | CellError, str]] = {}
+
+    def check_logo(self, tables: Tables) -> Iterator[Problem]:
+        """Find the logo, or report what is wrong with it."""
+        for row in tables["Building"].with_all("logo"):
+            self.logo = yield from self._find_picture(tables["Building"], "logo", row)
+
+    def check_plans(self, tables: Tables) -> Iterator[Problem]:
+        """Find the plans of the floors, or report what is wrong with them."""
+        table = tables["Floors"]
+        for row in table.with_all("floor", "plan"):
+            yield table.problem("plan", row, fill("Plan image is kept, not drawn by this version."), severity="note")
+            path = yield from self._find_picture(table, "plan", row)
+            self.plans |= {} if path is None else {row.number: path}
+
+    def _find_picture(self, table: Table, name: str, row: Row) -> Generator[Problem, None, Path | None]:
+        """Return the picture that a cell names in the folder; None, having reported why, if none can be used."""
+        try:
+            return find_picture(row.get(name), self.folder)
+        except CellError as error:
+            yield table.problem(name, row, error.message, error.fix)
+            return None
+
+    def check_records(self, tables: Tables) -> Iterator[Problem]:
+        """Read the recorded motions of the floors, or report what is wrong with them or with their direction."""
+        table = tables["Floors"]
+        azimuth = next((row.get("azimuth_deg") for row in tables["Building"].rows), None)
+        for row in table.with_all("floor"):
+            for axis in AXES:
+                along = None if azimuth is None else azimuth + (90 if axis == "Y" else 0)
+                yield from self._check_cell(table, row, axis, along)
+
+    def _check_cell(self, table: Table, row: Row, axis: Axis, along: float | None) -> Iterator[Problem]:
+        """Read the records that a cell names, split by semicolons."""
+        name, found = f"record_{axis.lower()}", []
+        text = row.get(name)
+        names = split_names(text)
+        if text is not None and not names:
+            message = fill("{text} names no file.", text=shorten(text))
+            yield table.problem(name, row, message, fill("Name a record, or clear the cell."))
+        for one in names:
+            try:
+                record = self._record(one)
+            except CellError as error:
+                yield table.problem(name, row, error.message, error.fix)
+                continue
+            found.append(record)
+            yield from _check_direction(table, name, row, record, axis, along)
+        if found:
+            self.records[row.number, axis] = tuple(found)
+
+    def _record(self, text: str) -> FloorRecord:
+        """Return the record that ``file`` or ``file#channel`` names."""
+        file, _, channel = (part.strip() for part in text.partition("#"))
+        known, digest = self._records(file)
+        if isinstance(known, CellError):
+            raise known
+        try:
+            record = select(known, channel or None)
+        except RecordError as error:
+            raise CellError(fill("{why}.", why=error)) from None
+        if record.vertical:
+            message = fill("{text} is a vertical channel.", text=shorten(text))
+            raise CellError(message, fill("Choose a horizontal one."))
+        path = None if self.folder is None else (self.folder / _posix(file)).resolve()
+        return FloorRecord(name=text, record=record, file=file, channel=channel, sha256=digest, path=path)
+
+    def _records(self, file: str) -> tuple[tuple[Record, ...] | CellError, str]:
+        content, address = self._find(file)
+        if address not in self._read:
+            self.progress.check()
+            found, digest = self._read[address] = _parse(content, address)
+            if not isinstance(found, CellError):
+                self.hashes[file] = digest
+        return self._read[address]
+
+    def _find(self, file: str) -> tuple[bytes | Path, str]:
+        """Return the bytes of a file, or where it is, and its address."""
+        if self.folder is not None:
+            path = find_file(file, self.folder)
+            return path, str(path)
+        address = posixpath.normpath(_posix(file))
+        if address not in self.given:
+            message = fill("the file {name} is not among the records that were passed.", name=shorten(file))
+            raise CellError(message, fill("Pass its bytes in `records`."))
+        return self.given[address], address
+
+
+def _parse(data: bytes | Path, address: str) -> tuple[tuple[Record, ...] | CellError, str]:
+    """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read."""
+    try:
+        read = data if isinstance(data, bytes) else read_bytes(data)
+        return parse_records(read, PurePosixPath(_posix(address)).name), hashlib.sha256(read).hexdigest()
+    except RecordError as error:
+        return CellError(fill("the record cannot be read: {why}.", why=error)), ""
+
+
+def _check_direction(
+    table: Table, name: str, row: Row, one: FloorRecord, axis: Axis, along: float | None
+) -> Iterator[Problem]:
+    azimuth = one.record.azimuth_deg
+    off = 0.0 if along is None or azimuth is None else angle_between(azimuth, along)
+    if off > NEAR_AXIS:
+        message = fill(
+            "{record} points to {azimuth:g} deg, {off:.0f} deg off the {axis} axis.",
+            record=shorten(one.name),
+            azimuth=azimuth,
+            off=off,
+            axis=axis,
+        )
+        yield table.problem(name, row, message, fill("Check the axis, or Azimuth of X in Building."), "warning")
+
+
+# ---------------------------------------------------------------- names of files
+
+
+def find_file(text: str, folder: Path) -> Path:
+    """Return the file that `text` names inside `folder`.
+
+    Raises
+    ------
+    CellError
+        If the name leads outside the folder, or no such file is there.
+    """
+    name = shorten(text)
+    if not _is_inside(text):
+        raise CellError(
+            fill("the file {name} is outside the workbook's folder.", name=name),
+            fill("Copy it next to the workbook and write its name alone."),
+        )
+    try:
+        path = (folder / _posix(text)).resolve()
+        is_file = path.is_file()
+    except (OSError, RuntimeError):  # a name that is too long; links that lead in a circle
+        message = fill("the file {name} cannot be found under that name.", name=name)
+        raise CellError(message, fill("Give it a shorter, simpler name.")) from None
+    if not path.is_relative_to(folder):
+        message = fill("the file {name} is a link that leads outside the workbook's folder.", name=name)
+        raise CellError(message, fill("Copy it next to the workbook."))
+    if not is_file:
+        message = fill("the file {name} was not found next to the workbook.", name=name)
+        raise CellError(message, fill("Check the name, or copy the file there."))
+    return path
+
+
+def find_picture(text: str, folder: Path | None) -> Path:
+    """Return the picture that `text` names inside `folder`; None where the workbook was read without one.
+
+    Raises
+    ------
+    CellError
+        As `find_file`; or if it is no PNG or JPEG, or is too large.
+    """
+    name = shorten(text)
+    if folder is None:
+        message = fill("the picture {name} cannot be used: the workbook was read without a folder.", name=name)
+        raise CellError(message, fill("Pass the folder in `records`."))
+    path = find_file(text, folder)
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            head = file.read(8)
+    except OSError as error:
+        message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
+        raise CellError(message, fill("Check its access rights.")) from None
+    if size > MAX_PICTURE:
+        message = fill("{name} is larger than {most} MB.", name=name, most=MAX_PICTURE >> 20)
+        raise CellError(message, fill("Save a smaller picture."))
+    if not head.startswith(_PICTURES):
+        raise CellError(fill("{name} is no PNG or JPEG picture.", name=name), fill("Save it as PNG or JPEG."))
+    return path
+
+
+def _posix(text: str) -> str:
+    return PureWindowsPath(text).as_posix()
+
+
+def _is_inside(text: str) -> bool:
+    windows, posix = PureWindowsPath(text), PurePosixPath(text)
+    odd = any(unicodedata.category(character) in ("Cc", "Cf", "Cs") for character in text)
+    absolute = windows.drive or windows.root or posix.is_absolute() or ":" in text
+    reserved = any(part.split(".")[0].upper() in _RESERVED for part in windows.parts)
+    return not (odd or absolute or reserved or ".." in windows.parts or ".." in posix.parts or len(text) > 500)

@@ -1,0 +1,271 @@
+"""Every sheet and column of the workbook, once.
+
+Reading, checking, the empty workbook, the report's headings and the README's table are all derived from `SHEETS`, and
+so are the names in other languages, by which a workbook may call its sheets, columns and choices, too: see `names`.
+A header is the label with its unit in brackets, ``Height [cm]``; the bracket is the unit of the column.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from assess.settings import SCENARIOS
+from assess.units import QUANTITIES
+
+Kind = Literal["text", "number", "count", "choice", "language", "date", "file", "records"]
+
+AXES = ("X", "Y")
+ANCHORED = ("no", "yes", "partly", "unknown")
+IMPORTANCE = ("life safety", "function", "property")
+PLACES = ("room", "corridor", "door", "stair", "exit")
+LANGUAGES = ("English", "Italiano")
+"""Of reports: names that `assess.i18n.find_language` knows."""
+
+
+DEFAULT_WIDTH = 0.9
+"""Default required width of a route [m]: 900 mm, as Italy's D.M. 3 August 2015 asks for up to 300 occupants."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of a table, or one line of a form.
+
+    Parameters
+    ----------
+    name : str
+        Field of the model in `assess.model`.
+    label : str
+        Heading, without the unit.
+    kind : str
+        What a cell may hold.
+    help : str
+        What to fill in: the input message in Excel and the README's table.
+    quantity, unit, imperial : str
+        Key of `assess.units.QUANTITIES`, and the unit that the empty workbook offers (SI, imperial).
+    required : bool
+        Whether the table cannot be read without it.
+    low, high : float, optional
+        Outside these an error, in `unit`.
+    usual_low, usual_high : float, optional
+        Outside these a warning, in `unit`.
+    choices : tuple of str
+        What a choice may be.
+    source : str
+        Sheet whose first column lists what the cell may name.
+    default : str
+        What a blank means, in words.
+    width : int
+        Width in the empty workbook [characters].
+    language : str
+        Code of the language that `label` is in.
+    """
+
+    name: str
+    label: str
+    kind: Kind
+    help: str
+    quantity: str = ""
+    unit: str = ""
+    imperial: str = ""
+    required: bool = False
+    low: float | None = None
+    high: float | None = None
+    usual_low: float | None = None
+    usual_high: float | None = None
+    choices: tuple[str, ...] = ()
+    source: str = ""
+    default: str = ""
+    width: int = 12
+    language: str = "en"
+
+    def header(self, units: Literal["si", "imperial"] = "si") -> str:
+        """Label with the unit in brackets, as the empty workbook writes it."""
+        unit = self.imperial if units == "imperial" and self.imperial else self.unit
+        return f"{self.label} [{unit}]" if unit else self.label
+
+    @property
+    def factor(self) -> float:
+        """Factor from `unit` to SI."""
+        return QUANTITIES[self.quantity][self.unit] if self.quantity else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """One sheet: a table with a header row, or a form with labels in column A and values in column B."""
+
+    name: str
+    layout: Literal["table", "form"]
+    required: bool
+    help: str
+    columns: tuple[Column, ...]
+
+    def column(self, name: str) -> Column:
+        """Return the column with this field name."""
+        return next(column for column in self.columns if column.name == name)
+
+
+_LENGTH: dict[str, Any] = {"quantity": "length", "unit": "m", "imperial": "ft"}
+_METRES = _LENGTH | {"low": -1e5, "high": 1e5}
+_TYPE_SIZE = _LENGTH | {"unit": "cm", "imperial": "in", "low": 5, "high": 600}
+_SIZE = _TYPE_SIZE | {"usual_low": 20, "usual_high": 300, "default": "the Type's in the Catalogue"}
+_ACCELERATION: dict[str, Any] = {
+    "quantity": "acceleration", "unit": "g", "imperial": "g", "low": 0, "high": 5, "usual_low": 0.01, "usual_high": 2,
+}  # fmt: skip
+_VELOCITY: dict[str, Any] = {
+    "quantity": "velocity", "unit": "cm/s", "imperial": "in/s", "low": 0.01, "high": 1000, "usual_low": 1,
+    "usual_high": 300, "default": "estimated from T1, else bounded",
+}  # fmt: skip
+_DEGREES: dict[str, Any] = {"quantity": "angle", "unit": "deg", "imperial": "deg", "low": -360, "high": 360}
+
+BUILDING = Sheet(
+    "Building", "form", False,
+    "The building and the earthquake: one line each, all may stay blank.",
+    (
+        Column("building", "Building", "text", "Name of the building.", width=40),
+        Column("address", "Address", "text", "Street and town."),
+        Column("use", "Use", "text", "Office, hospital, school ..."),
+        Column("client", "Client", "text", "For whom the report is made: for its cover."),
+        Column("storeys", "Storeys", "count", "Storeys above ground.", low=1, high=300),
+        Column("height", "Height", "number", "Height of the roof above the ground, for floors whose motion follows "
+               "from Ground PGA.", **_LENGTH, low=2, high=1000, default="the highest Elevation in Floors"),
+        Column("period", "Period T1", "number", "First period of vibration: gives the PFV where a floor has none; "
+               "ASCE 7-22 uses it, too.", quantity="time", unit="s", imperial="s", low=0.02, high=20),
+        Column("azimuth_deg", "Azimuth of X", "number", "Compass direction of the building's X axis, clockwise from "
+               "north. Y is at a right angle.", **_DEGREES, default="directions of records are not checked"),
+        Column("prepared_by", "Prepared by", "text", "Who answers for the report."),
+        Column("checked_by", "Checked by", "text", "Who has checked the report: for its cover."),
+        Column("approved_by", "Approved by", "text", "Who has approved the report: for its cover."),
+        Column("revision", "Revision", "text", "Number or letter of this issue of the report."),
+        Column("report_date", "Report date", "date", "Date on the cover of the report.", default="today"),
+        Column("organisation", "Organisation", "text", "For the cover of the report."),
+        Column("logo", "Logo file", "file", "PNG or JPEG file beside the workbook, for the cover."),
+        Column("scenario", "Scenario", "text", "The earthquake, in words: for the cover."),
+        Column("scenario_kind", "Scenario kind", "choice", "as filled: each floor's record, else PFA, else between "
+               "its neighbours, else ASCE 7-22. A code: every floor.", choices=SCENARIOS, default="as filled"),
+        Column("ground_pga", "Ground PGA", "number", "Peak ground acceleration (0.4 SDS in ASCE 7, α S in EN 1998-1 "
+               "and NTC): gives the motion of floors without record or PFA.", **_ACCELERATION),
+        Column("sds", "SDS", "number", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank "
+               "Ground PGA.", **_ACCELERATION),
+        Column("friction", "Default friction", "number", "Coefficient of friction of pieces whose own is blank. "
+               "Blank: no sliding, as the paper assumes.", low=0.01, high=2, default="no sliding"),
+        Column("restitution", "Restitution", "number", "Angular velocity after an impact over that before it, for "
+               "direct integration.", low=0.01, high=1, default="Housner's"),
+        Column("language", "Report language", "language", "Language of the report.", choices=LANGUAGES,
+               default="the workbook's"),
+    ),
+)  # fmt: skip
+
+FLOORS = Sheet(
+    "Floors", "table", True,
+    "Every floor that has furniture, and how it shakes: a record, a peak acceleration (PFA), or its elevation alone.",
+    (
+        Column("floor", "Floor", "text", "Short name, used in Items.", required=True, width=9),
+        Column("name", "Name", "text", "Longer name for the report.", width=18),
+        Column("elevation", "Elevation", "number", "Height of the floor above the ground. Needed where it has no "
+               "record and no PFA.", **_LENGTH, low=-200, high=1000),
+        Column("pfa_x", "PFA X", "number", "Peak floor acceleration along X.", **_ACCELERATION),
+        Column("pfa_y", "PFA Y", "number", "Peak floor acceleration along Y. One axis alone serves both.",
+               **_ACCELERATION),
+        Column("pfv_x", "PFV X", "number", "Peak floor velocity along X.", **_VELOCITY),
+        Column("pfv_y", "PFV Y", "number", "Peak floor velocity along Y.", **_VELOCITY),
+        Column("record_x", "Record X", "records", "Recorded motion along X: file, or file#channel, beside the "
+               "workbook; parallel ones split by ;", width=24),
+        Column("record_y", "Record Y", "records", "Recorded motion along Y, likewise.", width=24),
+        Column("plan", "Plan image", "file", "Picture of the floor plan; kept.", width=16),
+    ),
+)  # fmt: skip
+
+ITEMS = Sheet(
+    "Items", "table", True,
+    "The furniture: one row a piece, or a row for several alike.",
+    (
+        Column("item", "Item", "text", "Its own number or name.", required=True, width=10),
+        Column("floor", "Floor", "text", "A floor of the Floors sheet.", required=True, source="Floors", width=9),
+        Column("room", "Room", "text", "Room or area.", width=14),
+        Column("description", "Description", "text", "What it is.", width=26),
+        Column("type", "Type", "text", "A type of the Catalogue: gives the sizes that are blank here.",
+               source="Catalogue", width=24),
+        Column("quantity", "Quantity", "count", "How many alike. A piece with a position on the plan needs a row of "
+               "its own.", low=1, high=10000, default="1", width=9),
+        Column("breadth", "Breadth", "number", "The shorter plan side, between the outer supports where they stand "
+               "inside.", **_SIZE),
+        Column("width", "Width", "number", "The longer plan side.", **_SIZE),
+        Column("height", "Height", "number", "From the floor to the top.", **_SIZE),
+        Column("axis", "Axis", "choice", "Building axis parallel to Breadth: the direction it topples.", choices=AXES,
+               default="the worse of both", width=6),
+        Column("anchored", "Anchored", "choice", "Fixed to wall or floor? partly and unknown count as free-standing.",
+               choices=ANCHORED, default="unknown", width=10),
+        Column("friction", "Friction", "number", "Coefficient of friction with the floor. Below B/H a piece slides "
+               "before it rocks.", low=0.01, high=2, default="the building's, else no sliding", width=9),
+        Column("x", "X", "number", "Centre of the piece on the plan.", **_METRES),
+        Column("y", "Y", "number", "Centre of the piece on the plan.", **_METRES),
+        Column("angle_deg", "Angle", "number", "Anticlockwise from X to Breadth; within 15 of X or Y it sets a blank "
+               "Axis.", **_DEGREES),
+        Column("route", "Route", "text", "Evacuation route it may block.", source="Routes",
+               default="those that its position tells", width=10),
+        Column("segment", "Segment", "text", "Part of that route.", default="every segment of that route on the floor"),
+        Column("edge_distance", "Edge distance", "number", "From its nearest face to the edge of the route; negative "
+               "if inside.", **_LENGTH, low=-100, high=100000.0, default="as the plan has it, else 0, at the edge"),
+        Column("importance", "Importance", "choice", "What its fall would endanger. life safety comes first in the "
+               "list of what to fix.", choices=IMPORTANCE),
+        Column("notes", "Notes", "text", "Anything else.", width=30),
+    ),
+)  # fmt: skip
+
+PLACES_SHEET = Sheet(
+    "Places", "table", False,
+    "Rooms, doors, stairs and exits that routes lead between.",
+    (
+        Column("place", "Place", "text", "Its own name.", required=True, width=16),
+        Column("floor", "Floor", "text", "A floor of the Floors sheet.", required=True, source="Floors"),
+        Column("x", "X", "number", "Position on the plan: a segment is the straight line between those of its two "
+               "places.", **_METRES),
+        Column("y", "Y", "number", "Position on the plan.", **_METRES),
+        Column("kind", "Kind", "choice", "What it is. A room needs a way to an exit, or to a stair.", choices=PLACES,
+               default="a point that routes pass"),
+    ),
+)  # fmt: skip
+
+ROUTES = Sheet(
+    "Routes", "table", False,
+    "Evacuation routes, one row a segment.",
+    (
+        Column("route", "Route", "text", "Name of the route; repeat it on each segment.", required=True, width=10),
+        Column("segment", "Segment", "text", "Name of this part of it.", required=True, width=10),
+        Column("floor", "Floor", "text", "A floor of the Floors sheet; leave it blank on stairs.", source="Floors",
+               default="that of both places"),
+        Column("start", "From", "text", "The place where it begins.", source="Places", width=16),
+        Column("end", "To", "text", "The place where it ends.", source="Places", width=16),
+        Column("room", "Room", "text", "The Room of Items that it runs through, several split by ; Placed pieces of "
+               "other rooms do not count.", default="pieces of every room count, through walls as well", width=16),
+        Column("clear_width", "Clear width", "number", "Width without furniture in it.", **_LENGTH, low=0.1, high=100,
+               default="as Required width"),
+        Column("required_width", "Required width", "number", "Width that must stay free.", **_LENGTH, low=0.1,
+               high=100, default=f"{DEFAULT_WIDTH} m"),
+        Column("occupants", "Occupants", "count", "People who leave by it.", low=0, high=100000,
+               default="the width they need is not checked"),
+        Column("notes", "Notes", "text", "Anything else.", width=30),
+    ),
+)  # fmt: skip
+
+CATALOGUE = Sheet(
+    "Catalogue", "table", False,
+    "Types of furniture with their sizes. Add your own; a duplicate type counts as an error.",
+    (
+        Column("type", "Type", "text", "Name of the type.", required=True, width=34),
+        Column("breadth", "Breadth", "number", "The shorter plan side.", **_TYPE_SIZE),
+        Column("width", "Width", "number", "The longer plan side.", **_TYPE_SIZE),
+        Column("height", "Height", "number", "From the floor to the top.", **_TYPE_SIZE),
+        Column("source", "Source", "text", "Where the sizes come from.", width=60),
+    ),
+)  # fmt: skip
+
+SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE)
+
+HELP, LISTS = "Help", "Lists"
+"""Sheets of the empty workbook that hold no data; reading leaves them out."""
+
+LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)")
+"""Columns at the right of Items that Excel computes; reading leaves them out."""
+
+WORKINGS = ("Axis used", "PFV used [cm/s]", "Height used [cm]")
+"""Right of those, what they are computed from: each formula stays short, and its input can be seen."""

@@ -1,0 +1,275 @@
+"""The workbook that `assess new` writes: drop-downs, units, help, and columns that compute as one types.
+
+Everything is derived from `schema`; the sheet Lists, which drop-downs and formulas refer to, is written by `lists`.
+"""
+
+from collections.abc import Mapping, Sequence
+from csv import DictReader
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from importlib.resources import files
+from io import StringIO
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.i18n import gettext
+from assess.risk import RiskClass
+from assess.workbook.formulas import OUTSIDE, write_plainly
+from assess.workbook.lists import ROWS, ListsWriter, Units
+from assess.workbook.live_row import FIRST, ROW, LiveRow
+from assess.workbook.names import say_live
+from assess.workbook.schema import CATALOGUE, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.writer import write_book
+
+__all__ = ["ROWS", "Content", "Rows", "Units", "describe", "read_catalogue", "write_workbook"]
+
+Rows = Sequence[Mapping[str, Any]]
+
+TITLE = "Furniture in earthquakes: how to fill this in"
+
+HEADS = ("Sheet", "Column", "What to fill in")
+
+FIRST_LINES = (
+    "1. Building: what you know of the building and the earthquake. Every line may stay blank.",
+    "2. Floors: one row a floor with furniture. Give its peak floor acceleration (PFA), or name the file of a recorded "
+    "motion that lies beside this workbook. Where you know neither, give the floor's Elevation: its motion is then "
+    "interpolated between the floors above and below, which may be lower than the truth, or worked out from Ground "
+    "PGA in Building.",
+    "3. Items: one row a piece, or a row for several alike. Choose a Type, and its sizes come from the Catalogue; or "
+    "type the sizes. The columns at the right show the risk class at once.",
+    "4. Places and Routes are for evacuation routes and may stay empty.",
+    "5. Check it with: assess check FILE.xlsx. Make the report with: assess run FILE.xlsx.",
+    "The unit in the bracket of a header is the unit of the column: write Height [mm] or Height [in], and numbers "
+    "below are read as such. Lengths: mm, cm, m, in, ft; accelerations: g, m/s2, cm/s2, gal; velocities: cm/s, m/s, "
+    "in/s.",
+    "Columns may stand in any order, and you may add your own: they are kept and come back in the Excel report. "
+    "Columns marked * are required.",
+    "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "
+    "in this scenario, not per year. A * behind a class: outside the range in which the formula was checked by tests.",
+)
+
+CLASS_NOTE = (
+    "Computed by Excel from this row. {mark} behind a class: outside the range in which the formula was checked "
+    "by tests."
+)
+
+FOOTER = "&C&A, page &P of &N"
+"""In the spreadsheet program's own signs: centred, the sheet's name, its page and the number of pages."""
+
+CREATED = datetime(2000, 1, 1)
+"""Date in the properties of every workbook: the same content gives the same bytes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """What to fill in: rows by sheet, each a value by field name in the units of the headers, choices in English.
+
+    `live` holds the results of the live columns, one sequence an item, stored so that a viewer that does not
+    calculate shows them.
+    """
+
+    rows: Mapping[str, Rows] = field(default_factory=dict)
+    live: Sequence[Sequence[float | str]] = ()
+
+
+def read_catalogue(units: Units = "si") -> list[dict[str, Any]]:
+    """Return the built-in types of furniture in the language in use, sizes in the units of the headers (cm or in)."""
+    text = (files("assess.workbook") / "catalogue.csv").read_text(encoding="utf-8")
+    scale = 1 if units == "si" else 1 / 2.54
+    rows = []
+    for line in DictReader(StringIO(text)):
+        kind = line["type"]
+        row: dict[str, Any] = {"type": gettext(kind), "source": line["source"]}
+        for name in ("breadth", "width", "height"):
+            if line[f"{name}_cm"]:
+                row[name] = round(float(line[f"{name}_cm"]) * scale, 2)
+        rows.append(row)
+    return rows
+
+
+def write_workbook(path: Path, content: Content | None = None, units: Units = "si") -> None:
+    """Write a workbook to fill in, or one that is filled in already, in the language in use.
+
+    Parameters
+    ----------
+    path : Path
+        Where to; overwritten.
+    content : Content, optional
+        What to fill in; an empty workbook still has the catalogue.
+    units : "si" or "imperial"
+        Of the headers.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    filled = content or Content()
+
+    def fill(book: Any) -> None:
+        title, made = gettext("Furniture inventory"), gettext("Made with assess new")
+        book.set_properties({"title": title, "comments": made, "created": CREATED})
+        _Writer(book, filled, units).write()
+
+    write_book(path, fill)
+
+
+class _Writer:
+    """Writes the sheets of one workbook; holds its formats and names."""
+
+    def __init__(self, book: Any, content: Content, units: Units) -> None:
+        self.book, self.content, self.units = book, content, units
+        self.head = book.add_format({"bold": True, "bg_color": "#1f3a4d", "font_color": "#ffffff", "text_wrap": True,
+                                     "valign": "top", "border": 1})  # fmt: skip
+        self.live_head = book.add_format({"bold": True, "bg_color": "#5b6b76", "font_color": "#ffffff",
+                                          "text_wrap": True, "valign": "top", "border": 1})  # fmt: skip
+        self.text = book.add_format({"num_format": "@"})
+        self.live_formats = [book.add_format({"num_format": code, "bg_color": "#f1f3f5"}) for code in
+                             ("0.000", "0.000", "0.00", "0.00", "General", "General", "0.0", "0.0")]  # fmt: skip
+        self.title = book.add_format({"bold": True, "font_size": 14})
+        self.wrap = book.add_format({"text_wrap": True, "valign": "top"})
+        self.bold = book.add_format({"bold": True, "valign": "top"})
+        self.last = {name: 1 + max(rows, len(self._rows(name))) for name, rows in ROWS.items()}
+
+    def write(self) -> None:
+        help_sheet = self.book.add_worksheet(gettext(HELP))
+        pages = {sheet.name: self.book.add_worksheet(gettext(sheet.name)) for sheet in SHEETS}
+        lists = self.book.add_worksheet(gettext(LISTS))
+        for page in (*pages.values(), lists):
+            write_plainly(page)
+        ListsWriter(self.book, lists, self.title, self.units, self.last).write()
+        self._write_help(help_sheet)
+        for sheet in SHEETS:
+            write = self._write_form if sheet.layout == "form" else self._write_table
+            write(pages[sheet.name], sheet)
+        self._write_live(pages["Items"])
+        pages["Items"].activate() if self.content.rows else help_sheet.activate()
+
+    # ------------------------------------------------------------ sheets to fill
+
+    def _write_form(self, page: Any, sheet: Sheet) -> None:
+        values = (self._rows(sheet.name) or [{}])[0]
+        page.set_column(0, 0, 22)
+        page.set_column(1, 1, 44)
+        page.set_column(2, 2, 80, self.wrap)
+        for at, column in enumerate(sheet.columns):
+            page.write_string(at, 0, self._header(column), self.head)
+            self._write_cell(page, at, 1, column, values.get(column.name))
+            page.write_string(at, 2, gettext(column.help))
+            self._validate(page, column, at, 1, at)
+
+    def _write_table(self, page: Any, sheet: Sheet) -> None:
+        last = self.last[sheet.name] - 1
+        for at, column in enumerate(sheet.columns):
+            page.set_column(at, at, column.width, self.text if column.kind == "text" else None)
+            page.write_string(0, at, self._header(column), self.head)
+            self._validate(page, column, 1, at, last)
+        for number, row in enumerate(self._rows(sheet.name), 1):
+            for at, column in enumerate(sheet.columns):
+                self._write_cell(page, number, at, column, row.get(column.name))
+        page.freeze_panes(1, 1)
+        more = len(LIVE) + len(WORKINGS)
+        page.autofilter(0, 0, last, len(sheet.columns) - 1 + (more if sheet.name == "Items" else 0))
+        page.set_landscape()
+        page.fit_to_pages(1, 0)
+        page.repeat_rows(0)
+        page.set_footer(gettext(FOOTER))
+
+    def _rows(self, sheet: str) -> Rows:
+        rows = self.content.rows.get(sheet, ())
+        return read_catalogue(self.units) if sheet == CATALOGUE.name and not rows else rows
+
+    def _header(self, column: Column) -> str:
+        return replace(column, label=gettext(column.label)).header(self.units)
+
+    def _write_cell(self, page: Any, row: int, at: int, column: Column, value: Any) -> None:
+        if isinstance(value, str):
+            page.write_string(row, at, gettext(value) if column.choices else value, self.text)
+        elif value is not None:
+            page.write_number(row, at, value)
+
+    def _validate(self, page: Any, column: Column, row: int, at: int, last: int) -> None:
+        """Attach the drop-down or the check of a number, and the input message."""
+        text = describe(column)
+        options: dict[str, Any] = {
+            "input_title": gettext(column.label)[:32],
+            "input_message": text if len(text) <= 255 else text[:254] + "…",
+            "ignore_blank": True,
+        }
+        if column.choices:
+            options |= {"validate": "list", "source": f"=list_{column.name}"}
+        elif column.source:
+            options |= {"validate": "list", "source": f"=list_{column.source.lower()}", "error_type": "warning"}
+        elif column.kind == "count":
+            options |= {"validate": "integer", "criteria": "between", "minimum": column.low, "maximum": column.high}
+        elif column.kind == "number":
+            options |= {"validate": "decimal", "criteria": ">", "value": -1e9}
+            options |= {"error_message": gettext("Type a number.")}
+        else:
+            options |= {"validate": "any"}
+        page.data_validation(row, at, last, at, options)
+
+    # --------------------------------------------------------------- live columns
+
+    def _write_live(self, page: Any) -> None:
+        for at, label in enumerate((*LIVE, *WORKINGS)):
+            page.write_string(0, FIRST + at, say_live(label), self.live_head)
+            page.set_column(FIRST + at, FIRST + at, 16 if at == len(LIVE) - 1 else 10)
+        page.write_comment(0, FIRST + 4, gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 2})
+        last = self.last[ITEMS.name]
+        row_formulas = LiveRow(self.last).formulas()
+        for row in range(2, last + 1):
+            stored = self.content.live[row - 2] if row - 2 < len(self.content.live) else ()
+            formulas = [formula.replace(ROW, str(row)) for formula in row_formulas]
+            for at, (formula, value) in enumerate(zip_longest(formulas, stored, fillvalue="")):
+                page.write_formula(row - 1, FIRST + at, formula, self.live_formats[at], value)
+        self._colour(page, last)
+
+    def _colour(self, page: Any, last: int) -> None:
+        """Colour the classes, and what is plainly wrong: an item that is there twice, or has no floor."""
+        column = xl_col_to_name(FIRST + 4)
+        for risk in reversed(RiskClass):
+            form = self.book.add_format({"bg_color": risk.fill, "font_color": risk.ink, "bold": risk >= RiskClass.HIGH})
+            page.conditional_format(
+                f"{column}2:{column}{last}",
+                {"type": "text", "criteria": "begins with", "value": risk.symbol, "format": form, "stop_if_true": True},
+            )
+        wrong = self.book.add_format({"bg_color": "#ffc7ce"})
+        page.conditional_format(f"A2:A{last}", {"type": "duplicate", "format": wrong})
+        page.conditional_format(f"B2:B{last}", {"type": "formula", "criteria": '=AND($A2<>"",$B2="")', "format": wrong})
+
+    # ----------------------------------------------------------------------- help
+
+    def _write_help(self, page: Any) -> None:
+        page.set_column(0, 0, 14)
+        page.set_column(1, 1, 22)
+        page.set_column(2, 2, 90, self.wrap)
+        page.hide_gridlines(2)
+        page.write_string(0, 0, gettext(TITLE), self.title)
+        row = 2
+        for line in map(gettext, FIRST_LINES):
+            page.merge_range(row, 0, row, 2, line, self.wrap)
+            page.set_row(row, 15 * (1 + len(line) // 125))
+            row += 1
+        for at, head in enumerate(HEADS):
+            page.write_string(row + 1, at, gettext(head), self.head)
+        row += 2
+        for sheet in SHEETS:
+            for column in sheet.columns:
+                page.write_string(row, 0, gettext(sheet.name), self.bold)
+                page.write_string(row, 1, self._header(column) + (" *" if column.required else ""), self.bold)
+                page.write_string(row, 2, describe(column), self.wrap)
+                row += 1
+
+
+def describe(column: Column) -> str:
+    """Return the help of a column with its choices and what a blank means, in the language in use."""
+    parts = [gettext(column.help)]
+    if column.choices:
+        parts.append(gettext("One of: {choices}.", choices=", ".join(map(gettext, column.choices))))
+    if column.default:
+        parts.append(gettext("Blank: {default}.", default=gettext(column.default)))
+    return " ".join(parts)

@@ -1,0 +1,256 @@
+"""One cell: its content as a value of its column in SI, or what is wrong with it in words.
+
+`READERS` says how each kind of column is read; a reader returns the value, or raises `CellError`.
+"""
+
+import datetime
+import math
+import re
+import unicodedata
+from collections.abc import Callable, Mapping
+
+from assess.errors import InputError
+from assess.i18n import Text, fill, find_language
+from assess.units import QUANTITIES
+from assess.workbook.names import find_choice, find_near, plain, say_choices
+from assess.workbook.open import UNSAVED
+from assess.workbook.schema import Column
+
+ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
+_TIMES = (datetime.datetime, datetime.date, datetime.time)
+_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
+_NUMERAL = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)\s*")
+_UNSEEN = frozenset("\u200e\u200f\u061c\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200b\u2060\ufeff")
+_ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
+_SHOWN = 60
+_UNIT_NAMES = {
+    "cm": fill("centimetres"), "m": fill("metres"), "mm": fill("millimetres"), "in": fill("inches"), "ft": fill("feet"),
+}  # fmt: skip
+
+
+class CellError(Exception):
+    """A cell does not hold what its column needs; the text names the value, the rule and the likely slip."""
+
+    def __init__(self, message: Text, fix: Text | str = "") -> None:
+        super().__init__(message)
+        self.message, self.fix = message, fix
+
+
+def is_blank(value: object) -> bool:
+    """Tell whether a cell holds nothing to read."""
+    return value is None or (isinstance(value, str) and not value.strip())
+
+
+def shorten(value: object) -> str:
+    """Return a value as it may be quoted in a message: clean, in quotes, at most 60 characters."""
+    text = clean(str(value))[0]
+    return f"'{text[:_SHOWN]}…'" if len(text) > _SHOWN else f"'{text}'"
+
+
+def clean(text: str) -> tuple[str, int]:
+    """Take out of a text what is not text, and count it.
+
+    Control characters become the replacement character; unseen marks, such as those that turn the direction of
+    writing, are left out, since they make a text show other than it reads. Line breaks and tabs stay.
+    """
+    if text.isascii() and text.isprintable() and "_x0" not in text:
+        return text, 0
+    text = _ESCAPE.sub(lambda match: chr(int(match[1], 16)), text).replace("\r\n", "\n").replace("\r", "\n")
+    kept = [_clean_character(character) for character in text]
+    return "".join(kept), sum(new != old for new, old in zip(kept, text, strict=True))
+
+
+def _clean_character(character: str) -> str:
+    if character in "\n\t":
+        return character
+    if character in _UNSEEN:
+        return ""
+    is_none = ord(character) & 0xFFFE == 0xFFFE  # a number that Unicode gives to no character
+    return "\ufffd" if is_none or unicodedata.category(character) in ("Cc", "Cs") else character
+
+
+def read_text(value: object) -> str:
+    """Return a cell's content as text: whole numbers without a decimal point, dates as ISO dates."""
+    if isinstance(value, bool):
+        return str(value).upper()
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    if isinstance(value, _TIMES):
+        return value.isoformat()
+    return clean(str(value))[0].strip()
+
+
+def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[Text, Text | str] | None]:
+    """Return a cell's value in SI, and what is remarkable about it with how to fix that.
+
+    `unit` is that of the column's header. The value of a blank cell is None, as of a text of unseen marks alone.
+
+    Raises
+    ------
+    CellError
+        If the cell does not hold what the column needs.
+    """
+    if is_blank(value):
+        return None, None
+    if value is UNSAVED:
+        raise CellError(fill("the formula has no saved value."), fill("Open the workbook in Excel and save it."))
+    if column.kind not in ("number", "count") and isinstance(value, str) and value.strip() in ERRORS:
+        raise CellError(
+            fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
+            fill("Correct the formula in the cell."),
+        )
+    return READERS[column.kind](column, value, unit), _remark_on(column, value, unit)
+
+
+def _remark_on(column: Column, value: object, unit: str) -> tuple[Text, Text | str] | None:
+    """Return a remark on an unusual number, or on characters that are left out."""
+    if column.kind == "number" and isinstance(value, int | float) and _is_unusual(column, float(value), unit):
+        usual = _span(column.usual_low, column.usual_high, column, unit)
+        message = fill(
+            "{column} is {number:g} {unit}, usual is {usual}.",
+            column=fill(column.label), number=value, unit=unit, usual=usual,
+        )  # fmt: skip
+        return message, fill("Check the number and the unit.")
+    removed = clean(value)[1] if isinstance(value, str) and column.kind in ("text", "file", "records") else 0
+    if not removed:
+        return None
+    message = fill(
+        "{count} control or direction characters in {column} were taken out.", count=removed, column=fill(column.label)
+    )
+    return message, ""
+
+
+def _read_plain(column: Column, value: object, unit: str) -> str | None:
+    return read_text(value) or None
+
+
+def _read_number(column: Column, value: object, unit: str) -> float:
+    number = _read_typed(column.label, value, unit)
+    if not _is_within(column, number, unit):
+        expected = _span(column.low, column.high, column, unit)
+        typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
+        message = fill("{label} is {typed}, expected {expected}.", label=column.label, typed=typed, expected=expected)
+        raise CellError(message, _likely_slip(column, number, unit))
+    return number * QUANTITIES[column.quantity][unit] if column.quantity else number
+
+
+def _read_typed(label: str, value: object, unit: str) -> float:
+    """Return the number of a cell in `unit`."""
+    if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        return float(value)
+    named = {"label": label, "text": shorten(value), "unit": f" [{unit}]" if unit else ""}
+    retype = fill("Set the cell's format to General and type the number again.")
+    if isinstance(value, (*_TIMES, datetime.timedelta)):
+        raise CellError(
+            fill("{label} holds a date or time ({value}), expected a number{unit}.", value=value, **named), retype
+        )
+    if not isinstance(value, str):
+        shown = str(value).upper() if isinstance(value, bool) else shorten(value)
+        message = fill("{label} is {value}, expected a number{unit}.", value=shown, **named)
+        raise CellError(message, fill("Type the number."))
+    if value.strip() in ERRORS:
+        message = fill("{label} holds the error {error}.", label=label, error=value.strip())
+        raise CellError(message, fill("Correct the formula in the cell, or type the number."))
+    if _COMMA.fullmatch(value):
+        message = fill("{label} is the text {text} with a decimal comma, expected a number{unit}.", **named)
+        raise CellError(message, retype)
+    if _NUMERAL.fullmatch(value):
+        message = fill("{label} is {text} stored as text, expected a number{unit}.", **named)
+        raise CellError(message, fill("Clear the cell, set its format to General, and type the number again."))
+    raise CellError(
+        fill("{label} is the text {text}, expected a number{unit}.", **named), fill("Type the number alone.")
+    )
+
+
+def _read_count(column: Column, value: object, unit: str) -> int:
+    number = _read_typed(column.label, value, "")
+    low, high = int(column.low or 0), int(column.high or 0)
+    if number != int(number) or not low <= number <= high:
+        raise CellError(
+            fill("{label} is {number:g}, expected a whole number from {low} to {high}.",
+                 label=column.label, number=number, low=str(low), high=str(high)),
+            fill("Delete the row if the piece is not there.") if number == 0 else fill("Type a whole number."),
+        )  # fmt: skip
+    return int(number)
+
+
+def _read_choice(column: Column, value: object, unit: str) -> str:
+    text = read_text(value)
+    if (choice := find_choice(text, column.choices)) is not None:
+        return choice
+    own = say_choices(column.choices, column.language)
+    words = {plain(word): word for word in (*column.choices, *own)}
+    near = find_near(plain(text), words)
+    raise CellError(
+        fill("{label} is {text}, expected one of: {choices}.",
+             label=column.label, text=shorten(text), choices=", ".join(own)),
+        fill("Did you mean {name}?", name=words[near]) if near else fill("Choose from the list."),
+    )  # fmt: skip
+
+
+def _read_language(column: Column, value: object, unit: str) -> str:
+    """Return the language that was meant by any of its names, or its code."""
+    try:
+        code = find_language(read_text(value))
+    except InputError:
+        return _read_choice(column, value, unit)
+    return next(choice for choice in column.choices if find_language(choice) == code)
+
+
+def _read_date(column: Column, value: object, unit: str) -> str:
+    """Return a date as text: an ISO date, or as it was typed."""
+    return read_text(value.date() if isinstance(value, datetime.datetime) else value)
+
+
+READERS: Mapping[str, Callable[[Column, object, str], object]] = {
+    "text": _read_plain,
+    "file": _read_plain,
+    "records": _read_plain,
+    "number": _read_number,
+    "count": _read_count,
+    "choice": _read_choice,
+    "language": _read_language,
+    "date": _read_date,
+}
+
+
+# ---------------------------------------------------------------- ranges
+
+
+def _scale(column: Column, unit: str) -> float:
+    """Factor from the header's unit to the unit in which the column's ranges are written."""
+    return QUANTITIES[column.quantity][unit] / column.factor if column.quantity else 1.0
+
+
+def _is_within(column: Column, number: float, unit: str) -> bool:
+    value = number * _scale(column, unit)
+    slack = 1e-9 * abs(value)
+    return (column.low is None or value >= column.low - slack) and (column.high is None or value <= column.high + slack)
+
+
+def _is_unusual(column: Column, number: float, unit: str) -> bool:
+    value = number * _scale(column, unit)
+    return (column.usual_low is not None and value < column.usual_low) or (
+        column.usual_high is not None and value > column.usual_high
+    )
+
+
+def _likely_slip(column: Column, number: float, unit: str) -> Text | str:
+    """Guess the unit that was meant: one in which the number would be usual."""
+    if number < 0:
+        return fill("Remove the minus sign.") if (column.low or 0) >= 0 else ""
+    first = ("in", "ft") if unit in ("in", "ft") else ()
+    for other in (*first, *_UNIT_NAMES, "g", "m/s2", "cm/s2", "m/s", "cm/s"):
+        is_known = other != unit and other in QUANTITIES.get(column.quantity, {})
+        if is_known and _is_within(column, number, other) and not _is_unusual(column, number, other):
+            return fill("Did you type {unit}?", unit=_UNIT_NAMES.get(other, other))
+    return fill("Check the number and the unit in the header.")
+
+
+def _span(low: float | None, high: float | None, column: Column, unit: str) -> Text:
+    scale, suffix = _scale(column, unit), f" {unit}" if unit else ""
+    if low is not None and high is not None:
+        return fill("{low:.4g} to {high:.4g}{unit}", low=low / scale, high=high / scale, unit=suffix)
+    if low is not None:
+        return fill("at least {low:.4g}{unit}", low=low / scale, unit=suffix)
+    return fill("at most {high:.4g}{unit}", high=(high or 0) / scale, unit=suffix)

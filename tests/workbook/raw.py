@@ -1,0 +1,87 @@
+"""Workbooks taken apart: their zip, their XML, and a process of its own to read them in."""
+
+import io
+import subprocess
+import sys
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from tests.workbook.books import FLOORS, ITEMS
+
+STRINGS = "xl/sharedStrings.xml"
+SHEETS = {"Items": ITEMS, "Floors": FLOORS}
+
+MOST_MEMORY = 300
+"""MB at the peak, 70 of them for Python and its libraries."""
+
+SECONDS = 60
+
+SHEET = "xl/worksheets/sheet1.xml"  # Items
+WORKBOOK = "xl/workbook.xml"
+RELATIONS = "xl/_rels/workbook.xml.rels"
+MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+
+_CHILD = """
+import sys
+import assess
+try:
+    print(len(assess.read_inventory(sys.argv[1]).items), "items")
+except assess.WorkbookError as error:
+    print(error)
+try:
+    with open("/proc/self/status") as status:
+        print(next(line for line in status if line.startswith("VmHWM")).split()[1])
+except FileNotFoundError:
+    print(0)  # no Linux: the memory is not checked there
+"""
+
+
+def read_apart(path: Path) -> str:
+    """Read a workbook in a process of its own; return what it says, having checked how much memory it took."""
+    command = [sys.executable, "-c", _CHILD, str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
+    assert done.returncode == 0, done.stderr
+    assert not done.stderr
+    text, _, peak = done.stdout.rstrip().rpartition("\n")
+    assert int(peak) / 1024 < MOST_MEMORY, f"{int(peak) // 1024} MB"
+    return text
+
+
+def add_part(path: Path, name: str, pieces: Iterator[bytes]) -> Path:
+    """Write a large part into a workbook's zip piece by piece, in place of the one that is there."""
+    with zipfile.ZipFile(path) as archive:
+        parts = {one: archive.read(one) for one in archive.namelist() if one != name}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        for one, data in parts.items():
+            archive.writestr(one, data)
+        with archive.open(name, "w", force_zip64=True) as part:
+            for piece in pieces:
+                part.write(piece)
+    return path
+
+
+def sheet_of(rows: Iterator[bytes], before: bytes = b"", after: bytes = b"") -> Iterator[bytes]:
+    """Yield the pieces of a sheet's XML."""
+    yield f'<worksheet xmlns="{MAIN}">'.encode() + before + b"<sheetData>"
+    yield from rows
+    yield b"</sheetData>" + after + b"</worksheet>"
+
+
+def text_cell(address: str, text: str) -> str:
+    return f'<c r="{address}" t="inlineStr"><is><t>{text}</t></is></c>'
+
+
+HEADER = '<row r="1">{}</row>'.format(
+    "".join(text_cell(f"{letter}1", text) for letter, text in zip("ABCD", ITEMS[0], strict=True))
+)
+FIRST = f'<row r="2">{text_cell("A2", "A1")}{text_cell("B2", "1")}<c r="C2"><v>40</v></c><c r="D2"><v>180</v></c></row>'
+TABLE = (HEADER + FIRST).encode()
+
+
+def zip_bytes(parts: dict[str, bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, data in parts.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()

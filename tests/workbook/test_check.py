@@ -1,0 +1,211 @@
+"""Many faults in one workbook: one run names them all, each with its cell and its mend."""
+
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+from typer.testing import CliRunner
+
+from assess.cli.app import app
+from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, problems_of, read, write, write_book
+
+HEADER = [
+    "Item", "Floor", "Type", "Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis", "Route", "Notes",
+]  # fmt: skip
+
+
+def row(item: str, **cells: Any) -> list[Any]:
+    """Return a sound row of Items but for the cells given, by label."""
+    sound = {"Item": item, "Floor": "1", "Breadth [cm]": 40, "Width [cm]": 80, "Height [cm]": 180}
+    named = {next(label for label in HEADER if label.startswith(name)): value for name, value in cells.items()}
+    return [(sound | named).get(label) for label in HEADER]
+
+
+ROWS = [
+    row("A2", Height="high"),
+    row("A3", Breadth=-40),
+    row("A4", Height=1.8),
+    row("A5", Floor="9"),
+    row("A2"),
+    row("A7", Type="Lokcer"),
+    row("A8", Axis="Z"),
+    row("A9", Breadth="#DIV/0!"),
+    row("A10", Height="=2*90"),
+    row("A11", Notes="merged with the next"),
+    row("A12"),
+    row("A13", Route="R1"),
+    row("A14", Route="R2"),
+    row("A15", Breadth="38,5"),
+    row("A16", Width=datetime(2024, 3, 1)),
+    row("A17", Breadth=90),
+    row("A18", Quantity=0),
+    row("A19", Quantity=1.5),
+]
+FLOOR_ROWS: Sheet = [
+    ["Floor", "Elevaton [m]", "PFA X [m/s3]", "Record X"],
+    ["1", 0, 4, None],
+    ["2", 4, None, "roof.csv"],
+    ["3", 8, None, "../secret/roof.csv"],
+]
+TYPES: Sheet = [["Type", "Breadth [cm]", "Height [cm]", "breadth [in]"], ["Locker", 30, 180, None]]
+
+EXPECTED = {
+    "Items!G2: Height is the text 'high', expected a number [cm]. Type the number alone.",
+    "Items!E3: Breadth is -40 cm, expected 5 to 600 cm. Remove the minus sign.",
+    "Items!G4: Height is 1.8 cm, expected 5 to 600 cm. Did you type metres?",
+    "Items!B5: Floor '9' is not in the Floors sheet. Choose one of the Floors sheet, or add it there.",
+    "Items!A6: duplicate Item 'A2', also in A2. Give each its own name.",
+    "Items!C7: Type 'Lokcer' is not in the Catalogue sheet. Choose one of the Catalogue sheet, or add it there. "
+    "Did you mean Locker?",
+    "Items!H8: Axis is 'Z', expected one of: X, Y. Choose from the list.",
+    "Items!E9: Breadth holds the error #DIV/0!. Correct the formula in the cell, or type the number.",
+    "Items!G10: the formula has no saved value. Open the workbook in Excel and save it.",
+    "Items!J11:J12: cells are merged inside the table. Unmerge them and fill each cell.",
+    "Items!I13: Route 'R1' and others are named in 2 rows, but there is no Routes sheet. "
+    "Add the sheet, or clear the column.",
+    "Items!E15: Breadth is the text '38,5' with a decimal comma, expected a number [cm]. "
+    "Set the cell's format to General and type the number again.",
+    "Items!F16: Width holds a date or time (2024-03-01 00:00:00), expected a number [cm]. "
+    "Set the cell's format to General and type the number again.",
+    "Items!E17: Breadth 90 cm is greater than Width 80 cm. Breadth is the shorter plan side: exchange the two.",
+    "Items!D18: Quantity is 0, expected a whole number from 1 to 10000. Delete the row if the piece is not there.",
+    "Items!D19: Quantity is 1.5, expected a whole number from 1 to 10000. Type a whole number.",
+    "Floors!B1: the column 'Elevaton [m]' is not known. Did you mean Elevation [m]?",
+    "Floors!C1: the unit 'm/s3' of PFA X is not known. Write the unit that the numbers are in, such as PFA X [g]; known units: g, m/s2, cm/s2, gal.",
+    "Floors!D3: the file 'roof.csv' was not found next to the workbook. Check the name, or copy the file there.",
+    "Floors!D4: the file '../secret/roof.csv' is outside the workbook's folder. "
+    "Copy it next to the workbook and write its name alone.",
+    "Catalogue!D1: duplicate column Breadth, also in B1. Delete one of them.",
+}
+
+
+def faulty(folder: Path) -> Path:
+    path = write(folder, [HEADER, *ROWS], FLOOR_ROWS, Catalogue=TYPES)
+    book = openpyxl.load_workbook(path)
+    book["Items"].merge_cells("J11:J12")
+    book.save(path)
+    return path
+
+
+def test_one_run_names_every_fault(tmp_path: Path) -> None:
+    assert errors_of(faulty(tmp_path)) == EXPECTED
+
+
+def test_one_run_of_the_command_names_every_fault_and_writes_nothing(tmp_path: Path) -> None:
+    path = faulty(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 2
+    shown = {line.removeprefix("error").strip() for line in done.stderr.splitlines() if line.startswith("error")}
+    assert shown == EXPECTED
+    assert f"{len(EXPECTED)} errors; nothing was written." in done.stderr
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_every_fault_has_a_cell_and_a_mend(tmp_path: Path) -> None:
+    for problem in problems_of(faulty(tmp_path)):
+        assert problem.cell
+        assert problem.fix or problem.severity == "note"
+
+
+def test_errors_come_first(tmp_path: Path) -> None:
+    severities = [problem.severity for problem in problems_of(write(tmp_path, [[*ITEMS[0], "Own"], ["A1"]]))]
+    assert severities == ["error", "error", "error", "note"]
+
+
+def test_sheets_missing(tmp_path: Path) -> None:
+    assert errors_of(write_book(tmp_path / "book.xlsx", {"Notes": [["hello"]]})) == {
+        "Items: the sheet is missing. Add it, or start from a workbook made with `assess new`.",
+        "Floors: the sheet is missing. Add it, or start from a workbook made with `assess new`.",
+    }
+
+
+@pytest.mark.parametrize("rows", [[], [[None, None]], [["   "]]])
+def test_sheets_empty(tmp_path: Path, rows: list[list[Any]]) -> None:
+    assert errors_of(write(tmp_path, rows, rows)) == {
+        "Items!A1: no header row was found in the first 20 rows. It needs the headers: Item, Floor.",
+        "Floors!A1: no header row was found in the first 20 rows. It needs the headers: Floor.",
+    }
+
+
+def test_a_sheet_without_headers(tmp_path: Path) -> None:
+    assert errors_of(write(tmp_path, ITEMS, FLOORS, Places=[["Lift", "1"]])) == {
+        "Places!A1: no header row was found in the first 20 rows. It needs the headers: Place, Floor."
+    }
+
+
+def test_no_rows(tmp_path: Path) -> None:
+    assert errors_of(write(tmp_path, ITEMS[:1], FLOORS[:1])) == {
+        "Floors!A2: the table has no rows. Fill in at least one.",
+    }
+
+
+REQUIRED = [
+    ("Items", ["Floor", "Breadth [cm]", "Height [cm]"], ["1", 40, 180], ["Item"]),
+    ("Items", ["Breadth [cm]", "Height [cm]"], [40, 180], ["Item", "Floor"]),
+    ("Floors", ["PFA X [g]"], [0.5], ["Floor"]),
+    ("Catalogue", ["Source", "Breadth [cm]"], ["here", 40], ["Type"]),
+    ("Places", ["Floor", "X [m]"], ["1", 2], ["Place"]),
+    ("Places", ["Place", "X [m]"], ["Lift", 2], ["Floor"]),
+    ("Routes", ["Segment", "Floor"], ["S1", "1"], ["Route"]),
+    ("Routes", ["Route", "Floor"], ["R1", "1"], ["Segment"]),
+]
+
+
+@pytest.mark.parametrize(("sheet", "header", "values", "missing"), REQUIRED)
+def test_a_required_column_is_missing(
+    tmp_path: Path, sheet: str, header: list[str], values: list[Any], missing: list[str]
+) -> None:
+    path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS, sheet: [header, values]})
+    assert errors_of(path) == {
+        f"{sheet}!A1: the column {label} is missing. Add it to the header row." for label in missing
+    }
+
+
+@pytest.mark.parametrize(("sheet", "near"), [("Items", "Itmes"), ("Floors", "Floor"), ("Routes", "Route")])
+def test_a_sheet_with_a_near_name(tmp_path: Path, sheet: str, near: str) -> None:
+    sheets = {"Items": ITEMS, "Floors": FLOORS, "Routes": [["Route", "Segment"]]}
+    sheets[near] = sheets.pop(sheet)
+    found = errors_of(write_book(tmp_path / "book.xlsx", sheets))
+    assert found == {f"{near}: there is no sheet named {sheet}. Did you mean {sheet}? Rename it."}
+
+
+def test_two_sheets_of_one_name(tmp_path: Path) -> None:
+    path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "I tems": ITEMS, "Floors": FLOORS})
+    assert errors_of(path) == {"Items: there are 2 sheets of this name. Delete all but one, or rename them."}
+
+
+def test_a_missing_floors_sheet_is_named_once(tmp_path: Path) -> None:
+    path = write_book(tmp_path / "book.xlsx", {"Items": [*ITEMS, ["A2", "2", 40, 180]], "Places": [["Place", "Floor"]]})
+    assert len(errors_of(path)) == 1
+
+
+def test_blank_cells_that_are_required(tmp_path: Path) -> None:
+    items = [[*ITEMS[0], "Notes"], [None, "1", 40, 180], ["A2", None, 40, 180], ["A3", "1", None, None, "new"]]
+    assert errors_of(write(tmp_path, items)) == {
+        "Items!A2: Item is blank. Fill it in, or delete the row.",
+        "Items!B3: Floor is blank. Fill it in, or delete the row.",
+        "Items!C4: Breadth is blank and no Type gives it. Fill it in, or choose a Type that has one.",
+        "Items!D4: Height is blank and no Type gives it. Fill it in, or choose a Type that has one.",
+    }
+
+
+def test_a_name_of_unseen_marks_alone_is_blank(tmp_path: Path) -> None:
+    path = write(tmp_path, [ITEMS[0], ["\u200e", "1", 40, 180]])
+    assert errors_of(path) == {"Items!A2: Item is blank. Fill it in, or delete the row."}
+
+
+def test_one_fault_is_reported_once(tmp_path: Path) -> None:
+    """A size that cannot be read is not reported as missing, too; nor is a floor whose PFA cannot be read."""
+    path = write(tmp_path, [ITEMS[0], ["A1", "1", "wide", 180]], [FLOORS[0], ["1", "strong"]])
+    assert errors_of(path) == {
+        "Items!C2: Breadth is the text 'wide', expected a number [cm]. Type the number alone.",
+        "Floors!B2: PFA X is the text 'strong', expected a number [g]. Type the number alone.",
+    }
+
+
+def test_sound_workbook(tmp_path: Path) -> None:
+    inventory = read(tmp_path)
+    assert (inventory.items[0].item, inventory.items[0].row, inventory.problems) == ("A1", 2, ())

@@ -1,0 +1,368 @@
+"""Places, routes and the furniture beside them: what does not fit together, each by its cell."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from assess.model import Inventory
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import DEFAULT_WIDTH
+from assess.workbook.schema import ROUTES as ROUTES_SHEET
+from tests.workbook.books import FLOORS, Sheet, errors_of, problems_of, remarks, write
+
+TWO_FLOORS: Sheet = [*FLOORS, ["2", 0.5]]
+PLACES: Mapping[str, list[Any]] = {
+    "Office": ["Office", "2", 10, 4, "room"], "Upper": ["Upper", "2", 1, 4, "stair"],
+    "Lower": ["Lower", "1", 1, 4, "stair"], "Door": ["Door", "1", 12, 4, "exit"],
+}  # fmt: skip
+ROUTES: Mapping[str, list[Any]] = {
+    "aisle": ["Way", "aisle", "2", "Office", "Upper", 1.2, 0.9],
+    "flight": ["Way", "flight", None, "Upper", "Lower", 1.2, 0.9],
+    "hall": ["Way", "hall", "1", "Lower", "Door", 1.5, 0.9],
+}
+ITEMS: Mapping[str, list[Any]] = {
+    "B1": ["B1", "1", 40, 180, 5, 3, 90, "Way", "hall", 0.1],
+    "B2": ["B2", "2", 40, 180, 5, 3, 90, None, None, None],
+}
+HEADS: Mapping[str, list[str]] = {
+    "Places": ["Place", "Floor", "X [m]", "Y [m]", "Kind"],
+    "Routes": ["Route", "Segment", "Floor", "From", "To", "Clear width [m]", "Required width [m]"],
+    "Items": ["Item", "Floor", "Breadth [cm]", "Height [cm]", "X [m]", "Y [m]", "Angle [deg]", "Route", "Segment",
+              "Edge distance [m]"],
+}  # fmt: skip
+ITEMS_HEAD_ROOM = [["Item", "Floor", "Room", "Breadth [cm]", "Height [cm]"]]
+SOUND = {"Places": PLACES, "Routes": ROUTES, "Items": ITEMS}
+
+
+def changed(sheet: str, name: str, cells: Mapping[str, Any]) -> list[Any]:
+    """Return a sound row but for cells changed by how their header begins."""
+    row = list(SOUND[sheet][name])
+    for header, value in cells.items():
+        row[next(at for at, label in enumerate(HEADS[sheet]) if label.startswith(header))] = value
+    return row
+
+
+def book(folder: Path, *more: tuple[str, list[Any]], without: str = "", **changes: Mapping[str, Any]) -> Path:
+    """Write a sound workbook but for cells changed by the name of the row and the header, and rows added to a sheet."""
+    sheets: dict[str, list[Any]] = {}
+    for sheet, head in HEADS.items():
+        rows = [changed(sheet, name, changes.get(name, {})) for name in SOUND[sheet]]
+        sheets[sheet] = [head, *rows, *(row for name, row in more if name == sheet)]
+    sheets.pop(without, None)
+    return write(folder, sheets.pop("Items"), TWO_FLOORS, **sheets)
+
+
+def sound(folder: Path, *more: tuple[str, list[Any]], **changes: Mapping[str, Any]) -> Inventory:
+    return read_inventory(book(folder, *more, **changes))
+
+
+def test_a_sound_workbook_says_nothing(tmp_path: Path) -> None:
+    inventory = sound(tmp_path)
+    assert inventory.problems == ()
+    assert [one.floor for one in inventory.routes] == ["2", "", "1"]
+
+
+LISTED = "Choose one of the {0} sheet, or add it there."
+ERRORS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
+    "From is no place": (
+        {"aisle": {"From": "Ofice"}},
+        f"Routes!D2: From 'Ofice' is not in the Places sheet. {LISTED.format('Places')} Did you mean Office?",
+    ),
+    "To is no place": (
+        {"hall": {"To": "Yard"}}, f"Routes!E4: To 'Yard' is not in the Places sheet. {LISTED.format('Places')}",
+    ),
+    "the same place": (
+        {"hall": {"To": "lower"}},
+        "Routes!E4: From and To are the same place: the segment has no length. "
+        "Choose another place, or delete the row.",
+    ),
+    "the same point": (
+        {"Door": {"X": 1.006, "Y": 4.006}},
+        "Routes!E4: From and To are at the same point of the plan: the segment has no length. "
+        "Correct their positions in Places, or choose another place.",
+    ),
+    "a route's floor": (
+        {"hall": {"Floor": "9"}}, f"Routes!C4: Floor '9' is not in the Floors sheet. {LISTED.format('Floors')}",
+    ),
+    "a place's floor": (
+        {"Door": {"Floor": "9"}}, f"Places!B5: Floor '9' is not in the Floors sheet. {LISTED.format('Floors')}",
+    ),
+    "a floor that is neither's": (
+        {"hall": {"Floor": "2"}, "B1": {"Segment": None, "Route": None, "Edge": None}},
+        "Routes!C4: Floor '2' is that of neither From nor To, which lie on '1'. Correct it, or clear the cell.",
+    ),
+    "the same segment twice": (
+        {"hall": {"Segment": "AISLE"}, "B1": {"Segment": None}},
+        "Routes!B4: duplicate Segment 'AISLE' of Route 'Way', also in B2. Give each its own name.",
+    ),
+    "an item's segment elsewhere": (
+        {"B1": {"Segment": "aisle"}},
+        "Items!I2: Segment 'aisle' is not on floor '1' but on '2'. Choose one of the item's floor, or correct the Floor.",
+    ),
+    "an item's segment that is not there": (
+        {"B1": {"Segment": "lobby"}},
+        "Items!I2: Route 'Way' has no segment 'lobby'. Add it to Routes, or clear the cell.",
+    ),
+    "an item's route that is not there": (
+        {"B1": {"Route": "Wy"}},
+        f"Items!H2: Route 'Wy' is not in the Routes sheet. {LISTED.format('Routes')} Did you mean Way?",
+    ),
+    "a segment without its route": (
+        {"B1": {"Route": None}}, "Items!I2: a Segment is named without its Route. Fill in Route.",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ERRORS)
+def test_errors_by_cell_each_once(tmp_path: Path, name: str) -> None:
+    changes, expected = ERRORS[name]
+    problems = problems_of(book(tmp_path, **changes))
+    assert [str(problem) for problem in problems] == [expected]
+
+
+def test_an_item_whose_route_is_on_other_floors(tmp_path: Path) -> None:
+    lane = ("Routes", ["Lane", "yard", None, "Lower", "Door", 1.5, 0.9])
+    own = {"Route": "lane", "Segment": None}
+    assert errors_of(book(tmp_path, lane, B1=own | {"Floor": "2"})) == {
+        "Items!H2: Route 'Lane' is not on floor '2' but on '1'. Choose one of the item's floor, or correct the Floor."
+    }
+    assert sound(tmp_path, lane, B1=own).items[0].route == "Lane"
+
+
+def test_an_item_may_name_a_flight_or_a_route_that_has_one(tmp_path: Path) -> None:
+    lane = ("Routes", ["Lane", "flight", None, "Upper", "Lower", 1.5, 0.9])
+    inventory = sound(tmp_path, lane, B1={"Segment": "flight"}, B2={"Route": "Lane"})
+    assert inventory.problems == ()
+
+
+def test_one_run_names_them_all(tmp_path: Path) -> None:
+    names = ("From is no place", "the same point", "a floor that is neither's")
+    changes: dict[str, dict[str, Any]] = {}
+    for name in names:
+        for row, cells in ERRORS[name][0].items():
+            changes.setdefault(row, {}).update(cells)
+    assert errors_of(book(tmp_path, **changes)) == {ERRORS[name][1] for name in names}
+
+
+def test_errors_are_told_sheet_by_sheet_and_row_by_row(tmp_path: Path) -> None:
+    """What cannot be read is found before what does not fit together, and Routes is checked before Items; a warning comes last."""
+    more = [("Routes", ["Way", "side", "9", None, None, 1.2, 0.9]), ("Items", ["B1", "1", "wide", 180, *[None] * 6])]
+    problems = problems_of(book(tmp_path, *more, hall={"To": "Yard"}, B1={"Segment": "lobby"}, Door={"X": "far"}))
+    assert [one.place for one in problems] == [
+        "Items!I2", "Items!C4", "Items!A4", "Places!C5", "Routes!E4", "Routes!C5",
+        "Items!E4",
+    ]  # fmt: skip
+
+
+def test_without_the_sheet_of_places(tmp_path: Path) -> None:
+    assert errors_of(book(tmp_path, without="Places")) == {
+        "Routes!D2: From 'Office' and others are named in 3 rows, but there is no Places sheet. "
+        "Add the sheet, or clear the column.",
+        "Routes!E2: To 'Upper' and others are named in 3 rows, but there is no Places sheet. "
+        "Add the sheet, or clear the column.",
+    }
+
+
+def test_without_the_sheet_of_routes(tmp_path: Path) -> None:
+    assert errors_of(book(tmp_path, without="Routes")) == {
+        "Items!H2: Route 'Way' is named, but there is no Routes sheet. Add the sheet, or clear the column."
+    }
+
+
+def test_a_missing_column_is_not_told_in_every_row(tmp_path: Path) -> None:
+    sheets = {"Places": [["Floor", "X [m]"], ["1", 2]], "Routes": [HEADS["Routes"], *ROUTES.values()]}
+    path = write(tmp_path, [HEADS["Items"], *ITEMS.values()], TWO_FLOORS, **sheets)
+    assert errors_of(path) == {"Places!A1: the column Place is missing. Add it to the header row."}
+
+
+def test_a_blank_floor_is_that_of_both_places(tmp_path: Path) -> None:
+    inventory = sound(tmp_path, aisle={"Floor": None}, hall={"Floor": None})
+    assert [one.floor for one in inventory.routes] == ["2", "", "1"]
+    assert inventory.problems == ()
+
+
+@pytest.mark.parametrize("floor", ["1", "2"])
+def test_a_flight_may_be_of_either_floor(tmp_path: Path, floor: str) -> None:
+    assert sound(tmp_path, flight={"Floor": floor}).problems == ()
+
+
+def test_names_are_spelt_as_where_they_stand_first(tmp_path: Path) -> None:
+    inventory = sound(tmp_path, hall={"Route": "WAY ", "From": "lower"}, B1={"Route": "way", "Segment": "Hall"})
+    assert {one.route for one in inventory.routes} == {"Way"}
+    assert inventory.routes[2].start == "Lower"
+    assert (inventory.items[0].route, inventory.items[0].segment) == ("Way", "hall")
+
+
+JOINS = "the segment is evaluated, but joins nothing in the network. Fill in the other, or clear both."
+CLEAR = (
+    "Clear width is blank: it is taken as the required width, so anything that reaches into it blocks it. "
+    "Fill in Clear width."
+)
+WARNINGS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
+    "narrower than required": (
+        {"hall": {"Clear": 0.8, "Required": 1.5}},
+        "Routes!G4: Required width 1.5 m is wider than Clear width 0.8 m: the segment is blocked with nothing fallen. "
+        "Are the two exchanged?",
+    ),
+    "narrower than the default": (
+        {"hall": {"Clear": 0.85, "Required": None}},
+        "Routes!G4: Required width is blank and taken as 0.9 m, which is wider than Clear width 0.85 m: the segment "
+        "is blocked with nothing fallen. Fill in the width that must stay free.",
+    ),
+    "no clear width": ({"hall": {"Clear": None}}, f"Routes!F4: {CLEAR}"),
+    "From alone": ({"flight": {"To": None}}, f"Routes!E3: From is filled in without To: {JOINS}"),
+    "To alone": ({"flight": {"From": None}}, f"Routes!D3: To is filled in without From: {JOINS}"),
+    "a distance to nothing": (
+        {"B2": {"Edge": 0.2}},
+        "Items!J3: Edge distance is filled in without a Route: it is not used. Fill in the Route, or clear the cell.",
+    ),
+    "no position": (
+        {"B2": {"X": None, "Y": None, "Angle": None}},
+        "Items!E3: 1 of 1 pieces of floor '2' has neither a position nor a Route: whether it falls onto a route is not "
+        "known, and it is not counted. Fill in X, Y and Angle, or name the Route.",
+    ),
+    "no way out": (
+        {name: {"Kind": "corridor"} for name in ("Upper", "Lower", "Door")},
+        "Routes!E2: no place of Kind exit or stair is joined by any segment, so no room is evaluated. "
+        "Fill in the Kind of the places that lead out.",
+    ),
+    "a room on no route": (
+        {"aisle": {"From": "Lower", "Floor": None}},
+        "Places!A2: the room 'Office' is not on any route: whether it keeps an exit is not evaluated. "
+        "Let a segment begin or end at every room, or leave it out of Places.",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WARNINGS)
+def test_warnings_by_cell_each_once(tmp_path: Path, name: str) -> None:
+    changes, expected = WARNINGS[name]
+    inventory = sound(tmp_path, **changes)
+    assert [str(problem) for problem in inventory.problems] == [expected]
+    assert remarks(inventory, "warning") == {expected}
+
+
+def test_the_default_width_is_what_the_column_says() -> None:
+    assert ROUTES_SHEET.column("required_width").default == f"{DEFAULT_WIDTH} m"
+
+
+@pytest.mark.parametrize("required", [0.9, None])
+def test_as_wide_as_required_is_wide_enough(tmp_path: Path, required: float | None) -> None:
+    assert sound(tmp_path, hall={"Clear": 0.9, "Required": required}).problems == ()
+
+
+def test_no_column_of_clear_width_is_said_once(tmp_path: Path) -> None:
+    routes: Sheet = [["Route", "Segment"], ["R1", "a"], ["R1", "b"]]
+    path = write(tmp_path, [HEADS["Items"], ITEMS["B2"]], TWO_FLOORS, Routes=routes)
+    assert [str(problem) for problem in read_inventory(path).problems] == [f"Routes!A1: {CLEAR}"]
+
+
+def test_pieces_without_position_or_route_are_counted_by_floor(tmp_path: Path) -> None:
+    lost = [("Items", [f"C{at}", "2", 40, 180, *[None] * 6]) for at in range(3)]
+    route = ("Items", ["D1", "2", 40, 180, None, None, None, "Way", None, None])
+    assert remarks(sound(tmp_path, *lost, route), "warning") == {
+        "Items!E4: 3 of 5 pieces of floor '2' have neither a position nor a Route: whether they fall onto a route is "
+        "not known, and they are not counted. Fill in X, Y and Angle, or name the Route."
+    }
+
+
+NO_PLAN = "no segment of that floor has both its places placed, and"
+UNPLACED_ROUTES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "a place has no position": ({}, {"X": None, "Y": None}),
+    "a place has half a position": ({}, {"Y": None}),
+    "no place at its end": ({"To": None}, {}),
+    "no places, but a floor": ({"From": None, "To": None}, {}),
+    "the floor is that of its one place": ({"Floor": None, "To": None}, {}),
+}
+
+
+@pytest.mark.parametrize("name", UNPLACED_ROUTES)
+def test_a_floor_that_cannot_be_drawn_counts_only_pieces_that_name_a_route(tmp_path: Path, name: str) -> None:
+    aisle, office = UNPLACED_ROUTES[name]
+    head = [*HEADS["Items"], "Quantity"]
+    rows = [
+        [*ITEMS["B2"], None], ["C1", "2", 40, 180, None, None, None, None, None, None, 12],
+        ["C2", "2", 40, 180, 6, 3, 90, "Way", None, None, None],
+    ]  # fmt: skip
+    own = {
+        "Routes": [changed("Routes", "aisle", aisle)],
+        "Places": [changed("Places", "Office", office), PLACES["Upper"]],
+    }
+    sheets = {sheet: [HEADS[sheet], *cells] for sheet, cells in own.items()}
+    found = read_inventory(write(tmp_path, [head, *rows], TWO_FLOORS, **sheets))
+    told = {str(one) for one in found.problems if one.sheet == "Items"}
+    assert told == {
+        "Items!E3: 12 of 14 pieces of floor '2' have neither a position nor a Route: whether they fall onto a route is "
+        "not known, and they are not counted. Fill in X, Y and Angle, or name the Route.",
+        f"Items!E2: 1 piece of floor '2' has a position, but {NO_PLAN} it names no Route: it is not counted. "
+        "Fill in X and Y of the places, or name the Route.",
+    }
+
+
+def test_one_segment_on_the_plan_is_enough(tmp_path: Path) -> None:
+    lone = ("Routes", ["Way", "corner", "2", None, None, 1.2, 0.9])
+    assert sound(tmp_path, lone).problems == ()
+
+
+@pytest.mark.parametrize("change", [{"From": None, "To": None, "Floor": None}, {"From": "Lower", "Floor": "2"}])
+def test_a_floor_without_a_segment_of_its_own_asks_for_no_positions(tmp_path: Path, change: dict[str, Any]) -> None:
+    """A flight lies between floors, and a segment of which nothing tells the floor is on none that is known."""
+    nowhere = {"X": None, "Y": None, "Angle": None}
+    inventory = sound(tmp_path, aisle=change, Office={"Kind": "corridor"}, B2=nowhere)
+    assert inventory.problems == ()
+
+
+@pytest.mark.parametrize("blank", [{"X": None, "Y": None}, {"Y": None}])
+def test_a_segment_that_cannot_be_drawn(tmp_path: Path, blank: dict[str, Any]) -> None:
+    yard = ("Places", ["Yard", "2", 4, 9, "exit"])
+    inventory = sound(tmp_path, yard, ("Routes", ["Way", "yard", "2", "Office", "Yard", 1.2, 0.9]), Upper=blank)
+    assert [str(problem) for problem in inventory.problems] == [
+        "Routes!E2: 'Upper' has no position in Places: pieces count beside this segment only where they name it. "
+        "Fill in its X and Y."
+    ]
+    assert remarks(inventory, "note")
+
+
+def test_many_rooms_on_no_route_are_told_in_one_sentence(tmp_path: Path) -> None:
+    rooms = [("Places", [f"Room {at}", "1", at, 20, "room"]) for at in range(5)]
+    assert remarks(sound(tmp_path, *rooms), "warning") == {
+        "Places!A6: 5 rooms are not on any route, such as 'Room 0', 'Room 1', 'Room 2': whether they keep an exit is "
+        "not evaluated. Let a segment begin or end at every room, or leave it out of Places."
+    }
+
+
+def test_without_rows_of_routes_rooms_are_not_asked_for(tmp_path: Path) -> None:
+    path = write(tmp_path, [HEADS["Items"], ITEMS["B2"]], TWO_FLOORS, Places=[HEADS["Places"], *PLACES.values()])
+    assert read_inventory(path).problems == ()
+
+
+UNREAD: list[tuple[str, str, Any]] = [
+    ("Office", "X", "far"), ("Office", "Floor", None), ("Office", "Place", None), ("Office", "Kind", "roof"),
+    ("Upper", "Kind", "roof"), ("aisle", "Route", None), ("aisle", "Segment", None), ("aisle", "Clear", "wide"),
+    ("aisle", "Required", -1), ("aisle", "Floor", "=A1"), ("aisle", "From", "#REF!"), ("hall", "Segment", None),
+    ("B1", "Floor", None), ("B1", "X", "left"), ("B1", "Route", "#REF!"), ("B1", "Segment", "=A1"),
+    ("B1", "Edge", "near"), ("B2", "X", "left"), ("B2", "Route", "#REF!"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("row", "header", "value"), UNREAD)
+def test_a_cell_that_cannot_be_read_is_told_once(tmp_path: Path, row: str, header: str, value: Any) -> None:
+    problems = problems_of(book(tmp_path, **{row: {header: value}}))
+    if (row, header) == ("Office", "Place"):  # then a segment names a place that is not there
+        assert [problem.place for problem in problems] == ["Places!A2", "Routes!D2"]
+    else:
+        assert len(problems) == 1, [str(problem) for problem in problems]
+
+
+def test_rooms_of_a_segment_are_split_and_a_slip_is_told(tmp_path):
+    items = [*ITEMS_HEAD_ROOM, ["B1", "2", "Open office", 40, 180]]
+    routes = [[*HEADS["Routes"], "Room"], ["Way", "aisle", "2", "Office", "Upper", 1.2, 0.9, "Open ofice; Upper"]]
+    places = [HEADS["Places"], PLACES["Office"], PLACES["Upper"]]
+    found = read_inventory(write(tmp_path, items, TWO_FLOORS, Places=places, Routes=routes))
+    assert found.routes[0].rooms == ("Open ofice", "Upper")  # a place may be named as well: it has no pieces
+    told = [one for one in found.problems if one.cell == "H2"]
+    assert [one.severity for one in told] == ["warning"]
+    assert "no piece is in room 'Open ofice'" in str(told[0])
+    assert "Did you mean Open office?" in str(told[0])

@@ -1,0 +1,381 @@
+"""Workbooks in Italian: written, read, mixed with English, and wrong."""
+
+import subprocess
+import sys
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+from typer.testing import CliRunner
+
+from assess.cli.app import app
+from assess.cli.command_new import write_new_workbook
+from assess.errors import WorkbookError
+from assess.i18n import LANGUAGES, find_language, gettext, load_catalogue, speaking
+from assess.model import Building, Inventory
+from assess.risk import RiskClass
+from assess.workbook.names import find_sheet, fold, plain, say_choices, say_live, translate
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.template import Units, describe
+from tests.workbook.books import Sheet as Rows
+from tests.workbook.books import errors_of, problems_of, remarks, write_book
+
+ITALIAN = [translate(sheet, "it") for sheet in SHEETS]
+NAMES = [sheet.name for sheet in SHEETS]
+COLUMNS = [column for sheet in SHEETS for column in sheet.columns]
+
+FLOORS: Rows = [["Piano", "PFA X [g]"], ["1", 0.5]]
+ITEMS: Rows = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]"], ["A1", "1", 40, 180]]
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+
+def write(folder: Path, items: Rows = ITEMS, floors: Rows = FLOORS, **others: Rows) -> Path:
+    return write_book(folder / "cartella.xlsx", {"Arredi": items, "Piani": floors, **others})
+
+
+def read(folder: Path, items: Rows = ITEMS, floors: Rows = FLOORS, **others: Rows) -> Inventory:
+    return read_inventory(write(folder, items, floors, **others))
+
+
+def example(folder: Path, language: str, units: Units = "si") -> Path:
+    path = folder / f"{language}.xlsx"
+    write_new_workbook(path, units, language=language, example=True)
+    return path
+
+
+# ---------------------------------------------------------------- the words themselves
+
+
+@pytest.mark.parametrize("sheet", SHEETS, ids=NAMES)
+def test_labels_of_a_sheet_can_be_told_apart(sheet: Sheet) -> None:
+    """Each label names one column: in its own language, and against those of the other."""
+    italian = translate(sheet, "it")
+    words = {code: [plain(one.label) for one in said.columns] for code, said in (("en", sheet), ("it", italian))}
+    assert all(len(set(labels)) == len(labels) for labels in words.values())
+    for at, label in enumerate(words["it"]):
+        assert label not in words["en"] or words["en"].index(label) == at, label
+
+
+def test_names_of_sheets_are_plain_words_that_formulas_need_not_quote() -> None:
+    with speaking(load_catalogue("it")):
+        names = [*(sheet.name for sheet in ITALIAN), gettext("Help"), gettext(LISTS)]
+    assert all(name.isascii() and name.isalpha() for name in names)
+    assert len({plain(name) for name in (*names, *NAMES, "Help", LISTS)}) == 2 * len(names)
+
+
+def test_live_columns_are_no_others() -> None:
+    with speaking(load_catalogue("it")):
+        live = {plain(say_live(label).split(" [")[0]) for label in (*LIVE, *WORKINGS)}
+    items = next(sheet for sheet in ITALIAN if sheet.name == "Arredi")
+    assert len(live) == len(LIVE) + len(WORKINGS)
+    assert not live & {plain(column.label) for column in items.columns}
+
+
+@pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.label)
+def test_labels_and_messages_fit_the_spreadsheet(column: Column) -> None:
+    with speaking(load_catalogue("it")):
+        assert len(gettext(column.label)) <= 32
+        assert len(describe(column)) <= 255
+    words = say_choices(column.choices, "it")
+    assert len({plain(word) for word in words}) == len(words)
+
+
+def test_every_language_can_be_chosen_for_the_report() -> None:
+    choices = SHEETS[0].column("language").choices
+    assert tuple(find_language(choice) for choice in choices) == LANGUAGES
+
+
+# ---------------------------------------------------------------- written by assess new
+
+
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_the_example_says_the_same_in_both_languages(tmp_path: Path, units: Units) -> None:
+    english, italian = (read_inventory(example(tmp_path, language, units)) for language in ("en", "it"))
+    assert (english.language, italian.language) == ("en", "it")
+    assert [problem.severity for problem in italian.problems] == ["warning"] * 2
+    for english_sheet, sheet in zip(NAMES[1:], ("floors", "items", "places", "routes", "catalogue"), strict=True):
+        texts = {one.name for one in next(one for one in SHEETS if one.name == english_sheet).columns}
+        texts -= {one.name for one in COLUMNS if one.kind != "text"}
+        for one, other in zip(getattr(english, sheet), getattr(italian, sheet), strict=True):
+            for field in (field.name for field in fields(one) if field.name not in texts):
+                assert getattr(one, field) == getattr(other, field), (sheet, one, field)
+    assert english.building.period == italian.building.period
+    assert italian.items[0].description == "Vetrina accanto alla via di uscita"
+    assert italian.items[0].importance == "life safety"
+    assert {one.anchored for one in italian.items} == {"no", "yes", "partly", "unknown"}
+
+
+def test_the_command_line_names_the_language(tmp_path: Path) -> None:
+    path = tmp_path / "nuovo.xlsx"
+    done = CliRunner().invoke(app, ["new", str(path), "--language", "Italiano"])
+    assert done.exit_code == 0
+    assert {problem.sheet for problem in problems_of(path)} <= {"Piani", "Arredi"}
+    refused = CliRunner().invoke(app, ["new", str(tmp_path / "other.xlsx"), "--language", "fr"])
+    assert refused.exit_code == 2
+    assert "language 'fr' is unknown: expected one of en, it" in refused.stderr
+    assert not (tmp_path / "other.xlsx").exists()
+
+
+@pytest.fixture(scope="module")
+def book(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    return openpyxl.load_workbook(example(tmp_path_factory.mktemp("it"), "it"))
+
+
+def test_everything_shown_is_italian(book: Any) -> None:
+    assert book.sheetnames == ["Guida", *(sheet.name for sheet in ITALIAN), "Elenchi"]
+    with speaking(load_catalogue("it")):
+        live = [say_live(label) for label in (*LIVE, *WORKINGS)]
+    for sheet in ITALIAN:
+        page, wanted = book[sheet.name], [column.header() for column in sheet.columns]
+        if sheet.layout == "form":
+            assert [cell.value for cell in page["A"]] == wanted
+        else:
+            assert [cell.value for cell in page[1]] == wanted + (live if sheet.name == "Arredi" else [])
+    english = {fold(one.label) for one in COLUMNS} - {fold(one.label) for sheet in ITALIAN for one in sheet.columns}
+    assert (
+        not {fold(str(cell.value)).split("[")[0] for page in book for row in page.iter_rows() for cell in row} & english
+    )
+
+
+def test_drop_downs_hold_the_italian_choices(book: Any) -> None:
+    for sheet, italian in zip(SHEETS, ITALIAN, strict=True):
+        for check in book[italian.name].data_validations.dataValidation:
+            first = next(iter(check.sqref.ranges))
+            column = sheet.columns[(first.min_row if sheet.layout == "form" else first.min_col) - 1]
+            if not column.choices and not column.source:
+                continue
+            target, _, area = book.defined_names[check.formula1.lstrip("=")].attr_text.partition("!")
+            if column.choices:
+                held = [cell.value for row in book[target][area.replace("$", "")] for cell in row]
+                assert (target, tuple(held)) == ("Elenchi", say_choices(column.choices, "it"))
+            else:
+                assert find_sheet(target) == (column.source, "it")
+
+
+def test_the_classes_stand_in_italian(book: Any) -> None:
+    with speaking(load_catalogue("it")):
+        words = {f"{risk.symbol} {gettext(risk.word)}" for risk in RiskClass}
+    assert words == {"○ basso", "◇ medio", "▲ alto", "■ molto alto"}
+    assert all(f'"{word}"' in book["Arredi"]["Y2"].value for word in words)
+
+
+# ---------------------------------------------------------------- read
+
+
+def test_a_workbook_typed_by_hand(tmp_path: Path) -> None:
+    items: Rows = [
+        ["ELEMENTO", "piano", "profondita [mm]", " Altezza[cm]", "Ancorato", "Importanza", "Tipo", "Foto", "Classe (formula)"],
+        ["A1", "1", 400, 180, "Si", "Incolumita'", None, "a.jpg", "▲ alto"],
+        ["A2", "1", None, None, "in parte", "vita", "Baule", None, "?"],
+    ]  # fmt: skip
+    items[2][5] = "beni"  # type: ignore[index]
+    building: Rows = [
+        ["Edificio", "Municipio"], ["Piani fuori terra", 4], ["destinazione d\u2019uso", "Uffici"],
+        ["Committente", "Un ente"], ["Tipo di scenario", "Come compilato"], ["PGA AL SUOLO [gal]", 98.0665],
+    ]  # fmt: skip
+    inventory = read(
+        tmp_path, items, Edificio=building, CATALOGO=[["Tipo", "Profondità [m]", "Altezza [m]"], ["Baule", 0.3, 1]]
+    )
+    first, second = inventory.items
+    assert (first.breadth, first.height, first.anchored, first.importance) == (0.4, 1.8, "yes", "life safety")
+    assert (second.breadth, second.anchored, second.importance) == (0.3, "partly", "property")
+    assert inventory.extra_columns == ("Foto",)
+    told = inventory.building
+    assert (told.storeys, told.use, told.client, told.scenario_kind) == (4, "Uffici", "Un ente", "as filled")
+    assert told.ground_pga == pytest.approx(0.980665)
+    assert inventory.language == inventory.report_language == "it"
+
+
+def test_both_languages_in_one_workbook(tmp_path: Path) -> None:
+    items: Rows = [
+        ["Item", "Piano", "Breadth [cm]", "Altezza [cm]", "Ancorato", "Anything"],
+        ["A1", "1", 40, 180, "yes", 1],
+    ]
+    sheets = {"Items": items, "Piani": [["Floor", "PFA X [g]"], ["1", 0.5]], "Luoghi": [["Place", "Piano"], ["P", "1"]]}
+    inventory = read_inventory(write_book(tmp_path / "mixed.xlsx", sheets))
+    assert (inventory.items[0].breadth, inventory.items[0].anchored) == (0.4, "yes")
+    assert inventory.places[0].place == "P"
+    assert inventory.language == "it", "two sheets of three"
+    assert remarks(inventory, "note") == {"Items!F1: the column 'Anything' is not known; it is kept, not used."}
+
+
+@pytest.mark.parametrize(
+    ("sheets", "language"),
+    [
+        (("Items", "Floors"), "en"),
+        (("Items", "Piani"), "en"),
+        (("Arredi", "Floors"), "en"),
+        (("Arredi", "Piani"), "it"),
+    ],
+)
+def test_the_language_is_that_of_most_sheets(tmp_path: Path, sheets: tuple[str, str], language: str) -> None:
+    """The names of the sheets decide, not those of the columns."""
+    book = write_book(tmp_path / "book.xlsx", dict(zip(sheets, (ITEMS, FLOORS), strict=True)))
+    assert read_inventory(book).language == language
+
+
+def test_a_header_row_below_values_that_are_english_labels(tmp_path: Path) -> None:
+    """X and Y are labels in both languages, and values of Asse."""
+    items: Rows = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]", "Asse"], ["A1", "1", 40, 180, "X"]]
+    assert read(tmp_path, items).items[0].axis == "X"
+
+
+@pytest.mark.parametrize(
+    ("typed", "chosen", "code"),
+    [
+        ("Italiano", "Italiano", "it"),
+        ("italian", "Italiano", "it"),
+        ("IT", "Italiano", "it"),
+        ("English", "English", "en"),
+        ("inglese", "English", "en"),
+        (None, "", "it"),
+    ],
+)
+def test_language_of_the_report(tmp_path: Path, typed: str | None, chosen: str, code: str) -> None:
+    inventory = read(tmp_path, Edificio=[["Edificio", "Municipio"], ["Lingua del rapporto", typed]])
+    assert (inventory.building.language, inventory.report_language) == (chosen, code)
+
+
+def test_lines_of_the_cover(tmp_path: Path) -> None:
+    import datetime
+
+    lines: Rows = [
+        ["Client", "A"], ["Checked by", "B"], ["Approvato da", "C"], ["Revision", 2],
+        ["Report date", datetime.datetime(2026, 3, 1)],
+    ]  # fmt: skip
+    told = read(tmp_path, Edificio=lines).building
+    expected = Building(client="A", checked_by="B", approved_by="C", revision="2", report_date="2026-03-01")
+    assert {
+        field: getattr(told, field) for field in ("client", "checked_by", "approved_by", "revision", "report_date")
+    } == {
+        field: getattr(expected, field) for field in ("client", "checked_by", "approved_by", "revision", "report_date")
+    }
+    typed = read(tmp_path, Edificio=[["Data del rapporto", "marzo 2026"]]).building
+    assert typed.report_date == "marzo 2026"
+
+
+# ---------------------------------------------------------------- what is wrong
+
+
+def test_errors_name_the_workbooks_own_sheets_cells_and_labels(tmp_path: Path) -> None:
+    items: Rows = [
+        ["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]", "Ancorato", "Angolo [rad]", "Percorso"],
+        ["A1", "1", 40, 1.8, "forse", None, None],
+        ["A1", "9", "largo", 180, "sii", None, "R"],
+    ]
+    found = errors_of(
+        write(tmp_path, items, Percorsi=[["Percorso", "Tratto"]], Edificio=[["Tipo di scenario", "registrata"]])
+    )
+    assert found == {
+        "Arredi!D2: Altezza is 1.8 cm, expected 5 to 600 cm. Did you type metres?",
+        "Arredi!E2: Ancorato is 'forse', expected one of: no, sì, in parte, non noto. Choose from the list.",
+        "Arredi!E3: Ancorato is 'sii', expected one of: no, sì, in parte, non noto. Did you mean sì?",
+        "Arredi!A3: duplicate Elemento 'A1', also in A2. Give each its own name.",
+        "Arredi!B3: Piano '9' is not in the Piani sheet. Choose one of the Piani sheet, or add it there.",
+        "Arredi!C3: Profondità is the text 'largo', expected a number [cm]. Type the number alone.",
+        "Arredi!F1: the unit 'rad' of Angolo is not known. Write the unit that the numbers are in, such as Angolo [deg]; "
+        "known units: deg.",
+        "Arredi!G3: Percorso 'R' is not in the Percorsi sheet. Choose one of the Percorsi sheet, or add it there.",
+        "Edificio!B1: Tipo di scenario is 'registrata', expected one of: come compilato, registrato, assegnato, ASCE 7-22, "
+        "ASCE 7-16, EN 1998-1, NTC 2018. Did you mean registrato?",
+    }
+
+
+def test_rows_that_do_not_fit_together_are_told_by_their_own_labels(tmp_path: Path) -> None:
+    items: Rows = [
+        ["Elemento", "Piano", "Profondità [cm]", "Larghezza [cm]", "Altezza [cm]", "Quantità", "X [m]", "Y [m]", "Tratto"],
+        ["A1", "1", 90, 40, 180, 2, 1, 1, "T"],
+        ["A2", "1", 40, 90, None, None, None, None, None],
+    ]  # fmt: skip
+    assert errors_of(write(tmp_path, items)) == {
+        "Arredi!C2: Profondità 90 cm is greater than Larghezza 40 cm. Profondità is the shorter plan side: exchange the two.",
+        "Arredi!F2: Quantità is 2 on a row with a position. Write one row a piece, or clear X and Y.",
+        "Arredi!I2: a Tratto is named without its Percorso. Fill in Percorso.",
+        "Arredi!E3: Altezza is blank and no Tipo gives it. Fill it in, or choose a Tipo that has one.",
+    }
+
+
+def test_what_the_scenario_lacks_is_told_of_the_workbooks_own_sheet(tmp_path: Path) -> None:
+    import assess
+
+    inventory = read(tmp_path, Edificio=[["Tipo di scenario", "NTC 2018"]])
+    with pytest.raises(WorkbookError) as caught:
+        assess.run(inventory, assess.Settings(verify="none"))
+    assert {problem.sheet for problem in caught.value.problems} == {"Edificio", "Piani"}
+    notes = assess.run(read(tmp_path, Edificio=[["SDS [g]", 0.3]]), assess.Settings(verify="none")).problem_rows
+    assert {problem.place for problem in notes} == {"Edificio!B1"}
+
+
+@pytest.mark.parametrize(
+    ("header", "meant"),
+    [
+        ("Profondta [cm]", "Profondità [cm]"),
+        ("Quantitta", "Quantità"),
+        ("Altezza (cm)", "Altezza [cm]"),
+        ("Heigth [cm]", "Height [cm]"),
+        ("Descripion", "Descrizione"),
+        ("Anchoredd", "Anchored"),
+    ],
+)
+def test_did_you_mean_in_both_languages(tmp_path: Path, header: str, meant: str) -> None:
+    items = [[*ITEMS[0][:2], "Tipo", header], ["A1", "1", "T", 40]]
+    types: Rows = [["Tipo", "Profondità [cm]", "Altezza [cm]"], ["T", 40, 180]]
+    told = f"Arredi!D1: the column '{header}' is not known. Did you mean {meant}?"
+    assert errors_of(write(tmp_path, items, Catalogo=types)) == {told}
+
+
+def test_an_italian_slip_in_an_english_workbook(tmp_path: Path) -> None:
+    items: Rows = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Ancoratto"], ["A1", "1", 40, 180, "no"]]
+    path = write_book(tmp_path / "book.xlsx", {"Items": items, "Floors": FLOORS})
+    assert errors_of(path) == {"Items!E1: the column 'Ancoratto' is not known. Did you mean Ancorato?"}
+
+
+@pytest.mark.parametrize("header", ["Peso [kg]", "Colore", "Proprietario", "Anno", "Z [m]", "Marca"])
+def test_italian_headers_that_are_no_slip(tmp_path: Path, header: str) -> None:
+    assert read(tmp_path, [[*ITEMS[0], header], [*ITEMS[1], 80]]).extra_columns == (header,)
+
+
+def test_a_sheet_that_is_missing_or_nearly_there(tmp_path: Path) -> None:
+    assert errors_of(write_book(tmp_path / "one.xlsx", {"Piani": FLOORS})) == {
+        "Arredi: the sheet is missing. Add it, or start from a workbook made with `assess new`."
+    }
+    near = errors_of(write_book(tmp_path / "two.xlsx", {"Piani": FLOORS, "Arrredi": ITEMS, "Luogi": [["Luogo"]]}))
+    assert near == {
+        "Arrredi: there is no sheet named Arredi. Did you mean Arredi? Rename it.",
+        "Luogi: there is no sheet named Luoghi. Did you mean Luoghi? Rename it.",
+    }
+
+
+def test_the_same_sheet_in_both_languages(tmp_path: Path) -> None:
+    sheets = {"Floors": FLOORS, "Items": ITEMS, "Arredi": ITEMS}
+    (problem,) = problems_of(write_book(tmp_path / "book.xlsx", sheets))
+    assert str(problem) == (
+        "Items: the sheets Items and Arredi are the same in two languages. Delete all but one, or rename them."
+    )
+
+
+def test_a_column_that_is_there_in_both_languages(tmp_path: Path) -> None:
+    items: Rows = [[*ITEMS[0], "Height [mm]"], [*ITEMS[1], 1800]]
+    assert errors_of(write(tmp_path, items)) == {"Arredi!E1: duplicate column Height, also in D1. Delete one of them."}
+
+
+def test_columns_that_are_missing_are_named_in_the_sheets_language(tmp_path: Path) -> None:
+    found = errors_of(write(tmp_path, [["Elemento", "Altezza [cm]"], ["A1", 180]]))
+    assert "Arredi!A1: the column Piano is missing. Add it to the header row." in found
+
+
+# ---------------------------------------------------------------- nothing is loaded without need
+
+
+def test_an_english_workbook_loads_no_catalogue(tmp_path: Path) -> None:
+    path = example(tmp_path, "en")
+    code = (
+        f"import sys, assess\nassess.read_inventory({str(path)!r})\n"
+        "print([name for name in sys.modules if name.startswith('babel')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=False)
+    assert (done.stdout.strip(), done.stderr) == ("[]", "")

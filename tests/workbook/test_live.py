@@ -1,0 +1,406 @@
+"""The live columns against the program: the same numbers to 1e-9, whatever units the headers give.
+
+Every stored result is overwritten with a wrong one first, so that an engine which does not calculate is found out.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import formualizer
+import numpy as np
+import openpyxl
+import pytest
+
+from assess.i18n import load_catalogue, speaking
+from assess.pipeline.live_values import live_values
+from assess.units import QUANTITIES
+from assess.workbook.formulas import LIVE_METHODS
+from assess.workbook.names import say_live
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import ITEMS, LIVE, SHEETS
+from assess.workbook.template import ROWS, Content, Units, write_workbook
+from tests.recalculate import libreoffice, needs_libreoffice
+from tests.workbook.books import change_parts
+
+Live = list[Any]
+Rows = list[dict[str, Any]]
+Engine = Callable[[Path], dict[int, Live]]
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+AGREEMENT = 1e-9
+POISON = 0.123
+ITEMS_AT = 3
+"""Place of the sheet Items, whatever its name: after Help, Building and Floors."""
+
+FLOORS: Rows = [
+    {"floor": "x", "pfa_x": 0.45},
+    {"floor": "y", "pfa_y": 0.3},
+    {"floor": "alike", "pfa_x": 0.4, "pfa_y": 0.4, "pfv_x": 40, "pfv_y": 90},
+    {"floor": "both", "pfa_x": 0.6, "pfa_y": 0.35, "pfv_x": 25, "pfv_y": 110},
+    {"floor": "Y more", "pfa_x": 0.2, "pfa_y": 0.25, "pfv_x": 60},
+    {"floor": "6", "pfa_x": 0.15, "pfa_y": 0.95, "pfv_y": 45},
+    {"floor": "strong", "pfa_x": 1.6, "pfa_y": 0.9, "pfv_x": 150, "pfv_y": 20},
+    {"floor": "still", "pfa_x": 0, "pfa_y": 0.02},
+]
+SIZES: Rows = [
+    {"breadth": 10, "height": 200},
+    {"breadth": 28, "height": 200},
+    {"breadth": 40, "height": 180},
+    {"breadth": 75, "height": 150},
+    {"breadth": 150, "height": 100},
+    {"type": "Bookcase 5 shelves"},
+    {"type": "bookcase 6 shelves", "breadth": 55},
+]
+DIRECTIONS: Rows = [
+    {}, {"axis": "X"}, {"axis": "Y"}, {"angle_deg": 15}, {"angle_deg": 45}, {"angle_deg": -80},
+    {"angle_deg": 90, "axis": "X"},
+]  # fmt: skip
+GRID: Rows = [
+    {"item": f"A{number}", "floor": floor["floor"], **size, **direction}
+    for number, (floor, size, direction) in enumerate(product(FLOORS, SIZES, DIRECTIONS))
+]
+
+RETYPED: Mapping[str, Mapping[tuple[str, str], str]] = {
+    "mm": {("Items", "breadth"): "mm", ("Items", "height"): "mm", ("Floors", "pfa_x"): "gal"},
+    "mixed": {
+        ("Items", "breadth"): "in", ("Items", "height"): "ft", ("Catalogue", "breadth"): "m",
+        ("Catalogue", "height"): "mm", ("Floors", "pfa_x"): "m/s²", ("Floors", "pfa_y"): " CM / S2 ",
+        ("Floors", "pfv_x"): "m/s", ("Floors", "pfv_y"): "In/s",
+    },
+    "powers": {("Floors", "pfa_x"): "m/s^2", ("Floors", "pfa_y"): "cm/s^2"},
+}  # fmt: skip
+
+
+# ---------------------------------------------------------------- workbooks
+
+
+def fill(
+    path: Path, items: Rows, floors: Rows, building: dict[str, Any], units: Units = "si", spare: int | None = 5
+) -> Path:
+    """Write a workbook whose values mean the same in any units: they are given in cm, g and cm/s.
+
+    It has `spare` prepared rows a table in place of hundreds, which take long to recalculate; None leaves them.
+    """
+    rows = {"Items": items, "Floors": floors, "Building": [building]}
+    if units == "imperial":
+        rows = {sheet: [_convert(sheet, row, units) for row in given] for sheet, given in rows.items()}
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ROWS if spare is not None else ():
+            patch.setitem(ROWS, name, spare)
+        write_workbook(path, Content(rows), units)
+    return path
+
+
+def _convert(sheet: str, row: dict[str, Any], units: Units) -> dict[str, Any]:
+    columns = {column.name: column for one in SHEETS if one.name == sheet for column in one.columns}
+    scale = {name: column.factor / QUANTITIES[column.quantity][column.header(units).split("[")[1].rstrip("]")]
+             for name, column in columns.items() if column.quantity}  # fmt: skip
+    return {name: value * scale[name] if name in scale else value for name, value in row.items()}
+
+
+def retype(path: Path, units: Mapping[tuple[str, str], str]) -> Path:
+    """Type other units into the headers, as a user does, and change the numbers below to match."""
+    book = openpyxl.load_workbook(path)
+    for sheet in SHEETS:
+        for at, column in enumerate(sheet.columns, 1):
+            if (sheet.name, column.name) in units:
+                unit = units[sheet.name, column.name]
+                spelt = unit.replace(" ", "").lower().replace("²", "2").replace("^", "")
+                page, scale = book[sheet.name], column.factor / QUANTITIES[column.quantity][spelt]
+                page.cell(1, at).value = f"{column.label} [{unit}]"
+                for row in range(2, page.max_row + 1):
+                    cell: Any = page.cell(row, at)
+                    if cell.value is not None:
+                        cell.value *= scale
+    book.save(path)
+    return path
+
+
+def poison(path: Path) -> Path:
+    """Overwrite the stored result of every formula with a wrong one."""
+
+    def wrong(cell: re.Match[bytes]) -> bytes:
+        return b"<c" + re.sub(rb' t="\w+"', b"", cell[1]) + b">" + cell[2] + f"<v>{POISON}</v></c>".encode()
+
+    def overwrite(data: bytes) -> bytes:
+        changed, count = re.subn(rb"<c( [^>]*)>(<f[^>]*>[^<]*</f>)(?:<v>[^<]*</v>|<v ?/>)?</c>", wrong, data)
+        assert count == len(re.findall(rb"<f[ >]", data))
+        return changed
+
+    return change_parts(path, {f"xl/worksheets/sheet{number}.xml": overwrite for number in range(1, len(SHEETS) + 3)})
+
+
+# ---------------------------------------------------------------- engines
+
+
+def _places(path: Path) -> tuple[list[int], int]:
+    """Return the columns of the live values, found by their headers, and the number of rows."""
+    page = openpyxl.load_workbook(path).worksheets[ITEMS_AT]
+    places = {cell.value: at for at, cell in enumerate(page[1], 1)}
+    return [places[say_live(label)] for label in LIVE], page.max_row
+
+
+def by_formualizer(path: Path) -> dict[int, Live]:
+    places, last = _places(path)
+    book = formualizer.load_workbook(str(path))
+    book.evaluate_all()
+    name = book.sheet_names[ITEMS_AT]
+    return {row: [book.get_value(name, row, at) for at in places] for row in range(2, last + 1)}
+
+
+def by_libreoffice(path: Path) -> dict[int, Live]:
+    places, last = _places(path)
+    page = openpyxl.load_workbook(libreoffice(path, path.with_name("again.xlsx")), data_only=True).worksheets[ITEMS_AT]
+    return {row: [page.cell(row, at).value for at in places] for row in range(2, last + 1)}
+
+
+ENGINES = [
+    pytest.param(by_formualizer, id="formualizer"),
+    pytest.param(by_libreoffice, id="libreoffice", marks=[pytest.mark.libreoffice, needs_libreoffice]),
+]
+
+
+# ---------------------------------------------------------------- comparison
+
+
+def check(path: Path, engine: Engine) -> None:
+    """Compare every item."""
+    found = list(differences(path, engine))
+    assert not found, f"{len(found)} differ, such as {found[0]}"
+
+
+def differences(path: Path, engine: Engine) -> Iterator[str]:
+    shown = engine(poison(path))
+    inventory = read_inventory(path)
+    for item, (*wanted, word) in zip(inventory.items, live_values(inventory), strict=True):
+        *numbers, label = shown[item.row]
+        if label != word or not np.allclose(np.array(numbers, float), np.array(wanted, float), rtol=0, atol=AGREEMENT):
+            yield f"{item.item} {item}: {numbers} {label}, expected {wanted} {word}"
+
+
+BUILDINGS = [{}, {"period": 0.4}, {"period": 1.7, "scenario_kind": "given"}]
+
+
+@pytest.mark.parametrize("building", BUILDINGS, ids=["no T1", "short T1", "long T1"])
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_live_columns_equal_the_program(tmp_path: Path, units: Units, building: dict[str, Any]) -> None:
+    check(fill(tmp_path / "book.xlsx", GRID, FLOORS, building, units), by_formualizer)
+
+
+@pytest.mark.parametrize("units", RETYPED)
+def test_live_columns_follow_the_headers(tmp_path: Path, units: str) -> None:
+    path = fill(tmp_path / "book.xlsx", GRID, FLOORS, {"period": 0.9})
+    check(retype(path, RETYPED[units]), by_formualizer)
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_live_columns_equal_the_program_in_libreoffice(tmp_path: Path, units: Units) -> None:
+    check(fill(tmp_path / "book.xlsx", GRID, FLOORS, {"period": 0.4}, units), by_libreoffice)
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+@pytest.mark.parametrize("units", ["mm", "mixed"])
+def test_live_columns_follow_the_headers_in_libreoffice(tmp_path: Path, units: str) -> None:
+    path = fill(tmp_path / "book.xlsx", GRID, FLOORS, {"period": 0.9})
+    check(retype(path, RETYPED[units]), by_libreoffice)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_stored_result_is_not_taken_for_a_computed_one(tmp_path: Path, engine: Engine) -> None:
+    """The poison is there: without it, and without a recalculation, the tests above would compare nothing."""
+    path = poison(fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {}))
+    stored = openpyxl.load_workbook(path, data_only=True)["Items"].cell(2, len(ITEMS.columns) + 1).value
+    assert stored == POISON
+    assert engine(path)[2][0] == pytest.approx(0.05)
+
+
+ITALIAN_TYPES = {"Bookcase 5 shelves": "Libreria a 5 ripiani", "bookcase 6 shelves": "libreria a 6 ripiani"}
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_live_columns_of_an_italian_workbook_equal_the_program(tmp_path: Path, units: Units, engine: Engine) -> None:
+    grid = [row | ({"type": ITALIAN_TYPES[row["type"]]} if "type" in row else {}) for row in GRID]
+    with speaking(load_catalogue("it")):
+        check(fill(tmp_path / "book.xlsx", grid, FLOORS, {"period": 0.4, "scenario_kind": "given"}, units), engine)
+
+
+ITALIAN_WORDS = [
+    ({"floor": "9"}, {}, ["piano?"] * 4), ({"axis": "Z"}, {}, ["asse?"] * 4),
+    ({}, {"scenario_kind": " REGISTRATO"}, ["eseguire assess"] * 4), ({}, {"scenario_kind": "Assegnato"}, None),
+    ({}, {"scenario_kind": "given"}, None), ({}, {"scenario_kind": "come-compilato"}, None), ({}, {}, None),
+    ({}, {"scenario_kind": "as filled"}, None), ({}, {"scenario_kind": "NTC 2018"}, ["eseguire assess"] * 4),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("item", "building", "words"), ITALIAN_WORDS)
+def test_words_of_an_italian_workbook(
+    tmp_path: Path, item: dict[str, Any], building: dict[str, Any], words: list[str] | None
+) -> None:
+    with speaking(load_catalogue("it")):
+        shown = shown_of(tmp_path, item, **building)
+    assert shown[1:] == words if words else shown[1] == 0.5
+
+
+def test_an_unreadable_unit_of_an_italian_workbook(tmp_path: Path) -> None:
+    with speaking(load_catalogue("it")):
+        path = fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {})
+        book = openpyxl.load_workbook(path)
+        book["Arredi"]["I1"] = "Altezza"
+        book.save(path)
+        assert by_formualizer(poison(path))[2][2:] == ["unità?"] * 3
+
+
+# ---------------------------------------------------------------- words in place of numbers
+
+
+def shown_of(folder: Path, item: dict[str, Any], floors: Rows | None = None, **building: Any) -> Live:
+    row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180} | item
+    path = fill(folder / "book.xlsx", [row], floors or [{"floor": "1", "pfa_x": 0.5}], building)
+    return by_formualizer(poison(path))[2]
+
+
+def test_blank_rows_show_nothing(tmp_path: Path) -> None:
+    path = poison(fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {}, spare=None))
+    shown = by_formualizer(path)
+    assert shown[2] != [""] * 5
+    assert len(shown) == 500
+    assert all(shown[row] == [""] * 5 for row in range(3, 502))
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+def test_blank_rows_show_nothing_in_libreoffice(tmp_path: Path) -> None:
+    shown = by_libreoffice(poison(fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {}, spare=None)))
+    assert all(value in ("", None) for row in range(3, 502) for value in shown[row])
+
+
+def test_no_such_floor(tmp_path: Path) -> None:
+    assert shown_of(tmp_path, {"floor": "9"})[1:] == ["floor?"] * 4
+
+
+def test_no_floor_yet(tmp_path: Path) -> None:
+    assert shown_of(tmp_path, {"floor": None})[1:] == ["floor?"] * 4
+
+
+def test_no_sizes_yet(tmp_path: Path) -> None:
+    ratio, pfa, *rest = shown_of(tmp_path, {"breadth": None})
+    assert (ratio, pfa, rest) == ("", 0.5, [""] * 3)
+
+
+def test_no_such_type(tmp_path: Path) -> None:
+    assert shown_of(tmp_path, {"breadth": None, "height": None, "type": "none such"})[2:] == [""] * 3
+
+
+def test_own_sizes_need_no_type(tmp_path: Path) -> None:
+    assert shown_of(tmp_path, {"type": "none such"})[0] == pytest.approx(40 / 180)
+
+
+@pytest.mark.parametrize(("axis", "pfa"), [("x", 0.3), (" Y ", 0.5), ("Z", "axis?")])
+def test_axis_as_typed(tmp_path: Path, axis: str, pfa: float | str) -> None:
+    """Pasting goes round the drop-down; a wrong axis never shows the class of another."""
+    shown = shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.5}])
+    assert shown[1] == pfa
+    if isinstance(pfa, str):
+        assert shown[2:] == [pfa] * 3
+
+
+FLOORS_WITH_RECORDS = [
+    ({"record_x": "roof.csv"}, {}, ["run assess"] * 4),
+    ({"record_x": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 4),
+    ({"record_x": "roof.csv", "pfa_y": 0.5}, {}, ["run assess"] * 4),
+    ({"record_y": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 4),
+    ({"record_y": "roof.csv", "pfa_x": 0.5}, {"axis": "X"}, None),
+    ({"record_y": "  ", "pfa_x": 0.5}, {}, None),
+]
+
+
+@pytest.mark.parametrize(("floor", "item", "words"), FLOORS_WITH_RECORDS)
+def test_floors_with_records(
+    tmp_path: Path, floor: dict[str, Any], item: dict[str, Any], words: list[str] | None
+) -> None:
+    """Where any motion that counts is a record, no formula can know the class: none is shown."""
+    shown = shown_of(tmp_path, item, [{"floor": "1", **floor}])
+    if words:
+        assert shown[1:] == words
+    else:
+        assert shown[1] == 0.5
+
+
+KINDS = [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess"), ("ASCE 7-22", "run assess"),
+         (" GIVEN", 0.5), ("As_Filled", "run assess"), ("en 1998-1", "run assess")]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "pfa"), KINDS)
+def test_scenario_kind(tmp_path: Path, kind: str, pfa: Any) -> None:
+    floors = [{"floor": "1", "pfa_x": 0.5, "record_x": "roof.csv"}]
+    assert shown_of(tmp_path, {}, floors, scenario_kind=kind)[1] == pfa
+
+
+def test_recorded_floors_without_a_record_show_no_class(tmp_path: Path) -> None:
+    """They may be interpolated, which is the program's task."""
+    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["run assess"] * 4
+
+
+@pytest.mark.parametrize("kind", [None, "as filled", "given", "recorded", "NTC 2018"])
+def test_a_floor_with_nothing_of_its_own_shows_no_class(tmp_path: Path, kind: str | None) -> None:
+    shown = shown_of(tmp_path, {}, [{"floor": "1", "elevation": 4}], scenario_kind=kind, ground_pga=0.2)
+    assert shown[1:] == ["run assess"] * 4
+
+
+@pytest.mark.parametrize("axis", [None, "X", "Y"])
+@pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
+def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str, axis: str | None) -> None:
+    assert (
+        shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.5}], scenario_kind=kind)[1:] == ["run assess"] * 4
+    )
+
+
+def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -> None:
+    floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "pfa_x": 0.5, "elevation": 4}]
+    assert shown_of(tmp_path, {}, floors, ground_pga=0.2)[1] == 0.5
+
+
+UNREADABLE = [
+    ("Items", "Breadth [kg]", 7, ["unit?"]), ("Items", "Height", 9, ["unit?"]),
+    ("Catalogue", "Height (cm)", 4, ["unit?"]), ("Floors", "PFA X [m/s3]", 4, ["unit?"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("sheet", "header", "at", "words"), UNREADABLE)
+def test_unreadable_units(tmp_path: Path, sheet: str, header: str, at: int, words: list[str]) -> None:
+    path = fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {})
+    book = openpyxl.load_workbook(path)
+    assert str(book[sheet].cell(1, at).value).startswith(re.split(r" [\[(]", header)[0])
+    book[sheet].cell(1, at).value = header
+    book.save(path)
+    ratio, pfa, *rest = by_formualizer(poison(path))[2]
+    assert "unit?" in (ratio, pfa)
+    assert rest == words * 3
+
+
+def test_a_pfv_with_an_unreadable_unit_falls_back_to_the_bound(tmp_path: Path) -> None:
+    path = fill(tmp_path / "book.xlsx", [{"item": "A1", "floor": "both", "breadth": 40, "height": 180}], FLOORS, {})
+    without = by_formualizer(fill(tmp_path / "other.xlsx", [{"item": "A1", "floor": "x", "breadth": 40, "height": 180}],
+                                  [{"floor": "x", "pfa_x": 0.6}], {}))[2][3]  # fmt: skip
+    book = openpyxl.load_workbook(path)
+    book["Floors"]["F1"] = "PFV X [knots]"
+    book.save(path)
+    assert by_formualizer(poison(path))[2][3] == pytest.approx(without, abs=AGREEMENT)
+
+
+def test_sorting_floors_and_inserting_rows_moves_no_reference(tmp_path: Path) -> None:
+    """The floors' helper rows find their row by number, not by a reference that sorting would drag along."""
+    path = fill(tmp_path / "book.xlsx", GRID, list(reversed(FLOORS)), {})
+    check(path, by_formualizer)
+
+
+def test_every_live_method_has_its_column() -> None:
+    assert ("B/H", "PFA used [g]", *(method.short_title for method in LIVE_METHODS), "Class (formula)") == LIVE

@@ -1,0 +1,138 @@
+"""Workbooks as other programs write them."""
+
+import re
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+
+from assess.errors import WorkbookError
+from assess.workbook.read import read_inventory
+from tests.recalculate import libreoffice, needs_libreoffice
+from tests.workbook.books import (
+    FLOORS,
+    ITEMS,
+    change_parts,
+    read_part,
+    replace,
+    write,
+    write_book,
+    write_shared,
+)
+
+SHEET = "xl/worksheets/sheet1.xml"  # Items
+FLOOR_SHEET = "xl/worksheets/sheet2.xml"
+
+
+def items_of(path: Path) -> list[tuple[str, str, float, float]]:
+    return [(one.item, one.floor, one.breadth, one.height) for one in read_inventory(path).items]
+
+
+@pytest.mark.parametrize("options", [{}, {"constant_memory": True}, {"in_memory": True}])
+def test_files_by_xlsxwriter(tmp_path: Path, options: dict[str, bool]) -> None:
+    assert items_of(write_shared(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS}, **options)) == [
+        ("A1", "1", 0.4, 1.8)
+    ]
+
+
+def without_addresses(data: bytes) -> bytes:
+    text = re.sub(r'<c r="[A-Z]+\d+"', "<c", data.decode())
+    return re.sub(r'<row r="\d+"[^>]*>', "<row>", re.sub(r"<dimension[^>]*/>", "", text)).encode()
+
+
+def single_quotes(data: bytes) -> bytes:
+    return data.replace(b'"', b"'")
+
+
+def with_prefix(data: bytes) -> bytes:
+    text = re.sub(r"<(/?)(?=[a-z])", r"<\1x:", data.decode())
+    return text.replace("xmlns=", "xmlns:x=").encode()
+
+
+def with_lines(data: bytes) -> bytes:
+    return data.replace(b"><", b">\n\t<")
+
+
+@pytest.mark.parametrize("change", [without_addresses, single_quotes, with_prefix, with_lines])
+def test_files_of_other_programs(tmp_path: Path, change: Any) -> None:
+    """As WPS, Java and JavaScript libraries write them: no addresses, no dimension, prefixes, line breaks."""
+    path = write(tmp_path, [*ITEMS, ["A2", "1", 50, 200]])
+    change_parts(path, {SHEET: change, FLOOR_SHEET: change})
+    assert items_of(path) == [("A1", "1", 0.4, 1.8), ("A2", "1", 0.5, 2.0)]
+
+
+def test_cells_out_of_order(tmp_path: Path) -> None:
+    """Openpyxl's quick reader takes the last cell for the widest, and leaves out what is right of it."""
+
+    def exchange(data: bytes) -> bytes:
+        found = re.search(rb'(<row r="2"[^>]*>)(.*)(<c r="D2".*?</c>)(</row>)', data)
+        assert found
+        return data.replace(found[0], found[1] + found[3] + found[2] + found[4])
+
+    assert items_of(change_parts(write(tmp_path), {SHEET: exchange})) == [("A1", "1", 0.4, 1.8)]
+
+
+def test_inline_and_shared_strings(tmp_path: Path) -> None:
+    path = write_shared(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS})
+    rich = '<c r="A2" t="inlineStr"><is><r><t>A</t></r><r><rPr><b/></rPr><t>1b</t></r></is></c>'
+    change_parts(path, {SHEET: lambda data: re.sub(rb'<c r="A2" t="s"><v>\d+</v></c>', rich.encode(), data)})
+    assert items_of(path)[0][0] == "A1b"
+
+
+def test_sheets_of_excel_with_extensions(tmp_path: Path) -> None:
+    """What openpyxl remarks on never reaches the user: warnings are errors here."""
+    extension = (
+        '<extLst><ext xmlns:x14="http://schemas.microsoft.com/office/spreadsheetml/2009/9/main" '
+        'uri="{CCE6A557-97BC-4b89-ADB6-D9C93CAAB3DF}"><x14:dataValidations count="0"/></ext></extLst></worksheet>'
+    )
+    path = change_parts(write(tmp_path), {SHEET: replace("</worksheet>", extension)})
+    assert len(items_of(path)) == 1
+
+
+def test_a_date_beyond_the_calendar(tmp_path: Path) -> None:
+    path = write(tmp_path, [ITEMS[0], ["A1", "1", datetime(2024, 1, 1), 180]])
+    change_parts(path, {SHEET: lambda data: re.sub(rb"<v>45292</v>|<v>2024-01-01[^<]*</v>", b"<v>99999999</v>", data)})
+    with pytest.raises(WorkbookError, match="Items!C2: Breadth holds"):
+        read_inventory(path)
+
+
+def test_broken_names_and_other_sheets_do_no_harm(tmp_path: Path) -> None:
+    """Print areas whose sheet is gone, and a sheet that is none of ours and damaged."""
+    path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS, "Photos": [["x"]]})
+    names = '<definedNames><definedName name="_xlnm.Print_Titles" localSheetId="0">#REF!</definedName></definedNames>'
+    workbook = "xl/workbook.xml"
+    text = re.sub(r"<definedNames\s*/>", names, read_part(path, workbook))
+    assert "#REF!" in text
+    change_parts(path, {workbook: text.encode(), "xl/worksheets/sheet3.xml": b"<worksheet><broken"})
+    assert len(items_of(path)) == 1
+
+
+def test_hidden_sheets_are_read(tmp_path: Path) -> None:
+    path = write(tmp_path)
+    book = openpyxl.load_workbook(path)
+    book.create_sheet("Front")
+    book.active = 2
+    book["Floors"].sheet_state = "hidden"
+    book.save(path)
+    assert len(items_of(path)) == 1
+
+
+def test_the_sheets_may_be_spelt_otherwise(tmp_path: Path) -> None:
+    assert len(items_of(write_book(tmp_path / "book.xlsx", {" ITEMS": ITEMS, "floors ": FLOORS}))) == 1
+
+
+@pytest.mark.libreoffice
+@needs_libreoffice
+def test_files_by_libreoffice(tmp_path: Path) -> None:
+    path = write(tmp_path, [[*ITEMS[0], "Quantity", "Notes"], [*ITEMS[1], "=1+1", "ä\n2"]], Building=[["Use", "x"]])
+    found = read_inventory(libreoffice(path, tmp_path / "again.xlsx")).items[0]
+    assert (found.item, found.breadth, found.quantity, found.notes) == ("A1", 0.4, 2, "ä\n2")
+
+
+def test_20000_rows(tmp_path: Path) -> None:
+    rows = [[f"A{n}", "1", 30 + n % 50, 180] for n in range(20_000)]
+    inventory = read_inventory(write_shared(tmp_path / "book.xlsx", {"Items": [ITEMS[0], *rows], "Floors": FLOORS}))
+    assert len(inventory.items) == 20_000
+    assert inventory.items[-1].row == 20_001

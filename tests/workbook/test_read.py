@@ -1,0 +1,223 @@
+"""`read_inventory`: from a path, from bytes or from rows in code; strict or not; cancelled; in the user's language."""
+
+import hashlib
+import threading
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from assess.errors import CancelledError, InputError, WorkbookError
+from assess.i18n import gettext, load_catalogue, speaking
+from assess.model import Inventory
+from assess.progress import Progress, Report
+from assess.workbook.example import example_content
+from assess.workbook.read import read_inventory
+from assess.workbook.template import read_catalogue, write_workbook
+from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write
+from tests.workbook.test_records import floors_with, write_record
+
+CODE: dict[str, Any] = {
+    "Building": {"building": "Town hall", "Default friction": 0.4},
+    "Floors": [{"floor": "1", "pfa_x": 0.5}],
+    "Items": [
+        {"item": "A1", "floor": "1", "breadth": 40, "Height [m]": 1.8},
+        {"item": "A2", "floor": 1, "breadth": 30, "Height [m]": 1.5, "quantity": 2},
+    ],
+}
+
+
+def lenient(path: Path) -> Inventory:
+    return read_inventory(path, strict=False)
+
+
+def errors(inventory: Inventory) -> list[str]:
+    return [problem.place for problem in inventory.errors]
+
+
+# ---------------------------------------------------------------- bytes
+
+
+def test_bytes_give_what_their_file_gives(tmp_path: Path) -> None:
+    path = write(tmp_path)
+    by_path, by_bytes = read_inventory(path), read_inventory(path.read_bytes())
+    assert (by_bytes.items, by_bytes.floors, by_bytes.sha256) == (by_path.items, by_path.floors, by_path.sha256)
+    assert by_bytes.read_bytes() == path.read_bytes()
+
+
+def test_the_bytes_that_are_read_are_those_that_are_hashed_and_kept(tmp_path: Path) -> None:
+    path = write(tmp_path)
+    data = path.read_bytes()
+    inventory = read_inventory(path)
+    path.write_bytes(b"changed since")
+    assert inventory.read_bytes() == data
+    assert inventory.sha256 == hashlib.sha256(data).hexdigest()
+
+
+def test_records_are_handed_over_as_bytes(tmp_path: Path) -> None:
+    write_record(tmp_path / "one.csv")
+    data, record = write(tmp_path, floors=floors_with(r"a\one.csv")).read_bytes(), (tmp_path / "one.csv").read_bytes()
+    inventory = read_inventory(data, records={"a/one.csv": record})
+    assert inventory.files == {r"a\one.csv": hashlib.sha256(record).hexdigest()}
+    assert inventory.floors[0].records["X"][0].record.channel == "NS"
+    with pytest.raises(WorkbookError, match=r"Floors!B2: the file .* is not among the records that were passed"):
+        read_inventory(data)
+
+
+def test_records_lie_in_another_folder(tmp_path: Path) -> None:
+    (tmp_path / "records").mkdir()
+    write_record(tmp_path / "records" / "one.csv")
+    path = write(tmp_path, floors=floors_with("one.csv"))
+    assert read_inventory(path, records=tmp_path / "records").floors[0].records["X"]
+
+
+# ---------------------------------------------------------------- rows in code
+
+
+def test_rows_in_code_are_read_as_a_workbooks(tmp_path: Path) -> None:
+    inventory = read_inventory(CODE)
+    assert [(one.row, one.item, one.floor, one.breadth, one.height) for one in inventory.items] == [
+        (1, "A1", "1", 0.4, 1.8),
+        (2, "A2", "1", 0.3, 1.5),
+    ]
+    assert inventory.building.building == "Town hall"
+    assert [inventory.friction_of(one) for one in inventory.items] == [0.4, 0.4]
+    assert (len(inventory.sha256), inventory.data, inventory.problems) == (64, None, ())
+    assert read_inventory({**CODE, "Building": {}}).sha256 != inventory.sha256
+
+
+def test_the_example_in_code_is_the_example_of_a_file(tmp_path: Path) -> None:
+    content = example_content()
+    write_workbook(tmp_path / "example.xlsx", content)
+    by_file, by_code = (
+        read_inventory(tmp_path / "example.xlsx"),
+        read_inventory({**content.rows, "Catalogue": read_catalogue()}),
+    )
+    for name in ("items", "floors", "places", "routes"):
+        pairs = zip(getattr(by_file, name), getattr(by_code, name), strict=True)
+        assert [
+            (one, two)
+            for file, code in pairs
+            for field in file.__dataclass_fields__
+            if field not in ("row", "cells", "assumed", "breadth", "width", "height")
+            and (one := getattr(file, field)) != (two := getattr(code, field))
+        ] == []
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"height": 1.8}, "Items row 3 Height: Height is 1.8 cm, expected 5 to 600 cm. Did you type metres?"),
+    ({"height": "tall"}, "Items row 3 Height: Height is the text 'tall', expected a number [cm]. Type the number alone."),
+    ({"floor": "9"}, "Items row 3 Floor: Floor '9' is not in the Floors sheet. Choose one of the Floors sheet, or add it "
+                     "there."),
+    ({"item": "a1"}, "Items row 3 Item: duplicate Item 'a1', also in row 1 Item. Give each its own name."),
+    ({"height": float("nan")}, "Items row 3 Height: Height is blank and no Type gives it. Fill it in, or choose a Type "
+                               "that has one."),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("cells", "message"), WRONG)
+def test_rows_in_code_get_the_checks_and_messages_of_a_workbook(cells: dict[str, Any], message: str) -> None:
+    sound = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180} for at in (1, 2, 3)]
+    with pytest.raises(WorkbookError) as caught:
+        read_inventory({**CODE, "Items": [*sound[:2], sound[2] | cells]})
+    assert [str(one) for one in caught.value.problems if one.severity == "error"] == [message]
+
+
+@pytest.mark.parametrize(
+    ("rows", "error", "message"),
+    [
+        ({"Items": [], "Chairs": []}, InputError, "the sheet 'Chairs' is not known, expected: Building, Floors"),
+        ({"Items": ["A1"]}, InputError, "Items: every row has to be a mapping of fields to values"),
+        ({"Items": []}, WorkbookError, "Floors: the sheet is missing"),
+        ({"Items": [{"Height": 180}], "Floors": []}, WorkbookError, "Items Height: Height has no unit"),
+        ({"Items": [{"floor": "1"}], "Floors": []}, WorkbookError, r"Items: the column Item is missing\. Add it"),
+        ({**CODE, "Building": {"Storeys": 0.5}}, WorkbookError, "Building Storeys: Storeys is 0.5, expected a whole"),
+    ],
+)
+def test_rows_in_code_that_cannot_be_read(rows: dict[str, Any], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        read_inventory(rows)
+
+
+# ---------------------------------------------------------------- strict or not
+
+
+def test_a_faulty_row_is_left_out(tmp_path: Path) -> None:
+    items = [*ITEMS, ["A2", "1", 40, 1.8], ["A3", "1", 50, 170], ["A3", "1", 50, 170]]
+    inventory = lenient(write(tmp_path, items))
+    assert [one.item for one in inventory.items] == ["A1", "A3"]
+    assert errors(inventory) == ["Items!D3", "Items!A5"]
+    assert {str(one) for one in inventory.errors} == {str(one) for one in problems_of(write(tmp_path, items))}
+
+
+def test_rows_that_need_a_row_that_is_left_out_go_with_it(tmp_path: Path) -> None:
+    floors: Sheet = [*FLOORS, ["2", "strong"]]
+    inventory = lenient(write(tmp_path, [*ITEMS, ["A2", "2", 40, 180], ["A3", "2", 40, 180]], floors))
+    assert ([one.floor for one in inventory.floors], [one.item for one in inventory.items]) == (["1"], ["A1"])
+    assert [str(one) for one in inventory.problems if one.severity == "warning"] == [
+        "Items!B3: rows that name Floor '2' are left out, as its own row has errors: 2. Correct the errors."
+    ]
+
+
+def test_a_faulty_sheet_is_empty(tmp_path: Path) -> None:
+    items = [["Item", "Floor", "Breadth [cm]", "Heigth [cm]"], ["A1", "1", 40, 180]]
+    inventory = lenient(write(tmp_path, items))
+    assert (inventory.items, [one.floor for one in inventory.floors]) == ((), ["1"])
+    assert "Items!D1" in errors(inventory)
+    assert lenient(write(tmp_path, [])).items == ()
+
+
+def test_a_faulty_line_of_the_building_is_left_out_alone(tmp_path: Path) -> None:
+    inventory = lenient(write(tmp_path, Building=[["Use", "school"], ["Storeys", "many"]]))
+    assert (inventory.building.use, inventory.building.storeys, len(inventory.items)) == ("school", None, 1)
+
+
+def test_a_segment_that_is_left_out_takes_its_pieces_with_it(tmp_path: Path) -> None:
+    places: Sheet = [["Place", "Floor", "X [m]", "Y [m]"], ["Hall", "1", "far", 1], ["Door", "1", 9, 1]]
+    routes: Sheet = [["Route", "Segment", "From", "To", "Clear width [m]"], ["Way", "a", "Hall", "Door", 1.2]]
+    items = [[*ITEMS[0], "Route", "Segment"], [*ITEMS[1], "Way", "a"], ["A2", "1", 40, 180, None, None]]
+    inventory = lenient(write(tmp_path, items, Places=places, Routes=routes))
+    assert ([one.item for one in inventory.items], inventory.routes) == (["A2"], ())
+    assert [one.place for one in inventory.places] == ["Door"]
+
+
+def test_a_sound_workbook_is_read_alike(tmp_path: Path) -> None:
+    path = write(tmp_path)
+    assert lenient(path) == read_inventory(path)
+
+
+def test_what_is_no_workbook_is_refused_all_the_same(tmp_path: Path) -> None:
+    with pytest.raises(WorkbookError, match="is not an Excel workbook"):
+        read_inventory(b"no workbook", strict=False)
+
+
+# ---------------------------------------------------------------- progress, cancelling, languages
+
+
+def test_reading_reports_and_obeys_a_cancel(tmp_path: Path) -> None:
+    path, reports = write(tmp_path), list[Report]()
+    read_inventory(path, progress=Progress(reports.append))
+    assert [(one.stage, one.share) for one in reports] == [("reading", 0.0), ("reading", 0.5), ("reading", 1.0)]
+    cancel = threading.Event()
+
+    def stop(report: Report) -> None:
+        cancel.set()
+
+    with pytest.raises(CancelledError):
+        read_inventory(path, progress=Progress(stop, cancel))
+
+
+def test_errors_can_be_said_in_italian(tmp_path: Path) -> None:
+    sheets: dict[str, Sheet] = {"Piani": [["Piano", "PFA X [g]"], ["1", 0.5]]}
+    from tests.workbook.books import write_book
+
+    items: Sheet = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]"], ["A1", "9", 40, 1.8]]
+    with pytest.raises(WorkbookError) as caught:
+        read_inventory(write_book(tmp_path / "cartella.xlsx", {**sheets, "Arredi": items}))
+    assert caught.value.language == "it"
+    with speaking(load_catalogue("it")):
+        said = [f"{gettext(one.message)} {gettext(one.fix)}" for one in caught.value.problems]
+    assert said == [
+        "Altezza è 1,8 cm, atteso da 5 a 600 cm. È stato digitato in metri?",
+        "Piano '9' non è nel foglio Piani. Scegliere una voce del foglio Piani, oppure aggiungerla lì.",
+    ]

@@ -1,0 +1,256 @@
+"""The workbook to fill in: it says what `columns` says, and every spreadsheet program can use it."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+
+from assess.units import LENGTH
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import CATALOGUE, ITEMS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.template import ROWS, Content, Units, describe, read_catalogue, write_workbook
+from tests.workbook.books import errors_of, problems_of, read_part
+
+UNITS: tuple[Units, Units] = ("si", "imperial")
+TABLES = [sheet for sheet in SHEETS if sheet.layout == "table"]
+NAMES = [sheet.name for sheet in SHEETS]
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+
+@pytest.fixture(scope="module", params=UNITS)
+def units(request: pytest.FixtureRequest) -> Units:
+    found: Units = request.param
+    return found
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory: pytest.TempPathFactory, units: Units) -> Path:
+    path = tmp_path_factory.mktemp(units) / "blank.xlsx"
+    write_workbook(path, units=units)
+    return path
+
+
+@pytest.fixture(scope="module")
+def book(path: Path) -> Any:
+    return openpyxl.load_workbook(path)
+
+
+def test_it_lacks_nothing_but_rows(path: Path) -> None:
+    assert [str(problem) for problem in problems_of(path)] == [
+        "Floors!A2: the table has no rows. Fill in at least one.",
+        "Items!A2: the table has no rows: nothing is assessed. Fill in at least one.",
+    ]
+
+
+def test_two_rows_make_an_inventory(tmp_path: Path, path: Path, units: Units) -> None:
+    """Filled in with openpyxl, as a user's own program would."""
+    copy = tmp_path / "filled.xlsx"
+    book = openpyxl.load_workbook(path)
+    book["Floors"]["A2"], book["Floors"]["D2"] = "1", 0.5
+    book["Items"]["A2"], book["Items"]["B2"], book["Items"]["E2"] = "A1", "1", "Bookcase 5 shelves"
+    book.save(copy)
+    inventory = read_inventory(copy)
+    assert inventory.problems == ()
+    assert inventory.items[0].breadth == pytest.approx(0.321, rel=5e-4)
+    assert inventory.items[0].height == pytest.approx(1.803, rel=5e-4)
+    assert len(inventory.catalogue) == len(read_catalogue(units))
+
+
+def test_sheets(book: Any) -> None:
+    assert book.sheetnames == ["Help", *NAMES, "Lists"]
+
+
+@pytest.mark.parametrize("sheet", SHEETS, ids=NAMES)
+def test_headers_are_those_of_the_columns(book: Any, units: Units, sheet: Sheet) -> None:
+    page = book[sheet.name]
+    wanted = [column.header(units) for column in sheet.columns]
+    if sheet.layout == "form":
+        assert [cell.value for cell in page["A"]] == wanted
+    else:
+        live = [*LIVE, *WORKINGS] if sheet is ITEMS else []
+        assert [cell.value for cell in page[1]] == wanted + live
+
+
+@pytest.mark.parametrize("sheet", TABLES, ids=[sheet.name for sheet in TABLES])
+def test_tables_can_be_scrolled_sorted_and_printed(book: Any, sheet: Sheet) -> None:
+    page = book[sheet.name]
+    assert page.freeze_panes == "B2"
+    assert page.auto_filter.ref.startswith("A1:")
+    assert page.print_title_rows == "$1:$1"
+    assert (page.page_setup.orientation, page.page_setup.fitToHeight) == ("landscape", 0)
+    assert "&P" in page.oddFooter.center.text
+
+
+def validations(book: Any, sheet: Sheet) -> dict[str, Any]:
+    """Return the check of each column, by field name."""
+    found = {}
+    for check in book[sheet.name].data_validations.dataValidation:
+        first = next(iter(check.sqref.ranges))
+        place = first.min_row if sheet.layout == "form" else first.min_col
+        found[sheet.columns[place - 1].name] = check
+    return found
+
+
+@pytest.mark.parametrize("sheet", SHEETS, ids=NAMES)
+def test_every_column_has_a_message(book: Any, sheet: Sheet) -> None:
+    found = validations(book, sheet)
+    assert list(found) == [column.name for column in sheet.columns]
+    for column in sheet.columns:
+        message, title = found[column.name].prompt, found[column.name].promptTitle
+        assert 0 < len(message) <= 255
+        assert describe(column).startswith(message.removesuffix("…"))
+        assert title == column.label
+        assert len(title) <= 32
+
+
+@pytest.mark.parametrize("sheet", SHEETS, ids=NAMES)
+def test_choices_drop_down_from_the_sheet_lists(book: Any, sheet: Sheet) -> None:
+    for column in sheet.columns:
+        check = validations(book, sheet)[column.name]
+        if not column.choices and not column.source:
+            assert check.type != "list"
+            continue
+        assert check.type == "list"
+        name = check.formula1.lstrip("=")
+        assert name == f"list_{column.name if column.choices else column.source.lower()}"
+        target = book.defined_names[name].attr_text
+        assert target.startswith("Lists!" if column.choices else f"{column.source}!$A$2:$A$")
+        if column.choices:
+            assert _cells(book, target) == list(column.choices)
+
+
+def test_prepared_rows_are_all_checked(book: Any) -> None:
+    for sheet in TABLES:
+        for check in book[sheet.name].data_validations.dataValidation:
+            (area,) = check.sqref.ranges
+            assert (area.min_row, area.max_row) == (2, ROWS[sheet.name] + 1)
+
+
+def _cells(book: Any, target: str) -> list[Any]:
+    sheet, _, area = target.partition("!")
+    return [cell.value for row in book[sheet][area.replace("$", "")] for cell in row]
+
+
+def test_help_mentions_every_column(book: Any, units: Units) -> None:
+    rows = {(row[0].value, row[1].value): row[2].value for row in book["Help"].iter_rows(min_row=2)}
+    for sheet in SHEETS:
+        for column in sheet.columns:
+            star = " *" if column.required else ""
+            assert rows[sheet.name, column.header(units) + star] == describe(column)
+
+
+def test_names_are_sound(book: Any) -> None:
+    assert book.defined_names
+    for name, defined in book.defined_names.items():
+        assert re.fullmatch(r"[a-z_]+", name)
+        assert re.fullmatch(r"(Building|Floors|Items|Places|Routes|Catalogue|Lists)!\$[A-Z]+\$\d+(:\$[A-Z]+\$\d+)?",
+                            defined.attr_text), name  # fmt: skip
+
+
+def test_formulas_use_names_that_exist(book: Any) -> None:
+    names = set(book.defined_names)
+    for sheet in ("Items", "Lists"):
+        for row in book[sheet].iter_rows(max_row=4):
+            for cell in row:
+                if isinstance(cell.value, str) and cell.value.startswith("="):
+                    words = set(re.findall(r"\b[a-z]+_[a-z_]+\b|\bperiod\b", re.sub(r'"[^"]*"', "", cell.value)))
+                    assert words <= names, cell.coordinate
+
+
+def test_formulas_are_those_of_excel_2007(path: Path) -> None:
+    """No dynamic arrays, no @, no functions that need a prefix, within 8192 characters."""
+    for number in (4, len(SHEETS) + 2):
+        formulas = re.findall("<f>(.*?)</f>", read_part(path, f"xl/worksheets/sheet{number}.xml"))
+        assert formulas
+        for formula in formulas:
+            assert len(formula) < 8192
+            assert "_xl" not in formula
+            assert "@" not in formula
+            functions = set(re.findall(r"([A-Z.]+)\(", formula))
+            assert functions <= {
+                "IF", "OR", "AND", "NOT", "IFERROR", "INDEX", "MATCH", "MAX", "MIN", "MOD", "ABS", "ISNUMBER", "ISTEXT", "LN",
+                "ROUND", "SQRT", "NORMSDIST", "PI", "TRIM", "VLOOKUP", "LOWER", "SUBSTITUTE", "MID", "FIND",
+            }  # fmt: skip
+
+
+def test_the_same_content_gives_the_same_bytes(tmp_path: Path, path: Path, units: Units) -> None:
+    write_workbook(tmp_path / "again.xlsx", units=units)
+    assert (tmp_path / "again.xlsx").read_bytes() == path.read_bytes()
+
+
+def test_texts_stay_texts(tmp_path: Path) -> None:
+    """What looks like a formula, a link or a number is written as it stands."""
+    texts = ["=1+1", "{=1}", "+1", "@SUM(A1)", "http://example.org", "007", "<b>"]
+    rows = [{"item": text, "floor": "1", "breadth": 40, "height": 180, "notes": text} for text in texts]
+    write_workbook(tmp_path / "book.xlsx", Content({"Items": rows, "Floors": [{"floor": "1", "pfa_x": 0.5}]}))
+    assert [one.notes for one in read_inventory(tmp_path / "book.xlsx").items] == texts
+
+
+def test_more_rows_than_prepared(tmp_path: Path) -> None:
+    """A longer table has its drop-downs, formulas and lists all the way down."""
+    count = max(ROWS.values()) + 20
+    floors = [{"floor": f"F{n}", "pfa_x": 0.5} for n in range(count)]
+    types = [{"type": f"T{n}", "breadth": 40, "height": 180} for n in range(count)]
+    items = [{"item": f"A{n}", "floor": f"F{n}", "type": f"T{n}"} for n in range(count)]
+    path = tmp_path / "book.xlsx"
+    write_workbook(path, Content({"Floors": floors, "Catalogue": types, "Items": items}))
+    assert len(read_inventory(path).items) == count
+    book = openpyxl.load_workbook(path)
+    for name in ("list_floors", "list_catalogue", "floor_best"):
+        assert book.defined_names[name].attr_text.endswith(f"${count + 1}")
+    assert str(book["Items"].cell(count + 1, len(ITEMS.columns) + 1).value).startswith("=")
+
+
+def test_stored_live_values(tmp_path: Path) -> None:
+    """A viewer that does not calculate shows them; where none are given the cells look blank."""
+    row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180}
+    content = Content({"Items": [row, row]}, live=[[0.25, 0.5, 0.75, 0.125, "■ very high"]])
+    write_workbook(tmp_path / "book.xlsx", content)
+    page = openpyxl.load_workbook(tmp_path / "book.xlsx", data_only=True)["Items"]
+    first = len(ITEMS.columns) + 1
+    shown = [[page.cell(row, first + at).value for at in range(len(LIVE))] for row in (2, 3)]
+    assert shown == [[0.25, 0.5, 0.75, 0.125, "■ very high"], [None] * 5]
+
+
+def test_the_catalogue_is_the_same_in_both_units() -> None:
+    for si, imperial in zip(read_catalogue("si"), read_catalogue("imperial"), strict=True):
+        assert si["type"] == imperial["type"]
+        assert si["source"] == imperial["source"]
+        for name in ("breadth", "width", "height"):
+            if name in si:
+                inches = si[name] * LENGTH["cm"] / LENGTH["in"]
+                assert imperial[name] == pytest.approx(inches, abs=0.0051)
+            else:
+                assert name not in imperial
+
+
+def test_the_catalogue_is_sound(tmp_path: Path) -> None:
+    types = read_catalogue()
+    assert len(types) > 30
+    assert all(one["source"] and one["breadth"] and one["height"] for one in types)
+    items = [{"item": one["type"], "floor": "1", "type": one["type"]} for one in types]
+    write_workbook(tmp_path / "book.xlsx", Content({"Items": items, "Floors": [{"floor": "1", "pfa_x": 0.5}]}))
+    inventory = read_inventory(tmp_path / "book.xlsx")
+    assert len(inventory.items) == len(types)
+    assert inventory.problems == ()
+
+
+def test_a_type_of_ones_own_replaces_none(tmp_path: Path) -> None:
+    """Rows for the catalogue stand in place of the built-in ones: the user asked for these."""
+    rows = {"Catalogue": [{"type": "Mine", "breadth": 40, "height": 180}]}
+    write_workbook(tmp_path / "book.xlsx", Content(rows))
+    page = openpyxl.load_workbook(tmp_path / "book.xlsx")[CATALOGUE.name]
+    assert [page["A2"].value, page["A3"].value] == ["Mine", None]
+
+
+def test_describe() -> None:
+    column = Column(name="a", label="A", kind="choice", help="Help.", choices=("x", "y"), default="both")
+    assert describe(column) == "Help. One of: x, y. Blank: both."
+
+
+def test_a_blank_workbook_has_no_rows_even_with_live_formulas(path: Path) -> None:
+    """The 500 rows of formulas are no items, and their blank results are no faults."""
+    assert not any("Items!U" in error or "formula" in error for error in errors_of(path))
