@@ -1,61 +1,364 @@
-"""What an assessment found: arrays for computing, one view per item for reading."""
+"""What a run found: typed tables, small, without waveforms. Every report, the command line and a notebook read them.
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+Units stand in the names. What is unknown is None in a row and NaN in a column. A table is a tuple of rows, but for the
+cases, which are held as columns (there are many) and read case by case. Series for figures and the outcomes of every
+motion lie in one file, to which `Results.series` refers.
+"""
+
+import difflib
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.adoption import FORMULA, VERIFICATION, Adoption
-from assess.cases import Adopted, CaseReader, CaseResult
-from assess.demand import Demand
-from assess.errors import Problem
-from assess.inventory.model import Axis, Inventory, Item
-from assess.methods import Cases, Method, Outcome
-from assess.methods._method import ALIKE, Joint
+from assess.errors import InputError, Problem
+from assess.i18n import fill
+from assess.methods import MethodInfo, Outcome
+from assess.methods._method import ALIKE
+from assess.model import Building, CatalogueType, Place
 from assess.risk import RiskClass, classify
+from assess.route_results import RouteTables
 from assess.settings import Settings
-from assess.units import GRAVITY
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from assess.motion.suite import Suite
-    from assess.routes.model import Routes
+Detail = float | str | bool | None
 
+PIECE_FLAGS = (
+    "does_not_rock", "slides", "fell_in_record", "generic_spectrum", "weak_motions", "undecided", "not_lowered",
+)  # fmt: skip
+"""Flags that belong to a piece rather than to one method, in the order in which they are listed."""
+PIECE_FLAG_TEXTS: Mapping[str, str] = {
+    "slides": fill("friction is below B/H: the piece slides before it rocks, which no method here takes into account"),
+    "not_lowered": fill(
+        "simulation gave a lower class, which is not adopted: the floor's spectrum is generic, its PFV is an estimate, "
+        "or the motions are weaker than the floor's"
+    ),
+}
+"""Meanings of those flags that no method explains."""
+MAY_BE_LOWER = fill(
+    "may be lower than the truth: on floor 25 of 575 Market Street, left out as a test, it gives 0.149 g where 0.223 g "
+    "was recorded"
+)
+"""The caution that goes with interpolation between floors."""
+MOTION_FLAGS: Mapping[str, str] = {
+    "one_axis_only": fill("known in one direction; used for both"),
+    "interpolated": fill(
+        "no motion of this floor is known: PFA and PFV are interpolated over height; this {caution}",
+        caution=MAY_BE_LOWER,
+    ),
+    "code_profile": fill("PFA by a code's design profile: an envelope, not an expected value"),
+    "pfv_estimated": fill("PFV was not given: estimated from PFA and the building's period T1"),
+}
+"""Flags of a floor's motion, and their meanings."""
+CARRIED = ("fell_in_record", "undecided")
+"""Flags that count for a piece under whichever of its motions they were raised."""
 MOST_KEPT = 2000
-"""Items up to which results are kept once they have been read; a larger inventory's would fill the memory."""
+"""Items up to which what was read of them is kept; that of a larger inventory would fill the memory."""
+
+
+# ---------------------------------------------------------------- rows
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloorRow:
+    """One floor of the workbook; `cells` tells in which cell of the sheet a field stands."""
+
+    row: int
+    floor: str
+    name: str
+    elevation_m: float | None
+    cells: Mapping[str, str]
+
+    def cell(self, name: str) -> str:
+        """Address of a field; the first column where the sheet lacks it."""
+        return self.cells.get(name, f"A{self.row}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProfileInfo:
+    """A code's design profile in words: what `assess.motion.scenario.Profile` says of itself, without its function."""
+
+    key: str
+    title: str
+    clause: str
+    clause_without_period: str
+    equation: str
+    reference: str
+    verified: bool
+    status: str
+    remark: str
+    reduced: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FitRow:
+    """How generated motions meet their target.
+
+    `matched_to_s` and `worst_period_s` are periods [s]; deviations, ratios of means and scatters (coefficients of
+    variation) are shares [-]; `pfv_ratio` is None where no PFV is to be matched.
+    """
+
+    matched_to_s: float
+    mean_deviation: float
+    worst_deviation: float
+    worst_period_s: float
+    pfa_ratio: float
+    pfa_scatter: float
+    pfv_ratio: float | None
+    pfv_scatter: float
+    spectrum_scatter: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EnsembleRow:
+    """The motions that pieces were simulated under on a floor: how many at most and at least, of what kind, their fit.
+
+    `cases` is the number of pieces (rows) that were simulated, `fell_in_record` of how many it is known that they
+    overturn under the record itself, None where there is no record. `is_generated` is False for the user's own motions.
+    """
+
+    motions: int
+    least_motions: int
+    generic_spectrum: bool
+    weak_motions: bool
+    is_generated: bool
+    cases: int
+    fell_in_record: int | None
+    fit: FitRow | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotionRow:
+    """One motion of one floor along one axis; parallel records give several.
+
+    Parameters
+    ----------
+    index : int
+        Its place in `Results.motions`.
+    floor, axis : str
+        Where it serves.
+    source : "record", "given", "interpolated" or "profile"
+        Where it comes from.
+    label : str
+        The source in short: the record's name, "given", the profile's code, or the two floors.
+    pfa_g, pfv_cm_s : float
+        Peaks; `pfv_cm_s` is None where it is unknown.
+    flags : tuple of str
+        Keys of `MOTION_FLAGS`.
+    between : tuple of str
+        The floors below and above that it is interpolated between.
+    profile, clause, height_ratio, amplification
+        The code's profile, and what it gave here [-].
+    record : str
+        The record as the workbook names it, "" where there is none; what its file says stands behind it.
+    pfa_file_g : float
+        The record's peak before treatment.
+    treatment : str
+        What was done to the record.
+    ensemble : EnsembleRow, optional
+        What pieces were simulated under; None where none was.
+    """
+
+    index: int
+    floor: str
+    axis: str
+    source: str
+    label: str
+    pfa_g: float
+    pfv_cm_s: float | None
+    flags: tuple[str, ...] = ()
+    between: tuple[str, ...] = ()
+    profile: ProfileInfo | None = None
+    clause: str = ""
+    height_ratio: float | None = None
+    amplification: float | None = None
+    record: str = ""
+    pfa_file_g: float | None = None
+    format: str = ""
+    station: str = ""
+    location: str = ""
+    channel: str = ""
+    event: str = ""
+    azimuth_deg: float | None = None
+    corrected: bool | None = None
+    time_step_s: float | None = None
+    samples: int | None = None
+    treatment: str = ""
+    notes: tuple[str, ...] = ()
+    ensemble: EnsembleRow | None = None
+
+    @property
+    def has_record(self) -> bool:
+        """Whether it is a recorded motion."""
+        return self.samples is not None
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it is the motion of another floor at the same height."""
+        return len(set(self.between)) == 1
+
+    @property
+    def is_borrowed(self) -> bool:
+        """Whether it is the motion of the floor's other axis."""
+        return "one_axis_only" in self.flags and not self.between
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ItemRow:
+    """One row of furniture as it was assessed: what the workbook says, with blanks filled in from where `assumed` says.
+
+    `friction` is the one that was used: the piece's own, else the building's. `extra` holds the texts of the columns
+    that `assess` does not know, `more` the values of those that nothing is computed with, by their fields. `routes` are
+    those that it names, or has a segment of which it can reach. `governing`, `first_case` and `last_case` are places in
+    `Results.cases`: the case that governs, and those of the item.
+    """
+
+    index: int
+    row: int
+    item: str
+    floor: str
+    room: str
+    description: str
+    type: str
+    quantity: int
+    breadth_cm: float
+    width_cm: float | None
+    height_cm: float
+    breadth_to_height: float
+    axis_given: str | None
+    angle_deg: float | None
+    x_m: float | None
+    y_m: float | None
+    friction: float | None
+    importance: str
+    anchored: str
+    route: str
+    segment: str
+    edge_distance_m: float | None
+    notes: str
+    assumed: tuple[str, ...]
+    extra: tuple[str, ...]
+    more: Mapping[str, Any]
+    routes: tuple[str, ...]
+    governing: int
+    first_case: int
+    last_case: int
+
+
+class MethodResult(NamedTuple):
+    """What one method gives for one case; `value` is None where it was not evaluated.
+
+    A tuple, as there are many: a frozen dataclass takes three times as long to make.
+    """
+
+    value: float | None
+    detail: Mapping[str, Detail]
+    flags: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Simulation:
+    """What direct integration found of one case.
+
+    Parameters
+    ----------
+    runs, overturned : int
+        Motions, and those under which it overturned.
+    probability, low, high : float
+        Their ratio and its sampling interval [-].
+    record_overturned, record_max_rotation_ratio : bool, float, optional
+        Whether it overturns under the recorded motion itself, and the largest |theta| over the critical angle there
+        [-]; None where no record is known.
+    """
+
+    runs: int
+    overturned: int
+    probability: float
+    low: float
+    high: float
+    record_overturned: bool | None
+    record_max_rotation_ratio: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Adopted:
+    """The risk that a report goes by.
+
+    `low` and `high` bound the interval of a simulated chance, and are None where the formula's is adopted. `upper` is
+    the class by the upper bound. `lowered_from` is the class by formula where simulation lowered it. Simulation may not
+    lower the class of a doubtful one.
+    """
+
+    method: str
+    probability: float
+    low: float | None
+    high: float | None
+    risk: RiskClass
+    upper: RiskClass
+    lowered_from: RiskClass | None
+    is_doubtful: bool
+    flags: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CaseRow:
+    """One piece under one motion: every method's result by key, the simulation where one ran, and the adopted risk."""
+
+    index: int
+    motion: MotionRow
+    methods: Mapping[str, MethodResult]
+    simulation: Simulation | None
+    adopted: Adopted
 
 
 @dataclass(frozen=True, slots=True)
 class ItemResult:
     """One row of furniture with its governing case, the risk adopted from it, and all its cases.
 
-    `routes` are those that it names, or has a segment of which it can reach.
+    `formula` is the result of the adopted formula's method by case, for the properties below.
     """
 
-    item: Item
-    governing: CaseResult
+    item: ItemRow
+    governing: CaseRow
     adopted: Adopted
-    cases: tuple[CaseResult, ...]
-    routes: tuple[str, ...] = ()
+    cases: tuple[CaseRow, ...]
+    formula_key: str
 
     @property
-    def by_formula(self) -> CaseResult:
+    def routes(self) -> tuple[str, ...]:
+        """The routes that it names, or can reach."""
+        return self.item.routes
+
+    @property
+    def by_formula(self) -> CaseRow:
         """The case that the formula alone would have govern: its larger value, then the larger PFA, then X."""
-        return min(self.cases, key=_formula_first)
+        return min(self.cases, key=self._formula_first)
+
+    def _formula_first(self, case: CaseRow) -> tuple[float, float]:
+        value = case.methods[self.formula_key].value
+        return -round(value if value is not None else 0.0, ALIKE), -round(case.motion.pfa_g, ALIKE)
+
+    @property
+    def formula(self) -> MethodResult:
+        """What the adopted formula gives under the motion that it alone would have govern."""
+        return self.by_formula.methods[self.formula_key]
 
     @property
     def formula_class(self) -> RiskClass:
         """The highest class that the formula gives under any of its motions."""
-        return _formula_class(self.cases)
+        return _formula_class(self.cases, self.formula_key)
 
     @property
-    def is_verified(self) -> bool:
+    def is_simulated(self) -> bool:
         """Whether its rocking was integrated under the governing motion."""
-        return self.governing.verification is not None
+        return self.governing.simulation is not None
 
     @property
     def is_anchored(self) -> bool:
@@ -67,171 +370,448 @@ class ItemResult:
         """Whether its fall endangers life or a route, which comes first in the list of what to fix."""
         return self.item.importance == "life safety" or bool(self.routes)
 
-    def worst(self, key: str) -> float | None:
-        """Return the largest value of a method over all motions, which may be above that of the governing one."""
-        values = [value for case in self.cases if (value := case.methods[key].value) is not None]
-        return max(values, default=None)
-
     @property
     def does_not_rock(self) -> bool:
         """Whether it is too stocky for Housner's equations."""
         return "does_not_rock" in self.adopted.flags
 
+    @property
+    def fell_in_record(self) -> bool:
+        """Whether it overturns under any recorded motion itself."""
+        return any(case.simulation is not None and bool(case.simulation.record_overturned) for case in self.cases)
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Assessment:
-    """The result of `assess.run`.
+    def worst(self, key: str) -> float | None:
+        """Return the largest value of a method over all motions, which may be above that of the governing one."""
+        values = [value for case in self.cases if (value := case.methods[key].value) is not None]
+        return max(values, default=None)
+
+    def _repr_html_(self) -> str:
+        from assess.frames import item_html
+
+        return item_html(self)
+
+
+def _formula_class(cases: Sequence[CaseRow], key: str) -> RiskClass:
+    classes = [classify(value) for case in cases if (value := case.methods[key].value) is not None]
+    return max((one for one in classes if one is not None), default=RiskClass.LOW)
+
+
+@dataclass(frozen=True, slots=True)
+class WorkedMethod:
+    """What one method computes for the piece of the worked example: steps with the numbers put in, and its value."""
+
+    key: str
+    steps: tuple[str, ...]
+    value: float
+
+
+# ---------------------------------------------------------------- cases
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CaseTable:
+    """n pairs of piece and motion as columns; the cases of an item stand together.
 
     Parameters
     ----------
-    inventory, settings
-        What was assessed, and how.
-    scenario : str
-        Where the floor motion came from, one of `assess.settings.SCENARIOS`.
-    suite : Suite, optional
-        The user's own motions, where they stood in for generated ones.
-    demands : mapping of (floor, axis) to demands
-        How every floor shakes.
-    methods : tuple of Method
-        The methods, in the order of reports.
-    cases : Cases
-        n pairs of piece and motion: every piece under every motion of its axis, or of both where its axis is blank.
-    case_item, case_demand : (n,) arrays, list of Demand
-        Which item (its index in the inventory) and which demand each case has.
-    outcomes : mapping of method key to Outcome
-        What each method says of all cases.
-    adoption : Adoption
-        The risk that is adopted for each case.
-    governing : (items,) array
-        Index of each item's governing case.
-    routes : Routes, optional
-        What may become of the evacuation routes; None where the workbook names none.
-    problems : tuple of Problem
-        Warnings and notes about the input.
+    item, motion : (n,) integer arrays
+        Places in `Results.item_rows` and `Results.motions`.
+    outcomes : mapping of str to Outcome
+        Every method's values, details and flags, (n,) each, by its key.
+    adopted : mapping of str to (n,) array
+        probability, low, high [-]; risk, upper (classes); verified, doubtful, not_lowered (boolean).
     """
 
-    inventory: Inventory
-    settings: Settings
-    scenario: str
-    suite: "Suite | None"
-    demands: Mapping[tuple[str, Axis], tuple[Demand, ...]]
-    methods: tuple[Method, ...]
-    cases: Cases
-    case_item: NDArray[np.intp]
-    case_demand: tuple[Demand, ...]
+    item: NDArray[np.int32]
+    motion: NDArray[np.int32]
     outcomes: Mapping[str, Outcome]
-    adoption: Adoption
-    governing: NDArray[np.intp]
-    routes: "Routes | None"
-    problems: tuple[Problem, ...]
+    adopted: Mapping[str, NDArray[Any]]
 
     def __len__(self) -> int:
-        return len(self.inventory.items)
+        return len(self.item)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, CaseTable):
+            return NotImplemented
+        mine, theirs = dict(self.columns()), dict(other.columns())
+        return mine.keys() == theirs.keys() and all(_same(mine[name], theirs[name]) for name in mine)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def columns(self) -> Iterator[tuple[str, NDArray[Any]]]:
+        """Yield every column by its name."""
+        yield "item", self.item
+        yield "motion", self.motion
+        for key, outcome in self.outcomes.items():
+            yield key, outcome.value
+            yield from ((f"{key}_{name}", array) for name, array in outcome.detail.items())
+            yield from ((f"{key}:{flag}", array) for flag, array in outcome.flags.items())
+        yield from ((f"adopted_{name}", array) for name, array in self.adopted.items())
+
+
+def _same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    is_number = one.dtype.kind == "f" and other.dtype.kind == "f"
+    return one.dtype == other.dtype and bool(np.array_equal(one, other, equal_nan=is_number))
+
+
+class _CaseReader:
+    """Reads cases one by one from lists: indexing arrays one by one is slow."""
+
+    def __init__(
+        self, table: CaseTable, motions: Sequence[MotionRow], methods: Sequence[MethodInfo], formula: str, by: str
+    ) -> None:
+        self._motions, self._formula, self._simulation = motions, formula, by
+        self._motion = table.motion.tolist()
+        self._methods = {one.key: _OutcomeReader(table.outcomes[one.key], one.key == by) for one in methods}
+        outcome = table.outcomes[by]
+        self._found = {name: known(array) for name, array in outcome.detail.items()}
+        self._adopted = {name: known(array) for name, array in table.adopted.items()}
+
+    def __call__(self, case: int) -> CaseRow:
+        methods = {key: read(case) for key, read in self._methods.items()}
+        motion, value = self._motions[self._motion[case]], methods[self._simulation].value
+        simulation = None if value is None else self._simulated(case, value)
+        return CaseRow(case, motion, methods, simulation, self._adopt(case, methods, motion))
+
+    def _simulated(self, case: int, probability: float) -> Simulation:
+        found = {name: values[case] for name, values in self._found.items()}
+        fell = found["record_overturned"]
+        return Simulation(
+            int(found["runs"]), int(found["overturned"]), probability, found["low"], found["high"],
+            None if fell is None else bool(fell), found["record_rotation"],
+        )  # fmt: skip
+
+    def _adopt(self, case: int, methods: Mapping[str, MethodResult], motion: MotionRow) -> Adopted:
+        adopted = self._adopted
+        if adopted["probability"][case] is None:
+            raise ValueError("the adopted formula gave no value")
+        raised = {flag for method in methods.values() for flag in method.flags}
+        piece = [flag for flag in PIECE_FLAGS if flag in raised] if raised else []
+        piece += ["not_lowered"] if adopted["not_lowered"][case] else []
+        return Adopted(
+            method=self._simulation if adopted["verified"][case] else self._formula,
+            probability=adopted["probability"][case],
+            low=adopted["low"][case],
+            high=adopted["high"][case],
+            risk=RiskClass(adopted["risk"][case]),
+            upper=RiskClass(adopted["upper"][case]),
+            lowered_from=None,
+            is_doubtful=adopted["doubtful"][case],
+            flags=tuple(dict.fromkeys((*methods[self._formula].flags, *motion.flags, *piece))),
+        )
+
+
+class _OutcomeReader:
+    """Reads one method's outcome; what a simulation found beside its value has a row of its own."""
+
+    def __init__(self, outcome: Outcome, is_simulation: bool) -> None:
+        self._values = known(outcome.value)
+        self._detail = {} if is_simulation else {name: known(array) for name, array in outcome.detail.items()}
+        self._flags = [(flag, array.tolist()) for flag, array in outcome.flags.items() if array.any()]
+
+    def __call__(self, case: int) -> MethodResult:
+        return MethodResult(
+            self._values[case],
+            {name: values[case] for name, values in self._detail.items()},
+            tuple([flag for flag, raised in self._flags if raised[case]]) if self._flags else (),
+        )
+
+
+def known(array: NDArray[Any]) -> list[Any]:
+    """Return an array as a list, None in place of NaN; words pass through."""
+    return [None if value != value else value for value in array.tolist()]
+
+
+# ---------------------------------------------------------------- series
+
+
+class Series:
+    """A file (.npz) of arrays by name: series of figures, the outcomes of every motion, the bytes of the workbook.
+
+    It may be gone by the time that it is read, as it lies in a temporary folder where the caller named none: then
+    `is_there` is False, and figures are left out.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._arrays: Any = None
+
+    def __reduce__(self) -> tuple[type["Series"], tuple[Path]]:
+        return Series, (self.path,)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Series) and self.path == other.path
+
+    def __hash__(self) -> int:
+        return hash(self.path)
+
+    @property
+    def is_there(self) -> bool:
+        """Whether the file can be read."""
+        return self.path.is_file()
+
+    def __contains__(self, name: str) -> bool:
+        return self.is_there and name in self._open()
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """Return an array; raises KeyError where there is none of this name, or the file is gone."""
+        if not self.is_there:
+            raise KeyError(name)
+        return np.asarray(self._open()[name])
+
+    def _open(self) -> Any:
+        if self._arrays is None:
+            with np.load(self.path, allow_pickle=False) as arrays:
+                self._arrays = dict(arrays)
+        return self._arrays
+
+
+# ---------------------------------------------------------------- the whole
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SuiteInfo:
+    """The user's own motions, where they stood in for generated ones: names, hashes of their files, and own peaks."""
+
+    folder: str
+    names: tuple[str, ...]
+    files: Mapping[str, str]
+    is_scaled: bool
+    pfa_g: tuple[float, ...]
+    pfv_cm_s: tuple[float, ...]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    @property
+    def median_pfa_g(self) -> float:
+        """The median of their PFA, before scaling."""
+        return statistics.median(self.pfa_g)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Provenance:
+    """What a run is made again from.
+
+    Parameters
+    ----------
+    version, platform : str, mapping of str to str
+        Of `assess`, and of what the numbers were computed with.
+    workbook, sha256 : str
+        Name and hash of the workbook.
+    files : mapping of str to str
+        Hashes (SHA-256) of the recorded motions, by name.
+    scenario : str
+        Where the floor motion came from, one of `assess.settings.SCENARIOS`.
+    suite : SuiteInfo, optional
+        The user's own motions.
+    language : str
+        Code of the language that reports are written in where none is asked for.
+    sheets : mapping of str to str
+        The workbook's own names of its sheets, by the English ones.
+    letters : mapping of str to mapping of str to str
+        In which column of a sheet a field stands.
+    extra_columns : tuple of str
+        Headers of the columns of Items that `assess` does not know.
+    interval_z : float
+        Half width of the sampling intervals, in standard deviations [-].
+    looks : tuple of int
+        Numbers of motions at which "auto" looks whether a class is resolved.
+    profiles : tuple of ProfileInfo
+        Every code's design profile, used or not.
+    """
+
+    version: str
+    platform: Mapping[str, str]
+    workbook: str
+    sha256: str
+    files: Mapping[str, str]
+    scenario: str
+    suite: SuiteInfo | None
+    language: str
+    sheets: Mapping[str, str]
+    letters: Mapping[str, Mapping[str, str]]
+    extra_columns: tuple[str, ...]
+    interval_z: float
+    looks: tuple[int, ...]
+    profiles: tuple[ProfileInfo, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Results:
+    """The result of `assess.run`.
+
+    Iterating gives an `ItemResult` a row of furniture, ``results["42-01"]`` that of one name. `items`, `cases`,
+    `floors`, `segments`, `routes`, `rooms` and `problems` are pandas tables with the columns of items.csv, for
+    notebooks.
+
+    Parameters
+    ----------
+    settings, provenance
+        How it was assessed, and from what.
+    building : Building
+        The building (SI units).
+    floor_rows, motions, item_rows, cases_table
+        Floors, their motions, the furniture, and every piece under every motion of its axis, or of both where its axis
+        is blank.
+    route_tables : RouteTables
+        Evacuation routes; its tables are empty where the workbook names none.
+    places, catalogue
+        As the workbook has them.
+    problem_rows : tuple of Problem
+        Warnings and notes about the input.
+    underestimates : tuple of str
+        Warnings that more shaking is known than is used.
+    methods : tuple of MethodInfo
+        The methods, in the order of reports.
+    worked : tuple of WorkedMethod
+        The worked example: what each method computes for the piece `worked_item` (its index), step by step.
+    series : Series
+        Where series for figures lie.
+    """
+
+    settings: Settings
+    provenance: Provenance
+    building: Building
+    floor_rows: tuple[FloorRow, ...]
+    motions: tuple[MotionRow, ...]
+    item_rows: tuple[ItemRow, ...]
+    cases_table: CaseTable
+    route_tables: RouteTables
+    places: tuple[Place, ...]
+    catalogue: tuple[CatalogueType, ...]
+    problem_rows: tuple[Problem, ...]
+    underestimates: tuple[str, ...]
+    methods: tuple[MethodInfo, ...]
+    worked: tuple[WorkedMethod, ...]
+    worked_item: int | None
+    series: Series
+
+    def __len__(self) -> int:
+        return len(self.item_rows)
 
     def __iter__(self) -> Iterator[ItemResult]:
         return iter(self._kept) if len(self) <= MOST_KEPT else map(self.result, range(len(self)))
 
-    @cached_property
-    def _kept(self) -> list[ItemResult]:
-        """The results of a small inventory: every report reads them again."""
-        return [self.result(index) for index in range(len(self))]
+    def __getitem__(self, name: str) -> ItemResult:
+        """Return the row of a name; raises InputError where there is none."""
+        found = self._by_name.get(name)
+        if found is None:
+            near = difflib.get_close_matches(name, self._by_name, 1, 0.6)
+            hint = f" Did you mean {near[0]!r}?" if near else ""
+            raise InputError(f"there is no item {name!r} among the {len(self):,} items.{hint}")
+        return self.result(found)
 
     def __repr__(self) -> str:
-        return f"<Assessment of {self.inventory.source.name}: {len(self):,} items, scenario {self.scenario!r}>"
+        return f"<Results of {self.provenance.workbook}: {len(self):,} items, scenario {self.provenance.scenario!r}>"
+
+    def _repr_html_(self) -> str:
+        from assess.frames import results_html
+
+        return results_html(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     def result(self, index: int) -> ItemResult:
-        """Return the result of the item at `index` in the inventory; raises IndexError beyond it."""
-        index = range(len(self))[index]
-        own = range(self._first[index], self._first[index + 1])
-        cases = {case: self._read(case) for case in own}
-        governing = cases[int(self.governing[index])]
-        adopted = _adopt_worst(governing, cases.values())
-        item = self.inventory.items[index]
-        routes = self._reached.get(index, (item.route,) if item.route else ())
-        return ItemResult(item, governing, adopted, tuple(cases.values()), routes)
+        """Return the result of the item at `index`; raises IndexError beyond it."""
+        item = self.item_rows[index]
+        cases = tuple(self._read(case) for case in range(item.first_case, item.last_case))
+        governing = cases[item.governing - item.first_case]
+        return ItemResult(item, governing, self._adopt_worst(governing, cases), cases, self.formula.key)
+
+    @property
+    def formula(self) -> MethodInfo:
+        """The method whose value is adopted where nothing was simulated."""
+        return next(one for one in self.methods if one.role == "adopted formula")
+
+    @property
+    def simulation(self) -> MethodInfo:
+        """The method by which pieces are simulated."""
+        return next(one for one in self.methods if one.role == "simulation")
 
     @cached_property
-    def _reached(self) -> Mapping[int, tuple[str, ...]]:
-        """The routes of which a piece reaches a segment, by its index: that which it names first."""
-        found: dict[int, dict[str, None]] = {}
-        for one in self.routes.segments if self.routes else ():
-            for near in one.beside:
-                named = self.inventory.items[near.item].route
-                found.setdefault(near.item, {named: None} if named else {})[one.segment.route] = None
-        return {index: tuple(names) for index, names in found.items()}
+    def has_simulated(self) -> bool:
+        """Whether any piece was simulated."""
+        return any(one.ensemble is not None for one in self.motions)
+
+    @property
+    def has_routes(self) -> bool:
+        """Whether the workbook names evacuation routes."""
+        return bool(self.route_tables.segments)
+
+    def motions_of(self, floor: str, axis: str) -> list[MotionRow]:
+        """Return the motions of a floor along an axis: parallel records give several."""
+        return [one for one in self.motions if one.floor == floor and one.axis == axis]
 
     @cached_property
-    def _first(self) -> list[int]:
-        """Index of each item's first case, and of the one after the last: the cases of an item stand together."""
-        return [int(at) for at in np.searchsorted(self.case_item, np.arange(len(self) + 1))]
+    def _kept(self) -> list[ItemResult]:
+        return [self.result(index) for index in range(len(self))]
 
     @cached_property
-    def _read(self) -> CaseReader:
-        return CaseReader(self.case_demand, self.methods, self.outcomes, self.adoption)
+    def _by_name(self) -> Mapping[str, int]:
+        return {one.item: one.index for one in reversed(self.item_rows)}
 
     @cached_property
-    def joints(self) -> Mapping[Demand, Joint]:
-        """What the pieces on a floor motion did, motion by motion, where they were integrated."""
-        joints = self.outcomes[VERIFICATION].joints
-        return {self.case_demand[int(joint.cases[0])]: joint for joint in joints}
+    def _read(self) -> _CaseReader:
+        return _CaseReader(self.cases_table, self.motions, self.methods, self.formula.key, self.simulation.key)
 
-    def frame(self) -> "pd.DataFrame":
-        """Return one row an item: its fields in SI units, the adopted risk and every method's value."""
-        import pandas as pd
+    def _adopt_worst(self, governing: CaseRow, cases: Sequence[CaseRow]) -> Adopted:
+        """Return the risk of a piece: the governing chance, with the highest classes under any motion of the piece.
 
-        rows = [
-            {
-                **asdict(one.item),
-                "governing_axis": one.governing.demand.axis,
-                "pfa": one.governing.demand.pfa,
-                "pfv": one.governing.demand.pfv,
-                **{key: method.value for key, method in one.governing.methods.items()},
-                "proposed_or_raw": one.governing.methods[FORMULA].detail["raw"],
-                "adopted_method": one.adopted.method,
-                "probability": one.adopted.probability,
-                "low": one.adopted.low,
-                "high": one.adopted.high,
-                "risk_class": one.adopted.risk.word,
-                "risk_class_upper": one.adopted.upper.word,
-                "lowered_from": None if one.adopted.lowered_from is None else one.adopted.lowered_from.word,
-                "is_anchored": one.is_anchored,
-                "flags": ", ".join(one.adopted.flags),
-            }
-            for one in self
-        ]
-        return pd.DataFrame(rows).set_index("item", drop=False)
+        A class that is lower than the highest that the formula gives under any of them is marked.
+        """
+        if all(case.simulation is None for case in cases):
+            return governing.adopted  # the formula's, of which the largest governs
+        risk, upper = max(case.adopted.risk for case in cases), max(case.adopted.upper for case in cases)
+        formula = _formula_class(cases, self.formula.key)
+        carried = [flag for flag in CARRIED if any(flag in case.adopted.flags for case in cases)]
+        return replace(
+            governing.adopted,
+            risk=risk,
+            upper=upper,
+            lowered_from=formula if risk < formula else None,
+            flags=tuple(dict.fromkeys((*governing.adopted.flags, *carried))),
+        )
 
+    # ------------------------------------------------------------ tables for notebooks
 
-def _formula_class(cases: Iterable[CaseResult]) -> RiskClass:
-    """Return the highest class that the formula gives under any of the motions of a piece."""
-    classes = [classify(value) for case in cases if (value := case.methods[FORMULA].value) is not None]
-    return max((one for one in classes if one is not None), default=RiskClass.LOW)
+    @property
+    def items(self) -> "pd.DataFrame":
+        """One row an item, with the columns of items.csv."""
+        return self._frame("items")
 
+    @property
+    def cases(self) -> "pd.DataFrame":
+        """One row a piece and motion."""
+        return self._frame("cases")
 
-CARRIED = ("fell_in_record", "undecided")
-"""Flags that count for a piece under whichever of its motions they were raised."""
+    @property
+    def floors(self) -> "pd.DataFrame":
+        """One row a floor, axis and motion."""
+        return self._frame("floors")
 
+    @property
+    def segments(self) -> "pd.DataFrame":
+        """One row a segment of a route."""
+        return self._frame("segments")
 
-def _adopt_worst(governing: CaseResult, cases: Iterable[CaseResult]) -> Adopted:
-    """Return the risk of a piece: the governing chance, with the highest classes under any motion of the piece.
+    @property
+    def routes(self) -> "pd.DataFrame":
+        """One row an evacuation route."""
+        return self._frame("routes")
 
-    A class that is lower than the highest that the formula gives under any of them is marked.
-    """
-    cases = tuple(cases)
-    if all(case.verification is None for case in cases):
-        return governing.adopted  # the formula's, of which the largest governs
-    risk, upper = max(case.adopted.risk for case in cases), max(case.adopted.upper for case in cases)
-    formula = _formula_class(cases)
-    carried = [flag for flag in CARRIED if any(flag in case.adopted.flags for case in cases)]
-    return replace(
-        governing.adopted,
-        risk=risk,
-        upper=upper,
-        lowered_from=formula if risk < formula else None,
-        flags=tuple(dict.fromkeys((*governing.adopted.flags, *carried))),
-    )
+    @property
+    def rooms(self) -> "pd.DataFrame":
+        """One row a room of the network."""
+        return self._frame("rooms")
 
+    @property
+    def problems(self) -> "pd.DataFrame":
+        """One row a warning or note about the input."""
+        return self._frame("problems")
 
-def _formula_first(case: CaseResult) -> tuple[float, float]:
-    value = case.methods[FORMULA].value
-    return -round(value if value is not None else 0.0, ALIKE), -round(case.demand.pfa / GRAVITY, ALIKE)
+    def _frame(self, name: str) -> "pd.DataFrame":
+        from assess.frames import build_frame
+
+        return build_frame(self, name)

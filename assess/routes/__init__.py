@@ -1,6 +1,6 @@
-"""Evacuation routes: which segments fallen furniture may block, what they cut off, and what to fix.
+"""Evacuation routes: which segments fallen furniture could block, what they cut off, and what to fix.
 
 ::
 
-    inventory -> reach (what can lie on which segment) -> evaluate (with how the pieces fall) -> Routes
+    inventory -> obstructions (what can lie on which segment) -> evaluate (with how the pieces fall) -> RouteTables
 """

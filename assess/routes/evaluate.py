@@ -1,134 +1,227 @@
-"""The evacuation routes of a building: what may be blocked, by what, and how likely."""
+"""The evacuation routes of a building: which segments, routes and rooms could be lost, by what, and how likely."""
 
-from collections.abc import Sequence, Set
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from assess.inventory.model import Inventory
-from assess.methods.housner_monte_carlo import interval_width
-from assess.routes.couplings import DRAWS
-from assess.routes.falls import Falls
+from assess.methods import interval_width
+from assess.model import Inventory, Segment
+from assess.progress import SILENT, Progress
+from assess.route_results import (
+    BesideRow,
+    Chance,
+    FloorRoutesRow,
+    RoomRow,
+    RouteFixRow,
+    RouteRow,
+    RouteTables,
+    SegmentRow,
+)
+from assess.routes.chances import DRAWS, Falls
 from assess.routes.fixes import find_fixes
-from assess.routes.model import Beside, Chance, RouteResult, Routes, SegmentResult
 from assess.routes.network import build_course
-from assess.routes.reach import Reached
-from assess.routes.rooms import evaluate_floors, evaluate_rooms, list_rooms
+from assess.routes.obstructions import Obstructions
+from assess.routes.rooms import evaluate_floor, evaluate_room, list_rooms, name_unevaluated
 from assess.routes.scene import Scene
 from assess.routes.widths import NARROWER, kinds_of, needed_width
 from assess.settings import Settings
 
 
 def evaluate_routes(
-    inventory: Inventory, reached: Sequence[Reached], falls: Falls, settings: Settings
-) -> Routes | None:
+    inventory: Inventory,
+    obstructions: Sequence[Obstructions],
+    falls: Falls,
+    settings: Settings,
+    *,
+    progress: Progress = SILENT,
+) -> RouteTables:
     """Evaluate the routes of an inventory.
 
     Parameters
     ----------
     inventory : Inventory
         The building.
-    reached : sequence of Reached
-        Its segments, from `assess.routes.reach.find_reached`.
+    obstructions : sequence of Obstructions
+        Its segments, from `assess.routes.obstructions.find_obstructions`.
     falls : Falls
         How its pieces fall.
     settings : Settings
-        The chosen risk, the seed of draws where pieces are too many to go through all that may fall together, and the
-        runs, by which the width of intervals goes.
+        The chosen risk, the seed of draws where combinations of pieces are too many, and the runs, which decide the
+        width of intervals.
+    progress : Progress, optional
+        Receives the stage "routes".
 
     Returns
     -------
-    Routes or None
-        None where the inventory has no routes.
+    RouteTables
+        Empty where the inventory has no routes.
+
+    Raises
+    ------
+    CancelledError
+        If `progress` is cancelled.
     """
-    if not reached:
-        return None
-    scene = Scene(inventory, reached, falls, settings.route_risk, settings.seed, interval_width(settings))
-    segments = tuple(_segment(scene, at) for at in range(len(reached)))
-    chance = {at: one.outlook.blocked.probability for at, one in enumerate(segments)}
-    blind = frozenset(at for at, one in enumerate(segments) if not one.is_evaluated)
-    routes = tuple(_route(scene, name, blind) for name in dict.fromkeys(one.segment.route for one in reached))
+    if not obstructions:
+        return RouteTables(risk=settings.route_risk)
+    z = interval_width(settings)
+    scene = Scene(inventory, tuple(obstructions), falls, settings.route_risk, settings.seed, z, progress)
+    names = list(dict.fromkeys(one.segment.route for one in obstructions))
     parts = list_rooms(scene)
-    rooms = evaluate_rooms(scene, parts, chance, blind)
-    return Routes(
-        risk=settings.route_risk,
+    floors = [one.floor for one in inventory.floors]
+    steps = len(obstructions) + len(names) + len(parts) + len(floors)
+    with progress.stage("routes", f"{len(obstructions):,} segments of {len(names):,} routes") as stage:
+        done = iter(range(1, steps + 1))
+
+        def step(row: Any) -> Any:
+            stage.at(next(done) / steps)
+            return row
+
+        segments = tuple(step(_segment(scene, at)) for at in range(len(obstructions)))
+        routes = tuple(step(_route(scene, name)) for name in names)
+        chance = {at: one.blocked.probability for at, one in enumerate(segments) if one.blocked}
+        rooms = tuple(step(evaluate_room(scene, place, part, chance)) for place, part in parts)
+        by_floor = [step(evaluate_floor(scene, floor, parts, chance, rooms)) for floor in floors]
+    return _join(settings.route_risk, segments, routes, rooms, by_floor)
+
+
+def _join(
+    risk: float,
+    segments: tuple[SegmentRow, ...],
+    routes: tuple[RouteRow, ...],
+    rooms: tuple[RoomRow, ...],
+    by_floor: Sequence[FloorRoutesRow],
+) -> RouteTables:
+    """Return the tables with their sums; floors without segments and rooms are left out."""
+    known = tuple(one for one in by_floor if one.segments or one.rooms)
+    return RouteTables(
+        risk=risk,
+        blocked_routes_expected=sum(one.blocked.probability for one in routes if one.blocked),
+        cut_off_rooms_expected=sum(one.loses_every_exit.probability for one in rooms),
+        draws=DRAWS,
+        uncounted_pieces=sum(one.uncounted_pieces for one in known),
         segments=segments,
         routes=routes,
         rooms=rooms,
-        floors=evaluate_floors(scene, parts, chance, rooms),
-        blocked_routes=sum(one.outlook.blocked.probability for one in routes),
-        cut_off_rooms=sum(one.loses.probability for one in rooms),
-        draws=DRAWS,
+        floors=known,
     )
 
 
-def _segment(scene: Scene, at: int) -> SegmentResult:
-    one = scene.reached[at]
+# ---------------------------------------------------------------- segments
+
+
+def _segment(scene: Scene, at: int) -> SegmentRow:
+    one = scene.obstructions[at]
+    is_evaluated, standing = one.is_evaluated, one.standing
     needed = needed_width(one.segment, kinds_of(scene.inventory.places))
-    standing = one.standing
-    return SegmentResult(
-        segment=one.segment,
-        outlook=scene.outlook([at], lambda blocked, _every: blocked[at]),
-        clear=one.clear,
-        required=one.required,
-        standing=standing,
-        least=_least(scene, at),
-        needed=needed,
-        is_short=needed is not None and standing < needed - NARROWER,
-        crowded=None if needed is None else _crowded(scene, at, needed),
-        length=one.band.length if one.band else None,
-        beside=tuple(_beside(scene, at)),
+    is_short = needed is not None and standing < needed - NARROWER
+    return SegmentRow(
+        **_given(one.segment),
+        **_drawn(one),
+        **scene.outlook([at], lambda blocked, _every: blocked[at], is_evaluated=is_evaluated),
+        evaluated=is_evaluated,
+        clear_width_used_m=one.clear,
+        required_width_used_m=one.required,
+        standing_width_m=standing,
+        least_width_m=_least_width(scene, at) if is_evaluated else None,
+        needed_width_m=needed,
+        is_blocked_standing=one.is_blocked_standing,
+        insufficient_for_occupants=is_short,
+        insufficient_after_falls=_crowded(scene, at, needed)
+        if needed is not None and (is_evaluated or is_short)
+        else None,
+        pieces=tuple(_beside(scene, at)),
+        other_rooms=tuple(scene.piece(item) for item in one.other_rooms),
         flags=one.flags,
-        is_evaluated=one.is_evaluated,
-        other_rooms=one.other_rooms,
     )
 
 
-def _least(scene: Scene, at: int) -> float:
+def _given(segment: Segment) -> dict[str, Any]:
+    """Return what the workbook says of a segment."""
+    return {
+        "route": segment.route,
+        "segment": segment.segment,
+        "floor": segment.floor or None,
+        "from_place": segment.start or None,
+        "to_place": segment.end or None,
+        "room": segment.room or None,
+        "clear_width_m": segment.clear_width,
+        "required_width_m": segment.required_width,
+        "occupants": segment.occupants,
+        "notes": segment.notes,
+        "workbook_row": segment.row,
+    }
+
+
+def _drawn(one: Obstructions) -> dict[str, Any]:
+    """Return where a segment lies on the plan."""
+    band = one.band
+    start, end = (band.start, band.end) if band else ((None, None), (None, None))
+    return {
+        "length_m": band.length if band else None,
+        "start_x_m": start[0],
+        "start_y_m": start[1],
+        "end_x_m": end[0],
+        "end_y_m": end[1],
+        "extends_start_m": band.extends_start if band else 0.0,
+        "extends_end_m": band.extends_end if band else 0.0,
+    }
+
+
+def _least_width(scene: Scene, at: int) -> float:
     """Return the width that is left with every free-standing piece fallen [m]."""
-    one = scene.reached[at]
-    free = np.array([not scene.falls.anchored[item] for item, _ in one.gaps.keys], dtype=np.bool_)
-    return one.gaps.residual(free)
+    gaps = scene.obstructions[at].gaps
+    return gaps.residual(np.array([not scene.falls.anchored[item] for item, _ in gaps.keys], dtype=np.bool_))
 
 
 def _crowded(scene: Scene, at: int, needed: float) -> Chance:
     return scene.chances([at], lambda draws: [scene.narrower(draws, at, needed)])[0]
 
 
-def _beside(scene: Scene, at: int) -> list[Beside]:
+def _beside(scene: Scene, at: int) -> list[BesideRow]:
     """Return the pieces beside a segment with the chance that each falls while it is blocked, the likeliest first.
 
     That of an anchored piece is the one with anchored pieces taken as free-standing.
     """
     found: dict[int, float] = {}
     for fail in (True, False):
-        together = scene.together([at], lambda draws: list(scene.blocked(draws, [at]).values()), anchors_fail=fail)
+        together = scene.together([at], lambda draws: [scene.blocked(draws, [at])[at]], anchors_fail=fail)
         found |= {item: together.get(item, 0.0) for item, _ in scene.keys([at], anchors_fail=fail)}
-    beside = [replace(one, together=found.get(one.item, 0.0)) for one in scene.reached[at].beside]
     falls = scene.falls
     return sorted(
-        beside,
+        (replace(one, falls_while_blocked=found.get(one.item_index, 0.0)) for one in scene.obstructions[at].pieces),
         key=lambda one: (
-            bool(falls.anchored[one.item]),
-            -one.together,
-            one.left,
-            -falls.probability[one.item],
-            one.item,
+            bool(falls.anchored[one.item_index]),
+            -one.falls_while_blocked,
+            one.left_m,
+            -falls.probability[one.item_index],
+            one.item_index,
         ),
     )
 
 
-def _route(scene: Scene, name: str, blind: Set[int]) -> RouteResult:
+# ---------------------------------------------------------------- routes
+
+
+def _route(scene: Scene, name: str) -> RouteRow:
     segments = scene.segments_of(name)
     course = build_course(segments, kinds_of(scene.inventory.places))
-    lanes = {at: scene.reached[at] for at in segments}
-    fixes, is_mended = find_fixes(scene.couplings(segments), lanes, course.is_blocked, scene.risk)
-    return RouteResult(
+    lanes = {at: scene.obstructions[at] for at in segments}
+    unevaluated = name_unevaluated(scene, segments)
+    is_evaluated = len(unevaluated) < len(segments)
+    steps, is_fixed = find_fixes(scene.couplings(segments), lanes, course.is_blocked, scene.risk, scene.progress)
+    pieces = [scene.piece(item) for item, _, _ in steps]
+    return RouteRow(
         route=name,
-        outlook=scene.outlook(tuple(segments), course.is_blocked),
-        segments=tuple(segments),
         floors=tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor)),
-        fixes=tuple(fixes),
-        is_mended=is_mended,
-        unevaluated=tuple(at for at in segments if at in blind),
+        segment_indices=tuple(segments),
+        evaluated=is_evaluated,
+        unevaluated_segments=unevaluated,
+        **scene.outlook(segments, course.is_blocked, is_evaluated=is_evaluated),
+        fixes=tuple(
+            RouteFixRow(item=one.item, row=one.row, item_index=one.item_index, gain=gain, left=left)
+            for one, (_, gain, left) in zip(pieces, steps, strict=True)
+        ),
+        is_fixed=is_fixed,
     )

@@ -14,13 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.methods._method import BoolArray, FloatArray
-from assess.routes.bits import union
+from assess.routes.chances import Key, union
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
-Key = tuple[int, int]
-"""A piece that may fall: its index in the inventory, and 0, or 1 for a second piece of the same row."""
+SIDES: tuple[Literal["left", "right"], ...] = ("left", "right")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -86,7 +85,7 @@ class Gaps:
     sided: NDArray[np.intp]
     clear: float
     _chains: dict[float, list["_Chains"]] = field(default_factory=dict)
-    """What is looked at for a width, kept."""
+    """The chains of each width, kept once found."""
 
     def residual(self, fell: BoolArray) -> float:
         """Return the clear width left [m] where the pieces `fell` (n,)."""
@@ -109,7 +108,7 @@ class Gaps:
         Parameters
         ----------
         fallen : mapping of key to int
-            For each piece the set of the draws in which it falls; others stand. Sets are those of `assess.routes.bits`.
+            For each piece the set of the draws in which it falls; others stand.
         every : int
             The set of all draws, which is returned where the segment itself is narrower.
         width : float
@@ -123,7 +122,7 @@ class Gaps:
         return union(one.lead(there) for one in self._chains[width])
 
     def _sides(self) -> list[BoolArray]:
-        """Return which obstacles (m,) are looked at together: never one piece on both sides.
+        """Return which obstacles (m,) are considered together: never one piece on both sides.
 
         A chain takes at most one piece from either wall. The numbers of two pieces differ in some bit; by that bit, one
         is on the left and the other on the right, or the reverse.
@@ -185,36 +184,39 @@ def build_gaps(obstacles: Sequence[Obstacle], clear: float) -> Gaps:
     """Return the gaps between obstacles, of which `clear` [m] is the width of the segment."""
     keys = tuple(sorted({one.key for one in obstacles if one.falls}))
     place = {key: at for at, key in enumerate(keys)}
-    pieces = sorted({one.key for one in obstacles if one.side})
-    between = np.full((len(obstacles), len(obstacles)), math.inf)
-    for at, one in enumerate(obstacles):
-        for other_at, other in enumerate(obstacles[:at]):
-            between[at, other_at] = between[other_at, at] = _gap(one, other, clear)
+    pieces = {key: at for at, key in enumerate(sorted({one.key for one in obstacles if one.side}), start=1)}
+    sign = {"left": 1, "right": -1}
+    left, right = (np.array([getattr(one, side) for one in obstacles], dtype=np.float64) for side in SIDES)
+    sided = np.array([sign[one.side] * pieces[one.key] if one.side else 0 for one in obstacles], dtype=np.intp)
     return Gaps(
         keys=keys,
         column=np.array([place[one.key] if one.falls else -1 for one in obstacles], dtype=np.intp),
-        left=np.array([one.left for one in obstacles], dtype=np.float64),
-        right=np.array([one.right for one in obstacles], dtype=np.float64),
-        between=between,
-        sided=np.array([_side(one, pieces) for one in obstacles], dtype=np.intp),
+        left=left,
+        right=right,
+        between=_between(obstacles, sided, left, right, clear),
+        sided=sided,
         clear=clear,
     )
 
 
-def _side(one: Obstacle, pieces: Sequence[Key]) -> int:
-    return {"left": 1, "right": -1}[one.side] * (pieces.index(one.key) + 1) if one.side else 0
+def _between(
+    obstacles: Sequence[Obstacle], sided: NDArray[np.intp], left: FloatArray, right: FloatArray, clear: float
+) -> FloatArray:
+    """Return the gaps between m obstacles (m, m) [m]; those whose place along the segment is not known may be abreast.
 
+    Two on one side, and one piece on both sides, are never in one chain: inf.
+    """
+    placed, lefts, rights = (np.flatnonzero(one) for one in (sided == 0, sided > 0, sided < 0))
+    found = np.full((sided.size, sided.size), math.inf)
+    if placed.size > 1:
+        from shapely import distance
 
-def _gap(one: Obstacle, other: Obstacle, clear: float) -> float:
-    """Return the gap between two obstacles [m]; those whose place along the segment is not known may be abreast."""
-    if one.shape is not None and other.shape is not None:
-        return float(one.shape.distance(other.shape))
-    if one.shape is not None:
-        one, other = other, one
-    if other.shape is not None:
-        depth = clear - (one.right if one.side == "left" else one.left)
-        return max(0.0, (other.left if one.side == "left" else other.right) - depth)
-    if one.side == other.side or one.key == other.key:
-        return math.inf  # on one side, or one and the same piece
-    left, right = (one, other) if one.side == "left" else (other, one)
-    return max(0.0, left.right + right.left - clear)
+        shapes = np.array([one.shape for one in obstacles if one.shape is not None])
+        rows, columns = np.tril_indices(placed.size, -1)
+        found[placed[rows], placed[columns]] = distance(shapes[rows], shapes[columns])
+    for own, to_own, to_other in ((lefts, left, right), (rights, right, left)):
+        found[np.ix_(own, placed)] = np.maximum(0.0, to_own[placed] - (clear - to_other[own])[:, np.newaxis])
+    facing = np.maximum(0.0, right[lefts, np.newaxis] + left[rights] - clear)
+    found[np.ix_(lefts, rights)] = np.where(sided[lefts, np.newaxis] == -sided[rights], math.inf, facing)
+    symmetric: FloatArray = np.minimum(found, found.T)
+    return symmetric

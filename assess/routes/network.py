@@ -4,13 +4,11 @@ import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING
 
-from assess.inventory.model import Place, Segment
-from assess.routes.bits import union
+import networkx as nx
 
-if TYPE_CHECKING:
-    import networkx as nx
+from assess.model import Place, Segment
+from assess.routes.chances import union
 
 MOST_WAYS = 3
 """Ways out of a room that are listed."""
@@ -22,14 +20,14 @@ BEYOND = "\0"
 """Stands for all the ways out together, where they are taken as one place."""
 
 Blocked = Mapping[int, int]
-"""For each segment the set of the draws in which it is blocked, as `assess.routes.bits` has it."""
+"""For each segment the set of the draws in which it is blocked, as in `assess.routes.chances`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
     """A connected part of the network: its edges (place, place, segment), and the places that count as ways out.
 
-    `by_stairs` tells that those are stairs, as no exit can be reached.
+    `by_stairs`: these are stairs, as no exit can be reached.
     """
 
     edges: tuple[tuple[str, str, int], ...]
@@ -62,8 +60,6 @@ class Part:
 
 def build_graph(segments: Mapping[int, Segment]) -> "nx.MultiGraph[str]":
     """Return the graph of the segments that join two places; the key of an edge is the segment's number."""
-    import networkx as nx
-
     graph: nx.MultiGraph[str] = nx.MultiGraph()
     for at, one in segments.items():
         if one.start and one.end:
@@ -73,8 +69,6 @@ def build_graph(segments: Mapping[int, Segment]) -> "nx.MultiGraph[str]":
 
 def find_parts(graph: "nx.MultiGraph[str]", kinds: Mapping[str, str]) -> Iterator[Part]:
     """Yield the connected parts with what counts as their ways out: exits, else stairs, else nothing."""
-    import networkx as nx
-
     for places in sorted(nx.connected_components(graph), key=min):
         exits = frozenset(place for place in places if kinds.get(place) == "exit")
         stairs = frozenset(place for place in places if kinds.get(place) == "stair")
@@ -84,8 +78,6 @@ def find_parts(graph: "nx.MultiGraph[str]", kinds: Mapping[str, str]) -> Iterato
 
 def _outward(graph: "nx.MultiGraph[str]", targets: Collection[str]) -> tuple[tuple[str, str, int], ...]:
     """Return the edges, the nearest to the ways out first, so that what can be reached is found in few rounds."""
-    import networkx as nx
-
     far = nx.multi_source_dijkstra_path_length(graph, set(targets)) if targets else {}
     edges = [(one, other, int(at)) for one, other, at in graph.edges(keys=True)]
     return tuple(sorted(edges, key=lambda edge: (min(far.get(edge[0], 0), far.get(edge[1], 0)), edge[2])))
@@ -171,8 +163,6 @@ def _ways_part(part: Part, room: str) -> Part | None:
 
     None where there is no way.
     """
-    import networkx as nx
-
     graph: nx.Graph[str] = nx.Graph([(room, BEYOND)])
     joining: dict[frozenset[str], list[tuple[str, str, int]]] = {}
     for edge in part.edges:
@@ -192,8 +182,6 @@ def find_ways(part: Part, room: str, chance: Mapping[int, float]) -> Iterator[tu
     Others share as few segments with those before as may be. `chance` is that of a blockage by segment; those of a way
     are taken as independent for the choice.
     """
-    import networkx as nx
-
     graph: nx.MultiGraph[str] = nx.MultiGraph()
     graph.add_node(room)
     for one, other, at in part.edges:

@@ -1,19 +1,41 @@
 """What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field
+from typing import TypedDict
 
 import numpy as np
 
-from assess.inventory.model import Inventory, Segment
-from assess.routes.bits import union
-from assess.routes.couplings import ROUNDED, Couplings, Happens, build_couplings, find_chances
-from assess.routes.draws import Draws
-from assess.routes.falls import Falls
-from assess.routes.gaps import Key
-from assess.routes.model import Chance, Outlook, RouteState
+from assess.model import Inventory, Segment
+from assess.progress import SILENT, Progress
+from assess.route_results import Chance, PieceRef, RouteState
+from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
 from assess.routes.network import Blocked
-from assess.routes.reach import Reached
+from assess.routes.obstructions import Obstructions
+
+
+class Outlook(TypedDict):
+    """The fields that the rows of segments and routes have in common."""
+
+    state: RouteState
+    state_upper: RouteState
+    blocked: Chance | None
+    blocked_or_reduced: Chance | None
+    blocked_if_anchors_fail: Chance | None
+    under_record: RouteState | None
+    most_likely_piece: PieceRef | None
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """The chances of several things if all anchors hold; of the first, also if anchors fail, and the likeliest piece.
+
+    `if_anchors_fail` is None where there are no anchored pieces.
+    """
+
+    chances: list[Chance]
+    if_anchors_fail: Chance | None
+    most_likely_piece: PieceRef | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,95 +46,66 @@ class Scene:
     """
 
     inventory: Inventory
-    reached: Sequence[Reached]
+    obstructions: tuple[Obstructions, ...]
     falls: Falls
     risk: float
     seed: int
     z: float
+    progress: Progress = SILENT
     _couplings: dict[tuple[Key, ...], Couplings] = field(default_factory=dict)
     _of_all: dict[bool, Couplings] = field(default_factory=dict)
-    """Of all pieces, by whether anchors fail: those of fewer take from it what they may."""
+    """Of all pieces, by whether anchors fail: those of fewer pieces share its draws."""
 
-    def segments_of(self, route: str) -> Mapping[int, Segment]:
+    def segments_of(self, route: str) -> dict[int, Segment]:
         """Return the segments of a route by their number."""
-        return {at: one.segment for at, one in enumerate(self.reached) if one.segment.route == route}
+        return {at: one.segment for at, one in enumerate(self.obstructions) if one.segment.route == route}
+
+    def piece(self, item: int) -> PieceRef:
+        """Return the reference to a piece by its index."""
+        return PieceRef(item=self.inventory.items[item].item, row=self.inventory.items[item].row, item_index=item)
 
     def keys(self, segments: Iterable[int], *, anchors_fail: bool = False) -> tuple[Key, ...]:
         """Return the pieces that reach any of some segments: the free-standing ones, or all of them."""
-        found = {key for at in segments for key in self.reached[at].keys}
+        found = {key for at in segments for key in self.obstructions[at].keys}
         return tuple(sorted(key for key in found if anchors_fail or not self.falls.anchored[key[0]]))
 
     def couplings(self, segments: Iterable[int], *, anchors_fail: bool = False) -> Couplings:
         """Return how the pieces that reach any of some segments fall together."""
         keys = self.keys(segments, anchors_fail=anchors_fail)
         if keys not in self._couplings:
+            self.progress.check()
             takes_anchored = any(self.falls.anchored[item] for item, _ in keys)  # the same pieces, the same couplings
-            self._couplings[keys] = build_couplings(self.falls, keys, self.seed, lambda: self._all(takes_anchored))
+            self._couplings[keys] = build_couplings(
+                self.falls, keys, self.seed, lambda: self._all(takes_anchored), self.progress
+            )
         return self._couplings[keys]
 
     def _all(self, anchors_fail: bool) -> Couplings:
         if anchors_fail not in self._of_all:
-            keys = self.keys(range(len(self.reached)), anchors_fail=anchors_fail)
-            self._of_all[anchors_fail] = build_couplings(self.falls, keys, self.seed)
+            keys = self.keys(range(len(self.obstructions)), anchors_fail=anchors_fail)
+            self._of_all[anchors_fail] = build_couplings(self.falls, keys, self.seed, progress=self.progress)
         return self._of_all[anchors_fail]
 
     # ------------------------------------------------------------ what happens in draws
 
     def narrower(self, draws: Draws, segment: int, width: float) -> int:
-        """Return the set of the draws in which what is left of a segment is narrower than a width [m].
+        """Return the set of the draws in which the width left of a segment is under a width [m].
 
-        Pieces that the draws do not know of stand.
+        Pieces that the draws do not contain stand.
         """
         if (segment, width) not in draws.narrower:
-            found = self.reached[segment].narrower(draws.fallen, draws.every, width)
+            self.progress.check()
+            found = self.obstructions[segment].narrower(draws.fallen, draws.every, width)
             draws.narrower[segment, width] = found
         return draws.narrower[segment, width]
 
     def blocked(self, draws: Draws, segments: Iterable[int]) -> Blocked:
         """Return for each of some segments the set of the draws in which it is blocked."""
-        return {at: self.narrower(draws, at, self.reached[at].required) for at in segments}
+        return {at: self.narrower(draws, at, self.obstructions[at].required) for at in segments}
 
-    def taken(self, draws: Draws, segments: Iterable[int]) -> int:
+    def narrowed(self, draws: Draws, segments: Iterable[int]) -> int:
         """Return the set of the draws in which any of some segments is narrowed at all."""
-        return union(self.narrower(draws, at, self.reached[at].standing) for at in segments)
-
-    # ------------------------------------------------------------ chances
-
-    def chances(self, segments: Collection[int], happens: Happens) -> list[Chance]:
-        """Return the chances of what happens on some segments, if all anchors hold."""
-        return find_chances(self.couplings(segments), happens, self.z)
-
-    def chances_unanchored(self, segments: Collection[int], happens: Happens) -> list[Chance] | None:
-        """Return the same with anchored pieces taken as free-standing; None where there are none."""
-        if not any(self.falls.anchored[item] for item, _ in self.keys(segments, anchors_fail=True)):
-            return None
-        return find_chances(self.couplings(segments, anchors_fail=True), happens, self.z)
-
-    def outlook(self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int]) -> Outlook:
-        """Return the outlook of some segments together.
-
-        `is_blocked` tells from the sets of the draws in which segments are blocked, and that of all draws, in which of
-        them they count as blocked together.
-        """
-
-        def happens(draws: Draws) -> Sequence[int]:
-            blocked = is_blocked(self.blocked(draws, segments), draws.every)
-            return blocked, blocked | self.taken(draws, segments)
-
-        blocked, taken = self.chances(segments, happens)
-        unanchored = self.chances_unanchored(segments, happens)
-        together = self.together(segments, happens)
-        in_record = self._in_record(segments, happens)
-        least = in_record or RouteState.OPEN
-        return Outlook(
-            state=max(self._state(blocked.probability, taken.probability), least),
-            upper=max(self._state(blocked.high, taken.high), least),
-            blocked=blocked,
-            taken=taken,
-            if_anchors_fail=unanchored[0] if unanchored else None,
-            in_record=in_record,
-            blocker=max(together, key=lambda item: (together[item], -item), default=None),
-        )
+        return union(self.narrower(draws, at, self.obstructions[at].standing) for at in segments)
 
     def together(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> dict[int, float]:
         """Return for each piece the chance that it falls while the first of what happens does, where there is any."""
@@ -120,20 +113,68 @@ class Scene:
         draws, happened = couplings.joint, happens(couplings.joint)[0]
         found: dict[int, float] = {}
         for key in couplings.keys:
-            value = round(draws.share(happened & draws.fallen[key]), ROUNDED)
-            found[key[0]] = max(found.get(key[0], 0.0), value)
+            found[key[0]] = max(found.get(key[0], 0.0), draws.share(happened & draws.fallen[key]))
         return {item: value for item, value in found.items() if value > 0}
 
-    def _state(self, blocked: float, taken: float) -> RouteState:
-        if blocked >= self.risk:
-            return RouteState.BLOCKED
-        return RouteState.REDUCED if taken >= self.risk else RouteState.OPEN
+    # ------------------------------------------------------------ chances
 
-    def _in_record(self, segments: Collection[int], happens: Happens) -> RouteState | None:
-        """Return the state under the recorded motion itself; a piece of which that is not known counts as standing."""
+    def chances(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> list[Chance]:
+        """Return the chances of what happens on some segments, by default if all anchors hold."""
+        return find_chances(self.couplings(segments, anchors_fail=anchors_fail), happens, self.z)
+
+    def judge(self, segments: Collection[int], happens: Happens) -> Judgement:
+        """Return the chances of what happens on some segments, and what decides the first of them."""
+        has_anchored = any(self.falls.anchored[item] for item, _ in self.keys(segments, anchors_fail=True))
+        together = self.together(segments, happens)
+        likeliest = max(together, key=lambda item: (together[item], -item), default=None)
+        return Judgement(
+            chances=self.chances(segments, happens),
+            if_anchors_fail=self.chances(segments, happens, anchors_fail=True)[0] if has_anchored else None,
+            most_likely_piece=None if likeliest is None else self.piece(likeliest),
+        )
+
+    def outlook(
+        self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int], *, is_evaluated: bool
+    ) -> Outlook:
+        """Return the outlook of some segments together; without chances where they are not evaluated.
+
+        `is_blocked` returns the set of the draws in which they count as blocked together, from those in which segments
+        are blocked, and the set of all draws.
+        """
+
+        def happens(draws: Draws) -> tuple[int, int]:
+            blocked = is_blocked(self.blocked(draws, segments), draws.every)
+            return blocked, blocked | self.narrowed(draws, segments)
+
+        found = self.judge(segments, happens)
+        (blocked, either), record = found.chances, self._under_record(segments, happens)
+        state, upper = RouteState.NOT_EVALUATED, RouteState.NOT_EVALUATED
+        if is_evaluated:
+            state = self._state(blocked.probability, either.probability, record)
+            upper = self._state(blocked.high, either.high, record)
+        return Outlook(
+            state=state,
+            state_upper=upper,
+            blocked=blocked if is_evaluated else None,
+            blocked_or_reduced=either if is_evaluated else None,
+            blocked_if_anchors_fail=found.if_anchors_fail,
+            under_record=record,
+            most_likely_piece=found.most_likely_piece,
+        )
+
+    def _state(self, blocked: float, either: float, at_least: RouteState | None) -> RouteState:
+        found = _worst(blocked >= self.risk, either >= self.risk)
+        return max(found, at_least or RouteState.OPEN, key=lambda state: state.severity)
+
+    def _under_record(self, segments: Collection[int], happens: Happens) -> RouteState | None:
+        """Return the state under the recorded motion itself; pieces of which that is not known count as standing."""
         keys = self.keys(segments)
         known = self.falls.in_record[np.array([item for item, _ in keys], dtype=np.intp)]
         if not keys or np.isnan(known).all():
             return None
-        blocked, taken = happens(Draws.of(keys, known[np.newaxis] == 1, np.ones(1)))
-        return RouteState.BLOCKED if blocked else RouteState.REDUCED if taken else RouteState.OPEN
+        blocked, either = happens(Draws.of(keys, known[np.newaxis] == 1, np.ones(1)))
+        return _worst(bool(blocked), bool(either))
+
+
+def _worst(is_blocked: bool, is_reduced: bool) -> RouteState:
+    return RouteState.BLOCKED if is_blocked else RouteState.REDUCED if is_reduced else RouteState.OPEN

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from assess.inventory.model import Place, Segment
 from assess.methods._method import Reference
+from assess.model import Place, Segment
 
 NARROWER = 1e-6
 """By how much [m] a width must be under another to count as narrower: less is rounding."""

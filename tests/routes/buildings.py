@@ -1,24 +1,47 @@
 """Small buildings with routes, built in code, and pieces whose falls are told outright."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from assess.inventory.model import Building, Floor, Inventory, Item, Place, Segment
+import numpy as np
+
+from assess.model import Building, Floor, Inventory, Item, Place, Segment
+from assess.route_results import Chance, RouteTables, SegmentRow
+from assess.routes.chances import Falls
 from assess.routes.evaluate import evaluate_routes
-from assess.routes.falls import Falls
-from assess.routes.model import Chance, Routes, SegmentResult
-from assess.routes.reach import find_reached
+from assess.routes.obstructions import find_obstructions
 from assess.settings import Settings
 
 RISK = 0.03
 
 
+def make_falls(
+    probability: Sequence[float],
+    *,
+    fell: Mapping[int, Sequence[bool]] | None = None,
+    group: Sequence[int] | None = None,
+    in_record: Sequence[float] | None = None,
+    anchored: Sequence[bool] | None = None,
+    quantity: Sequence[int] | None = None,
+) -> Falls:
+    """Return how pieces fall, from plain numbers; by default without outcomes, free-standing, one in each row."""
+    n, known = len(probability), {at: np.array(one, dtype=np.bool_) for at, one in (fell or {}).items()}
+    return Falls(
+        probability=np.array(probability, dtype=np.float64),
+        group=np.array(group or [0 if at in known else -1 for at in range(n)], dtype=np.intp),
+        fell=known,
+        in_record=np.array(in_record or [np.nan] * n, dtype=np.float64),
+        anchored=np.array(anchored or [False] * n, dtype=np.bool_),
+        quantity=np.array(quantity or [1] * n, dtype=np.intp),
+    )
+
+
 def told(*rows: str, **more: Any) -> Falls:
     """Return pieces that fall in the motions marked 1 of their rows, each with the chance that follows."""
     fell = {at: [mark == "1" for mark in row] for at, row in enumerate(rows)}
-    return Falls.of([row.count("1") / len(row) for row in rows], fell=fell, **more)
+    return make_falls([row.count("1") / len(row) for row in rows], fell=fell, **more)
 
 
 def piece(height: float, edge: float | None = None, *, route: str = "", segment: str = "", **more: Any) -> Item:
@@ -73,16 +96,16 @@ def evaluated(
     *,
     risk: float = RISK,
     seed: int = 1,
-) -> Routes:
+) -> RouteTables:
     """Evaluate the routes of such a building; intervals are of 95 %."""
     inventory = building(items, segments, places)
     settings = Settings(runs=200, route_risk=risk, seed=seed)
-    found = evaluate_routes(inventory, find_reached(inventory), falls, settings)
+    found = evaluate_routes(inventory, find_obstructions(inventory), falls, settings)
     assert found is not None
     return found
 
 
-def one_segment(falls: Falls, items: Sequence[Item], segment: Segment | None = None, **more: Any) -> SegmentResult:
+def one_segment(falls: Falls, items: Sequence[Item], segment: Segment | None = None, **more: Any) -> SegmentRow:
     """Evaluate a building of one segment and return it; with positions, the segment is that of `CORRIDOR`."""
     found = evaluated(falls, items, [segment or stretch()], CORRIDOR if segment and segment.start else (), **more)
     return found.segments[0]

@@ -8,11 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.routes.bits import to_array, union
-from assess.routes.couplings import build_couplings
-from assess.routes.falls import Falls
+from assess.routes.chances import Key, build_couplings, to_array, union
 from assess.routes.fixes import find_fixes
-from assess.routes.gaps import Key
+from tests.routes.buildings import make_falls
 
 QUICK = settings(max_examples=60, deadline=None)
 RUNS = 20
@@ -29,7 +27,7 @@ def routes(draw):
         for at, count in enumerate(counts)
         if draw(st.booleans()) or draw(st.booleans())
     }
-    falls = Falls.of([count / RUNS for count in counts], fell=fell)
+    falls = make_falls([count / RUNS for count in counts], fell=fell)
     sets = draw(st.lists(st.lists(st.integers(0, n - 1), min_size=1, max_size=3, unique=True), min_size=1, max_size=5))
     return build_couplings(falls, [(at, 0) for at in range(n)], 1), sets
 
@@ -74,19 +72,19 @@ def chance(couplings, sets, fixed):
 @given(routes(), st.sampled_from([0.005, 0.031, 0.11, 0.33, 0.77]))
 def test_enough_and_none_too_many(drawn, risk):
     couplings, sets = drawn
-    steps, is_mended = find_fixes(couplings, lanes(sets), any_blocked, risk)
-    fixed = [step.item for step in steps]
-    assert is_mended
+    steps, is_fixed = find_fixes(couplings, lanes(sets), any_blocked, risk)
+    fixed = [item for item, _, _ in steps]
+    assert is_fixed
     assert len(fixed) == len(set(fixed))
     assert chance(couplings, sets, fixed) < risk
     for one in fixed:
         assert chance(couplings, sets, [other for other in fixed if other != one]) >= risk
     left = chance(couplings, sets, [])
     assert (left < risk) == (not steps)
-    for count, step in enumerate(steps, 1):
+    for count, (_, gain, after_step) in enumerate(steps, 1):
         after = chance(couplings, sets, fixed[:count])
-        assert abs(step.left - after) < 1e-9
-        assert abs(step.gain - (left - after)) < 1e-9
+        assert abs(after_step - after) < 1e-9
+        assert abs(gain - (left - after)) < 1e-9
         left = after
 
 
@@ -101,19 +99,19 @@ def test_with_another_way_open(drawn, risk, data):
     def both(blocked, _every):
         return union(blocked[at] for at in range(half)) & union(blocked[at] for at in range(half, len(sets)))
 
-    steps, is_mended = find_fixes(couplings, lanes(sets), both, risk)
+    steps, is_fixed = find_fixes(couplings, lanes(sets), both, risk)
     pairs = [sorted({*one, *other}) for one in first for other in second]
-    fixed = [step.item for step in steps]
-    assert is_mended
+    fixed = [item for item, _, _ in steps]
+    assert is_fixed
     left = chance(couplings, pairs, [])
     assert (left < risk) == (not steps)
-    for count, step in enumerate(steps, 1):
-        assert step.left == pytest.approx(chance(couplings, pairs, fixed[:count]), abs=1e-9)
+    for count, (_, _, after_step) in enumerate(steps, 1):
+        assert after_step == pytest.approx(chance(couplings, pairs, fixed[:count]), abs=1e-9)
         least = min(
             chance(couplings, pairs, [*fixed[: count - 1], other]) for other in {one for own in pairs for one in own}
         )
         if len(steps) == 1 and least < left:
-            assert step.left == pytest.approx(least, abs=1e-9)  # the first step takes the piece that gains most
+            assert after_step == pytest.approx(least, abs=1e-9)  # the first step takes the piece that gains most
     assert chance(couplings, pairs, fixed) < risk or not pairs
     for one in fixed:
         assert chance(couplings, pairs, [other for other in fixed if other != one]) >= risk

@@ -8,9 +8,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.routes.bits import to_array, to_sets
+from assess.routes.chances import to_array, to_sets
 from assess.routes.gaps import Gaps
-from assess.routes.reach import find_reached
+from assess.routes.obstructions import find_obstructions
 from tests.routes.buildings import CORRIDOR, building, corridor, piece
 
 QUICK = settings(max_examples=40, deadline=None)
@@ -112,7 +112,7 @@ placed = st.builds(
 @given(st.lists(placed, min_size=1, max_size=5))
 def test_as_wide_as_a_person_can_be(items):
     """On the plan: somewhat less than what is left passes, somewhat more does not."""
-    (one,) = find_reached(building(items, [corridor()], CORRIDOR))
+    (one,) = find_obstructions(building(items, [corridor()], CORRIDOR))
     inside = shapely.box(-1, -0.9, 11, 0.9)
     shapes = [_everywhere(item).intersection(inside) for item in items]
     left = one.gaps.residual(np.ones(len(one.gaps.keys), dtype=np.bool_))

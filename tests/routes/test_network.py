@@ -5,7 +5,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from assess.routes.bits import to_array, to_sets
+from assess.routes.chances import to_array, to_sets
 from assess.routes.network import Part, build_course, find_parts, find_rooms, find_ways
 from tests.routes.buildings import place, stretch
 

@@ -1,0 +1,479 @@
+"""Every shown field of a result, once: its column, place in results.json, label, unit, format and how it is read.
+
+results.json and its schema, items.csv, the tables of a notebook, the Excel report and the lists of the other reports
+derive from the lists below. A method's own columns follow from what it says of itself (`MethodInfo.columns`).
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal
+
+from assess.i18n import fill
+from assess.i18n import gettext as _
+from assess.methods import MethodInfo
+from assess.results import CaseRow, ItemResult, ItemRow, MotionRow, Results, Simulation
+from assess.risk import RiskClass
+
+Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "records"]
+"""What a field holds: a share lies in [0, 1]; a class is one of `RiskClass`; records are rows within the row."""
+Where = Literal["json", "csv", "excel"]
+ANYWHERE: frozenset[Where] = frozenset(("json", "csv", "excel"))
+DATA: frozenset[Where] = frozenset(("json", "csv"))
+"""Of fields that the sheet Items of the Excel report leaves out, or shows in live columns of its own."""
+
+AXES, ANCHORED = ("X", "Y"), ("no", "yes", "partly", "unknown")
+IMPORTANCE = ("life safety", "function", "property")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field:
+    """One field of a row.
+
+    Parameters
+    ----------
+    key : str
+        Its column in items.csv and in the tables of a notebook, with the unit.
+    read : callable
+        From the row to its value: None for what is unknown.
+    path : tuple of str
+        Its place in a record of results.json; by default ``(key,)``.
+    label, unit, format : str
+        Heading in reports without the unit, the unit, and how Excel shows it.
+    width : int
+        Width of its column in Excel, in characters.
+    kind, is_optional, choices
+        What it may hold, and whether it may be None; a field of a group, whether it may be where the group is there.
+    shows : set of str
+        Where it is shown.
+    help : str
+        What it means, for the schema and the documentation.
+    flat : callable, optional
+        From its value to the one of items.csv, where that differs.
+    """
+
+    key: str
+    read: Callable[[Any], Any]
+    path: tuple[str, ...] = ()
+    label: str = ""
+    unit: str = ""
+    format: str = ""
+    width: int = 9
+    kind: Kind = "text"
+    is_optional: bool = False
+    choices: tuple[str, ...] = ()
+    shows: frozenset[Where] = ANYWHERE
+    help: str = ""
+    flat: Callable[[Any], Any] | None = None
+
+    @property
+    def place(self) -> tuple[str, ...]:
+        """Its place in a record of results.json."""
+        return self.path or (self.key,)
+
+    def heading(self) -> str:
+        """Return its label with the unit in brackets, in the language in use."""
+        return f"{_(self.label)} [{self.unit}]" if self.unit else _(self.label)
+
+    def flatten(self, row: Any) -> Any:
+        """Return its value in items.csv."""
+        value = self.read(row)
+        return value if self.flat is None else self.flat(value)
+
+
+def _of_item(key: str, label: str, **more: Any) -> Field:
+    """A field of the row as it was assessed, or a column of the workbook that nothing is computed with."""
+    is_computed_with = key in ItemRow.__slots__
+
+    def read(one: ItemResult) -> Any:
+        return getattr(one.item, key) if is_computed_with else one.item.more.get(key)
+
+    return Field(key=key, read=read, label=label, **more)
+
+
+def _word(risk: RiskClass | None) -> str | None:
+    return None if risk is None else risk.word
+
+
+def _simulated(name: str) -> Callable[[Any], Any]:
+    def read(row: Any) -> Any:
+        found: Simulation | None = row.simulation if isinstance(row, CaseRow) else row.governing.simulation
+        return None if found is None else getattr(found, name)
+
+    return read
+
+
+def _simulation_field(name: str, kind: Kind, label: str, path: tuple[str, ...] = (), help: str = "") -> Field:  # noqa: A002
+    key = "_".join(("verification", *(path or (name,))))
+    return Field(
+        key=key, read=_simulated(name), path=("verification", *(path or (name,))), label=label, kind=kind,
+        shows=DATA, help=help,
+    )  # fmt: skip
+
+
+SIMULATION_FIELDS = (
+    _simulation_field("runs", "count", fill("Motions"), help="Motions that the piece was simulated under."),
+    _simulation_field("overturned", "count", fill("Overturned"), help="Motions under which it overturned."),
+    _simulation_field("probability", "share", fill("Chance"), help="`overturned` / `runs`."),
+    _simulation_field("low", "share", fill("Low"), help="Lower end of the 95 % sampling interval (Wilson)."),
+    _simulation_field("high", "share", fill("High"), help="Upper end of it."),
+    _simulation_field(
+        "record_overturned", "flag", fill("Overturns under the record"), ("record", "overturned"),
+        help="Whether it overturns under the recorded motion itself.",
+    ),
+    _simulation_field(
+        "record_max_rotation_ratio", "number", fill("Largest rotation under the record, over the critical angle"),
+        ("record", "max_rotation_ratio"), help="Largest |theta| over the critical angle under the recorded motion.",
+    ),
+)  # fmt: skip
+"""What simulation found under the governing motion: together null in results.json where it did not run."""
+
+
+_KINDS: Mapping[str, Kind] = {"number": "number", "count": "count", "truth": "flag"}
+"""Of the columns of a method; all others are texts."""
+
+
+def _in_excel(spec: str) -> str:
+    """Return the format of a number with a fixed number of decimals, ``,.1f``, as Excel writes it."""
+    whole, _point, decimals = spec.rstrip("f").partition(".")
+    zeros = "0" * int(decimals or 0)
+    return (f"{'#,##0' if whole else '0'}{'.' if zeros else ''}{zeros}") if spec else ""
+
+
+def method_fields(method: MethodInfo) -> Iterator[Field]:
+    """Yield the fields of one method: its value, what stands beside it, its flags."""
+
+    def result(row: Any) -> Any:
+        case: CaseRow = row if isinstance(row, CaseRow) else row.governing
+        return case.methods[method.key]
+
+    def detail(name: str, row: Any) -> Any:
+        return result(row).detail[name]
+
+    path = ("methods", method.key)
+    yield Field(
+        key=method.key, read=lambda row: result(row).value, path=(*path, "value"), label=method.title, kind="share",
+        is_optional=True, format="0.0%" if method.kind == "probability" else "0", width=10, shows=DATA,
+    )  # fmt: skip
+    for column in method.columns if method.role != "simulation" else ():  # that has fields of its own
+        yield Field(
+            key=f"{method.key}_{column.name}", read=partial(detail, column.name), path=(*path, column.name),
+            label=column.label, unit=column.unit, format=_in_excel(column.format), kind=_KINDS.get(column.kind, "text"),
+            is_optional=True, shows=DATA,
+        )  # fmt: skip
+    yield Field(
+        key=f"{method.key}_flags", read=lambda row: list(result(row).flags), path=(*path, "flags"), kind="list",
+        shows=DATA,
+    )  # fmt: skip
+
+
+def _adopted(name: str, read: Callable[[Any], Any], label: str, kind: Kind, **more: Any) -> Field:
+    return Field(
+        key=f"adopted_{name}", read=lambda row: read(row.adopted), path=("adopted", name), label=label, kind=kind,
+        shows=DATA, **more,
+    )  # fmt: skip
+
+
+ADOPTED_FIELDS = (
+    _adopted("method", lambda one: one.method, fill("Method"), "text", help="Key of the method whose value it is."),
+    _adopted("probability", lambda one: one.probability, fill("Chance of overturning"), "share", format="0.0%"),
+    _adopted(
+        "low", lambda one: one.low, fill("Low"), "share", is_optional=True, format="0.0%",
+        help="Lower end of the sampling interval; null where the formula's value is adopted.",
+    ),
+    _adopted("high", lambda one: one.high, fill("High"), "share", is_optional=True, format="0.0%"),
+    _adopted("class", lambda one: one.risk.word, fill("Class"), "class"),
+    _adopted("class_upper", lambda one: one.upper.word, fill("Class, upper estimate"), "class"),
+    _adopted(
+        "lowered_from", lambda one: _word(one.lowered_from), fill("Lowered from"), "class", is_optional=True,
+        help="Class by formula where simulation lowered it.",
+    ),
+    _adopted("flags", lambda one: list(one.flags), fill("Flags"), "list"),
+)  # fmt: skip
+
+PIECE_FIELDS = (
+    _of_item("item", fill("Item"), width=12),
+    _of_item("floor", fill("Floor"), width=8),
+    _of_item("room", fill("Room"), width=16),
+    _of_item("description", fill("Description"), width=32),
+    _of_item("type", fill("Type"), width=22),
+    _of_item("quantity", fill("Quantity"), kind="count", format="#,##0"),
+    _of_item("breadth_cm", fill("Breadth"), kind="number", unit="cm"),
+    _of_item("width_cm", fill("Width"), kind="number", unit="cm", is_optional=True),
+    _of_item("height_cm", fill("Height"), kind="number", unit="cm"),
+    _of_item("breadth_to_height", fill("B/H"), kind="number", format="0.000", width=8),
+    Field(
+        key="axis", read=lambda one: one.governing.motion.axis, label=fill("Axis"), choices=AXES, width=6,
+        help="The axis that governs.",
+    ),
+    _of_item(
+        "axis_given", fill("Axis given"), is_optional=True, choices=AXES, width=7,
+        help="null: unknown, the worse of both governs.",
+    ),
+    _of_item("angle_deg", fill("Angle"), kind="number", unit="deg", width=8, is_optional=True),
+    _of_item("x_m", fill("X"), kind="number", unit="m", width=8, is_optional=True),
+    _of_item("y_m", fill("Y"), kind="number", unit="m", width=8, is_optional=True),
+    _of_item(
+        "friction", fill("Friction"), kind="number", is_optional=True,
+        help="The one used: the piece's own, else the building's.",
+    ),
+    Field(
+        key="importance", read=lambda one: one.item.importance or None, label=fill("Importance"), is_optional=True,
+        choices=IMPORTANCE, width=13,
+    ),
+    Field(
+        key="pfa_g", read=lambda one: one.governing.motion.pfa_g, label=fill("PFA used"), unit="g", kind="number",
+        format="0.000", help="Of the motion that governs.",
+    ),
+    Field(
+        key="pfv_cm_s", read=lambda one: one.governing.motion.pfv_cm_s, label=fill("PFV used"), unit="cm/s",
+        kind="number", format="0.0", is_optional=True,
+    ),
+    Field(
+        key="pfa_source", read=lambda one: one.governing.motion.label, shows=DATA,
+        help="The record, `given`, the code of a profile, or the floors that it is interpolated between.",
+    ),
+)  # fmt: skip
+
+
+def _axis_record(case: CaseRow, methods: Sequence[MethodInfo]) -> dict[str, Any]:
+    return {
+        "axis": case.motion.axis,
+        "source": case.motion.label,
+        "pfa_g": case.motion.pfa_g,
+        "pfv_cm_s": case.motion.pfv_cm_s,
+        "methods": {one.key: case.methods[one.key].value for one in methods},
+        "verification": _SIMULATION.nest(case)["verification"] if case.simulation else None,
+    }
+
+
+def _say_axes(axes: Iterable[Mapping[str, Any]]) -> list[str]:
+    return [f"{axis['axis']}: {axis['source']} {axis['pfa_g']} g" for axis in axes]
+
+
+def item_fields(results: Results) -> tuple[Field, ...]:
+    """Return the fields of a row of furniture, in the order of items.csv."""
+    return arrange_item_fields(results.methods, results.provenance.sheets.get("Items", "Items"))
+
+
+def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Field, ...]:
+    """Return the fields of a row of furniture by the methods of the run, and the workbook's name of the sheet Items."""
+    axes = Field(
+        key="axes", read=lambda one: [_axis_record(case, methods) for case in one.cases], kind="records",
+        shows=DATA, flat=_say_axes, help="Every motion that the item was evaluated under.",
+    )  # fmt: skip
+    return (
+        *PIECE_FIELDS,
+        *(field for method in methods for field in method_fields(method)),
+        *SIMULATION_FIELDS,
+        *ADOPTED_FIELDS,
+        axes,
+        _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
+        Field(key="route", read=lambda one: one.item.route or None, label=fill("Route"), width=24, is_optional=True),
+        Field(
+            key="segment", read=lambda one: one.item.segment or None, label=fill("Segment"), width=24, is_optional=True
+        ),
+        _of_item("edge_distance_m", fill("Edge distance"), unit="m", kind="number", is_optional=True, shows=DATA),
+        _of_item("notes", fill("Notes"), width=40),
+        Field(
+            key="assumed", read=lambda one: list(one.item.assumed), label=fill("Assumed"), kind="list", width=28,
+            help="Fields that were blank in the workbook and were filled in.",
+        ),
+        Field(key="source_sheet", read=lambda one: sheet, path=("source", "sheet"), shows=DATA),
+        Field(
+            key="source_row", read=lambda one: one.item.row, path=("source", "row"), kind="count", shows=DATA,
+        ),
+    )  # fmt: skip
+
+
+def case_fields(results: Results) -> tuple[Field, ...]:
+    """Return the fields of a piece under one motion."""
+    item = results.cases_table.item.tolist()
+    names = [results.item_rows[index].item for index in item]
+    governing = {one.governing for one in results.item_rows}
+    return (
+        Field(key="item", read=lambda case: names[case.index]),
+        Field(key="floor", read=lambda case: case.motion.floor),
+        Field(key="axis", read=lambda case: case.motion.axis, choices=AXES),
+        Field(key="source", read=lambda case: case.motion.label),
+        Field(key="pfa_g", read=lambda case: case.motion.pfa_g, kind="number"),
+        Field(key="pfv_cm_s", read=lambda case: case.motion.pfv_cm_s, kind="number", is_optional=True),
+        Field(key="governs", read=lambda case: case.index in governing, kind="flag"),
+        *(field for method in results.methods for field in method_fields(method)),
+        *SIMULATION_FIELDS,
+        *ADOPTED_FIELDS,
+    )
+
+
+def _of_motion(key: str, kind: Kind = "text", **more: Any) -> Field:
+    """A field of a floor's motion that belongs to one kind of source: None for the others."""
+
+    def read(row: MotionRow) -> Any:
+        value = getattr(row, key)
+        return None if value == "" else value
+
+    return Field(key=key, read=read, kind=kind, is_optional=True, **more)
+
+
+def _of_record(key: str, label: str = "") -> Field:
+    """What the file of a record says: None where there is no record."""
+
+    def read(row: MotionRow) -> Any:
+        return getattr(row, key) if row.has_record else None
+
+    return Field(key=key, read=read, label=label, is_optional=True)
+
+
+def _fit(name: str, label: str, format: str, unit: str = "", **more: Any) -> Field:  # noqa: A002
+    """How the generated motions meet their target: None where none were generated."""
+
+    def read(row: MotionRow) -> Any:
+        fit = row.ensemble.fit if row.ensemble else None
+        return None if fit is None else getattr(fit, name)
+
+    return Field(
+        key=f"ensemble_fit_{name}", read=read, path=("ensemble", "fit", name), kind="number", label=label, unit=unit,
+        format=format, **more,
+    )  # fmt: skip
+
+
+def _ensemble(name: str, kind: Kind, **more: Any) -> Field:
+    return Field(
+        key=f"ensemble_{name}", read=lambda row: None if row.ensemble is None else getattr(row.ensemble, name),
+        path=("ensemble", name), kind=kind, **more,
+    )  # fmt: skip
+
+
+def _profile(name: str) -> Callable[[MotionRow], Any]:
+    return lambda row: None if row.profile is None else getattr(row.profile, name)
+
+
+MOTION_FIELDS = (
+    Field(key="axis", read=lambda row: row.axis, label=fill("Axis"), choices=AXES),
+    Field(key="source", read=lambda row: row.source, choices=("record", "given", "interpolated", "profile")),
+    Field(
+        key="pfa_g", read=lambda row: row.pfa_g, kind="number", label=fill("PFA"), unit="g", format="0.000",
+        help="After treatment.",
+    ),
+    Field(
+        key="pfv_cm_s", read=lambda row: row.pfv_cm_s, kind="number", label=fill("PFV"), unit="cm/s", format="0.0",
+        is_optional=True,
+    ),
+    Field(key="flags", read=lambda row: list(row.flags), kind="list"),
+    Field(
+        key="between", read=lambda row: list(row.between), kind="list",
+        help="The floors below and above that it is interpolated between.",
+    ),
+    Field(
+        key="profile", read=_profile("key"), is_optional=True, help="The code whose design profile gave the PFA.",
+    ),
+    Field(
+        key="profile_verified", read=_profile("verified"), kind="flag", is_optional=True,
+        help="Whether the profile agrees with public implementations; the codes' own texts were not read.",
+    ),
+    _of_motion("clause"),
+    _of_motion("height_ratio", "number", label=fill("z/h"), format="0.000", help="z/h of the profile."),
+    _of_motion("amplification", "number", label=fill("Amplification"), format="0.000", help="PFA over ground PGA."),
+    _of_motion("record", help="The record as the workbook names it."),
+    _of_motion(
+        "pfa_file_g", "number", label=fill("PFA in the file"), unit="g", format="0.000",
+        help="Peak of the file's own values, before treatment.",
+    ),
+    _of_record("format"),
+    _of_record("station", fill("Station")),
+    _of_record("location"),
+    _of_record("channel"),
+    _of_record("event", fill("Event")),
+    _of_motion("azimuth_deg", "number", label=fill("Azimuth"), unit="deg"),
+    _of_motion("corrected", "flag"),
+    _of_motion("time_step_s", "number"),
+    _of_motion("samples", "count"),
+    Field(key="notes", read=lambda row: list(row.notes), kind="list"),
+    _ensemble("motions", "count", label=fill("Motions"), format="#,##0"),
+    _ensemble("generic_spectrum", "flag"),
+    _ensemble(
+        "weak_motions", "flag",
+        help="Whether the user's own motions are weaker than the floor's, so that they may not lower a class.",
+    ),
+    _fit("matched_to_s", fill("Matched from 0.05 s to"), "0.00", "s"),
+    _fit("mean_deviation", fill("Mean deviation"), "0.0%"),
+    _fit("worst_deviation", fill("Worst deviation"), "+0.0%;-0.0%"),
+    _fit("worst_period_s", fill("at period"), "0.000", "s"),
+    _fit("pfa_ratio", fill("PFA over the target's"), "0.000"),
+    _fit("pfa_scatter", fill("Scatter of PFA"), "0.0%"),
+    _fit("pfv_ratio", fill("PFV over the target's"), "0.000", is_optional=True),
+    _fit("pfv_scatter", fill("Scatter of PFV"), "0.0%"),
+    _fit("spectrum_scatter", fill("Scatter of the spectrum"), "0.0%"),
+)  # fmt: skip
+"""The fields of a floor's motion, as they stand in results.json under ``floors[].demands[]``."""
+
+
+def floor_fields(results: Results) -> tuple[Field, ...]:
+    """Return the fields of a row of the table of floors: the floor, and one of its motions."""
+    by_name = {one.floor: one for one in results.floor_rows}
+    return (
+        Field(key="floor", read=lambda row: row.floor),
+        Field(key="name", read=lambda row: by_name[row.floor].name),
+        Field(key="elevation_m", read=lambda row: by_name[row.floor].elevation_m, kind="number", is_optional=True),
+        *MOTION_FIELDS,
+    )
+
+
+# ---------------------------------------------------------------- records and tables
+
+
+_GROUPS = ("verification", "ensemble")
+"""Groups of fields that are None together where nothing in them is known, such as where no simulation ran."""
+
+
+class Shape:
+    """How rows become records of results.json and rows of a table: its fields, arranged once for many rows."""
+
+    def __init__(self, chosen: Iterable[Field]) -> None:
+        self.fields = tuple(chosen)
+        self._flat = [(one.key, one.read, one.flat) for one in self.fields]
+        self._tree: dict[str, Any] = {}
+        for one in self.fields:
+            inner = self._tree
+            for name in one.place[:-1]:
+                inner = inner.setdefault(name, {})
+            inner[one.place[-1]] = one.read
+
+    def nest(self, row: Any) -> dict[str, Any]:
+        """Return a row as a record of results.json."""
+        return _nest(row, self._tree)
+
+    def flatten(self, row: Any) -> dict[str, Any]:
+        """Return a row of items.csv or of a table."""
+        return {key: read(row) if flat is None else flat(read(row)) for key, read, flat in self._flat}
+
+
+def _nest(row: Any, tree: Mapping[str, Any]) -> dict[str, Any]:
+    record = {}
+    for name, read in tree.items():
+        if type(read) is dict:
+            inner = _nest(row, read)
+            record[name] = _none_if_blank(inner) if name in _GROUPS else inner
+        else:
+            record[name] = read(row)
+    return record
+
+
+def _none_if_blank(group: dict[str, Any]) -> dict[str, Any] | None:
+    """Return a group, or None where nothing in it is known, nor in the groups within it."""
+    inner = {name: _none_if_blank(one) if isinstance(one, dict) else one for name, one in group.items()}
+    return inner if any(value is not None for value in inner.values()) else None
+
+
+_SIMULATION = Shape(SIMULATION_FIELDS)
+
+
+def unnest(record: Mapping[str, Any], chosen: Iterable[Field]) -> dict[str, Any]:
+    """Return a row of a table from a record of results.json: what `flatten` gives for the row that it was made from."""
+    row = {}
+    for field in chosen:
+        value: Any = record
+        for name in field.place:
+            value = value.get(name) if isinstance(value, Mapping) else None
+        row[field.key] = value if field.flat is None else field.flat(value)
+    return row

@@ -1,0 +1,1 @@
+"""Run the work: an inventory in, an assessment out."""

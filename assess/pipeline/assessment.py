@@ -1,0 +1,74 @@
+"""The arrays of a run, before they become the tables of `assess.results`."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import Problem
+from assess.methods import Cases, Method, Outcome, simulation
+from assess.methods._method import Joint
+from assess.model import Axis, Inventory
+from assess.pipeline.adopt import Adoption
+from assess.pipeline.demand import Demand
+from assess.settings import Settings
+
+if TYPE_CHECKING:
+    from assess.motion.suite import Suite
+    from assess.routes.obstructions import Obstructions
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Assessment:
+    """What a run computes with; `assess.pipeline.run.compute` makes it.
+
+    Parameters
+    ----------
+    inventory, settings
+        What was assessed, and how.
+    scenario : str
+        Where the floor motion came from, one of `assess.settings.SCENARIOS`.
+    suite : Suite, optional
+        The user's own motions, where they stood in for generated ones.
+    demands : mapping of (floor, axis) to demands
+        How every floor shakes.
+    methods : tuple of Method
+        The methods, in the order of reports.
+    cases : Cases
+        n pairs of piece and motion: every piece under every motion of its axis, or of both where its axis is blank.
+    case_item, case_demand : (n,) array, tuple of Demand
+        Which item (its index in the inventory) and which demand each case has.
+    outcomes : mapping of method key to Outcome
+        What each method gives for all cases.
+    adoption : Adoption
+        The risk that is adopted for each case.
+    governing : (items,) array
+        Index of each item's governing case.
+    obstructions : sequence of Obstructions
+        What can reach the segments of evacuation routes.
+    problems : tuple of Problem
+        Warnings and notes about the input.
+    """
+
+    inventory: Inventory
+    settings: Settings
+    scenario: str
+    suite: "Suite | None"
+    demands: Mapping[tuple[str, Axis], tuple[Demand, ...]]
+    methods: tuple[Method, ...]
+    cases: Cases
+    case_item: NDArray[np.intp]
+    case_demand: tuple[Demand, ...]
+    outcomes: Mapping[str, Outcome]
+    adoption: Adoption
+    governing: NDArray[np.intp]
+    obstructions: "Sequence[Obstructions]"
+    problems: tuple[Problem, ...]
+
+    @property
+    def joints(self) -> Mapping[Demand, Joint]:
+        """What the pieces on a floor motion did, motion by motion, where they were simulated."""
+        joints = self.outcomes[simulation().key].joints
+        return {self.case_demand[int(joint.cases[0])]: joint for joint in joints}

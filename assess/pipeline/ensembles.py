@@ -1,0 +1,155 @@
+"""The motions of every floor and axis: generated for its record or for a generic spectrum, or the user's own."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from assess.model import Building
+from assess.motion.record import FloatArray
+from assess.pipeline.demand import Demand, Demands
+from assess.progress import SILENT, Progress
+
+if TYPE_CHECKING:
+    from assess.motion.fit import Fit, Spectra
+    from assess.motion.suite import Suite
+    from assess.motion.target import Grid, Target
+
+WEAK_PFA, WEAK_PFV = 0.9, 0.85
+"""Shares of the floor's PFA and PFV [-] below which the user's own motions may not lower a class."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenMotions:
+    """Motions that have been made ready: `make` returns those from a number on, and a count of them.
+
+    `fit` and `spectra` are those of the first 100 motions.
+    """
+
+    make: Callable[[int, int], list[tuple[FloatArray, float]]]
+    fit: "Fit | None" = None
+    spectra: "Spectra | None" = None
+
+    def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
+        """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
+        return self.make(first, count)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GeneratedEnsemble:
+    """Motions made for the spectrum of one demand.
+
+    Parameters
+    ----------
+    demand : Demand
+        The floor motion that they stand for.
+    grid : Grid
+        The samples that all floors of the building share, so that motion k is one earthquake.
+    seed : int
+        Of the phases.
+    period, height : float, optional
+        T1 [s] and height [m] of the building, by which a generic spectrum is shaped.
+    """
+
+    demand: Demand
+    grid: "Grid"
+    seed: int
+    period: float | None = None
+    height: float | None = None
+
+    @property
+    def is_generic(self) -> bool:
+        """Whether its spectrum is a generic one, since no record is known."""
+        return self.demand.motion is None
+
+    @property
+    def is_weak(self) -> bool:
+        """They meet the floor's PFA by how they are made."""
+        return False
+
+    @property
+    def record(self) -> tuple[FloatArray, float] | None:
+        """The recorded motion as treated [m/s2], and its time step [s]."""
+        return _record(self.demand)
+
+    def build_target(self) -> "Target":
+        """Return what the motions are to match."""
+        from assess.motion.target import generic_target, recorded_target
+
+        demand = self.demand
+        if demand.motion is not None:
+            return recorded_target(demand.motion, self.grid)
+        pfv = math.nan if "pfv_estimated" in demand.flags else demand.pfv
+        return generic_target(demand.pfa, self.grid, pfv=pfv, period=self.period, height=self.height)
+
+    def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
+        """Find the filter and the corrections that meet the target."""
+        from assess.motion.generate import build_generator
+
+        generator = build_generator(
+            self.build_target(), self.grid, seed=self.seed, axis=self.demand.axis, threads=threads, progress=progress
+        )
+        step = self.grid.time_step
+        return OpenMotions(
+            lambda first, count: [(generator.realise(first, count), step)], generator.fit, generator.spectra
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SuiteEnsemble:
+    """The user's own motions on one floor along one axis, scaled to its PFA where that is wanted."""
+
+    demand: Demand
+    suite: "Suite"
+    is_scaled: bool
+    is_generic: bool = False
+
+    @property
+    def peaks(self) -> tuple[float, float]:
+        """Median PFA [m/s2] and PFV [m/s] of the motions on this floor."""
+        from statistics import median
+
+        motions = [motion for _, motion in self.suite.motions]
+        scales = [self.demand.pfa / motion.pfa if self.is_scaled else 1.0 for motion in motions]
+        scaled = [(one.pfa * scale, one.pfv * scale) for one, scale in zip(motions, scales, strict=True)]
+        return median(pfa for pfa, _ in scaled), median(pfv for _, pfv in scaled)
+
+    @property
+    def is_weak(self) -> bool:
+        """Whether their median PFA is over 10 % below the floor's, or their median PFV over 15 % below a known one."""
+        pfa, pfv = self.peaks
+        is_slow = pfv < WEAK_PFV * self.demand.pfv and "pfv_estimated" not in self.demand.flags
+        return pfa < WEAK_PFA * self.demand.pfa or is_slow
+
+    @property
+    def record(self) -> tuple[FloatArray, float] | None:
+        """The recorded motion as treated [m/s2], and its time step [s]."""
+        return _record(self.demand)
+
+    def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
+        """Take them as they are."""
+        pfa = self.demand.pfa if self.is_scaled else None
+        spectra = self.suite.scaled_spectra(pfa, progress=progress)
+        return OpenMotions(lambda first, count: self.suite.realise(first, count, pfa), spectra=spectra)
+
+
+FloorEnsemble = GeneratedEnsemble | SuiteEnsemble
+
+
+def _record(demand: Demand) -> tuple[FloatArray, float] | None:
+    return None if demand.motion is None else (demand.motion.acceleration, demand.motion.time_step)
+
+
+def build_ensembles(
+    chosen: Sequence[Demand], demands: Demands, building: Building, *, seed: int
+) -> tuple[GeneratedEnsemble, ...]:
+    """Return one ensemble a demand of `chosen`, on the grid that all `demands` of the building share."""
+    from assess.motion.target import build_grid, estimate_period
+
+    every = {id(one): one for parallel in demands.values() for one in parallel}.values()
+    grid = build_grid(
+        [one.motion for one in every if one.motion is not None],
+        has_generic=any(one.motion is None for one in every),
+        period=building.period or estimate_period(building.height),
+    )
+    return tuple(GeneratedEnsemble(one, grid, seed, building.period, building.height) for one in chosen)

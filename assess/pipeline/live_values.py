@@ -1,0 +1,99 @@
+"""What the live columns of a workbook show, computed by the methods themselves.
+
+The values are stored in a workbook next to the formulas, so that a viewer that does not calculate shows them too.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from assess.i18n import gettext
+from assess.methods import Cases, adopted_formula
+from assess.methods._method import ALIKE
+from assess.model import Inventory, Item
+from assess.pipeline.demand import AXES, Demand, Demands, build_demands
+from assess.risk import classify
+from assess.settings import SCENARIOS, Settings
+from assess.units import GRAVITY
+from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
+from assess.workbook.lists import RUN_ASSESS
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import CATALOGUE, SHEETS, Sheet
+from assess.workbook.template import Content, Units, read_catalogue
+
+
+def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[float | str]]:
+    """Return what the columns `assess.workbook.schema.LIVE` show in the language in use, for each item.
+
+    With the workbook's own scenario they equal the results of the formulas, which know the default settings only.
+
+    Raises
+    ------
+    WorkbookError
+        If nothing that the scenario asks for serves a floor.
+    """
+    settings = Settings()
+    kind = scenario or inventory.building.scenario_kind or SCENARIOS[0]
+    demands = build_demands(inventory, kind, ductility_reduction=settings.ductility_reduction)
+    governing = [_find_governing(item, demands) for item in inventory.items]
+    cases = Cases.of(
+        breadth=np.array([item.breadth for item in inventory.items], dtype=np.float64),
+        height=np.array([item.height for item in inventory.items], dtype=np.float64),
+        pfa=np.array([np.nan if one is None else one.pfa for one in governing], dtype=np.float64),
+        pfv=np.array([np.nan if one is None else one.pfv for one in governing], dtype=np.float64),
+    )
+    outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}
+    formula = outcomes[adopted_formula().key]
+    values = zip(*(outcome.value.tolist() for outcome in outcomes.values()), strict=True)
+    outside = formula.flags["extrapolated"].tolist()
+    rows = zip(cases.breadth_to_height.tolist(), governing, values, formula.value.tolist(), outside, strict=True)
+    return [_write_row(*row) for row in rows]
+
+
+def _find_governing(item: Item, demands: Demands) -> Demand | None:
+    """Return the given motion with the larger PFA, the first of equal ones; None where one is not given."""
+    every = [one for axis in ((item.axis,) if item.axis else AXES) for one in demands[item.floor, axis]]
+    if any(one.source != "given" for one in every):
+        return None
+    return max(every, key=lambda one: round(one.pfa / GRAVITY, ALIKE))
+
+
+def _write_row(
+    ratio: float, governing: Demand | None, values: Sequence[float], adopted: float, is_outside: bool
+) -> list[float | str]:
+    if governing is None:
+        return [ratio, *[gettext(RUN_ASSESS)] * (len(values) + 2)]
+    risk = classify(adopted)
+    label = "" if risk is None else say_class(risk) + OUTSIDE * is_outside
+    return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), label]
+
+
+def with_live(content: Content, units: Units = "si", folder: Path | None = None) -> Content:
+    """Return a content with the results of its live columns.
+
+    Parameters
+    ----------
+    content : Content
+        The rows; its own `live` is replaced.
+    units : "si" or "imperial"
+        Of its values.
+    folder : Path, optional
+        The folder of the files that it names, such as records.
+
+    Raises
+    ------
+    WorkbookError
+        If the rows do not make an inventory.
+    """
+    rows = {CATALOGUE.name: read_catalogue(units), **content.rows}
+    headed = {sheet.name: [_head(sheet, row, units) for row in rows.get(sheet.name, ())] for sheet in SHEETS}
+    return replace(content, live=live_values(read_inventory(headed, records=folder)))
+
+
+def _head(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, Any]:
+    """Return a row by the headers of its columns, which name the units."""
+    headers = {column.name: column.header(units) for column in sheet.columns}
+    return {headers[name]: value for name, value in row.items()}

@@ -1,0 +1,279 @@
+"""How likely each route is blocked, against the PFA on its floors.
+
+At each value every floor of a route shakes with that PFA along both axes: by its own motions (those compatible with its
+record, or with its generic spectrum), each scaled by the value over the floor's PFA. The same motions serve at every
+value, so that motion k is one earthquake; the shape of the spectrum stays, and PFV scales along. Every piece that
+reaches a route is rocked under them; one that is too stocky to rock falls by the formula's chance at that PFA. A blank
+axis takes the worse one at each value.
+
+Unlike in an assessment, the formula never stands in for what rocking gives: it gives chances with no shaking at all.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import InputError
+from assess.methods import (
+    Cases,
+    Joint,
+    Outcome,
+    adopted_formula,
+    interval_width,
+    make_batches,
+    rock_cases,
+    run_side_by_side,
+    simulation,
+)  # fmt: skip
+from assess.methods._method import BoolArray, FloatArray
+from assess.pipeline.adopt import adopt, build_falls, find_governing
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.demand import AXES
+from assess.pipeline.ensembles import GeneratedEnsemble
+from assess.pipeline.verify import check_pairs, choose_motions, describe_work
+from assess.progress import SILENT, Progress, Stage
+from assess.rocking.block import STOCKY
+from assess.route_results import Chance
+from assess.routes.chances import Falls, Happens
+from assess.routes.network import build_course
+from assess.routes.obstructions import Obstructions, find_obstructions
+from assess.routes.scene import Scene
+from assess.routes.widths import kinds_of
+from assess.settings import AUTO, count_processors
+from assess.units import ROUNDING
+
+BATCH = 100
+"""Motions made at once: the generator keeps its first hundred."""
+JUMP = 0.2
+"""A chance that rises or falls by more than this between two values is not interpolated [-]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RouteFragility:
+    """One route.
+
+    Parameters
+    ----------
+    route : str
+        Its name.
+    floors : tuple of str
+        Floors of its segments.
+    blocked : tuple of Chance
+        Of its being blocked at each value, if all anchors hold.
+    if_anchors_fail : tuple of Chance, optional
+        The same with anchored pieces taken as free-standing; None where there are none.
+    is_evaluated : bool
+        Whether it is known of any of its segments what can reach it.
+    scenario_pfa : pair of float, optional
+        The least and the largest PFA of the scenario on its floors [m/s2]; None where its segments name no floor.
+    """
+
+    route: str
+    floors: tuple[str, ...]
+    blocked: tuple[Chance, ...]
+    if_anchors_fail: tuple[Chance, ...] | None
+    is_evaluated: bool
+    scenario_pfa: tuple[float, float] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fragility:
+    """How likely each route is blocked at each of `values` of PFA on its floors [m/s2].
+
+    `runs` is the number of motions of each floor and axis, from `seed`. `generic` names the floors whose motions follow
+    a generic spectrum, as far as pieces on them were rocked; `stocky` counts the pieces that are too stocky to rock.
+    """
+
+    values: tuple[float, ...]
+    runs: int
+    seed: int
+    routes: tuple[RouteFragility, ...]
+    generic: tuple[str, ...]
+    stocky: int
+
+
+def find_fragility(
+    assessment: Assessment, values: Sequence[float], *, jobs: int | None = None, progress: Progress = SILENT
+) -> Fragility:
+    """Find how likely each route is blocked at each PFA.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        Of a building with routes, simulated or not; its settings give the number of the motions and their seed.
+    values : sequence of float
+        PFA on the floors of the routes [m/s2], above 0.
+    jobs : int, optional
+        Threads; as many as there are processors by default. They do not change a result.
+    progress : Progress
+        Receives the stage "rocking".
+
+    Raises
+    ------
+    CancelledError
+        If the caller stops the work.
+    InputError
+        If the number of motions is "auto", if they are the user's own, or if the results may exceed the
+        available memory.
+    """
+    if assessment.settings.runs == AUTO or assessment.suite is not None:
+        raise InputError('runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite')
+    inventory = assessment.inventory
+    obstructions = find_obstructions(inventory, progress)
+    beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
+    sweep = _Sweep(assessment, obstructions, _choose(assessment, beside), tuple(values))
+    fell = sweep.rock(jobs or count_processors(), progress)
+    scenes = [sweep.scene(at, fell, progress) for at in range(len(values))]
+    made = [one for one in sweep.cases.ensembles if isinstance(one, GeneratedEnsemble)]
+    generic = {one.demand.floor.floor for one in made if one.is_generic}
+    too_stocky = [one for at in beside if (one := inventory.items[at]).breadth / one.height >= STOCKY]
+    return Fragility(
+        values=tuple(values),
+        runs=int(assessment.settings.runs),
+        seed=assessment.settings.seed,
+        routes=tuple(
+            _route(assessment, scenes, name) for name in dict.fromkeys(one.segment.route for one in obstructions)
+        ),
+        generic=tuple(floor.floor for floor in inventory.floors if floor.floor in generic),
+        stocky=sum(one.quantity for one in too_stocky),
+    )
+
+
+def find_jumps(chances: Sequence[float]) -> list[int]:
+    """Return after which values a chance jumps to the next by more than `JUMP`."""
+    return [at for at, (one, other) in enumerate(pairwise(chances)) if abs(other - one) > JUMP + ROUNDING]
+
+
+def find_passing(values: Sequence[float], chances: Sequence[float], level: float) -> tuple[float, float]:
+    """Return between which PFA a chance first reaches a level: the same one twice, on straight lines, unless it jumps.
+
+    Twice minus infinity where it is above the level at the first value already, infinity where it never reaches it.
+    """
+    at = next((at for at, chance in enumerate(chances) if chance >= level), None)
+    if at is None:
+        return math.inf, math.inf
+    if at == 0:
+        return (values[0],) * 2 if chances[0] == level else (-math.inf, -math.inf)
+    if at - 1 in find_jumps(chances):
+        return values[at - 1], values[at]
+    share = (level - chances[at - 1]) / (chances[at] - chances[at - 1])
+    return (values[at - 1] + share * (values[at] - values[at - 1]),) * 2
+
+
+# ---------------------------------------------------------------- the pieces
+
+
+def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
+    """Return the cases with the motions under which the pieces `beside` routes are to be rocked."""
+    chosen = np.isin(assessment.case_item, beside) & (assessment.cases.breadth_to_height < STOCKY)
+    inventory, settings = assessment.inventory, assessment.settings
+    return choose_motions(
+        assessment.cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sweep:
+    """The cases of an assessment with their motions, at several values of PFA."""
+
+    assessment: Assessment
+    obstructions: tuple[Obstructions, ...]
+    cases: Cases
+    values: tuple[float, ...]
+
+    def rock(self, threads: int, progress: Progress) -> list[tuple[NDArray[np.intp], BoolArray]]:
+        """Return for each ensemble its cases (m,), and whether they overturn at each value (values, m, runs)."""
+        owns = [np.flatnonzero(self.cases.ensemble == number) for number in range(len(self.cases.ensembles))]
+        check_pairs(sum(map(len, owns)), self.assessment.settings, len(self.values))
+        side_by_side = max(1, min(threads, len(owns)))
+        pieces = {int(self.assessment.case_item[case]) for own in owns for case in own}
+        floors = {self.assessment.case_demand[own[0]].floor.floor for own in owns}
+        with progress.stage("rocking", describe_work(len(pieces), len(floors)), len(owns)) as stage:
+
+            def work(number: int, own: NDArray[np.intp]) -> BoolArray:
+                return self._rock_one(number, own, max(1, threads // side_by_side), stage)
+
+            return list(zip(owns, run_side_by_side(work, list(enumerate(owns)), side_by_side), strict=True))
+
+    def _rock_one(self, number: int, own: NDArray[np.intp], threads: int, stage: Stage) -> BoolArray:
+        """Rock the cases `own` under one ensemble: its motions are made once, and scaled."""
+        progress = stage.progress
+        runs, motions = int(self.assessment.settings.runs), self.cases.ensembles[number].open(threads, progress)
+        fell = np.zeros((len(self.values), len(own), runs), dtype=np.bool_)
+        scales = [_scale(value, self.assessment.case_demand[own[0]].pfa) for value in self.values]
+        for at, batch, time_step in make_batches(motions, 0, runs, BATCH):
+            for place, scale in enumerate(scales):
+                found, _ = rock_cases(self.cases, own, scale * batch, time_step, threads, progress)
+                fell[place, :, at : at + len(batch)] = found
+            stage.at((at + len(batch)) / runs, number)
+        return fell
+
+    def scene(self, at: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]], progress: Progress) -> Scene:
+        """Return the segments with how the pieces fall at value `at`."""
+        settings, value = self.assessment.settings, self.values[at]
+        falls = self._falls(value, [(own, every[at]) for own, every in fell])
+        z = interval_width(settings)
+        return Scene(
+            self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed, z, progress
+        )
+
+    def _falls(self, value: float, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Falls:
+        every = np.full(self.cases.pfa.size, value)
+        scaled = replace(
+            self.cases, pfa=every, pfv=self.cases.pfv * value / self.cases.pfa, pfv_estimated=every < 0
+        )  # nothing is doubtful here: what was rocked is taken as it is
+        formula = adopted_formula().evaluate(scaled, self.assessment.settings)
+        outcomes = {adopted_formula().key: formula, simulation().key: _outcome(every.size, fell)}
+        adoption = adopt(outcomes, scaled)
+        governing = find_governing(adoption.probability, self.assessment.case_item, scaled.pfa)
+        inventory, demands = self.assessment.inventory, self.assessment.case_demand
+        return build_falls(inventory, adoption, outcomes, demands, governing, is_suite=False)
+
+
+def _scale(value: float, pfa: float) -> float:
+    """Return the factor that brings motions of one PFA to another: exactly 1 where they are the same."""
+    return 1.0 if abs(value / pfa - 1) <= ROUNDING else value / pfa
+
+
+def _outcome(count: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Outcome:
+    """Return what was rocked as the outcome of a simulation of `count` cases, without the recorded motion."""
+    value: FloatArray = np.full(count, np.nan)
+    joints = []
+    for number, (own, one) in enumerate(fell):
+        value[own] = one.sum(axis=1) / one.shape[1]
+        runs, rotation = np.full(own.size, one.shape[1]), np.zeros((0, 0), dtype=np.float32)
+        joints.append(Joint(ensemble=number, cases=own, runs=runs, fell=one, rotation=rotation, examples=(), fit=None))
+    unknown, no = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
+    return Outcome(
+        value,
+        dict.fromkeys(("low", "high", "record_overturned"), unknown),
+        dict.fromkeys(("generic_spectrum", "weak_motions", "fell_in_record"), no),
+        tuple(joints),
+    )
+
+
+# ---------------------------------------------------------------- the routes
+
+
+def _route(assessment: Assessment, scenes: Sequence[Scene], name: str) -> RouteFragility:
+    segments = scenes[0].segments_of(name)
+    course = build_course(segments, kinds_of(assessment.inventory.places))
+    floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))
+    peaks = [demand.pfa for floor in floors for axis in AXES for demand in assessment.demands[floor, axis]]
+
+    def happens(scene: Scene) -> Happens:
+        return lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)]
+
+    judged = [scene.judge(segments, happens(scene)) for scene in scenes]
+    return RouteFragility(
+        route=name,
+        floors=floors,
+        blocked=tuple(one.chances[0] for one in judged),
+        if_anchors_fail=tuple(one.if_anchors_fail for one in judged if one.if_anchors_fail) or None,
+        is_evaluated=any(scenes[0].obstructions[at].is_evaluated for at in segments),
+        scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
+    )

@@ -1,0 +1,293 @@
+"""The main job: an inventory in, results out."""
+
+import math
+import shutil
+import tempfile
+import weakref
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import InputError, OutputError
+from assess.methods import Cases, Method, all_methods, simulation
+from assess.model import Inventory
+from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.demand import AXES, Demand, Demands, build_demands
+from assess.pipeline.remarks import list_too_low, remark
+from assess.pipeline.series import write_series
+from assess.pipeline.tables import (
+    build_cases,
+    build_floor,
+    build_items,
+    build_motions,
+    build_provenance,
+    list_demands,
+)
+from assess.pipeline.verify import choose_motions, remark_suite, verify
+from assess.pipeline.worked import choose_example, work_example
+from assess.progress import SILENT, Listener, Progress
+from assess.results import Results, Series
+from assess.route_results import RouteTables
+from assess.settings import SCENARIOS, Settings, change_settings
+
+if TYPE_CHECKING:
+    from assess.motion.suite import Suite
+    from assess.routes.obstructions import Obstructions
+
+SERIES = "series.npz"
+
+
+def run(
+    inventory: "Inventory | str | Path",
+    settings: Settings | None = None,
+    *,
+    suite: "Suite | None" = None,
+    methods: Sequence[Method] = (),
+    jobs: int | None = None,
+    figures: bool = True,
+    series_folder: "str | Path | None" = None,
+    progress: "Progress | Listener | None" = None,
+    cancel: Event | None = None,
+    **options: Any,
+) -> Results:
+    """Assess every piece of an inventory.
+
+    Each piece is paired with every motion of the axis it topples along (of both axes where that is not known). The
+    formulas evaluate all pairs at once; then the rocking of the pieces that `settings.verify` asks for is integrated
+    under many motions of their floors. The pair of the highest adopted class governs, then the larger probability, then
+    the larger PFA, then axis X.
+
+    Parameters
+    ----------
+    inventory : Inventory, str or Path
+        From `assess.read_inventory`, or a workbook, which is read.
+    settings : Settings, optional
+        Defaults to `Settings()`.
+    suite : Suite, optional
+        The user's own motions, from `assess.motion.suite.read_suite`, in place of generated ones; `settings.runs` is
+        their number then.
+    methods : sequence of Method, optional
+        Further ones, as from `assess.read_model`: reports show them next to the published ones, but no adopted risk,
+        choice or count goes by them.
+    jobs : int, optional
+        Threads; as many as there are processors by default. They do not change a result.
+    figures : bool
+        Whether the series of figures and the outcomes of every motion are kept, in one file. Without them reports leave
+        their figures out; json and csv need none.
+    series_folder : str or Path, optional
+        Where the file of series for figures is written; a temporary folder by default, which is removed with the
+        results.
+    progress : Progress or callable, optional
+        Notified of how far the work is: a callable gets an `assess.progress.Report`.
+    cancel : threading.Event, optional
+        Stops the work within half a second once it is set.
+    **options
+        Settings by their names, which change `settings`: ``run("office.xlsx", verify="none")``.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    WorkbookError
+        If the workbook cannot be read, or nothing that the scenario asks for serves a floor.
+    InputError
+        If a setting is not one of those allowed, or two methods have one key or title.
+    OutputError
+        If the series cannot be written.
+    CancelledError
+        If `cancel` was set.
+    """
+    progress = Progress.of(progress, cancel)
+    if isinstance(inventory, str | Path):
+        from assess.workbook.read import read_inventory
+
+        inventory = read_inventory(inventory, progress=progress)
+    settings = change_settings(settings, options)
+    assessment = compute(inventory, settings, suite=suite, methods=methods, jobs=jobs, progress=progress)
+    return build_results(assessment, figures=figures, series_folder=series_folder, progress=progress)
+
+
+def compute(
+    inventory: Inventory,
+    settings: Settings,
+    *,
+    suite: "Suite | None" = None,
+    methods: Sequence[Method] = (),
+    jobs: int | None = None,
+    progress: Progress = SILENT,
+) -> Assessment:
+    """Return the arrays of a run; parameters and errors are those of `run`."""
+    every = _join_methods(methods)
+    settings = settings if suite is None else replace(settings, runs=len(suite))
+    scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
+    demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
+    case_item, case_demand = _pair(inventory, demands)
+    cases, obstructions = _cases(inventory, case_item, case_demand), _find_obstructions(inventory, progress)
+    outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
+    chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
+    cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
+    outcomes[simulation().key] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
+    adoption = adopt(outcomes, cases)
+    problems = [*remark(inventory, demands, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
+    problems += _route_problems(inventory, obstructions)
+    return Assessment(
+        inventory=inventory,
+        settings=settings,
+        scenario=scenario,
+        suite=suite,
+        demands=demands,
+        methods=every,
+        cases=cases,
+        case_item=case_item,
+        case_demand=case_demand,
+        outcomes=outcomes,
+        adoption=adoption,
+        governing=find_governing(adoption.probability, case_item, cases.pfa),
+        obstructions=obstructions,
+        problems=(*inventory.problems, *map(inventory.place, problems)),
+    )
+
+
+def build_results(
+    assessment: Assessment,
+    *,
+    figures: bool = True,
+    series_folder: "str | Path | None" = None,
+    progress: Progress = SILENT,
+) -> Results:
+    """Return the tables of a run; parameters and errors are those of `run`."""
+    inventory, demands = assessment.inventory, list_demands(assessment)
+    routes = _evaluate_routes(assessment, progress)
+    example, folder = choose_example(assessment), _find_folder(series_folder, figures)
+    results = Results(
+        settings=assessment.settings,
+        provenance=build_provenance(assessment),
+        building=inventory.building,
+        floor_rows=tuple(map(build_floor, inventory.floors)),
+        motions=build_motions(assessment, demands),
+        item_rows=build_items(assessment, routes),
+        cases_table=build_cases(assessment, demands),
+        route_tables=routes,
+        places=inventory.places,
+        catalogue=inventory.catalogue,
+        problem_rows=assessment.problems,
+        underestimates=_list_underestimates(assessment),
+        methods=tuple(one.info for one in assessment.methods),
+        worked=() if example is None else work_example(example, assessment),
+        worked_item=example,
+        series=Series(folder / SERIES),
+    )
+    if figures:
+        if series_folder is None:
+            weakref.finalize(results, shutil.rmtree, folder, ignore_errors=True)
+        _write_series(results, assessment, demands, progress)
+    return results
+
+
+def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
+    """Return where series are written; the name of a folder that does not exist where none are wanted."""
+    if series_folder is not None:
+        return Path(series_folder)
+    return Path(tempfile.mkdtemp(prefix="assess-") if figures else "no-series")
+
+
+def _write_series(results: Results, assessment: Assessment, demands: Sequence[Demand], progress: Progress) -> None:
+    path = results.series.path
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_series(path, assessment, demands, results, progress)
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error.strerror or error}.") from None
+
+
+def _list_underestimates(assessment: Assessment) -> tuple[str, ...]:
+    """Return the warnings that more shaking is known than is used."""
+    reduction = assessment.settings.ductility_reduction
+    found = list_too_low(assessment.inventory, assessment.demands, assessment.scenario, reduction)
+    return tuple(problem.message for problem in found)
+
+
+def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:
+    """Return the published methods and further ones, in the order of reports."""
+    every = (*all_methods(), *further)
+    for name in ("key", "title"):
+        taken = [str(getattr(one, name)) for one in every]
+        twice = [one for one in taken if taken.count(one) > 1]
+        if twice:
+            raise InputError(f"two methods have the {name} {twice[0]!r}: give each its own, or name one only once.")
+    return every
+
+
+def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tuple[Demand, ...]]:
+    """Pair each item (its index) with every motion of its axis, or of both; those of an item stand together."""
+    pairs = [
+        (index, demand)
+        for index, item in enumerate(inventory.items)
+        for axis in ((item.axis,) if item.axis else AXES)
+        for demand in demands[item.floor, axis]
+    ]
+    return np.array([index for index, _ in pairs], dtype=np.intp), tuple(demand for _, demand in pairs)
+
+
+def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]) -> Cases:
+    def column(values: list[float | None]) -> NDArray[np.float64]:
+        return np.array(values, dtype=np.float64)
+
+    items = [inventory.items[index] for index in case_item]
+    restitution = inventory.building.restitution
+    return Cases(
+        breadth=column([item.breadth for item in items]),
+        height=column([item.height for item in items]),
+        pfa=column([demand.pfa for demand in case_demand]),
+        pfv=column([demand.pfv for demand in case_demand]),
+        friction=column([inventory.friction_of(item) for item in items]),
+        pfv_estimated=np.array(["pfv_estimated" in demand.flags for demand in case_demand], dtype=np.bool_),
+        restitution=np.full(len(items), math.nan if restitution is None else restitution),
+        ensemble=np.full(len(items), -1, dtype=np.intp),
+    )
+
+
+# ---------------------------------------------------------------- routes, imported only where there are any
+
+
+def _find_obstructions(inventory: Inventory, progress: Progress) -> "Sequence[Obstructions]":
+    if not inventory.routes:
+        return ()
+    from assess.routes.obstructions import find_obstructions
+
+    return find_obstructions(inventory, progress)
+
+
+def _evaluate_routes(assessment: Assessment, progress: Progress) -> RouteTables:
+    inventory, settings = assessment.inventory, assessment.settings
+    if not inventory.routes:
+        return RouteTables(risk=settings.route_risk)
+    from assess.routes.evaluate import evaluate_routes
+
+    falls = build_falls(
+        inventory, assessment.adoption, assessment.outcomes, assessment.case_demand, assessment.governing,
+        is_suite=assessment.suite is not None,
+    )  # fmt: skip
+    return evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
+
+
+def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Any:
+    if not inventory.routes:
+        return ()
+    from assess.routes.obstructions import find_route_problems
+
+    return find_route_problems(inventory, obstructions)
+
+
+def _on_route(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> NDArray[np.bool_]:
+    """Return which items name a route, or can reach one by the plan."""
+    reaching = {one.item_index for segment in obstructions for one in segment.pieces}
+    return np.array([bool(item.route) or at in reaching for at, item in enumerate(inventory.items)], dtype=np.bool_)

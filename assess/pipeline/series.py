@@ -1,0 +1,188 @@
+"""The series of figures, computed with the methods and motions and kept in one file, so that reports need neither.
+
+Arrays by name; `m` is a place in `Results.motions`:
+
+=========================== ==========================================================================================
+``workbook``, ``logo``      bytes of the workbook and of the logo (uint8), where there are any
+``motion/m/acceleration_g`` the recorded motion as treated (n,)
+``motion/m/cases``          places in `Results.cases_table` of the c cases that were simulated under its ensemble
+``motion/m/runs``           (c,) motions that each was simulated under, the first ones
+``motion/m/overturned``     (c, ceil(k/8)) one bit a motion, the first in the highest bit (`numpy.unpackbits`)
+``motion/m/rotation``       (c, k) largest |theta| over the critical angle [-]; 0 beyond its runs
+``motion/m/example/j``      the j-th of the first motions [g], ``motion/m/example_steps_s`` their time steps
+``motion/m/periods_s``      (p,) periods of the spectra
+``motion/m/spectra_g``      (k, p) 5 % pseudo-acceleration of the first motions; ``motion/m/target_g`` and
+                            ``motion/m/record_spectrum_g`` (p,) what their mean is to meet, and the record's own
+``contours/...``            ``items``, ``height_cm``, ``pfv_per_pfa_s``, ``breadth_cm`` (b,), ``pfa_g`` (a,), and by the
+                            key of each method that is drawn its chance (a, b)
+=========================== ==========================================================================================
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.methods import Cases, Method
+from assess.methods._method import FloatArray, Joint
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.demand import Demand
+from assess.progress import SILENT, Progress
+from assess.results import ItemResult
+from assess.risk import RiskClass
+from assess.units import ACCELERATION, GRAVITY, LENGTH, ROUNDING, VELOCITY
+
+ALIKE = 0.1
+"""Pieces whose height is this close to the chosen one are drawn on the contours [-]."""
+FINE_BELOW = 50.0
+"""Heights [cm] below which they are rounded to 1 cm in place of 10 cm."""
+STEPS = 121
+"""Points of the grid along each side."""
+SLENDER, STOUT = 0.08, 0.45
+"""The grid reaches from the first to the second B/H [-], and further where pieces lie."""
+WEAKEST, STRONGEST, BEYOND = 0.02, 0.4, 2.0
+"""It reaches from the first to the second PFA [g], at least to as many times the largest of a piece as the third."""
+
+Arrays = dict[str, NDArray[Any]]
+
+
+def write_series(
+    path: Path, assessment: Assessment, demands: Sequence[Demand], results: Iterable[ItemResult],
+    progress: Progress = SILENT,
+) -> None:  # fmt: skip
+    """Compute the series and write them to `path`.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    arrays: Arrays = dict(_files(assessment))
+    joints = assessment.joints
+    for index, demand in enumerate(demands):
+        progress.check()
+        arrays |= {f"motion/{index}/{name}": array for name, array in _of_motion(demand, joints.get(demand))}
+    arrays |= {f"contours/{name}": array for name, array in _contours(assessment, results)}
+    with path.open("wb") as file:
+        np.savez(file, allow_pickle=False, **arrays)
+
+
+def _files(assessment: Assessment) -> Iterator[tuple[str, NDArray[Any]]]:
+    inventory = assessment.inventory
+    content = inventory.data
+    if content:
+        yield "workbook", np.frombuffer(content, dtype=np.uint8)
+    logo = inventory.building.logo
+    if logo is not None and logo.is_file():
+        yield "logo", np.frombuffer(logo.read_bytes(), dtype=np.uint8)
+
+
+# ---------------------------------------------------------------- motions
+
+
+def _of_motion(demand: Demand, joint: Joint | None) -> Iterator[tuple[str, NDArray[Any]]]:
+    if demand.motion is not None and not demand.is_borrowed:
+        yield "acceleration_g", (demand.motion.acceleration / GRAVITY).astype(np.float32)
+    if joint is None:
+        return
+    yield "cases", joint.cases.astype(np.int32)
+    yield "runs", joint.runs.astype(np.int32)
+    yield "overturned", np.packbits(joint.fell, axis=1)
+    yield "rotation", joint.rotation
+    for at, (values, _) in enumerate(joint.examples):
+        yield f"example/{at}", (values / GRAVITY).astype(np.float32)
+    yield "example_steps_s", np.array([step for _, step in joint.examples])
+    yield from _spectra(demand, joint)
+
+
+def _spectra(demand: Demand, joint: Joint) -> Iterator[tuple[str, NDArray[Any]]]:
+    spectra = joint.spectra
+    if spectra is None:
+        return
+    yield "periods_s", spectra.periods
+    yield "spectra_g", (spectra.ordinates / GRAVITY).astype(np.float32)
+    if spectra.target is not None:
+        yield "target_g", spectra.target / GRAVITY
+    elif demand.motion is not None:
+        from assess.motion.spectrum import pseudo_acceleration
+
+        motion = demand.motion
+        own = pseudo_acceleration(motion.acceleration, motion.time_step, spectra.periods)
+        yield "record_spectrum_g", own / GRAVITY
+
+
+# ---------------------------------------------------------------- contours of risk over breadth and PFA
+
+
+def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator[tuple[str, NDArray[Any]]]:
+    """Yield the grid for the height that most risky pieces share, else the commonest; nothing without pieces."""
+    free = [one for one in results if not one.is_anchored]
+    if not free:
+        return
+    height = _commonest([one for one in free if one.adopted.upper >= RiskClass.HIGH] or free)
+    near = [one for one in free if abs(one.item.height_cm - height) <= ALIKE * height * (1 + ROUNDING)]
+    pieces = sorted(near, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))
+    ratio = _velocity_ratio(pieces[0])
+    breadth, pfa = _grid(height, pieces)
+    yield "items", np.array([one.item.index for one in pieces], dtype=np.int32)
+    yield "height_cm", np.array(height)
+    yield "pfv_per_pfa_s", np.array(ratio)
+    yield "breadth_cm", breadth
+    yield "pfa_g", pfa
+    for method in assessment.methods:
+        if method.is_live:
+            yield method.key, _evaluate_grid(method, assessment, height, breadth, pfa, ratio)
+
+
+def _velocity_ratio(worst: ItemResult) -> float:
+    """Return PFV over PFA [s] of the motion that governs a piece; NaN where it is not known."""
+    motion = worst.governing.motion
+    if not motion.pfv_cm_s or not motion.pfa_g:
+        return math.nan
+    return motion.pfv_cm_s * VELOCITY["cm/s"] / (motion.pfa_g * GRAVITY)
+
+
+def _commonest(results: Sequence[ItemResult]) -> float:
+    """Return the height [cm] that most pieces (not rows) share, rounded; of several the largest."""
+    counts: Counter[float] = Counter()
+    for one in results:
+        counts[_round(one.item.height_cm)] += one.item.quantity
+    return max(counts, key=lambda height: (counts[height], height))
+
+
+def _round(height: float) -> float:
+    """Return a height [cm] rounded to 10 cm, or to 1 cm where it is small; halves go up."""
+    step = 10.0 if height >= FINE_BELOW else 1.0
+    return math.floor(height / step * (1 + ROUNDING) + 0.5) * step
+
+
+def _grid(height: float, pieces: Sequence[ItemResult]) -> tuple[FloatArray, FloatArray]:
+    """Return breadths [cm] and PFA [g]: from slender to stout and from weak to strong, around all pieces drawn."""
+    breadth = [one.item.breadth_cm for one in pieces]
+    pfa = [one.governing.motion.pfa_g for one in pieces]
+    thinnest, widest = min(SLENDER * height, 0.85 * min(breadth)), max(STOUT * height, 1.1 * max(breadth))
+    weakest, strongest = min(WEAKEST, 0.85 * min(pfa)), max(STRONGEST, BEYOND * max(pfa))
+    return np.linspace(thinnest, widest, STEPS), np.linspace(weakest, strongest, STEPS)
+
+
+def _evaluate_grid(
+    method: Method, assessment: Assessment, height: float, breadth: FloatArray, pfa: FloatArray, ratio: float
+) -> NDArray[np.float32]:
+    """Return the chance by a method [-] at every PFA (rows) and breadth (columns)."""
+    wide, strong = (values.ravel() for values in np.meshgrid(breadth, pfa))
+    acceleration = strong * ACCELERATION["g"]
+    cases = Cases.of(
+        breadth=wide * LENGTH["cm"], height=height * LENGTH["cm"], pfa=acceleration, pfv=ratio * acceleration
+    )
+    value = method.evaluate(cases, assessment.settings).value
+    return value.reshape(pfa.size, breadth.size).astype(np.float32)
+
+
+def unpack(series: Mapping[str, NDArray[Any]], motion: int) -> NDArray[np.bool_]:
+    """Return which of the c cases simulated under a motion's ensemble overturned in which of k motions, (c, k)."""
+    packed, count = series[f"motion/{motion}/overturned"], series[f"motion/{motion}/rotation"].shape[1]
+    return np.unpackbits(packed, axis=1, count=count).astype(np.bool_)

@@ -1,0 +1,122 @@
+"""The simulation: which pieces are integrated, and under which motions."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import InputError, Problem
+from assess.i18n import Text, fill, join
+from assess.methods import LOOKS, Cases, Outcome, simulation
+from assess.methods._method import BoolArray
+from assess.model import Building
+from assess.pipeline.demand import Demand, Demands
+from assess.pipeline.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
+from assess.progress import SILENT, Progress
+from assess.rocking.block import STOCKY
+from assess.settings import AUTO, Settings, count_processors
+from assess.units import GRAVITY
+
+if TYPE_CHECKING:
+    from assess.motion.suite import Suite
+
+
+MOST_PAIRS = 400_000_000
+"""Results of one motion on one piece that are kept at most: they take five bytes each."""
+
+
+def choose_motions(
+    cases: Cases,
+    chosen: BoolArray,
+    case_demand: tuple[Demand, ...],
+    demands: Demands,
+    building: Building,
+    settings: Settings,
+    suite: "Suite | None",
+) -> Cases:
+    """Return the cases with the motions under which those `chosen` (n,) that can rock are to be integrated."""
+    chosen = chosen & (cases.breadth_to_height < STOCKY)
+    wanted = list(dict.fromkeys(demand for demand, one in zip(case_demand, chosen, strict=True) if one))
+    ensembles: tuple[FloorEnsemble, ...]
+    if suite is None:
+        ensembles = build_ensembles(wanted, demands, building, seed=settings.seed) if wanted else ()
+    else:
+        ensembles = tuple(SuiteEnsemble(demand, suite, settings.scale_motions) for demand in wanted)
+    place = {demand: at for at, demand in enumerate(wanted)}
+    which = [place[demand] if one else -1 for demand, one in zip(case_demand, chosen, strict=True)]
+    return replace(cases, ensemble=np.array(which, dtype=np.intp), ensembles=ensembles)
+
+
+def remark_suite(suite: "Suite | None", cases: Cases) -> list[Problem]:
+    """Return what was left out of the user's own motions, and the floors for which they are too weak."""
+    if suite is None:
+        return []
+    ensembles = [one for one in cases.ensembles if isinstance(one, SuiteEnsemble) and one.is_weak]
+    texts = (fill("Motions of the folder {folder}: {note}.", folder=suite.folder, note=note) for note in suite.notes)
+    notes = [Problem("note", "", "", text) for text in texts]
+    return notes + [Problem("warning", "", "", _describe_weak(one), WEAK) for one in ensembles]
+
+
+WEAK = fill("Simulation may raise a class there, but not lower it. Scale the motions, or choose stronger ones.")
+
+
+def _describe_weak(one: SuiteEnsemble) -> Text:
+    pfa, pfv = one.peaks
+    peaks = fill("median PFA {pfa:.3f} g for {wanted:.3f} g", pfa=pfa / GRAVITY, wanted=one.demand.pfa / GRAVITY)
+    if one.demand.pfv > 0:
+        median, wanted = 100 * pfv, 100 * one.demand.pfv
+        text = fill("median PFV {pfv:.1f} cm/s for {wanted:.1f} cm/s", pfv=median, wanted=wanted)
+        peaks = join(", ", [peaks, text])
+    return fill(
+        "the user's own motions are weaker than floor '{floor}' {axis}: {peaks}.",
+        floor=one.demand.floor.floor,
+        axis=one.demand.axis,
+        peaks=peaks,
+    )
+
+
+def verify(
+    cases: Cases,
+    case_item: NDArray[np.intp],
+    case_demand: tuple[Demand, ...],
+    settings: Settings,
+    *,
+    jobs: int | None = None,
+    progress: Progress = SILENT,
+) -> Outcome:
+    """Integrate the cases that have motions; `jobs` threads, one for each processor by default.
+
+    Raises
+    ------
+    CancelledError
+        If the caller stops the work.
+    InputError
+        If the results would need too much memory.
+    """
+    chosen = cases.ensemble >= 0
+    check_pairs(int(chosen.sum()), settings)
+    pieces = len(np.unique(case_item[chosen]))
+    floors = len({case_demand[one].floor.floor for one in np.flatnonzero(chosen)})
+    evaluate, threads, parts = simulation().evaluate, jobs or count_processors(), len(cases.ensembles)
+    if not pieces:
+        return evaluate(cases, settings)
+    with progress.stage("verification", describe_work(pieces, floors), parts) as stage:
+        return evaluate(cases, settings, threads=threads, stage=stage)
+
+
+def describe_work(pieces: int, floors: int) -> str:
+    """Return what is simulated in words: ``121 pieces on 4 floors``."""
+    return f"{pieces:,} piece{'s' * (pieces != 1)} on {floors:,} floor{'s' * (floors != 1)}"
+
+
+def check_pairs(cases: int, settings: Settings, repeats: int = 1) -> None:
+    """Raise InputError where the results of `cases` under every motion, `repeats` times, may not fit into memory."""
+    runs = LOOKS[0] if settings.runs == AUTO else int(settings.runs)
+    pairs = cases * runs * repeats
+    if pairs > MOST_PAIRS:
+        fewer = "fewer motions" if repeats == 1 else "fewer motions, fewer values of PFA"
+        raise InputError(
+            f"runs is {runs:,}: {pairs:,} results of one motion on one piece may exceed the available memory; expected "
+            f"at most {MOST_PAIRS:,}. Use {fewer}, or split the workbook."
+        )

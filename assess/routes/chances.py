@@ -1,0 +1,309 @@
+"""What falls together, and how likely that is: as the motions say, independently, or fully correlated.
+
+What happens in which of many draws is kept as one whole number, a set: bit k stands for draw k. Sets are joined by `|`,
+intersected by `&` and counted at once. The complement is `every & ~set`, of the set of all draws: no set is negative.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache, reduce
+from operator import or_
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.methods._method import BoolArray, FloatArray
+from assess.progress import SILENT, Progress
+from assess.risk import wilson_interval
+from assess.route_results import Chance
+
+Key = tuple[int, int]
+"""A piece that could fall: its index in the inventory, and 0, or 1 for a second piece of the same row."""
+
+EXACT = 4096
+"""Combinations of falling pieces up to which all are evaluated; above, they are drawn."""
+DRAWS = 2000
+"""Draws where they are more: the 95 % interval of a chance of 0.5 is then 0.5 +- 0.022."""
+
+MOST_PATTERNS = 20_000
+"""Motions up to which pieces of different numbers of motions are repeated to a common multiple."""
+ROUNDED = 12
+"""Decimals that chances keep: the rest is rounding in sums of weights."""
+NONE, EVERY = 0b01, 0b10
+"""The two draws of `Couplings.ends`: nothing falls, and everything does."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Falls:
+    """How the n pieces of an inventory fall, each under its governing motion.
+
+    Parameters
+    ----------
+    probability : (n,) array
+        Adopted chance of overturning [-].
+    group : (n,) integer array
+        Pieces of one group were integrated under the motions of one source, motion k of which is one earthquake for the
+        whole building; -1 where a piece was not verified, or where its verified chance is not adopted.
+    fell : mapping of int to (k,) boolean array
+        For a piece with a group (by its index) whether it overturned, motion by motion.
+    in_record : (n,) array
+        1 where it overturns under the recorded motion itself, 0 where it does not, NaN where that is not known.
+    anchored : (n,) boolean array
+        Pieces whose fall depends on an anchor; their outcomes are those of a free-standing piece.
+    quantity : (n,) integer array
+        Pieces in the row.
+    """
+
+    probability: FloatArray
+    group: NDArray[np.intp]
+    fell: Mapping[int, BoolArray]
+    in_record: FloatArray
+    anchored: BoolArray
+    quantity: NDArray[np.intp]
+
+
+# ---------------------------------------------------------------- sets of draws
+
+
+def to_sets(happens: BoolArray) -> list[int]:
+    """Return the sets of the draws in which each of r things happens (m draws, r)."""
+    packed = np.packbits(happens, axis=0, bitorder="little")
+    return [int.from_bytes(packed[:, at].tobytes(), "little") for at in range(happens.shape[1])]
+
+
+def to_array(draws: int, count: int) -> NDArray[np.uint8]:
+    """Return for each of `count` draws whether a set holds it (count,): 1 or 0."""
+    flat = np.frombuffer(draws.to_bytes(-(-count // 8), "little"), dtype=np.uint8)
+    return np.unpackbits(flat, count=count, bitorder="little")
+
+
+def union(sets: Iterable[int]) -> int:
+    """Return the set of the draws that any of some sets holds."""
+    return reduce(or_, sets, 0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Draws:
+    """m draws with their weights (m,), which add up to 1, and for each piece the set of those in which it falls.
+
+    `narrower` keeps results: by the number of a segment and a width, the set of the draws in which less than that is
+    left.
+    """
+
+    fallen: Mapping[Key, int]
+    weight: FloatArray
+    narrower: dict[tuple[int, float], int] = field(default_factory=dict)
+    every: int = field(init=False)
+    """The set of all draws."""
+    is_even: bool = field(init=False)
+    """Whether all draws weigh the same."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "every", (1 << len(self.weight)) - 1)
+        object.__setattr__(self, "is_even", bool((self.weight == self.weight[0]).all()))
+
+    @classmethod
+    def of(cls, keys: Sequence[Key], fell: BoolArray, weight: FloatArray) -> "Draws":
+        """Build them from which of n pieces fall (m, n)."""
+        return cls(dict(zip(keys, to_sets(fell), strict=True)), weight)
+
+    def share(self, draws: int) -> float:
+        """Return the weight of a set of the draws [-], rounded."""
+        if self.is_even:
+            return round(draws.bit_count() * float(self.weight[0]), ROUNDED)
+        return round(float(self.weight @ to_array(draws, len(self.weight))), ROUNDED)
+
+
+Happens = Callable[[Draws], Sequence[int]]
+"""Returns for some draws the sets of those in which each of several things happens."""
+
+
+# ---------------------------------------------------------------- three couplings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Couplings:
+    """The same pieces falling together in three ways.
+
+    The draws may be of more pieces than `keys`: what depends on another piece must not be asked of them. `ends` are the
+    draws `NONE` and `EVERY`. `runs` is the least number of motions of a verified piece, 0 without one; `is_drawn`
+    whether any of the three was drawn rather than evaluated in full. `pieces` and `unverified` count pieces, not rows.
+    """
+
+    keys: tuple[Key, ...]
+    joint: Draws
+    independent: Draws
+    correlated: Draws
+    ends: Draws
+    is_joint: bool
+    runs: int
+    is_drawn: bool
+    pieces: int
+    unverified: int
+
+    @property
+    def decisive(self) -> tuple[Draws, ...]:
+        """Those whose largest chance is reported: the joint one where it is known, else all three."""
+        return (self.joint,) if self.is_joint else (self.joint, self.independent, self.correlated)
+
+
+def build_couplings(
+    falls: Falls,
+    keys: Sequence[Key],
+    seed: int,
+    of_all: Callable[[], Couplings] | None = None,
+    progress: Progress = SILENT,
+) -> Couplings:
+    """Return how the pieces of `keys` fall together; draws depend on `seed` and on the piece alone.
+
+    `of_all` returns the couplings of more pieces, whose draws are shared wherever the combinations of `keys` are drawn.
+    `progress` is checked for a cancel.
+    """
+    keys, whole = tuple(keys), of_all() if of_all else None
+    columns: dict[int, list[int]] = {}
+    for at, (item, _number) in enumerate(keys):
+        columns.setdefault(item, []).append(at)
+    groups: dict[int, dict[int, list[int]]] = {}
+    for item, own in columns.items():
+        groups.setdefault(int(falls.group[item]), {})[item] = own
+    alone = list(groups.pop(-1, ()))
+    rows = {item: _row_unit(falls, item, own) for item, own in columns.items()}
+    lone = list(rows.values())
+    mixed = [*(_group_unit(falls, one, groups[one]) for one in sorted(groups)), *(rows[item] for item in alone)]
+    independent = whole.independent if whole and _is_drawn(lone) else _combine(lone, keys, seed, progress)
+    joint = (
+        whole.joint if whole and _is_drawn(mixed) else _combine(mixed, keys, seed, progress) if groups else independent
+    )
+    return Couplings(
+        keys=keys,
+        joint=joint,
+        independent=independent,
+        correlated=whole.correlated if whole else _correlate(falls, keys),
+        ends=whole.ends if whole else Draws(dict.fromkeys(keys, EVERY), np.array([0.5, 0.5])),
+        is_joint=not alone and len(groups) <= 1,
+        runs=min((falls.fell[item].size for own in groups.values() for item in own), default=0),
+        is_drawn=bool(alone or len(groups) > 1) and (_is_drawn(mixed) or _is_drawn(lone)),
+        pieces=int(falls.quantity[list(columns)].sum()),
+        unverified=int(falls.quantity[alone].sum()),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Unit:
+    """Pieces that fall together in a known way, independently of other units.
+
+    `key` identifies it in draws: the row and 0, or the group and 1. `columns` are those of its c pieces. `patterns`
+    returns which of them fall in each of `count` patterns (count, c), and the weights (count,).
+    """
+
+    key: tuple[int, int]
+    columns: list[int]
+    count: int
+    patterns: Callable[[], tuple[BoolArray, FloatArray]]
+
+
+def _row_unit(falls: Falls, item: int, columns: list[int]) -> _Unit:
+    """Return the pieces of one row, which fall independently of each other: none, one, or two or more of them."""
+
+    def patterns() -> tuple[BoolArray, FloatArray]:
+        p, q = float(falls.probability[item]), int(falls.quantity[item])
+        none = (1 - p) ** q
+        if len(columns) == 1:
+            return np.array([[False], [True]]), np.array([none, 1 - none])
+        one = q * p * (1 - p) ** (q - 1)
+        fell = np.array([[False, False], [True, False], [True, True]])
+        return fell, np.array([none, one, max(0.0, 1 - none - one)])
+
+    return _Unit((item, 0), columns, 1 + len(columns), patterns)
+
+
+def _group_unit(falls: Falls, group: int, columns: Mapping[int, list[int]]) -> _Unit:
+    """Return verified pieces of one group, which fall motion by motion.
+
+    The outcomes of a piece that was decided after fewer motions than another are repeated, so that its chance is kept.
+    """
+    sizes = {falls.fell[item].size for item in columns}
+    common = math.lcm(*sizes)
+    runs = common if common <= MOST_PATTERNS else max(sizes)
+
+    def patterns() -> tuple[BoolArray, FloatArray]:
+        fell = [np.resize(falls.fell[item], runs) for item, own in columns.items() for _ in own]
+        return np.column_stack(fell), np.full(runs, 1.0 / runs)
+
+    return _Unit((group, 1), [at for own in columns.values() for at in own], runs, patterns)
+
+
+def _is_drawn(units: Sequence[_Unit]) -> bool:
+    return len(units) > 1 and math.prod(unit.count for unit in units) > EXACT
+
+
+def _combine(units: Sequence[_Unit], keys: tuple[Key, ...], seed: int, progress: Progress) -> Draws:
+    """Combine units that fall independently: every combination where they are few, else `DRAWS` of them."""
+    if not units:
+        return Draws.of(keys, np.zeros((1, 0), dtype=np.bool_), np.ones(1))
+    progress.check()
+    patterns = [unit.patterns() for unit in units]
+    progress.check()
+    if _is_drawn(units):
+        at = np.array([_draw(unit.key, own, seed) for unit, (_, own) in zip(units, patterns, strict=True)])
+        weight = np.full(DRAWS, 1.0 / DRAWS)
+    else:
+        at = np.indices([unit.count for unit in units]).reshape(len(units), -1)
+        weight = np.prod([own[chosen] for (_, own), chosen in zip(patterns, at, strict=True)], axis=0)
+    fell = np.zeros((len(weight), len(keys)), dtype=np.bool_)
+    for unit, (pattern, _), chosen in zip(units, patterns, at, strict=True):
+        progress.check()
+        fell[:, unit.columns] = pattern[chosen]
+    return Draws.of(keys, fell, weight)
+
+
+def _draw(key: tuple[int, int], weight: FloatArray, seed: int) -> NDArray[np.intp]:
+    """Draw patterns of a unit, each as often as its weight says, in an order of the unit's own."""
+    return np.minimum(np.searchsorted(np.cumsum(weight), _levels(seed, *key)), len(weight) - 1)
+
+
+@lru_cache(maxsize=8192)
+def _levels(seed: int, name: int, is_group: int) -> FloatArray:
+    """Return the levels, from 0 to 1, that decide the draws of a row or of a group."""
+    return (np.random.default_rng([seed, name, is_group]).permutation(DRAWS) + 0.5) / DRAWS
+
+
+def _correlate(falls: Falls, keys: tuple[Key, ...]) -> Draws:
+    """Return the draws where one level decides for all: what falls at a chance falls at every higher one."""
+    chance = {key: float(falls.probability[key[0]]) for key in keys}
+    levels = sorted({0.0, 1.0, *chance.values()})
+    under = {level: (1 << at) - 1 for at, level in enumerate(levels)}
+    return Draws({key: under[level] for key, level in chance.items()}, np.diff(levels))
+
+
+# ---------------------------------------------------------------- chances
+
+
+def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chance]:
+    """Return the chance of everything that `happens` returns; `z` is the half width of intervals [-].
+
+    What cannot happen with every piece fallen, or happens with none, is certain, and has no interval.
+    """
+    ways = (couplings.joint, couplings.independent, couplings.correlated)
+    happened = [happens(one) for one in ways]
+    return [
+        _chance(couplings, [way.share(one) for way, one in zip(ways, own, strict=True)], z,
+                is_certain=bool(end & NONE) or not end)
+        for end, *own in zip(happens(couplings.ends), *happened, strict=True)
+    ]  # fmt: skip
+
+
+def _chance(couplings: Couplings, shares: Sequence[float], z: float, *, is_certain: bool) -> Chance:
+    joint, independent, correlated = shares
+    values = (joint,) if couplings.is_joint else (joint, independent, correlated)
+    low, high = min(values), max(values)
+    counts = [*([couplings.runs] if couplings.runs else []), *([DRAWS] if couplings.is_drawn else [])]
+    if counts and not is_certain:
+        low = float(wilson_interval(low * min(counts), min(counts), z)[0])
+        high = float(wilson_interval(high * min(counts), min(counts), z)[1])
+    return Chance(
+        probability=max(values), low=min(low, max(values)), high=max(high, *values), joint=joint,
+        independent=independent, correlated=correlated, runs=couplings.runs, is_joint=couplings.is_joint,
+        pieces=couplings.pieces, unverified=couplings.unverified,
+    )  # fmt: skip

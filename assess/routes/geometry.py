@@ -1,0 +1,181 @@
+"""Geometry on the plan of a floor: what pieces cover, standing and fallen, and segments as bands."""
+
+import math
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.model import Inventory, Item, Segment
+from assess.progress import SILENT, Progress
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+Point = tuple[float, float]
+Corners = tuple[Point, Point, Point, Point]
+
+
+# ---------------------------------------------------------------- pieces
+
+
+def turn(item: Item) -> float:
+    """Return the direction of Breadth [deg], anticlockwise from X: that of the axis where no angle is given."""
+    if item.angle_deg is not None:
+        return item.angle_deg
+    return 90.0 if item.axis == "Y" else 0.0
+
+
+def rectangle(at: Point, angle: float, along: tuple[float, float], across: float) -> Corners:
+    """Return the corners of a rectangle, anticlockwise.
+
+    Parameters
+    ----------
+    at : (2,) floats
+        Centre of the piece [m].
+    angle : float
+        Direction of Breadth, anticlockwise from X [deg].
+    along : (2,) floats
+        Where it begins and ends along Breadth, from the centre [m].
+    across : float
+        Its width across Breadth [m], half of it on each side.
+    """
+    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    (x, y), (near, far), half = at, along, across / 2
+    local = ((near, -half), (far, -half), (far, half), (near, half))
+    one, two, three, four = ((x + u * cos - v * sin, y + u * sin + v * cos) for u, v in local)
+    return one, two, three, four
+
+
+def fallen(at: Point, angle: float, breadth: float, width: float, height: float) -> tuple[Corners, Corners]:
+    """Return what a piece covers beyond its footprint if it falls over either of its edges across Breadth.
+
+    Both, as the sign of a motion does not determine the direction in which a piece falls.
+    """
+    edge = breadth / 2
+    return rectangle(at, angle, (edge, edge + height), width), rectangle(at, angle, (-edge - height, -edge), width)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shape:
+    """One placed piece: what it covers standing, what each way of falling adds, and all of that together."""
+
+    standing: "BaseGeometry"
+    falls: tuple["BaseGeometry", ...]
+    everything: "BaseGeometry"
+    flags: tuple[str, ...]
+
+
+def build_shapes(items: Sequence[Item], floors: Collection[str], progress: Progress = SILENT) -> dict[int, Shape]:
+    """Return the shapes of the pieces on some floors that have a position, by their index."""
+    placed = ((at, item, item.x, item.y) for at, item in enumerate(items) if item.floor in floors)
+    found = {}
+    for at, item, x, y in placed:
+        progress.check()
+        if x is not None and y is not None:
+            found[at] = _shape(item, (x, y))
+    return found
+
+
+def _shape(item: Item, at: Point) -> Shape:
+    from shapely import Polygon, union_all
+
+    across, turns = item.width or item.breadth, tuple(_turns(item))
+    standing = union_all([Polygon(rectangle(at, a, (-item.breadth / 2, item.breadth / 2), across)) for a in turns])
+    falls = [Polygon(one) for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
+    doubts = {"direction_unknown": len(turns) > 1, "width_assumed": item.width is None}
+    flags = tuple(flag for flag, holds in doubts.items() if holds)
+    return Shape(standing, tuple(falls), union_all([standing, *falls]), flags)
+
+
+def _turns(item: Item) -> Iterator[float]:
+    """Yield the directions of Breadth that are possible: both axes where neither Axis nor Angle is given."""
+    yield turn(item)
+    if item.axis is None and item.angle_deg is None:
+        yield turn(item) + 90.0
+
+
+# ---------------------------------------------------------------- segments
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """A segment on the plan: straight, as wide as it is clear.
+
+    Parameters
+    ----------
+    start, end : (2,) floats
+        Where its centre line begins and ends [m].
+    extends_start, extends_end : float
+        How far it goes on beyond them, round a bend [m].
+    width : float
+        [m]
+    """
+
+    start: Point
+    end: Point
+    extends_start: float
+    extends_end: float
+    width: float
+
+    @property
+    def length(self) -> float:
+        """From start to end [m]."""
+        return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+
+    def outline(self) -> "BaseGeometry":
+        """Return the band in its own coordinates: along it from its start, and across it from its centre line."""
+        from shapely import box
+
+        return box(-self.extends_start, -self.width / 2, self.length + self.extends_end, self.width / 2)
+
+    def ground(self) -> "BaseGeometry":
+        """Return an area of the plan that contains the band."""
+        from shapely import LineString
+
+        beyond = self.width / 2 + max(self.extends_start, self.extends_end)
+        return LineString([self.start, self.end]).buffer(beyond, cap_style="square")
+
+    def to_own(self, shape: "BaseGeometry") -> "BaseGeometry":
+        """Return a shape of the plan in the band's own coordinates."""
+        import shapely
+
+        along = (np.array(self.end) - self.start) / self.length
+
+        def local(points: NDArray[np.float64]) -> NDArray[np.float64]:
+            away = points - self.start
+            return np.column_stack((away @ along, away @ (-along[1], along[0])))
+
+        return shapely.transform(shape, local)
+
+
+def build_bands(inventory: Inventory, clear: Sequence[float]) -> dict[int, Band]:
+    """Return the bands of the segments (by their index) whose places both have a position on the segment's floor.
+
+    Where exactly two segments meet at a place, each is extended by half the other's width, so that the bend belongs to
+    both. `clear` are the clear widths of all segments [m].
+    """
+    places = {place.place: place for place in inventory.places if place.x is not None and place.y is not None}
+
+    def is_placed(segment: Segment) -> bool:
+        ends = (places.get(segment.start), places.get(segment.end))
+        return all(end is not None and end.floor == segment.floor for end in ends)
+
+    placed = {at: one for at, one in enumerate(inventory.routes) if is_placed(one)}
+    meet = Counter(place for one in placed.values() for place in (one.start, one.end))
+
+    def extension(at: int, place: str) -> float:
+        others = (other for other, one in placed.items() if other != at and place in (one.start, one.end))
+        return max((clear[other] / 2 for other in others), default=0.0) if meet[place] == 2 else 0.0
+
+    def point(name: str) -> Point:
+        place = places[name]
+        return float(place.x or 0.0), float(place.y or 0.0)
+
+    return {
+        at: Band(point(one.start), point(one.end), extension(at, one.start), extension(at, one.end), clear[at])
+        for at, one in placed.items()
+    }

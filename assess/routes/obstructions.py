@@ -1,0 +1,324 @@
+"""Which pieces can lie on which segment once they have fallen, what they cover of it, and the gaps that they leave.
+
+No publication gives a closed rule for this; the one used here is for screening. A fallen piece covers Height x Width
+outward from its tipping edge, and where it stood. Where the plan gives the position of piece and segment, what is
+covered follows from it, and a piece that could fall either way covers whatever of both ways lies in the segment. Else
+it covers Height - Edge distance of the width, on an unknown side and at an unknown place along the segment: it may face
+any other. Walls are known only where Routes names the Room: placed pieces of other rooms cannot reach the segment then.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from assess.errors import Problem
+from assess.i18n import fill
+from assess.model import Inventory, Item, Segment
+from assess.progress import SILENT, Progress
+from assess.route_results import BesideRow
+from assess.routes.chances import Key
+from assess.routes.gaps import SIDES, Gaps, Obstacle, build_gaps
+from assess.routes.geometry import Band, Shape, build_bands, build_shapes
+from assess.routes.widths import NARROWER
+from assess.workbook.names import key
+from assess.workbook.schema import DEFAULT_WIDTH
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+CLEARLY_NEARER = 0.1
+"""By how much [m] a given Edge distance must be nearer than the plan says for it to count instead."""
+TOUCH = 1e-6
+"""Area [m2] up to which two shapes only touch."""
+MOST_NAMED = 3
+"""Pieces that a problem names."""
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What one piece covers of one segment."""
+
+    distance: float
+    obstacles: Sequence[Obstacle]
+    flags: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Obstructions:
+    """One segment with the pieces that reach it, before anything is known of their chances.
+
+    `clear` and `required` are the widths used [m], `standing` is the one left with nothing fallen; `flags` are keys
+    of `assess.route_results.FLAGS`. `other_rooms` are pieces that only their Room keeps away.
+    """
+
+    segment: Segment
+    clear: float
+    required: float
+    band: Band | None
+    flags: tuple[str, ...]
+    pieces: tuple[BesideRow, ...]
+    gaps: Gaps
+    other_rooms: tuple[int, ...]
+    standing: float
+
+    @property
+    def is_blocked_standing(self) -> bool:
+        """Whether it is under the required width with nothing fallen."""
+        return self.standing < self.required - NARROWER
+
+    @property
+    def is_evaluated(self) -> bool:
+        """Whether it is known which pieces can reach it; where it is too narrow as it stands, none need."""
+        return bool(self.pieces) or self.band is not None or self.is_blocked_standing
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """The pieces that could fall onto it."""
+        return self.gaps.keys
+
+    def narrower(self, fallen: Mapping[Key, int], every: int, width: float) -> int:
+        """Return the set of the draws, of `every`, in which it is narrower than a width [m], by more than rounding.
+
+        `fallen` has for each piece the set of those in which it falls; others stand.
+        """
+        return self.gaps.narrower(fallen, every, width - NARROWER)
+
+    def blocked(self, fallen: Mapping[Key, int], every: int) -> int:
+        """Return the same for its required width."""
+        return self.narrower(fallen, every, self.required)
+
+
+def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tuple[Obstructions, ...]:
+    """Return every segment of the inventory with the pieces that reach it."""
+    if not inventory.routes:
+        return ()
+    clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
+    bands = build_bands(inventory, clear)
+    shapes = build_shapes(inventory.items, {inventory.routes[at].floor for at in bands}, progress)
+    progress.check()
+    named, near = _find_named(inventory), _find_near(inventory, shapes, bands)
+    found = []
+    for at, segment in enumerate(inventory.routes):
+        progress.check()
+        band, covered, others = bands.get(at), dict[int, Coverage](), []
+        for index in near.get(at, ()):
+            if one := cover_by_plan(index, shapes[index], bands[at]):
+                if _is_walled_off(inventory.items[index], segment):
+                    others.append(index)
+                else:
+                    covered[index] = one
+        for index in named.get(at, ()):
+            if one := cover_by_distance(index, inventory.items[index], clear[at], band, shapes.get(index)):
+                covered[index] = one
+        found.append(_obstruct(inventory, segment, clear[at], band, covered, others))
+    return tuple(found)
+
+
+def _is_walled_off(item: Item, segment: Segment) -> bool:
+    """Return whether a wall stands between: the rooms are known and not the same, and the piece does not name it."""
+    is_named = item.route == segment.route and item.segment in ("", segment.segment)
+    rooms = {key(room) for room in segment.rooms}
+    return not is_named and bool(rooms) and bool(item.room) and key(item.room) not in rooms
+
+
+def _obstruct(
+    inventory: Inventory,
+    segment: Segment,
+    clear: float,
+    band: Band | None,
+    covered: Mapping[int, Coverage],
+    others: Sequence[int],
+) -> Obstructions:
+    required = segment.required_width or DEFAULT_WIDTH
+    indices = sorted(covered)
+    gaps = build_gaps([obstacle for index in indices for obstacle in covered[index].obstacles], clear)
+    return Obstructions(
+        segment=segment,
+        clear=clear,
+        required=required,
+        band=band,
+        flags=tuple(_flag(inventory, segment, has_band=band is not None)),
+        pieces=tuple(_beside(index, inventory.items[index], covered[index], clear, required) for index in indices),
+        gaps=gaps,
+        other_rooms=tuple(sorted(others)),
+        standing=gaps.residual(np.zeros(len(gaps.keys), dtype=np.bool_)),
+    )
+
+
+def _flag(inventory: Inventory, segment: Segment, *, has_band: bool) -> Iterator[str]:
+    if segment.clear_width is None:
+        yield "clear_assumed"
+    if segment.required_width is None:
+        yield "required_assumed"
+    if has_band:
+        yield "own_rooms" if segment.rooms else "walls_unknown"
+    else:
+        floors = [{one.floor for one in inventory.places if one.place == name} for name in (segment.start, segment.end)]
+        yield "no_plan" if floors[0] == floors[1] else "between_floors"
+
+
+def _beside(index: int, item: Item, covered: Coverage, clear: float, required: float) -> BesideRow:
+    gaps = build_gaps([one for one in covered.obstacles if one.number == 0], clear)
+    left = gaps.residual(np.ones(len(gaps.keys), dtype=np.bool_))
+    stands = any(not one.falls for one in covered.obstacles)
+    return BesideRow(
+        item=item.item,
+        row=item.row,
+        item_index=index,
+        by_plan=covered.obstacles[0].shape is not None,
+        distance_m=covered.distance,
+        reach_m=clear - left,
+        left_m=left,
+        blocks_alone=left < required - NARROWER,
+        flags=(*covered.flags, *(["standing_inside"] if stands else [])),
+    )
+
+
+def _find_named(inventory: Inventory) -> dict[int, list[int]]:
+    """Return for each segment the pieces that name it, or its route alone, on its floor."""
+    by_route: dict[str, list[int]] = {}
+    for at, segment in enumerate(inventory.routes):
+        by_route.setdefault(segment.route, []).append(at)
+    found: dict[int, list[int]] = {}
+    for index, item in enumerate(inventory.items):
+        own = [at for at in by_route.get(item.route, ()) if item.segment in ("", inventory.routes[at].segment)]
+        here = [at for at in own if inventory.routes[at].floor == item.floor]
+        for at in here or [at for at in own if not inventory.routes[at].floor]:
+            found.setdefault(at, []).append(index)
+    return found
+
+
+def _find_near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping[int, Band]) -> dict[int, list[int]]:
+    """Return for each band the placed pieces of its floor that lie near enough to cover some of it."""
+    if not shapes:
+        return {}
+    from shapely import STRtree
+
+    on_floor: dict[str, list[int]] = {}
+    for index in shapes:
+        on_floor.setdefault(inventory.items[index].floor, []).append(index)
+    trees = {floor: STRtree([shapes[index].everything for index in own]) for floor, own in on_floor.items()}
+    found = {}
+    for at, band in bands.items():
+        floor = inventory.routes[at].floor
+        hits = trees[floor].query(band.ground()) if floor in trees else ()
+        found[at] = [on_floor[floor][hit] for hit in sorted(hits)]
+    return found
+
+
+# ---------------------------------------------------------------- what a fallen piece covers
+
+
+def cover_by_plan(index: int, shape: Shape, band: Band) -> Coverage | None:
+    """Return what a placed piece covers of a band: nothing where the plan shows that it cannot reach it."""
+    from shapely import union_all
+
+    outline, stands = band.outline(), band.to_own(shape.standing)
+    standing = _clip(stands, outline)
+    ways = [one for fall in shape.falls if (one := _clip(band.to_own(fall), outline)) is not None]
+    obstacles = [] if standing is None else [_placed(index, standing, band, falls=False)]
+    if ways:
+        covered = union_all([*ways, *([] if standing is None else [standing])])
+        obstacles.append(_placed(index, covered, band, falls=True))
+    if not obstacles:
+        return None
+    depth = 0.0 if standing is None else band.width - max(obstacles[0].left, obstacles[0].right)
+    return Coverage(stands.distance(outline) - depth, obstacles, shape.flags)
+
+
+def _clip(shape: "BaseGeometry", outline: "BaseGeometry") -> "BaseGeometry | None":
+    inside = shape.intersection(outline)
+    return inside if inside.area > TOUCH else None
+
+
+def _placed(index: int, shape: "BaseGeometry", band: Band, *, falls: bool) -> Obstacle:
+    _, low, _, high = shape.bounds
+    left, right = max(0.0, band.width / 2 - high), max(0.0, low + band.width / 2)
+    return Obstacle(item=index, falls=falls, left=left, right=right, shape=shape)
+
+
+def cover_by_distance(index: int, item: Item, clear: float, band: Band | None, shape: Shape | None) -> Coverage | None:
+    """Return what a piece covers by its Edge distance; nothing where the plan decides it."""
+    distance, flags = item.edge_distance, ["side_unknown"]
+    if not item.segment:
+        flags.insert(0, "segment_assumed")
+    if band is not None and shape is not None:
+        by_plan = float(band.to_own(shape.standing).distance(band.outline()))
+        if distance is None or distance > by_plan - CLEARLY_NEARER or by_plan <= 0:
+            return None
+        flags.insert(0, "nearer_than_plan")
+    if distance is None:
+        distance = 0.0
+        flags.insert(0, "edge_assumed")
+    obstacles = list(_from_sides(index, item, distance, clear))
+    return Coverage(distance, obstacles, tuple(flags)) if obstacles else None
+
+
+def _from_sides(index: int, item: Item, distance: float, clear: float) -> Iterator[Obstacle]:
+    """Yield what reaches in from either side: where it stands inside already, the first and a second piece fallen."""
+    for number in range(min(item.quantity, 2)):
+        for falls, reach in ((False, -distance), (True, item.height - distance)):
+            depth = min(max(reach, 0.0), clear)
+            for side in SIDES if depth > 0 else ():
+                left, right = (0.0, clear - depth) if side == "left" else (clear - depth, 0.0)
+                yield Obstacle(item=index, number=number, falls=falls, left=left, right=right, side=side)
+
+
+# ---------------------------------------------------------------- problems
+
+
+def find_route_problems(inventory: Inventory, obstructions: Sequence[Obstructions]) -> Iterator[Problem]:
+    """Yield warnings where the workbook contradicts itself beside routes, and notes on what could not count."""
+    seen: set[tuple[str, int]] = set()
+    for segment in obstructions:
+        for one in segment.pieces:
+            for flag, describe in (("nearer_than_plan", _contradiction), ("standing_inside", _inside)):
+                if flag in one.flags and (flag, one.item_index) not in seen:
+                    seen.add((flag, one.item_index))
+                    yield describe(inventory, segment.segment, one)
+    yield from _out_of_reach(inventory, obstructions)
+
+
+def _contradiction(inventory: Inventory, _segment: Segment, one: BesideRow) -> Problem:
+    message = fill(
+        "Edge distance {distance:g} m of '{item}' is smaller than its position on the plan gives; the Edge distance is "
+        "used.",
+        distance=one.distance_m,
+        item=one.item,
+    )
+    return Problem("warning", "Items", _cell(inventory, one.row, "edge_distance"), message, _CORRECT)
+
+
+_CORRECT = fill("Correct one of the two.")
+
+
+def _inside(inventory: Inventory, segment: Segment, one: BesideRow) -> Problem:
+    message = fill(
+        "'{item}' stands {depth:.2f} m inside route '{route}', segment '{segment}', with nothing fallen.",
+        item=one.item,
+        depth=-one.distance_m,
+        route=segment.route,
+        segment=segment.segment,
+    )
+    fix = fill("Move it, or correct its position or the Clear width.")
+    return Problem("warning", "Items", _cell(inventory, one.row, "x" if one.by_plan else "edge_distance"), message, fix)
+
+
+def _out_of_reach(inventory: Inventory, obstructions: Sequence[Obstructions]) -> Iterator[Problem]:
+    """Report pieces that name a route that they cannot reach: their distance or the plan may be wrong."""
+    reaching = {(segment.segment.route, one.item_index) for segment in obstructions for one in segment.pieces}
+    lost = [item for at, item in enumerate(inventory.items) if item.route and (item.route, at) not in reaching]
+    if lost:
+        names = ", ".join(item.item for item in lost[:MOST_NAMED]) + (", ..." if len(lost) > MOST_NAMED else "")
+        message = fill(
+            "{count:,} rows name a route that their pieces cannot reach when they fall: {names}.",
+            count=len(lost),
+            names=names,
+        )
+        yield Problem("note", "Items", _cell(inventory, lost[0].row, "route"), message)
+
+
+def _cell(inventory: Inventory, row: int, field: str) -> str:
+    return f"{inventory.letters.get('Items', {}).get(field, 'A')}{row}"

@@ -1,0 +1,221 @@
+"""The chances of blockage against PFA: the same motions scaled, held against blocks rocked one by one, and a run."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+import numpy as np
+import pytest
+
+import assess
+from assess.methods import Cases, proposed_or
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.route_sweep import find_fragility, find_jumps, find_passing
+from assess.pipeline.run import build_results, compute
+from assess.pipeline.verify import choose_motions
+from assess.progress import Progress, Report
+from assess.rocking.ensemble import rock_blocks
+from assess.settings import Settings
+from assess.units import GRAVITY
+from assess.workbook.template import Content, write_workbook
+from tests.shaking import write_records
+
+RUNS = 20
+SETTINGS = Settings(verify="none", runs=RUNS, seed=4)
+CORRIDOR = {"route": "A", "segment": "corridor", "floor": "1", "clear_width": 1.5, "required_width": 0.9}
+CABINET = {
+    "item": "a1", "floor": "1", "breadth": 40, "width": 80, "height": 180, "axis": "X", "route": "A", "edge_distance": 0
+}  # fmt: skip
+"""It leaves nothing of the corridor once it has fallen."""
+
+
+def assessed(
+    folder: Path, *items: dict[str, Any], settings: Settings = SETTINGS, floor: dict[str, Any] | None = None
+) -> Assessment:
+    rows = {
+        "Building": [{}],
+        "Floors": [{"floor": "1", **(floor or {"record_x": "pulse.csv"})}],
+        "Items": list(items) or [CABINET],
+        "Routes": [CORRIDOR, {**CORRIDOR, "route": "B"}],
+    }
+    write_records(folder, "pulse")
+    path = folder / "w.xlsx"
+    write_workbook(path, Content(rows=rows), "si")
+    return compute(assess.read_inventory(path), settings)
+
+
+def fragility(assessment: Assessment, *pfa_g: float, **named: Any):
+    return find_fragility(assessment, [one * GRAVITY for one in pfa_g], **named)
+
+
+def chances(found, route: str = "A") -> list[float]:
+    (own,) = (one for one in found.routes if one.route == route)
+    return [chance.probability for chance in own.blocked]
+
+
+def share(assessment: Assessment, pfa_g: float) -> list[float]:
+    """Rock every piece alone, under the motions of each axis scaled to a PFA: the shares that overturn."""
+    every = np.ones(len(assessment.case_item), dtype=np.bool_)
+    building, settings = assessment.inventory.building, assessment.settings
+    cases = choose_motions(
+        assessment.cases, every, assessment.case_demand, assessment.demands, building, settings, None
+    )
+    found = []
+    for at, demand in enumerate(assessment.case_demand):
+        ((motions, step),) = cases.ensembles[cases.ensemble[at]].open(1).realise(0, settings.runs)
+        scaled = motions * (pfa_g * GRAVITY / demand.pfa)
+        found.append(float(rock_blocks(cases.breadth[at], cases.height[at], scaled, step).overturned.mean()))
+    return found
+
+
+# --- one piece ---
+
+
+def test_one_piece_falls_as_often_as_it_does_alone(tmp_path):
+    assessment = assessed(tmp_path, floor={"pfa_x": 0.3, "pfa_y": 0.2})
+    found = fragility(assessment, 0.2, 0.3, 0.9)
+    assert chances(found) == [pytest.approx(share(assessment, pfa)[0]) for pfa in (0.2, 0.3, 0.9)]
+    assert 0 < chances(found)[1] < 1
+    one = found.routes[0].blocked[0]
+    assert (one.pieces, one.unverified, one.runs, one.is_joint) == (1, 0, RUNS, True)
+    assert chances(found, "B") == [0, 0, 0]
+    assert found.generic == ("1",)
+    assert found.routes[0].scenario_pfa == (pytest.approx(0.2 * GRAVITY), pytest.approx(0.3 * GRAVITY))
+    assert found.routes[0].floors == ("1",)
+
+
+def test_below_the_threshold_of_every_piece_nothing_falls(tmp_path):
+    """It rocks above B/H = 0.22 g; the peaks of the motions scatter, by less than 2."""
+    found = fragility(assessed(tmp_path), 0.05, 0.11)
+    assert chances(found) == [0, 0]
+    assert found.routes[0].blocked[0].high > 0, "as only so many motions were tried"
+
+
+def test_a_blank_axis_takes_the_worse_at_each_value(tmp_path):
+    assessment = assessed(tmp_path, {**CABINET, "axis": None})
+    values = (0.3, 0.4, 0.5, 0.6)
+    along = [share(assessment, pfa) for pfa in values]
+    assert chances(fragility(assessment, *values)) == [pytest.approx(max(both)) for both in along]
+    assert any(one != other for one, other in along)
+
+
+def test_a_piece_too_stocky_to_rock_falls_by_the_formula(tmp_path):
+    assessment = assessed(tmp_path, {**CABINET, "breadth": 160, "width": 160, "height": 110, "quantity": 2})
+    found = fragility(assessment, 0.3, 0.9)
+    formula = proposed_or.evaluate(Cases.of(breadth=1.6, height=1.1, pfa=[0.3 * GRAVITY, 0.9 * GRAVITY]), SETTINGS)
+    first = found.routes[0].blocked
+    assert [one.correlated for one in first] == pytest.approx(formula.value.tolist())
+    assert [(one.is_joint, one.unverified, one.runs) for one in first] == [(False, 2, 0)] * 2
+    assert (found.stocky, found.generic) == (2, ())
+
+
+def test_anchored_pieces_stand_beside(tmp_path):
+    found = fragility(assessed(tmp_path, {**CABINET, "anchored": "yes"}), 0.6).routes[0]
+    assert (found.blocked[0].probability, found.blocked[0].pieces) == (0, 0)
+    assert found.if_anchors_fail is not None
+    assert found.if_anchors_fail[0].probability == chances(fragility(assessed(tmp_path), 0.6))[0] > 0
+
+
+# --- beside a run ---
+
+
+ITEMS = [
+    CABINET,
+    {**CABINET, "item": "a2", "breadth": 30, "height": 170, "edge_distance": 0.4, "axis": None},
+    {**CABINET, "item": "a3", "breadth": 35, "height": 170, "edge_distance": 0.2, "anchored": "yes"},
+    {**CABINET, "item": "a4", "breadth": 60, "height": 180, "edge_distance": 1.0, "quantity": 3, "axis": "Y"},
+]
+
+
+def test_at_the_workbooks_own_pfa_it_is_what_a_run_finds(tmp_path):
+    ran = assessed(tmp_path, *ITEMS, settings=replace(SETTINGS, verify="high"))
+    (pfa,) = {demand.pfa for demand in ran.case_demand}
+    found = find_fragility(ran, [pfa])
+    routes = build_results(ran).route_tables.routes
+    for one, other in zip(found.routes, routes, strict=True):
+        assert one.blocked == (other.blocked,) or not other.evaluated
+        assert (one.if_anchors_fail or (None,)) == (other.blocked_if_anchors_fail,)
+    assert 0 < chances(found)[0] < 1
+    assert found.generic == ()
+    assert found == find_fragility(assessed(tmp_path, *ITEMS), [pfa]), "verified or not"
+
+
+def test_values_and_threads_change_nothing(tmp_path):
+    assessment = assessed(tmp_path, *ITEMS)
+    several = fragility(assessment, 0.2, 0.4, 0.6, jobs=1)
+    assert fragility(assessment, 0.2, 0.4, 0.6, jobs=3) == several
+    assert chances(fragility(assessment, 0.4)) == chances(several)[1:2]
+
+
+def test_progress_is_reported(tmp_path):
+    reports: list[Report] = []
+    fragility(assessed(tmp_path, *ITEMS), 0.2, jobs=1, progress=Progress(reports.append))
+    own = [one for one in reports if one.stage == "rocking"]
+    assert {one.detail for one in own} == {"4 pieces on 1 floor"}
+    assert [one.share for one in own] == sorted(one.share for one in own)
+    assert (own[0].share, own[-1].share) == (0, 1)
+
+
+def test_a_cancel_ends_it(tmp_path):
+    assessment, cancel = assessed(tmp_path, *ITEMS), Event()
+
+    def listen(report: Report) -> None:
+        assert not cancel.is_set(), "nothing is reported once it is cancelled"
+        cancel.set()
+
+    with pytest.raises(assess.CancelledError):
+        fragility(assessment, 0.2, progress=Progress(listen, cancel))
+
+
+def test_nothing_to_rock(tmp_path):
+    found = fragility(assessed(tmp_path, {**CABINET, "route": None}), 0.5)
+    assert chances(found) == chances(found, "B") == [0]
+
+
+def test_what_it_cannot_do(tmp_path):
+    assessment = assessed(tmp_path, settings=replace(SETTINGS, runs="auto"))
+    with pytest.raises(assess.InputError, match="a fixed number of generated motions"):
+        fragility(assessment, 0.3)
+    many = assessed(tmp_path, settings=replace(SETTINGS, runs=100_000))
+    with pytest.raises(assess.InputError, match=r"^runs is 100,000: 500,000,000 results .* fewer values of PFA"):
+        fragility(many, *np.linspace(0.1, 1, 5000))
+
+
+# --- where it passes a level ---
+
+
+@pytest.mark.parametrize(
+    ("chances", "level", "pfa"),
+    [
+        ([0.0, 0.2, 0.4], 0.1, 0.15),
+        ([0.0, 0.2, 0.4], 0.2, 0.2),
+        ([0.0, 0.2, 0.4], 0.35, 0.275),
+        ([0.7, 0.7, 0.9], 0.8, 0.25),
+        ([0.0, 0.2, 0.6], 0.7, math.inf),
+        ([0.3, 0.2, 0.6], 0.25, -math.inf),
+        ([0.3, 0.2, 0.6], 0.3, 0.1),
+        ([0.0, 0.16, 0.1], 0.12, 0.175),
+    ],
+)
+def test_where_a_chance_reaches_a_level(chances, level, pfa):
+    assert find_passing([0.1, 0.2, 0.3], chances, level) == pytest.approx((pfa, pfa))
+
+
+@pytest.mark.parametrize(
+    ("chances", "level", "between"),
+    [
+        ([0.0, 1.0, 1.0], 0.03, (0.1, 0.2)),
+        ([0.0, 1.0, 1.0], 1.0, (0.1, 0.2)),
+        ([0.0, 0.2, 0.41], 0.3, (0.2, 0.3)),
+        ([0.0, 0.4, 0.2], 0.3, (0.1, 0.2)),
+    ],
+)
+def test_nothing_is_read_off_a_jump(chances, level, between):
+    assert find_passing([0.1, 0.2, 0.3], chances, level) == between
+
+
+def test_jumps():
+    assert find_jumps([0.0, 0.3, 0.5, 0.7, 0.9, 0.6]) == [0, 4], "20 percentage points are none"
+    assert find_jumps([0.5]) == []

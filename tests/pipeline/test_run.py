@@ -1,0 +1,163 @@
+import gc
+import shutil
+from dataclasses import replace
+from threading import Event
+
+import pytest
+
+import assess
+from assess.report.ranking import fix_first
+from assess.risk import RiskClass
+from tests.workbooks import FLOORS, RECORDS, UNVERIFIED, assessed, write
+
+PIECE = {"floor": "1", "breadth": 40, "width": 90, "height": 180}
+
+
+def test_an_item_with_an_axis_takes_that_axis_alone(tmp_path):
+    items = [{"item": "x", "axis": "X", **PIECE}, {"item": "y", "axis": "Y", **PIECE}, {"item": "both", **PIECE}]
+    results = assessed(tmp_path / "w.xlsx", items)
+    assert [one.motion.axis for one in results["x"].cases] == ["X"]
+    assert [one.motion.axis for one in results["y"].cases] == ["Y"]
+    assert [one.motion.axis for one in results["both"].cases] == ["X", "Y"]
+
+
+def test_the_larger_probability_governs_a_blank_axis(tmp_path):
+    floors = [{"floor": "1", "pfa_x": 0.2, "pfa_y": 0.4}]
+    one = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors)["a"]
+    assert one.governing.motion.axis == "Y"
+    assert one.adopted.probability == one.worst("proposed_or")
+
+
+def test_at_equal_probability_the_larger_pfa_governs_then_x(tmp_path):
+    """Both PFA lie past the peak of the formula, where its value is held: the probabilities are equal."""
+    floors = [{"floor": "1", "pfa_x": 1.1, "pfa_y": 1.4}, {"floor": "2", "pfa_x": 1.2, "pfa_y": 1.2}]
+    items = [{"item": "a", **PIECE}, {"item": "b", **PIECE, "floor": "2"}]
+    results = assessed(tmp_path / "w.xlsx", items, floors)
+    assert results["a"].governing.motion.axis == "Y"
+    assert results["b"].governing.motion.axis == "X"
+    assert {case.methods["proposed_or"].value for case in results["a"].cases} == {results["a"].adopted.probability}
+
+
+def test_the_worst_of_parallel_records_governs_and_all_are_kept(tmp_path):
+    for name in ("0165a_u.smc", "np01002p_4225a_a.smc"):
+        shutil.copy(RECORDS / name, tmp_path / name)
+    floors = [{"floor": "1", "record_x": "np01002p_4225a_a.smc; 0165a_u.smc"}]
+    one = assessed(tmp_path / "w.xlsx", [{"item": "a", "axis": "X", **PIECE}], floors)["a"]
+    assert [case.motion.record for case in one.cases] == ["np01002p_4225a_a.smc", "0165a_u.smc"]
+    assert one.governing.motion.pfa_g == max(case.motion.pfa_g for case in one.cases)
+    assert one.governing.motion.record == "0165a_u.smc"
+
+
+def test_treatment_that_takes_over_two_percent_of_the_peak_is_told(tmp_path):
+    folder = tmp_path / "records"
+    shutil.copytree(RECORDS.parents[1] / "inventories" / "records" / "575-market", folder)
+    floors = [{"floor": "1", "record_x": "records/891018_1.cra-1.0210a.smc"}]
+    results = assessed(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], floors)
+    (note,) = [one for one in results.problem_rows if "treatment lowers the PFA" in one.message]
+    assert note.severity == "note"
+    assert "from the file's 0.233 g to 0.222 g (4.5%)" in note.message
+
+
+def test_an_assessment_without_items_is_empty(tmp_path):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
+    results = assess.run(replace(inventory, items=()), UNVERIFIED)
+    assert len(results) == 0
+    assert list(results) == []
+    written = assess.write_reports(results, tmp_path / "out")
+    assert all(path.stat().st_size for path in written.values())
+
+
+def test_flags_of_piece_and_motion_reach_the_adopted_risk(tmp_path):
+    floors = [{"floor": "1", "pfa_x": 0.95}]
+    items = [
+        {"item": "stocky", "floor": "1", "breadth": 150, "height": 100, "axis": "Y"},
+        {"item": "slippery", "floor": "1", "breadth": 60, "height": 120, "friction": 0.3, "axis": "X"},
+        {"item": "thin", "floor": "1", "breadth": 10, "height": 150, "axis": "X"},
+    ]
+    results = assessed(tmp_path / "w.xlsx", items, floors, period=1.0)
+    flags = {one.item.item: set(one.adopted.flags) for one in results}
+    assert flags["stocky"] >= {"does_not_rock", "one_axis_only", "pfv_estimated", "extrapolated"}
+    assert results["stocky"].governing.methods["fema_p58"].value is None
+    assert flags["slippery"] >= {"slides", "pfv_estimated", "extrapolated"}
+    assert flags["thin"] >= {"thin", "held", "extrapolated"}
+
+
+def test_what_to_fix_first(tmp_path):
+    items = [
+        {"item": "plain", "floor": "1", "breadth": 28, "height": 200},
+        {"item": "few", "floor": "1", "breadth": 40, "height": 180, "importance": "life safety"},
+        {"item": "many", "floor": "1", "breadth": 40, "height": 180, "importance": "life safety", "quantity": 5},
+        {
+            "item": "anchored",
+            "floor": "1",
+            "breadth": 28,
+            "height": 200,
+            "anchored": "yes",
+            "importance": "life safety",
+        },
+        {"item": "stable", "floor": "1", "breadth": 90, "height": 90, "importance": "life safety"},
+        {"item": "worst", "floor": "1", "breadth": 28, "height": 200, "importance": "life safety"},
+        {"item": "mild", "floor": "1", "breadth": 70, "height": 180, "importance": "life safety"},
+    ]
+    results = list(assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.25}]))
+    assert [one.item.item for one in fix_first(iter(results))] == ["worst", "many", "few", "plain", "mild"]
+    assert results[6].adopted.risk is RiskClass.MEDIUM  # no life safety puts it before what is likely to fall
+    assert results[4].adopted.risk is RiskClass.LOW
+
+
+def test_a_path_is_read_and_keywords_are_settings(tmp_path):
+    results = assess.run(write(tmp_path / "w.xlsx"), verify="none", scenario="AS_filled")
+    assert results.settings == replace(UNVERIFIED, scenario="as filled")
+    assert [one.item.item for one in results] == ["A1", "A2", "A3", "A4", "A5"]
+    with pytest.raises(assess.InputError, match=r"verifi is an unknown setting\. Did you mean verify"):
+        assess.run(write(tmp_path / "w.xlsx"), verifi="none")
+    with pytest.raises(assess.WorkbookError, match=r"nowhere\.xlsx"):
+        assess.run(tmp_path / "nowhere.xlsx")
+
+
+def test_a_building_value_that_is_replaced_counts(tmp_path):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], FLOORS))
+    smooth = replace(inventory, building=replace(inventory.building, friction=0.1))
+    before, after = (assess.run(one, UNVERIFIED)["a"] for one in (inventory, smooth))
+    assert (before.item.friction, after.item.friction) == (None, 0.1)
+    assert "slides" not in before.adopted.flags
+    assert "slides" in after.adopted.flags
+
+
+def test_a_cancelled_run_stops_and_leaves_nothing(tmp_path):
+    cancel, stages = Event(), []
+
+    def listen(report):
+        stages.append(report.stage)
+        if report.stage == "verification":
+            cancel.set()
+
+    items = [{"item": f"p{at}", **PIECE} for at in range(3)]
+    with pytest.raises(assess.CancelledError):
+        assess.run(write(tmp_path / "w.xlsx", items), verify="all", runs=20, progress=listen, cancel=cancel,
+                   series_folder=tmp_path / "series")  # fmt: skip
+    assert stages[0] == "reading"
+    assert stages[-1] == "verification"
+    assert not (tmp_path / "series").exists()
+
+
+def test_series_lie_where_the_caller_says_else_they_go_with_the_results(tmp_path):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
+    kept = assess.run(inventory, UNVERIFIED, series_folder=tmp_path / "series")
+    assert (tmp_path / "series" / "series.npz").is_file()
+    assert bytes(kept.series["workbook"]) == (tmp_path / "w.xlsx").read_bytes()
+    passing = assess.run(inventory, UNVERIFIED)
+    folder = passing.series.path.parent
+    assert passing.series.is_there
+    del passing
+    gc.collect()
+    assert not folder.exists()
+
+
+def test_settings_change_what_they_say(tmp_path):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", [{"item": "a", **PIECE}], FLOORS))
+    usual, wide = (
+        next(iter(assess.run(inventory, replace(UNVERIFIED, zeta_velocity=zeta)))).worst("kaneko_hayashi")
+        for zeta in (0.5, 1.5)
+    )
+    assert usual != wide

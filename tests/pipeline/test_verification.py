@@ -1,0 +1,469 @@
+"""The verification through a whole run: what it changes, what it may not, and that it comes out the same."""
+
+import csv
+import io
+import json
+import re
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import jsonschema
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import assess
+import assess.report
+from assess.cli.app import app
+from assess.motion.spectrum import pseudo_acceleration
+from assess.pipeline.run import compute
+from assess.report.data import SCHEMA
+from assess.risk import RiskClass, classify
+from assess.settings import Settings
+from tests.shaking import RECORDS, TIMES, write_record, write_records
+from tests.workbooks import assessed, write
+
+MARKET = Path(__file__).parents[2] / "inventories" / "records" / "575-market"
+SAMPLES = Path(__file__).parents[2] / "samples" / "records"
+CHANNEL = "891018_1.cra-1.0210a.smc"
+
+FLOORS = [
+    {"floor": "roof", "record_x": "fast.csv; slow.csv"},
+    {"floor": "pulse", "record_x": "pulse.csv"},
+    {"floor": "still", "record_x": "still.csv"},
+    {"floor": "given", "pfa_x": 0.3, "pfv_x": 30.0},
+]
+ITEMS = [
+    {"item": "parallel", "floor": "roof", "axis": "X", "breadth": 37, "height": 180},
+    {"item": "usual", "floor": "roof", "axis": "X", "breadth": 40, "height": 180, "quantity": 3},
+    {"item": "twin", "floor": "roof", "axis": "X", "breadth": 40, "height": 180},
+    {"item": "falls", "floor": "pulse", "axis": "X", "breadth": 70, "height": 300},
+    {"item": "stands", "floor": "still", "axis": "X", "breadth": 40, "height": 180},
+    {"item": "stocky", "floor": "still", "axis": "X", "breadth": 145, "height": 100},
+    {"item": "thin", "floor": "given", "axis": "X", "breadth": 25, "height": 180},
+    {"item": "broad", "floor": "given", "axis": "X", "breadth": 62, "height": 180},
+]
+
+
+def _run(folder, path, *more, formats="json"):
+    """The command, in this process; returns what it printed and wrote."""
+    out = folder / "out"
+    done = CliRunner().invoke(app, ["run", str(path), "--out", str(out), "--formats", formats, *map(str, more)])
+    assert done.exit_code == 0, done.output
+    files = {file.name: file.read_bytes() for file in out.iterdir()}
+    found = json.loads(files["results.json"])
+    return SimpleNamespace(
+        stdout=done.stdout, stderr=done.stderr, files=files, found=found, out=out,
+        items={one["item"]: one for one in found["items"]},
+    )  # fmt: skip
+
+
+def _book(folder, items=None, floors=None, **building):
+    write_records(folder)
+    return write(folder / "w.xlsx", items or ITEMS, floors or FLOORS, **building)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """All pieces of the workbook, simulated under 100 motions each; and the results that were written."""
+    folder, kept = tmp_path_factory.mktemp("verified"), []
+    whole = assess.report.write_reports
+
+    def keep(results, *more, **named):
+        kept.append(results)
+        return whole(results, *more, **named)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(assess.report, "write_reports", keep)
+        found = _run(folder, _book(folder), "--verify", "all", "--runs", 100, formats="json,csv,npz")
+    found.results = kept[0]
+    return found
+
+
+@pytest.fixture(scope="module")
+def results(done):
+    return done.results
+
+
+@pytest.fixture(scope="module")
+def inventory(tmp_path_factory):
+    return assess.read_inventory(_book(tmp_path_factory.mktemp("inventory")))
+
+
+# --- what is found ---
+
+
+def test_results_follow_their_schema(done):
+    jsonschema.validate(done.found, json.loads(SCHEMA.read_text(encoding="utf-8")))
+    assert done.found["assess"]["seed"] == 1
+    settings = done.found["assess"]["settings"]
+    assert (settings["verify"], settings["runs"], settings["seed"], settings["scale_motions"]) == ("all", 100, 1, False)
+    assert done.found["assess"]["inputs"]["motions"] == {}
+
+
+def test_every_piece_that_rocks_is_counted_with_its_interval(done):
+    for name, item in done.items.items():
+        found = item["verification"]
+        if name == "stocky":
+            assert found is None
+            continue
+        assert found["runs"] == 100
+        assert found["probability"] == found["overturned"] / 100
+        assert found["low"] <= found["probability"] <= found["high"]
+        assert item["methods"]["housner_monte_carlo"]["value"] == found["probability"]
+
+
+def test_a_piece_too_stocky_to_rock_keeps_the_formula(done):
+    item = done.items["stocky"]
+    assert item["adopted"]["method"] == "proposed_or"
+    assert item["adopted"]["probability"] == item["methods"]["proposed_or"]["value"]
+    assert "does_not_rock" in item["adopted"]["flags"]
+
+
+def test_ensembles_tell_how_they_meet_their_spectrum(done):
+    floors = {floor["floor"]: floor["demands"] for floor in done.found["floors"]}
+    for name in ("roof", "pulse", "still", "given"):
+        for demand in floors[name]:
+            if demand["axis"] == "Y":
+                assert demand["ensemble"] is None, "no piece topples that way"
+                continue
+            ensemble = demand["ensemble"]
+            assert (ensemble["motions"], ensemble["generic_spectrum"]) == (100, name == "given")
+            assert 0.9 < ensemble["fit"]["pfa_ratio"] < 1.1
+
+
+def test_where_nothing_rocks_none_of_n_overturns(done):
+    """Of 100, none cannot show "low"."""
+    item = done.items["stands"]
+    found, adopted = item["verification"], item["adopted"]
+    assert (found["overturned"], found["probability"], found["low"]) == (0, 0.0, 0.0)
+    assert found["high"] == pytest.approx(0.0370, abs=5e-5)
+    assert found["record"] == {"overturned": False, "max_rotation_ratio": 0.0}
+    assert (adopted["class"], adopted["class_upper"], adopted["probability"]) == ("low", "medium", 0.0)
+
+
+def test_a_piece_that_falls_in_the_record_is_at_least_high(done):
+    item = done.items["falls"]
+    assert item["verification"]["record"]["overturned"] is True
+    assert item["verification"]["record"]["max_rotation_ratio"] == pytest.approx(np.pi / 2 / np.arctan(70 / 300))
+    assert item["adopted"]["probability"] == item["verification"]["probability"] < 0.3
+    assert item["adopted"]["class"] == "high"
+    assert "fell_in_record" in item["adopted"]["flags"]
+
+
+def test_of_parallel_records_the_worst_governs_and_lowered_is_held_against_the_highest(done, results):
+    """The fast record has the higher class by formula, the slow one overturns more."""
+    item, one = done.items["parallel"], results["parallel"]
+    fast, slow = item["axes"]
+    assert [axis["source"] for axis in item["axes"]] == ["fast.csv", "slow.csv"]
+    assert fast["verification"]["overturned"] < slow["verification"]["overturned"]
+    assert item["pfa_source"] == "slow.csv"
+    assert classify(fast["methods"]["proposed_or"]) is RiskClass.VERY_HIGH
+    assert classify(slow["methods"]["proposed_or"]) is RiskClass.HIGH
+    assert (item["adopted"]["class"], item["adopted"]["lowered_from"]) == ("medium", "very high")
+    assert (one.adopted.lowered_from, one.by_formula.motion.record) == (RiskClass.VERY_HIGH, "fast.csv")
+
+
+def test_equal_pieces_come_out_equal(done):
+    for name in ("verification", "adopted", "methods", "axes"):
+        assert done.items["usual"][name] == done.items["twin"][name]
+
+
+# --- lowered, and never lowered ---
+
+
+def test_every_lowered_class_is_marked_in_all_outputs(done, results):
+    lowered = {one.item.item: one.adopted.lowered_from.word for one in results if one.adopted.lowered_from}
+    assert {"parallel", "usual", "twin", "stands"} <= set(lowered)
+    assert not {"falls", "thin", "broad", "stocky"} & set(lowered)
+    for one in results:
+        highest = RiskClass(max(int(classify(case.methods["proposed_or"].value)) for case in one.cases))
+        assert one.adopted.lowered_from == (highest if one.adopted.risk < highest else None)
+    assert lowered == {
+        name: item["adopted"]["lowered_from"] for name, item in done.items.items() if item["adopted"]["lowered_from"]
+    }
+    with (done.out / "items.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert lowered == {row["item"]: row["adopted_lowered_from"] for row in rows if row["adopted_lowered_from"]}
+    last = done.stdout.splitlines()[-1]
+    assert re.search(rf"; class lowered: \d+ pieces in {len(lowered)} rows", last)
+    assert "7 of 8 rows, 100 motions each" in last
+
+
+def test_the_flat_table_has_the_verification(done):
+    with (done.out / "items.csv").open(encoding="utf-8-sig", newline="") as file:
+        rows = {row["item"]: row for row in csv.DictReader(file)}
+    for name, item in done.items.items():
+        found, row = item["verification"], rows[name]
+        if found is None:
+            assert {value for key, value in row.items() if key.startswith("verification_")} == {""}
+            continue
+        for key in ("runs", "overturned", "probability", "low", "high"):
+            assert float(row[f"verification_{key}"]) == found[key]
+        record = found["record"]
+        assert row["verification_record_overturned"] == ("" if record is None else str(record["overturned"]))
+
+
+def test_a_generic_spectrum_never_lowers_a_class(done):
+    for name in ("thin", "broad"):
+        item = done.items[name]
+        assert "generic_spectrum" in item["adopted"]["flags"]
+        assert item["adopted"]["lowered_from"] is None
+        by_formula = classify(item["methods"]["proposed_or"]["value"])
+        assert by_formula is not None
+        assert item["adopted"]["class"] in [one.word for one in RiskClass if one >= by_formula]
+        assert item["verification"]["record"] is None
+    broad = done.items["broad"]
+    assert classify(broad["verification"]["probability"]) < RiskClass.HIGH
+    assert (broad["adopted"]["class"], broad["adopted"]["method"]) == ("high", "proposed_or")
+    assert (broad["adopted"]["low"], broad["adopted"]["high"]) == (None, None)
+    assert "not_lowered" in broad["adopted"]["flags"]
+
+
+@pytest.mark.slow
+def test_a_real_record_lowers_classes_and_says_so(tmp_path):
+    """The 42nd floor of 575 Market Street, 1989: 0.22 g, but little of it at the periods that overturn."""
+    shutil.copy(MARKET / CHANNEL, tmp_path)
+    items = [{"item": str(b), "floor": "42", "axis": "X", "breadth": b, "height": 180} for b in (40, 45, 60)]
+    path = write(tmp_path / "w.xlsx", items, [{"floor": "42", "record_x": CHANNEL}])
+    done = _run(tmp_path, path, "--runs", 20)
+    assert [one["adopted"]["lowered_from"] for one in done.items.values()] == ["high"] * 3
+    assert done.stdout.splitlines()[-1].endswith(
+        "3 of 3 rows, 20 motions each; class lowered: 3 pieces in 3 rows; "
+        "could be of a higher class: 3 pieces in 3 rows."
+    )
+
+
+# --- which pieces, which motions ---
+
+
+@pytest.mark.slow
+def test_by_default_only_what_is_high_or_doubtful_or_on_a_route_is_verified(tmp_path):
+    items = [
+        {"item": "calm", "floor": "calm", "axis": "X", "breadth": 60, "height": 180},
+        {"item": "outside", "floor": "still", "axis": "X", "breadth": 90, "height": 180},
+    ]
+    done = _run(tmp_path, _book(tmp_path, items, [*FLOORS, {"floor": "calm", "pfa_x": 0.12}]), "--runs", 5)
+    calm, outside = done.items["calm"], done.items["outside"]
+    assert (calm["verification"], calm["adopted"]["method"]) == (None, "proposed_or")
+    assert calm["adopted"]["probability"] == calm["methods"]["proposed_or"]["value"]
+    assert "extrapolated" in outside["methods"]["proposed_or"]["flags"]
+    assert outside["verification"]["runs"] == 5
+    assert "Simulated by direct integration: 1 of 2 rows, 5 motions each" in done.stdout
+
+
+@pytest.mark.slow
+def test_a_borrowed_motion_has_phases_of_its_own(tmp_path):
+    write_records(tmp_path, "slow")
+    items = [{"item": "a", "floor": "1", "breadth": 30, "height": 180}]
+    settings = Settings(verify="all", runs=60)
+    results = assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "record_x": "slow.csv"}], settings=settings)
+    one, other = (case.motion for case in results["a"].cases)
+    assert (one.axis, other.axis, one.pfa_g) == ("X", "Y", other.pfa_g)
+    for name in ("rotation", "example/0"):
+        assert not np.array_equal(*(results.series[f"motion/{motion.index}/{name}"] for motion in (one, other)))
+    assert "one_axis_only" in other.flags
+
+
+def test_the_spectra_of_each_floor_are_kept(inventory):
+    """Those of the examples, worked out alone; the target of a recorded floor is the record's own spectrum."""
+    for demand, joint in compute(inventory, Settings(verify="all", runs=100)).joints.items():
+        spectra = joint.spectra
+        assert spectra.ordinates.shape == (100, spectra.periods.size)
+        for (motion, step), ordinates in zip(joint.examples, spectra.ordinates, strict=False):
+            expected = pseudo_acceleration(motion, step, spectra.periods)
+            np.testing.assert_allclose(ordinates, expected, rtol=1e-4)  # examples are kept in single precision
+        deviation = spectra.ordinates.mean(axis=0) / spectra.target - 1
+        assert np.abs(deviation).mean() == pytest.approx(joint.fit.mean_deviation, rel=1e-5)
+        assert deviation[np.abs(deviation).argmax()] == pytest.approx(joint.fit.worst_deviation, rel=1e-5)
+        if demand.motion is not None:
+            own = pseudo_acceleration(demand.motion.acceleration, demand.motion.time_step, spectra.periods)
+            np.testing.assert_allclose(spectra.target, own, rtol=0.02)
+
+
+@pytest.mark.slow
+def test_restitution_changes_what_blocks_do(tmp_path, results):
+    items = [one for one in ITEMS if one["floor"] == "roof"]
+    path = _book(tmp_path, items, FLOORS[:1], restitution=0.97)
+    lively = assess.run(path, Settings(verify="all", runs=100))
+    for usual, other in zip(results, lively, strict=False):
+        for one, changed in zip(usual.cases, other.cases, strict=True):
+            assert one.methods["proposed_or"] == changed.methods["proposed_or"]
+    rotations = [found.series["motion/0/rotation"] for found in (results, lively)]
+    assert not np.array_equal(*rotations)
+
+
+# --- the same again ---
+
+SMALL = [ITEMS[0], ITEMS[1], {"item": "g", "floor": "given", "axis": "X", "breadth": 40, "height": 180}]
+SMALL_FLOORS = [{"floor": "roof", "record_x": "slow.csv"}, {"floor": "given", "pfa_x": 0.3, "pfv_x": 30.0}]
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("small")
+    path = _book(folder, SMALL, SMALL_FLOORS)
+    return folder, path, _run(folder, path, "--verify", "all", "--runs", 40, "--jobs", 1, formats="json,npz")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("jobs", [2, 3, 4])
+def test_the_number_of_threads_changes_no_byte(small, tmp_path, jobs):
+    _, path, before = small
+    again = _run(tmp_path, path, "--verify", "all", "--runs", 40, "--jobs", jobs, formats="json,npz")
+    assert again.files == before.files
+
+
+@pytest.mark.slow
+def test_the_order_of_rows_is_irrelevant(small, tmp_path):
+    _, _, before = small
+    again = _run(tmp_path, _book(tmp_path, SMALL[::-1], SMALL_FLOORS[::-1]), "--verify", "all", "--runs", 40)
+    assert list(again.items) == list(before.items)[::-1]
+    for name, item in before.items.items():
+        assert again.items[name] | {"source": None} == item | {"source": None}
+
+
+@pytest.mark.slow
+def test_another_seed_gives_other_motions(small, tmp_path):
+    _, path, before = small
+    again = _run(tmp_path, path, "--verify", "all", "--runs", 40, "--seed", 2)
+    assert again.found["assess"]["seed"] == 2
+    shares = [[one["verification"]["overturned"] for one in found.items.values()] for found in (before, again)]
+    assert shares[0] != shares[1]
+
+
+def test_auto_stops_each_piece_by_itself(tmp_path):
+    items = [
+        {"item": "falls", "floor": "1", "axis": "X", "breadth": 25, "height": 180},
+        {"item": "stands", "floor": "1", "axis": "X", "breadth": 170, "height": 180},
+    ]
+    write_record(tmp_path / "strong.csv", 3 * RECORDS["slow"])
+    path = write(tmp_path / "w.xlsx", items, [{"floor": "1", "record_x": "strong.csv"}])
+    done = _run(tmp_path, path, "--verify", "all", "--runs", "auto", formats="json,npz")
+    runs = {name: item["verification"]["runs"] for name, item in done.items.items()}
+    assert runs == {"falls": 125, "stands": 250}
+    assert done.found["assess"]["settings"]["runs"] == "auto"
+    assert [floor["demands"][0]["ensemble"]["motions"] for floor in done.found["floors"][:1]] == [250]
+    arrays = np.load(io.BytesIO(done.files["outcomes.npz"]))
+    assert arrays["overturned"].shape == (2, 32)
+    assert np.isnan(arrays["max_rotation_ratio"]).sum(axis=1).tolist() == [125, 0]
+    assert "125 to 5,000 motions each" in done.stdout
+
+
+# --- every motion ---
+
+
+def test_outcomes_agree_with_the_results(done):
+    arrays = np.load(io.BytesIO(done.files["outcomes.npz"]))
+    fell = np.unpackbits(arrays["overturned"], axis=1)[:, :100]
+    turned = arrays["max_rotation_ratio"]
+    assert fell.shape == turned.shape == (10, 100)
+    seen = set()
+    for at, name in enumerate(arrays["item"]):
+        item = done.items[str(name)]
+        axis = next(one for one in item["axes"] if one["source"] == arrays["source"][at])
+        assert fell[at].sum() == axis["verification"]["overturned"]
+        assert arrays["runs"][at] == axis["verification"]["runs"]
+        assert (arrays["row"][at], arrays["axis"][at]) == (item["source"]["row"], "X")
+        critical = np.arctan(item["breadth_to_height"])
+        np.testing.assert_array_equal(turned[at] >= np.float32(np.pi / 2 / critical) * (1 - 1e-6), fell[at] == 1)
+        if arrays["governs"][at]:
+            assert fell[at].sum() == item["verification"]["overturned"]
+            seen.add(str(name))
+    assert seen == set(done.items) - {"stocky"}
+
+
+# --- motions of one's own ---
+
+
+@pytest.fixture
+def suite(tmp_path):
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    for number in range(4):
+        long = np.sin(2 * np.pi * TIMES / (0.8 + 0.3 * number)) * np.exp(-(((TIMES - 4) / 2) ** 2))
+        write_record(folder / f"m{number}.csv", (0.1 + 0.1 * number) * long)
+    write_record(folder / "other.csv", 0.2 * np.sin(2 * np.pi * TIMES), step=0.02)
+    (folder / "README.md").write_text("Mine.", encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("scaled", [False, True])
+def test_motions_of_ones_own(tmp_path, suite, scaled):
+    more = ["--scale-motions"] if scaled else []
+    done = _run(tmp_path, _book(tmp_path), "--verify", "all", "--motions", suite, *more, formats="json,npz")
+    settings, inputs = done.found["assess"]["settings"], done.found["assess"]["inputs"]
+    assert (settings["runs"], settings["scale_motions"]) == (5, scaled)
+    assert sorted(inputs["motions"]) == ["m0.csv", "m1.csv", "m2.csv", "m3.csv", "other.csv"]
+    jsonschema.validate(done.found, json.loads(SCHEMA.read_text(encoding="utf-8")))
+    ensembles = [one["ensemble"] for floor in done.found["floors"] for one in floor["demands"] if one["axis"] == "X"]
+    weak = [one.pop("weak_motions") for one in ensembles]
+    assert any(weak), "some floors shake more than these, or faster"
+    assert ensembles == [{"motions": 5, "generic_spectrum": False, "fit": None}] * 5
+    assert {item["verification"]["runs"] for item in done.items.values() if item["verification"]} == {5}
+    still = done.items["stands"]["verification"]["overturned"]
+    assert still == 0 if scaled else still > 0, "scaled to the 0.05 g of its floor, nothing rocks"
+    assert "5 motions each" in done.stdout
+
+
+def test_a_suite_that_cannot_be_read_ends_the_run(tmp_path, suite):
+    (suite / "bad.csv").write_text("nothing of use", encoding="utf-8")
+    path = _book(tmp_path)
+    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "out"), "--motions", str(suite)])
+    assert done.exit_code == 2
+    assert re.search(r"error .*bad\.csv", done.stderr)
+    assert not (tmp_path / "out").exists()
+
+
+def _write_suite(folder, peak, period=1.0, count=6):
+    folder.mkdir()
+    for number in range(count):
+        write_record(
+            folder / f"m{number}.csv", peak * np.sin(2 * np.pi * TIMES / period) * np.exp(-(((TIMES - 4) / 2) ** 2))
+        )
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("peak", "period", "more"),
+    [(0.002, 1.0, []), (0.4, 0.05, ["--scale-motions"])],
+    ids=["of far too low a level", "scaled, but without the floor's velocity"],
+)
+def test_motions_weaker_than_the_floor_lower_no_class(tmp_path, peak, period, more):
+    folder = _write_suite(tmp_path / "mine", peak, period)
+    items = [{"item": "thin", "floor": "1", "breadth": 30, "height": 180}]
+    path = write(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.5, "pfv_x": 70}])
+    done = _run(tmp_path, path, "--motions", folder, *more)
+    (item,) = done.items.values()
+    assert item["verification"]["overturned"] == 0
+    assert item["adopted"]["method"] == "proposed_or"
+    assert item["adopted"]["lowered_from"] is None
+    assert {"weak_motions", "not_lowered"} <= set(item["adopted"]["flags"])
+    warnings = [one["message"] for one in done.found["problems"] if one["severity"] == "warning"]
+    assert any("weaker than floor '1' X: median PFA" in one for one in warnings)
+    assert "weaker than floor '1' X" in done.stderr
+    assert "1 row keeps the formula's class, which simulation may not lower" in done.stdout
+
+
+@pytest.mark.slow
+def test_what_a_piece_does_along_the_other_axis_is_not_lost(tmp_path):
+    """It falls under the record along X; along Y, of which only a peak is known, more motions overturn it."""
+    shutil.copy(SAMPLES / "np01002p_4225a_a.smc", tmp_path)
+    floors = [{"floor": "R", "record_x": "np01002p_4225a_a.smc", "pfa_y": 0.5, "pfv_y": 60}]
+    path = write(tmp_path / "w.xlsx", [{"item": "thin", "floor": "R", "breadth": 20, "height": 200}], floors)
+    done = _run(tmp_path, path, "--runs", 30)
+    item = done.items["thin"]
+    assert (item["axis"], item["verification"]["record"]) == ("Y", None)
+    assert item["axes"][0]["verification"]["record"]["overturned"] is True
+    assert "fell_in_record" in item["adopted"]["flags"]
+    assert item["adopted"]["class"] in ("high", "very high")
+
+
+def test_a_folder_that_cannot_be_written_is_reported_before_the_long_work(tmp_path, monkeypatch):
+    monkeypatch.setattr("assess.pipeline.run.compute", lambda *_, **__: pytest.fail("the work has begun"))
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    path = write(tmp_path / "w.xlsx")
+    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "file" / "out")])
+    assert done.exit_code == 1
+    assert f"cannot be written to: {tmp_path / 'file'} is a file. Name another folder." in done.stderr

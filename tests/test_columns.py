@@ -1,0 +1,27 @@
+"""A column that nothing is computed with: named in the schema and in the fields, and it is read and shown."""
+
+from dataclasses import replace
+
+from assess.fields import Shape, _of_item, item_fields
+from assess.pipeline.run import run
+from assess.workbook import parse, read, resolve, schema
+from assess.workbook.schema import Column
+from tests.workbooks import UNVERIFIED
+
+COLOUR = Column("colour", "Colour", "text", "Of the front.")
+ROWS = {
+    "Floors": [{"floor": "1", "pfa_x": 0.3}],
+    "Items": [{"item": "A", "floor": "1", "breadth": 40, "width": 80, "height": 180, "colour": "red"}],
+}
+
+
+def test_a_new_column_of_items_reaches_the_results(monkeypatch):
+    items = replace(schema.ITEMS, columns=(*schema.ITEMS.columns, COLOUR))
+    sheets = tuple(items if sheet.name == "Items" else sheet for sheet in schema.SHEETS)
+    for module in (schema, parse, read, resolve):
+        if hasattr(module, "SHEETS"):
+            monkeypatch.setattr(module, "SHEETS", sheets)
+    results = run(read.read_inventory(ROWS), UNVERIFIED)
+    shape = Shape((*item_fields(results), _of_item("colour", "Colour", is_optional=True)))
+    assert results["A"].item.more == {"colour": "red"}
+    assert shape.nest(results["A"])["colour"] == shape.flatten(results["A"])["colour"] == "red"

@@ -1,0 +1,161 @@
+"""Results stand for themselves: small, equal after a round trip, with tables and reports that come from them alone."""
+
+import pickle
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import assess
+from assess.errors import InputError
+from assess.fields import Shape, item_fields
+from assess.report import write_reports
+from assess.settings import Settings
+from tests.report.routed import assess_routed
+from tests.workbooks import ITEMS, assessed
+
+TABLES = ("items", "cases", "floors", "segments", "routes", "rooms", "problems")
+KNOWN = {"string", "float64", "Int64", "boolean"}
+
+
+@pytest.fixture(scope="module")
+def simulated(tmp_path_factory):
+    return assessed(tmp_path_factory.mktemp("results") / "w.xlsx", settings=Settings(verify="all", runs=10))
+
+
+def test_the_worked_example_pickles_small_and_comes_back_equal(example):
+    data = pickle.dumps(example)
+    again = pickle.loads(data)
+    assert len(data) < 300_000
+    assert again == example
+    assert list(again) == list(example)
+
+
+@pytest.mark.slow
+def test_the_simulated_example_pickles_small_and_comes_back_equal(example_inventory):
+    results = assess.run(example_inventory, Settings(verify="all", runs=5))
+    data = pickle.dumps(results)
+    assert len(data) < 300_000
+    assert pickle.loads(data) == results
+
+
+def test_a_change_makes_results_unequal(simulated):
+    assert replace(simulated, settings=Settings(verify="all", runs=11)) != simulated
+    table = simulated.cases_table
+    changed = table.adopted | {"probability": np.nextafter(table.adopted["probability"], 1)}
+    assert replace(simulated, cases_table=replace(table, adopted=changed)) != simulated
+
+
+def test_reports_of_results_that_were_pickled_are_the_same(simulated, tmp_path):
+    again = pickle.loads(pickle.dumps(simulated))
+    for name, results in (("a", simulated), ("b", again)):
+        write_reports(results, tmp_path / name, ["json", "csv", "npz"])
+    for file in ("results.json", "items.csv", "outcomes.npz"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
+
+
+def test_series_that_are_gone_are_known_to_be(simulated, tmp_path):
+    assert simulated.series.is_there
+    name = f"motion/{next(one.index for one in simulated.motions if one.ensemble)}/runs"
+    assert name in simulated.series
+    gone = type(simulated.series)(tmp_path / "gone.npz")
+    assert not gone.is_there
+    assert name not in gone
+    with pytest.raises(KeyError):
+        gone[name]
+
+
+# ---------------------------------------------------------------- rows by name
+
+
+def test_a_row_is_found_by_its_name(simulated):
+    assert simulated["A3"].item.quantity == 3
+    assert simulated["A3"] == list(simulated)[2]
+    assert len(simulated) == len(ITEMS)
+
+
+def test_an_unknown_name_is_an_input_error_with_a_hint(example, simulated):
+    with pytest.raises(InputError, match=r"there is no item '42-011' among the 121 items. Did you mean '42-.1'\?"):
+        example["42-011"]
+    with pytest.raises(InputError, match=r"no item 'zebra' among the 5 items\.$"):
+        simulated["zebra"]
+
+
+def test_the_larger_of_the_formula_and_the_row_itself(simulated):
+    one = simulated["A1"]
+    assert one.worst(one.formula_key) == max(case.methods[one.formula_key].value for case in one.cases)
+    assert one.formula == one.by_formula.methods[simulated.formula.key]
+    assert one.governing.simulation.runs == 10
+
+
+# ---------------------------------------------------------------- tables
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables_have_one_type_a_column_whatever_the_rows(name, example, simulated, tmp_path):
+    """What is not a text, a number, a count or a flag is a list, so that a table can be written as Parquet."""
+    tables = [getattr(results, name) for results in (example, simulated)]
+    for table in tables:
+        assert {str(one) for one in table.dtypes} <= KNOWN | {"object"}
+        for column in table.columns[table.dtypes == "object"]:
+            assert all(isinstance(value, list) for value in table[column]), column
+    assert dict(tables[0].dtypes) == dict(tables[1].dtypes)
+
+
+def test_items_have_the_columns_of_items_csv(simulated, tmp_path):
+    written = write_reports(simulated, tmp_path, ["csv"])
+    read = pd.read_csv(written["csv"], encoding="utf-8-sig")
+    items = simulated.items
+    assert list(items.columns) == list(read.columns)
+    for column in ("breadth_cm", "pfa_g", "adopted_probability", "verification_runs", "quantity"):
+        assert items[column].tolist() == pytest.approx(read[column].tolist(), nan_ok=True)
+    assert items["item"].tolist() == read["item"].tolist()
+
+
+def test_tables_of_cases_floors_and_problems(simulated):
+    cases, floors = simulated.cases, simulated.floors
+    assert len(cases) == len(simulated.cases_table)
+    assert cases["governs"].sum() == len(simulated)
+    assert floors[["floor", "axis"]].values.tolist() == [[one.floor, one.axis] for one in simulated.motions]
+    assert (floors["ensemble_motions"] == 10).all()
+    assert len(simulated.problems) == len(simulated.problem_rows)
+
+
+def test_tables_of_routes_join_by_name_and_index(tmp_path):
+    results = assess_routed(tmp_path / "w.xlsx")
+    segments, routes, rooms = results.segments, results.routes, results.rooms
+    assert segments["segment"].tolist() == [one.segment for one in results.route_tables.segments]
+    chances = [one.blocked.probability if one.blocked else None for one in results.route_tables.segments]
+    assert [None if pd.isna(value) else value for value in segments["blocked_probability"]] == chances
+    assert None in chances
+    assert set(segments["state"]) <= {"open", "reduced", "blocked", "not evaluated"}
+    assert routes["segment_indices"].tolist() == [[0, 1, 2], [3], [4]]
+    assert routes["fixes"].tolist()[0] == ["tall"]
+    assert rooms["ways"].tolist() == [["Street"], ["Street"]]
+
+
+def test_a_building_without_routes_has_empty_tables_with_the_same_columns(simulated, example):
+    assert len(simulated.segments) == len(simulated.rooms) == 0
+    assert list(simulated.segments.columns) == list(example.segments.columns)
+
+
+def test_a_table_row_is_that_of_the_fields(simulated):
+    flat = Shape(item_fields(simulated)).flatten(simulated["A1"])
+    row = simulated.items.iloc[0]
+    assert {key: None if value is None else row[key] for key, value in flat.items()} == flat
+
+
+# ---------------------------------------------------------------- in a notebook
+
+
+def test_a_notebook_shows_results_in_short_and_escaped(tmp_path, example):
+    items = [ITEMS[0] | {"item": "<b>x</b>", "description": "<script>alert(1)</script>"}, *ITEMS[1:]]
+    results = assessed(tmp_path / "w.xlsx", items)
+    for shown in (results._repr_html_(), results["<b>x</b>"]._repr_html_()):
+        assert "&lt;b&gt;x&lt;/b&gt;" in shown
+        assert "&lt;script&gt;" in shown
+        assert "<script>" not in shown
+    assert "Free-standing pieces by class: very high" in results._repr_html_()
+    assert len(example._repr_html_()) < 4000
+    assert len(repr(example)) < 120

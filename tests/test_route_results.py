@@ -1,0 +1,227 @@
+"""The evacuation routes in results.json: every number is that of the run, and the schema holds."""
+
+import json
+import math
+import pickle
+from dataclasses import asdict
+
+import jsonschema
+import pytest
+
+from assess.report.data import SCHEMA, write_json
+from assess.route_results import RouteState, RouteTables
+from assess.settings import Settings
+from tests.report.routed import PARTLY, ROUTES, assess_routed
+from tests.workbooks import assessed
+
+VERIFIED = Settings(verify="all", runs=20, route_risk=0.1)
+
+
+@pytest.fixture(scope="module", params=["formulas", "verified"])
+def written(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("routes")
+    more = {"settings": VERIFIED} if request.param == "verified" else {}
+    run = assess_routed(folder / "w.xlsx", **more)
+    write_json(run, folder / "r.json")
+    text = (folder / "r.json").read_text(encoding="utf-8")
+    return run, json.loads(text, parse_constant=pytest.fail)
+
+
+def _schema():
+    return json.loads(SCHEMA.read_text(encoding="utf-8"))
+
+
+def test_the_schema_holds(written):
+    jsonschema.validate(written[1], _schema())
+
+
+@pytest.mark.parametrize(
+    ("path", "wrong"),
+    [
+        (("risk",), 0),
+        (("segments", 0, "state"), "shut"),
+        (("segments", 0, "blocked", "probability"), 1.1),
+        (("segments", 0, "blocked"), None),
+        (("segments", 0, "state"), "not evaluated"),
+        (("segments", 0, "evaluated"), False),
+        (("segments", 1, "evaluated"), True),
+        (("segments", 1, "state"), "open"),
+        (("routes", 0, "evaluated"), False),
+        (("routes", 0, "unevaluated_segments"), [1]),
+        (("rooms", 0, "ways", 0, "shared"), None),
+        (("uncounted_pieces",), -1),
+        (("routes", 0, "fixes", 0, "row"), 0),
+        (("routes", 0, "segments"), [-1]),
+        (("rooms", 0, "ways", 0, "more"), 1),
+        (("floors", 0, "blocked_routes_expected"), -0.1),
+    ],
+)
+def test_the_schema_refuses(written, path, wrong):
+    found = json.loads(json.dumps(written[1]))
+    at = found["routes"]
+    for key in path[:-1]:
+        at = at[key]
+    at[path[-1]] = wrong
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(found, _schema())
+
+
+def test_segments_keep_what_the_workbook_says_beside_the_widths_used(written):
+    segments = written[1]["routes"]["segments"]
+    assert [one["segment"] for one in segments] == [one["segment"] for one in ROUTES]
+    names = {"from": "start", "to": "end", "clear_width_m": "clear_width", "required_width_m": "required_width"}
+    for one, given in zip(segments, ROUTES, strict=True):
+        for name in ("route", "floor", "from", "to", "room", "clear_width_m", "required_width_m", "occupants"):
+            assert one[name] == given.get(names.get(name, name)), name
+        assert one["notes"] == given.get("notes", "")
+    back = segments[3]
+    assert (back["clear_width_used_m"], back["required_width_used_m"]) == (0.9, 0.9)
+    assert {"clear_assumed", "required_assumed"} <= set(back["flags"])
+    assert (segments[1]["needed_width_m"], segments[1]["insufficient_for_occupants"]) == (pytest.approx(1.524), True)
+    assert segments[1]["insufficient_after_falls"]["probability"] == 1
+    assert segments[2]["insufficient_after_falls"] is None
+    assert segments[2]["needed_width_m"] is None
+
+
+def test_the_document_is_that_of_the_rows(written):
+    """Each value under its own name, but for places, and what only joins tables, or draws the plan."""
+    routes, found = written[0].route_tables, written[1]["routes"]
+    assert found == routes.to_record()
+    assert found["risk"] == routes.risk == written[0].settings.route_risk
+    assert routes.uncounted_pieces == sum(one.uncounted_pieces for one in routes.floors)
+    for row, one in zip(found["routes"], routes.routes, strict=True):
+        assert row["blocked"] == asdict(one.blocked)
+        assert row["segments"] == list(one.segment_indices)
+        piece = one.most_likely_piece
+        assert row["most_likely_piece"] == (piece and {"item": piece.item, "row": piece.row})
+    assert set(found["segments"][0]["blocked"]) == {
+        "probability", "low", "high", "joint", "independent", "correlated", "runs", "is_joint", "pieces", "unverified",
+    }  # fmt: skip
+
+
+def test_rows_join_the_other_tables(written):
+    run = written[0]
+    items, routes = run.item_rows, run.route_tables
+    named = [*(piece for one in routes.segments for piece in (*one.pieces, *one.other_rooms)),
+             *(fix for one in routes.routes for fix in one.fixes),
+             *filter(None, (one.most_likely_piece for one in (*routes.segments, *routes.rooms)))]  # fmt: skip
+    assert {one.item for one in named} >= {"tall", "held"}
+    for one in named:
+        assert (one.item, one.row) == (items[one.item_index].item, items[one.item_index].row)
+    for one in routes.routes:
+        assert {routes.segments[at].route for at in one.segment_indices} == {one.route}
+    for room in routes.rooms:
+        assert room.unevaluated_segments == tuple(routes.segments[at].segment for at in room.unevaluated_indices)
+
+
+def test_a_round_trip_changes_nothing_and_is_small(written):
+    routes = written[0].route_tables
+    kept = pickle.dumps(routes)
+    assert pickle.loads(kept) == routes
+    assert pickle.loads(kept).to_record() == routes.to_record()
+    assert len(kept) < 20_000
+
+
+def test_a_segment_on_the_plan_has_its_ends(written):
+    aisle, flight = written[0].route_tables.segments[:2]
+    ends = (aisle.start_x_m, aisle.start_y_m, aisle.end_x_m, aisle.end_y_m)
+    assert math.dist(ends[:2], ends[2:]) == pytest.approx(aisle.length_m)
+    assert (flight.start_x_m, flight.length_m) == (None, None)
+
+
+@pytest.mark.parametrize(("state", "severity"), [("not evaluated", 0), ("open", 0), ("reduced", 1), ("blocked", 2)])
+def test_states_are_words_in_order(state, severity):
+    assert RouteState(state).severity == severity
+    assert json.dumps(RouteState(state)) == f'"{state}"'
+
+
+def test_what_is_blocked_by_what_is_told(written):
+    run, found = written
+    rows = {one.item: one.row for one in run.item_rows}
+    segments, routes = found["routes"]["segments"], found["routes"]["routes"]
+    (tall,) = segments[0]["pieces"]
+    assert (tall["item"], tall["row"], tall["by_plan"], tall["blocks_alone"]) == ("tall", rows["tall"], True, True)
+    assert tall["distance_m"] == pytest.approx(0.15)
+    assert tall["falls_while_blocked"] == pytest.approx(segments[0]["blocked"]["probability"])
+    assert segments[0]["state"] == "blocked"
+    (held,) = segments[4]["pieces"]
+    assert (held["item"], segments[4]["state"], segments[4]["blocked"]["pieces"]) == ("held", "open", 0)
+    assert segments[4]["blocked_if_anchors_fail"]["pieces"] == 1
+    assert [one["route"] for one in routes] == ["West", "Back", "Yard"]
+    assert [one["segments"] for one in routes] == [[0, 1, 2], [3], [4]]
+    assert [fix["item"] for fix in routes[0]["fixes"]] == ["tall"]
+    assert routes[0]["fixes"][0]["left"] == 0
+    assert routes[0]["fixes"][0]["gain"] == pytest.approx(routes[0]["blocked"]["probability"])
+    assert all(one["is_fixed"] for one in routes)
+
+
+def test_a_segment_of_which_nothing_tells_what_reaches_it_has_no_chance(written):
+    """The flight joins two floors and no piece names it: that it is open is not known."""
+    found = written[1]["routes"]
+    assert [one["evaluated"] for one in found["segments"]] == [True, False, True, True, True]
+    flight = found["segments"][1]
+    assert (flight["state"], flight["state_upper"], flight["flags"]) == (
+        "not evaluated", "not evaluated", ["between_floors"],
+    )  # fmt: skip
+    empty = ("blocked", "blocked_or_reduced", "blocked_if_anchors_fail", "under_record", "least_width_m")
+    assert {flight[name] for name in empty} == {None}
+    assert flight["standing_width_m"] == 1.2
+    assert [one["unevaluated_segments"] for one in found["routes"]] == [["flight"], [], []]
+    assert [one["evaluated"] for one in found["routes"]] == [True, True, True]
+    assert [one["unevaluated_segments"] for one in found["rooms"]] == [["flight"], ["flight"]]
+    assert [one["uncounted_pieces"] for one in found["floors"]] == [1, 0]
+    assert found["uncounted_pieces"] == 1
+
+
+def test_what_is_not_evaluated_counted_or_apart(tmp_path):
+    run = assess_routed(tmp_path / "w.xlsx", **PARTLY)
+    write_json(run, tmp_path / "r.json")
+    whole = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    jsonschema.validate(whole, _schema())
+    found = whole["routes"]
+    assert {one["segment"]: one["state"] for one in found["segments"]} == {
+        "aisle": "open", "ahead": "blocked", "aside": "open", "ladder": "not evaluated", "tunnel": "not evaluated",
+        "gap": "not evaluated",
+    }  # fmt: skip
+    assert [one["other_rooms"] for one in found["segments"]] == [["behind"], [], [], [], [], []]
+    tunnel, gap = found["segments"][4:]
+    assert (tunnel["insufficient_for_occupants"], tunnel["insufficient_after_falls"]) == (False, None)
+    assert (gap["insufficient_for_occupants"], gap["insufficient_after_falls"]["probability"]) == (True, 1)
+    out, cellar = found["routes"]
+    assert (out["evaluated"], out["state"], out["unevaluated_segments"]) == (True, "reduced", ["ladder"])
+    assert (cellar["evaluated"], cellar["state"], cellar["blocked"]) == (False, "not evaluated", None)
+    assert cellar["unevaluated_segments"] == ["tunnel", "gap"]
+    (lab,) = found["rooms"]
+    assert lab["unevaluated_segments"] == ["ladder"]
+    assert [one["shared"] for one in lab["ways"]] == [[], ["aisle"], ["aisle"]]
+    assert (found["uncounted_pieces"], found["floors"][0]["uncounted_pieces"]) == (3, 3)
+
+
+def test_rooms_and_floors(written):
+    run, found = written
+    rooms, floors = found["routes"]["rooms"], found["routes"]["floors"]
+    assert [(one["room"], one["floor"], one["exits"]) for one in rooms] == [
+        ("Office", "1", ["Street"]), ("Archive", "1", ["Street"]),
+    ]  # fmt: skip
+    assert [one["loses_every_exit"] for one in rooms] == [
+        asdict(one.loses_every_exit) for one in run.route_tables.rooms
+    ]
+    assert rooms[0]["ways"][0]["segments"] == [0, 1, 2]
+    assert rooms[0]["ways"][0]["end"] == "Street"
+    for told, one in zip(floors, run.route_tables.floors, strict=True):
+        assert (told["floor"], told["segments"], told["rooms"]) == (one.floor, one.segments, one.rooms)
+        assert told["blocked_segments_expected"] == one.blocked_segments_expected
+        assert told["blocked_routes_expected"] == one.blocked_routes_expected
+        assert told["any_room_cut_off"] == (one.any_room_cut_off and asdict(one.any_room_cut_off))
+
+
+def test_without_routes_lists_are_empty(tmp_path):
+    run = assessed(tmp_path / "w.xlsx")
+    assert RouteTables(risk=0.03).to_record() == {
+        "risk": 0.03, "blocked_routes_expected": 0.0, "cut_off_rooms_expected": 0.0, "draws": 0,
+        "uncounted_pieces": 0, "segments": [], "routes": [], "rooms": [], "floors": [],
+    }  # fmt: skip
+    write_json(run, tmp_path / "r.json")
+    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    assert found["routes"] == RouteTables(risk=0.03).to_record()
+    assert found["assess"]["settings"]["route_risk"] == 0.03
