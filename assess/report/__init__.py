@@ -1,4 +1,4 @@
-"""Reports: an assessment in, files out, whole or not at all.
+"""Reports: results in, files out, whole or not at all.
 
 Every file is first written into a folder of its own beside the reports and then moved into place; the moves come last
 and take no space. A disk that fills, or a process that is killed, leaves the old report as it was.
@@ -9,55 +9,122 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
-from importlib import import_module
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING
 
-from assess.errors import OutputError, PdfUnavailableError
-from assess.report.look import Look
-from assess.results import Assessment
+from assess.errors import InputError, OutputError, PdfUnavailableError
+from assess.progress import SILENT, Progress
+from assess.report.report_options import ReportOptions
+from assess.results import Results
 
-FILES: Mapping[str, str] = {
-    "pdf": "report.pdf",
-    "xlsx": "report.xlsx",
-    "html": "report.html",
-    "json": "results.json",
-    "csv": "items.csv",
-    "npz": "outcomes.npz",
-}
-"""The formats, and the file that each is written to."""
+if TYPE_CHECKING:
+    from assess.report.content import Content
 
-FORMATS = tuple(name for name in FILES if name != "npz")
-"""The formats that are written where none are asked for; the outcomes of every motion are for other programs."""
-PLAIN = ("json", "csv", "npz")
-"""Formats for programs: the same in every language."""
-_WRITERS = {
-    "pdf": ("pages.pdf", "write_pdf"),
-    "xlsx": ("xlsx", "write_xlsx"),
-    "html": ("pages.html", "write_html"),
-    "json": ("data", "write_json"),
-    "csv": ("table", "write_csv"),
-    "npz": ("outcomes", "write_npz"),
-}
 _STAGE = ".assess-writing-"
 _STALE = 24 * 3600.0
 
 
+@dataclass(frozen=True)
+class Job:
+    """One set of reports that is written; the content is built once for all of them."""
+
+    results: Results
+    options: ReportOptions
+    progress: Progress
+    stage: Path
+
+    @cached_property
+    def content(self) -> "Content":
+        """What HTML, PDF and Excel show, in the language of the reports."""
+        from assess.report.content import build_content
+
+        return build_content(self.results)
+
+    @cached_property
+    def data(self) -> Path:
+        """results.json, written once: the PDF carries it as well."""
+        from assess.report.data import write_json
+
+        path = self.stage / FILES["json"]
+        write_json(self.results, path)
+        return path
+
+
+# What writes each format is imported only when it is wanted.
+
+
+def _write_pdf(job: Job, path: Path) -> None:
+    from assess.report.pages.pdf import write_pdf
+
+    write_pdf(job.content, path, job.options, job.progress, data=job.data)
+
+
+def _write_xlsx(job: Job, path: Path) -> None:
+    from assess.report.xlsx import write_xlsx
+
+    write_xlsx(job.content, path, job.progress)
+
+
+def _write_html(job: Job, path: Path) -> None:
+    from assess.report.pages.html import write_html
+
+    write_html(job.content, path, job.options, job.progress)
+
+
+def _write_json(job: Job, _path: Path) -> None:
+    job.data  # noqa: B018 - written on first use
+
+
+def _write_csv(job: Job, path: Path) -> None:
+    from assess.report.data import write_csv
+
+    write_csv(job.results, path)
+
+
+def _write_npz(job: Job, path: Path) -> None:
+    from assess.report.data import write_npz
+
+    write_npz(job.results, path)
+
+
+_WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
+    "pdf": ("report.pdf", _write_pdf),
+    "xlsx": ("report.xlsx", _write_xlsx),
+    "html": ("report.html", _write_html),
+    "json": ("results.json", _write_json),
+    "csv": ("items.csv", _write_csv),
+    "npz": ("outcomes.npz", _write_npz),
+}
+FILES: Mapping[str, str] = {name: file for name, (file, _) in _WRITERS.items()}
+"""The formats, and the file that each is written to."""
+FORMATS = tuple(name for name in FILES if name != "npz")
+"""The formats that are written where none are asked for; the outcomes of every motion are for other programs."""
+
+
 def write_reports(
-    assessment: Assessment, folder: str | Path, formats: str | Sequence[str] = FORMATS, look: Look | None = None
+    results: Results,
+    folder: str | Path,
+    formats: str | Sequence[str] = FORMATS,
+    options: ReportOptions | None = None,
+    *,
+    progress: Progress = SILENT,
 ) -> dict[str, Path]:
-    """Write the reports of an assessment.
+    """Write the reports of a run.
 
     Parameters
     ----------
-    assessment : Assessment
+    results : Results
         From `assess.run`.
     folder : str or Path
         Where to; made where it is missing. Other files in it are left alone.
     formats : str or sequence of str
         Of "pdf", "xlsx", "html", "json", "csv", "npz"; all but the last by default.
-    look : Look, optional
-        Language, templates and kind of PDF; by default in the workbook's language, with our own templates.
+    options : ReportOptions, optional
+        Language, templates and kind of PDF; by default in the workbook's language, with the standard templates.
+    progress : Progress, optional
+        Notified of how far the work is; once it is cancelled, nothing is written.
 
     Returns
     -------
@@ -66,20 +133,21 @@ def write_reports(
 
     Raises
     ------
-    ValueError
-        If a format is unknown.
+    InputError
+        If a format is unknown, or a template of the firm's own cannot be used.
     PdfUnavailableError
         If the native libraries of the PDF are missing; all other formats have been written.
     OutputError
         If a file cannot be written; what was there before is left as it was.
-    InputError
-        If a template of the firm's own cannot be used.
+    CancelledError
+        If the work was cancelled; nothing was written.
     """
     formats = (formats,) if isinstance(formats, str) else formats
     unknown = [name for name in formats if name not in FILES]
     if unknown:
-        raise ValueError(f"format is {unknown[0]!r}, expected some of: {', '.join(FILES)}")
-    folder, look = Path(folder), look or Look(language=assessment.inventory.report_language)
+        raise InputError(f"formats: {unknown[0]!r} is unknown, expected some of: {', '.join(FILES)}")
+    folder, options = Path(folder), options or ReportOptions()
+    options = options if options.language else replace(options, language=results.provenance.language)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _sweep(folder)
@@ -87,7 +155,8 @@ def write_reports(
     except OSError as error:
         raise OutputError(f"{folder} cannot be written to: {error.strerror}.") from None
     try:
-        return _write_staged(assessment, folder, stage, formats, look)
+        with options.spoken():
+            return _write_staged(Job(results, options, progress, stage), folder, stage, tuple(dict.fromkeys(formats)))
     finally:
         shutil.rmtree(stage, ignore_errors=True)
 
@@ -107,21 +176,23 @@ def _sweep(folder: Path) -> None:
             shutil.rmtree(old, ignore_errors=True)
 
 
-def _write_staged(
-    assessment: Assessment, folder: Path, stage: Path, formats: Sequence[str], look: Look
-) -> dict[str, Path]:
+def _write_staged(job: Job, folder: Path, stage: Path, formats: Sequence[str]) -> dict[str, Path]:
     missing: PdfUnavailableError | None = None
     written: dict[str, Path] = {}
-    for name in dict.fromkeys(formats):
-        try:
-            _write(name, assessment, stage / FILES[name], look)
-            _flush(stage / FILES[name])
-            written[name] = folder / FILES[name]
-        except PdfUnavailableError as error:
-            missing = error
-        except OSError as error:
-            reason = error.strerror or str(error)
-            raise OutputError(f"{FILES[name]} could not be written: {reason}. {folder} is left as it was.") from None
+    with job.progress.stage("rendering", ", ".join(formats)) as reports:
+        for at, name in enumerate(formats):
+            reports.at(at / len(formats))
+            file, write = _WRITERS[name]
+            try:
+                write(job, stage / file)
+                _flush(stage / file)
+                written[name] = folder / file
+            except PdfUnavailableError as error:
+                missing = error
+            except OSError as error:
+                reason = error.strerror or str(error)
+                raise OutputError(f"{file} could not be written: {reason}. {folder} is left as it was.") from None
+        reports.check()
     for name, path in written.items():
         try:
             (stage / FILES[name]).replace(path)
@@ -132,22 +203,6 @@ def _write_staged(
     if missing:
         raise missing
     return written
-
-
-def _write(name: str, assessment: Assessment, path: Path, look: Look) -> None:
-    """Write one format; what programs read is in English, the others speak the language of the report."""
-    writer = _writer(name)
-    if name in PLAIN:
-        writer(assessment, path)
-        return
-    with look.spoken():
-        writer(assessment, path, look)
-
-
-def _writer(name: str) -> Callable[..., None]:
-    """Return the function that writes a format; each is imported only when it is wanted."""
-    module, function = _WRITERS[name]
-    return cast(Callable[..., None], getattr(import_module(f"assess.report.{module}"), function))
 
 
 def _flush(path: Path) -> None:

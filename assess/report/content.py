@@ -1,43 +1,45 @@
-"""Every number and word of a report, gathered once; HTML, PDF and Excel show what stands here."""
+"""Every number and word of a report, gathered once for HTML, PDF and Excel, in the language in use."""
 
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from assess.demand import Demand
 from assess.errors import Problem
-from assess.inventory.columns import BUILDING
-from assess.inventory.model import Floor
-from assess.language import gettext as _
-from assess.language import number
-from assess.methods import Method
+from assess.i18n import gettext as _
+from assess.i18n import number
 from assess.report import statements, words
 from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, count_cannot_rock, count_rooms
 from assess.report.findings import cautions, motions, trials
+from assess.report.findings.disagreements import Disagreements, find_disagreements
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
-from assess.report.provenance import report_time, say_date, say_reference, versions
+from assess.report.provenance import report_time, say_date, say_reference
 from assess.report.summary import FLOORS, Summary, build_summary, list_risky
-from assess.results import Assessment, ItemResult
-from assess.risk import LIMITS, RiskClass
-from assess.version import __version__
+from assess.results import FloorRow, ItemResult, MotionRow, Results, WorkedMethod
+from assess.risk import LIMITS, RiskClass, classify
+from assess.workbook.schema import BUILDING
+
+if TYPE_CHECKING:
+    from assess.methods import MethodInfo
 
 
 @dataclass(frozen=True, slots=True)
 class FloorPage:
-    """One floor: what shakes it, its pieces, and whether the plan can be drawn."""
+    """One floor: what shakes it, and its pieces."""
 
-    floor: Floor
+    floor: FloorRow
     title: str
-    demands: Sequence[Demand]
+    motions: Sequence[MotionRow]
     counts: Counts
     results: Sequence[ItemResult]
 
     @property
     def placed(self) -> int:
         """Rows with a position on the plan."""
-        return sum(one.item.x is not None and one.item.y is not None for one in self.results)
+        return sum(one.item.x_m is not None and one.item.y_m is not None for one in self.results)
 
     @property
     def rooms(self) -> Bars | None:
@@ -46,43 +48,91 @@ class FloorPage:
 
     @property
     def risky(self) -> Sequence[ItemResult]:
-        """Free-standing pieces of high or very high class, or that may be, the worst first."""
+        """Free-standing pieces that reach high by the upper estimate, the worst first."""
         return list_risky(self.results)
 
 
-@dataclass(frozen=True)
-class Content:
-    """The content of a report; every sequence is in the order in which it is shown."""
+@dataclass(frozen=True, slots=True)
+class WorkedExample:
+    """The calculation of one method for the piece of the worked example."""
 
-    assessment: Assessment
+    method: "MethodInfo"
+    steps: Sequence[str]
+    result: str
+
+    @property
+    def title(self) -> str:
+        """Title of the method."""
+        return _(self.method.title)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Content:
+    """The content of a report; every sequence is in the order in which it is shown.
+
+    `run` is what it was made from, `results` its rows of furniture, `building` the lines about the building as label
+    and value by the field of the workbook, `flags` the meaning of every mark, `making` what the run is made again from.
+    """
+
+    run: Results
     title: str
     date: str
-    version: str
-    platform: Mapping[str, str]
     building: Mapping[str, tuple[str, str]]
     results: Sequence[ItemResult]
     total: Counts
-    by_floor: Sequence[Counts]
+    floors: Sequence[FloorPage]
     summary: Summary
     sources: Sequence[str]
     cautions: Sequence[str]
     short_cautions: Sequence[str]
-    floors: Sequence[FloorPage]
-    methods: Sequence[Method]
     flags: Mapping[str, str]
     assumptions: Sequence[tuple[str, str]]
     limits: Sequence[str]
-    problems: Sequence[Problem]
     verified: Verified
     trials: Trials
-    notes: Sequence[ItemResult]
+    disagreements: Disagreements
+    worked: Sequence[WorkedExample]
     making: Sequence[tuple[str, str]]
+
+    @property
+    def methods(self) -> "Sequence[MethodInfo]":
+        """The methods."""
+        return self.run.methods
+
+    @property
+    def problems(self) -> Sequence[Problem]:
+        """Warnings and notes about the input."""
+        return self.run.problem_rows
+
+    @property
+    def version(self) -> str:
+        """Version of `assess` that computed the results."""
+        return self.run.provenance.version
+
+    @property
+    def by_floor(self) -> Sequence[Counts]:
+        """The counts of every floor."""
+        return [page.counts for page in self.floors]
+
+    @property
+    def notes(self) -> Sequence[ItemResult]:
+        """The rows that the workbook has a note on."""
+        return [one for one in self.results if one.item.notes]
+
+    @property
+    def risky(self) -> Sequence[ItemResult]:
+        """Free-standing pieces that reach high by the upper estimate, the worst first."""
+        return list_risky(self.results)
+
+    @property
+    def example(self) -> ItemResult | None:
+        """The piece of the worked example."""
+        return None if self.run.worked_item is None else self.results[self.run.worked_item]
 
     @cached_property
     def shown_floors(self) -> Sequence[FloorPage]:
         """Floors that have pieces, or a segment of a route on the plan: each has a page."""
-        segments = self.assessment.routes.segments if self.assessment.routes else ()
-        drawn = {one.segment.floor for one in segments if one.length is not None}
+        drawn = {one.floor for one in self.run.route_tables.segments if one.length_m is not None}
         return [page for page in self.floors if page.results or page.floor.floor in drawn]
 
     @cached_property
@@ -101,12 +151,12 @@ class Content:
     @cached_property
     def cannot_rock(self) -> CannotRock:
         """Pieces of high and very high class by formula that cannot start to rock, or are too stocky to."""
-        return count_cannot_rock(self.results)
+        return count_cannot_rock(self.results, self.methods)
 
     @property
     def references(self) -> Sequence[str]:
-        """What the methods and the interval were taken from."""
-        return list(dict.fromkeys(map(say_reference, (*(method.reference for method in self.methods), WILSON))))
+        """Publications of the methods and of the interval."""
+        return list(dict.fromkeys((*(say_reference(method.reference) for method in self.methods), WILSON)))
 
     @property
     def class_limits(self) -> Sequence[tuple[RiskClass, str]]:
@@ -121,36 +171,31 @@ class Content:
         return tuple(zip(RiskClass, texts, strict=True))
 
 
-def build_content(assessment: Assessment) -> Content:
-    """Gather the content of a report, in the language in use."""
-    results = tuple(assessment)
-    floors, verified = _floors(assessment, results), build_verified(assessment, results)
-    platform = versions(has_rocked=bool(assessment.joints), has_routes=assessment.routes is not None)
-    total = count(_("All floors"), results)
+def build_content(results: Results) -> Content:
+    """Gather the content of a report, in the language in use: once for all its renderers."""
+    rows = tuple(results)
+    floors, verified, total = _list_floors(results, rows), build_verified(results, rows), count(_("All floors"), rows)
+    found = cautions.build_cautions(results)
     return Content(
-        assessment=assessment,
-        title=assessment.inventory.building.building or assessment.inventory.source.stem,
-        date=say_date(report_date(assessment.inventory.building.report_date)),
-        version=__version__,
-        platform=platform,
-        building=_building(assessment),
-        results=results,
+        run=results,
+        title=results.building.building or Path(results.provenance.workbook).stem,
+        date=say_date(report_date(results.building.report_date)),
+        building=_describe_building(results),
+        results=rows,
         total=total,
-        by_floor=tuple(page.counts for page in floors),
-        summary=build_summary(assessment, results, total),
-        sources=motions.list_sources(assessment.demands),
-        cautions=cautions.list_cautions(assessment),
-        short_cautions=cautions.list_short_cautions(assessment),
         floors=floors,
-        methods=assessment.methods,
-        flags=statements.list_flags(assessment),
-        assumptions=[*statements.list_assumptions(assessment), *trials.list_assumptions(assessment, verified)],
-        limits=statements.list_limits(has_verified=bool(verified.done), has_routes=assessment.routes is not None),
-        problems=assessment.problems,
+        summary=build_summary(results, rows, total),
+        sources=motions.list_sources(results.motions),
+        cautions=[one.text for one in found],
+        short_cautions=list(dict.fromkeys(one.short for one in found)),
+        flags=statements.list_flags(results),
+        assumptions=[*statements.list_assumptions(results), *trials.list_assumptions(results, verified)],
+        limits=statements.list_limits(results),
         verified=verified,
-        trials=trials.build_trials(assessment, verified),
-        notes=tuple(one for one in results if one.item.notes),
-        making=statements.list_making(assessment, platform),
+        trials=trials.build_trials(results, verified),
+        disagreements=find_disagreements(results, rows),
+        worked=tuple(_work(results, one) for one in results.worked),
+        making=statements.list_making(results),
     )
 
 
@@ -163,13 +208,13 @@ def report_date(given: str = "") -> str:
     return given or (moment if "SOURCE_DATE_EPOCH" in os.environ else moment.astimezone()).date().isoformat()
 
 
-def _building(assessment: Assessment) -> dict[str, tuple[str, str]]:
-    """Return what the workbook says of the building: the field of each line, its label and what it holds."""
+def _describe_building(results: Results) -> dict[str, tuple[str, str]]:
+    """Return what the workbook says of the building: label and value by field."""
     lines = {}
     for column in BUILDING.columns:
-        value = getattr(assessment.inventory.building, column.name)
+        value = getattr(results.building, column.name)
         if column.name == "scenario_kind":
-            value = _scenario_kind(value, assessment.scenario)
+            value = _scenario_kind(value, results.provenance.scenario)
         if value not in (None, "") and column.kind != "file":
             shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
             shown += f" {column.unit}" if column.quantity else ""
@@ -183,22 +228,35 @@ def _scenario_kind(chosen: str, used: str) -> str:
     return _("{used} (the workbook: {chosen})", used=_(used), chosen=_(chosen or "as filled"))
 
 
-def floor_title(floor: Floor) -> str:
-    """Return the floor's name for people."""
+def _list_floors(results: Results, rows: Sequence[ItemResult]) -> tuple[FloorPage, ...]:
+    by_floor: dict[str, list[ItemResult]] = {floor.floor: [] for floor in results.floor_rows}
+    for one in rows:
+        by_floor[one.item.floor].append(one)
+    pages = []
+    for floor in results.floor_rows:
+        title, own = _title_floor(floor), by_floor[floor.floor]
+        found = [one for one in results.motions if one.floor == floor.floor]
+        pages.append(FloorPage(floor, title, found, count(title, own), own))
+    return tuple(pages)
+
+
+def _title_floor(floor: FloorRow) -> str:
     named = f"{floor.floor} – {floor.name}" if floor.name else _("Floor {floor}", floor=floor.floor)
     return words.cut(named, 60)
 
 
-def _floors(assessment: Assessment, results: Sequence[ItemResult]) -> tuple[FloorPage, ...]:
-    by_floor: dict[str, list[ItemResult]] = {floor.floor: [] for floor in assessment.inventory.floors}
-    for one in results:
-        by_floor[one.item.floor].append(one)
-    pages = []
-    for floor in assessment.inventory.floors:
-        demands = [demand for axis in ("X", "Y") for demand in assessment.demands[floor.floor, axis]]
-        own = by_floor[floor.floor]
-        pages.append(FloorPage(floor, floor_title(floor), demands, count(floor_title(floor), own), own))
-    return tuple(pages)
+def _work(results: Results, worked: WorkedMethod) -> WorkedExample:
+    """Return the steps of a method in the language in use, and its result in words."""
+    method = next(one for one in results.methods if one.key == worked.key)
+    risk = classify(worked.value)
+    if method.kind == "criterion" or risk is None:
+        result = _(method.words[0] if worked.value else method.words[1])
+    else:
+        result = _(
+            "{symbol} = {value:.4f}, that is {percent}: {risk}", symbol=method.symbol, value=worked.value,
+            percent=words.percent(worked.value), risk=words.risk_word(risk),
+        )  # fmt: skip
+    return WorkedExample(method, tuple(map(_, worked.steps)), result)
 
 
 def has_worse_motion(one: ItemResult, key: str) -> bool:

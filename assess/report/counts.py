@@ -1,23 +1,25 @@
 """Pieces counted by class: of the building, a floor or a room, and drawn as bars."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from assess.adoption import FORMULA
-from assess.language import gettext as _
-from assess.language import ngettext, number
-from assess.ranking import count_pieces
+from assess.i18n import gettext as _
+from assess.i18n import ngettext, number
 from assess.report import words
 from assess.results import ItemResult
 from assess.risk import RiskClass
+
+if TYPE_CHECKING:
+    from assess.methods import MethodInfo
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
     """Pieces (not rows) of a room, a floor, or of the building, by class; anchored ones stand outside the classes.
 
-    `lowered` of those with a class were lowered by verification, and `may_be` may be of a higher one; `expected` is the
-    number of free-standing pieces that are expected to fall.
+    Of those with a class, `lowered` were lowered by simulation, and `may_be` could be of a higher one. `expected` is
+    the expected number of free-standing pieces that fall.
     """
 
     label: str
@@ -47,8 +49,19 @@ class Counts:
         return f"{number(100 * self.by_class[risk] / self.free, '.0f')} %" if self.free else words.DASH
 
 
+def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
+    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which have no class."""
+    by_class, anchored = dict.fromkeys(RiskClass, 0), 0
+    for one in results:
+        if one.is_anchored:
+            anchored += one.item.quantity
+        else:
+            by_class[one.adopted.risk] += one.item.quantity
+    return by_class, anchored
+
+
 def count(label: str, results: Sequence[ItemResult]) -> Counts:
-    """Count pieces by class, and of those that have one how many were lowered, or may be of a higher one."""
+    """Count pieces by class, and those whose class was lowered, or could be higher."""
     free = [one for one in results if not one.is_anchored]
     return Counts(
         label,
@@ -70,11 +83,10 @@ def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
 
 @dataclass(frozen=True, slots=True)
 class CannotRock:
-    """Free-standing pieces of which the formula makes more than can happen.
+    """Free-standing pieces whose class by formula is higher than their rocking allows.
 
-    `risky` are all of high and very high class by formula. Of these the static criterion says that `still` cannot start
-    to rock, `kept` among which direct integration gave a lower class, which was not adopted; `stocky` others are too
-    stocky to rock at all.
+    `risky` are all of high and very high class by formula. Of these, `still` cannot start to rock by the criterion for
+    it; for `kept` of them simulation gave a lower class, which was not adopted. `stocky` others are too stocky to rock.
     """
 
     risky: int
@@ -89,7 +101,7 @@ class CannotRock:
 
     @property
     def sentence(self) -> str:
-        """How many they are, in words without a full stop."""
+        """Their number in words, without a full stop."""
         which = ngettext(
             "Of {n:,} piece of high or very high class by formula",
             "Of {n:,} pieces of high or very high class by formula",
@@ -106,30 +118,33 @@ class CannotRock:
         return f"{which}, {still if self.still else stocky}"
 
 
-def count_cannot_rock(results: Sequence[ItemResult]) -> CannotRock:
+def count_cannot_rock(results: Sequence[ItemResult], methods: "Sequence[MethodInfo]") -> CannotRock:
     """Count the pieces of high and very high class by formula that cannot rock, or not under their motion."""
+    criterion = next((one.key for one in methods if one.tells_rocking), None)
     risky = [
         one
         for one in results
-        if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.method == FORMULA
+        if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.method == one.formula_key
     ]
     stocky = [one for one in risky if one.does_not_rock]
-    still = [one for one in risky if not one.does_not_rock and one.governing.methods["static"].value == 0]
-    kept = [one for one in still if one.is_verified]
+    still = [
+        one for one in risky if criterion and not one.does_not_rock and one.governing.methods[criterion].value == 0
+    ]
+    kept = [one for one in still if one.is_simulated]
     return CannotRock(*(sum(one.item.quantity for one in ones) for ones in (risky, still, kept, stocky)))
 
 
 MOST_BARS = 30
 """Bars that one picture shows."""
 _LABEL, _WIDTH, _ROW, _BAR = 150.0, 480.0, 17.0, 13.0
-"""Of the picture, in its own units: width for the labels, for the bars, height of a row and of a bar."""
+"""Width of the labels and of the bars, height of a row and of a bar, in the picture's own units."""
 _LEAST = 13.0
 """Width below which a part of a bar holds no number."""
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One part of a bar: where it begins, how wide it is, its class (None: anchored) and the number of pieces."""
+    """One part of a bar: its left edge and width, its class (None: anchored) and the number of pieces."""
 
     x: float
     width: float
@@ -138,7 +153,7 @@ class Part:
 
     @property
     def label(self) -> str:
-        """Symbol and number where there is room for them, else the number or nothing."""
+        """Symbol and number, or the number alone, or nothing, as there is room."""
         symbol = "⚓" if self.risk is None else self.risk.symbol
         if self.width >= 2 * _LEAST:
             return f"{symbol} {self.pieces}"
@@ -157,7 +172,7 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Bars:
-    """A picture of counts: stacked bars, one a room or floor; `left_out` are those that it does not show."""
+    """Stacked bars of counts, one for each room or floor; `left_out` is the number of those without a bar."""
 
     width: float
     height: float

@@ -1,46 +1,45 @@
-"""results.json: the numbers for other programs; `table.py` writes the same as items.csv.
+"""The files for other programs: results.json, items.csv and outcomes.npz, the same in every language.
 
-It is written item by item, so that 20,000 items take no more memory than one. Units stand in the names.
+Their fields are those of `assess.fields`; units stand in the names. They are written row by row, so that 20,000 items
+take little more memory than one.
 """
 
+import csv
 import json
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import Any, TextIO
 
-from assess.cases import CaseResult, MethodResult, VerificationResult
-from assess.demand import Demand
-from assess.errors import Problem
-from assess.inventory.columns import BUILDING
-from assess.report.provenance import versions
-from assess.report.routes_data import routes_record
-from assess.results import Assessment, ItemResult
-from assess.risk import RiskClass
-from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
-from assess.version import __version__
+import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from assess.motion.fit import Fit
+from assess.fields import MOTION_FIELDS, Shape, item_fields
+from assess.report.results_schema import FILE, VERSION
+from assess.results import Results
+from assess.units import to_edge
+from assess.workbook.schema import BUILDING
 
-SCHEMA_VERSION = "2.0"
-SCHEMA = Path(__file__).with_name("results.schema.json")
+# ---------------------------------------------------------------- results.json
+
+SCHEMA = FILE
 """JSON Schema of results.json."""
+_MOTION = Shape(MOTION_FIELDS)
+_dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 
-def write_json(assessment: Assessment, path: Path) -> None:
-    """Write results.json; its shape is that of `SCHEMA`."""
-    sheet = assessment.inventory.sheets.get("Items", "Items")
+def write_json(results: Results, path: Path) -> None:
+    """Write results.json; `SCHEMA` is the JSON Schema of its shape."""
+    shape = Shape(item_fields(results))
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write("{\n")
-        for name, value in describe_run(assessment).items():
+        for name, value in describe_run(results).items():
             file.write(f" {json.dumps(name)}: {_dump(value)},\n")
-        _write_list(file, "items", (item_record(one, sheet) for one in assessment))
+        _write_list(file, "items", map(shape.nest, results))
         file.write(",\n")
-        _write_routes(file, routes_record(assessment))
+        _write_routes(file, results.route_tables.to_record())
         file.write(",\n")
-        _write_list(file, "problems", (problem_record(one) for one in assessment.problems))
+        _write_list(file, "problems", (asdict(one) for one in results.problem_rows))
         file.write("\n}\n")
 
 
@@ -50,57 +49,54 @@ def _write_routes(file: TextIO, record: Mapping[str, Any]) -> None:
     for at, (name, value) in enumerate(record.items()):
         file.write(",\n" if at else "")
         if isinstance(value, list):
-            _write_list(file, name, iter(value), " ")
+            _write_list(file, name, value, " ")
         else:
             file.write(f"  {json.dumps(name)}: {_dump(value)}")
     file.write("\n }")
 
 
-def _write_list(file: TextIO, name: str, records: Iterator[Mapping[str, Any]], indent: str = "") -> None:
+def _write_list(file: TextIO, name: str, records: Iterable[Mapping[str, Any]], indent: str = "") -> None:
     file.write(f"{indent} {json.dumps(name)}: [")
     for at, record in enumerate(records):
         file.write(f"{',' if at else ''}\n{indent}  {_dump(record)}")
     file.write(f"\n{indent} ]")
 
 
-_dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
-
-
-def describe_run(assessment: Assessment) -> dict[str, Any]:
+def describe_run(results: Results) -> dict[str, Any]:
     """Return what stands before the items: the program and its settings, the building, the floors."""
-    inventory = assessment.inventory
+    origin = results.provenance
     return {
-        "schema": SCHEMA_VERSION,
+        "schema": VERSION,
         "assess": {
-            "version": __version__,
-            "seed": assessment.settings.seed,
-            "settings": asdict(assessment.settings) | {"scenario": assessment.scenario},
-            "platform": versions(has_rocked=bool(assessment.joints), has_routes=assessment.routes is not None),
+            "version": origin.version,
+            "seed": results.settings.seed,
+            "settings": asdict(results.settings) | {"scenario": origin.scenario},
+            "platform": dict(origin.platform),
             "inputs": {
-                "workbook": inventory.source.name,
-                "sha256": inventory.sha256,
-                "records": dict(inventory.files),
-                "motions": dict(assessment.suite.files) if assessment.suite else {},
+                "workbook": origin.workbook,
+                "sha256": origin.sha256,
+                "records": dict(origin.files),
+                "motions": dict(origin.suite.files) if origin.suite else {},
             },
-            **_fitted_record(assessment),
+            **_fitted_models(results),
         },
-        "building": building_record(assessment),
-        "floors": [floor_record(assessment, floor.floor) for floor in inventory.floors],
+        "building": building_record(results),
+        "floors": [_floor_record(results, floor.floor) for floor in results.floor_rows],
     }
 
 
-def _fitted_record(assessment: Assessment) -> dict[str, Any]:
+def _fitted_models(results: Results) -> dict[str, Any]:
     """Return what fitted models stand among the methods; nothing where there are none."""
-    found = {one.key: one for one in assessment.methods if one.fitted is not None}
+    found = {one.key: one for one in results.methods if one.fitted is not None}
     texts = {key: {"title": str(one.title), "reference": str(one.reference)} for key, one in found.items()}
     return {"fitted_models": texts} if texts else {}
 
 
-def building_record(assessment: Assessment) -> dict[str, Any]:
+def building_record(results: Results) -> dict[str, Any]:
     """Return the lines of the sheet Building, quantities in the units of the empty workbook."""
     record: dict[str, Any] = {}
     for column in BUILDING.columns:
-        value = getattr(assessment.inventory.building, column.name)
+        value = getattr(results.building, column.name)
         if column.quantity and column.quantity != "angle":
             value = None if value is None else to_edge(value, column.factor)
             record[f"{column.name}_{column.unit}"] = value
@@ -109,185 +105,107 @@ def building_record(assessment: Assessment) -> dict[str, Any]:
     return record
 
 
-def floor_record(assessment: Assessment, name: str) -> dict[str, Any]:
+def _floor_record(results: Results, name: str) -> dict[str, Any]:
     """Return one floor with every motion that serves it."""
-    floor = next(floor for floor in assessment.inventory.floors if floor.floor == name)
+    floor = next(one for one in results.floor_rows if one.floor == name)
+    motions = [one for axis in ("X", "Y") for one in results.motions_of(name, axis)]
     return {
         "floor": floor.floor,
         "name": floor.name,
-        "elevation_m": floor.elevation,
-        "demands": [
-            demand_record(demand) | {"ensemble": ensemble_record(assessment, demand)}
-            for axis in ("X", "Y")
-            for demand in assessment.demands[name, axis]
-        ],
+        "elevation_m": floor.elevation_m,
+        "demands": [_MOTION.nest(one) for one in motions],
     }
 
 
-def demand_record(demand: Demand) -> dict[str, Any]:
-    """Return the motion of a floor along an axis; what belongs to another source than its own is None."""
-    record = demand.record
-    return {
-        "axis": demand.axis,
-        "source": demand.source,
-        "pfa_g": edge(demand.pfa, "g"),
-        "pfv_cm_s": edge(demand.pfv, "cm/s"),
-        "flags": list(demand.flags),
-        "between": list(demand.between),
-        "profile": demand.profile.key if demand.profile else None,
-        "profile_verified": demand.profile.verified if demand.profile else None,
-        "clause": demand.clause or None,
-        "height_ratio": demand.height_ratio,
-        "amplification": demand.amplification,
-        "record": demand.name or None,
-        "pfa_file_g": edge(record.file_pfa, "g") if record else None,
-        "format": record.format if record else None,
-        "station": record.station if record else None,
-        "location": record.location if record else None,
-        "channel": record.channel if record else None,
-        "event": record.event if record else None,
-        "azimuth_deg": record.azimuth_deg if record else None,
-        "corrected": record.corrected if record else None,
-        "time_step_s": record.time_step if record else None,
-        "samples": len(record.acceleration) if record else None,
-        "notes": list(record.notes) if record else [],
-    }
+# ---------------------------------------------------------------- items.csv
+
+_PLAIN = frozenset({float, int, bool, type(None)})
 
 
-def ensemble_record(assessment: Assessment, demand: Demand) -> dict[str, Any] | None:
-    """Return the motions that pieces were integrated under on a floor; None where none were."""
-    joint = assessment.joints.get(demand)
-    if joint is None:
-        return None
-    return {
-        "motions": int(joint.runs.max()),
-        "generic_spectrum": assessment.cases.ensembles[joint.ensemble].is_generic,
-        "weak_motions": assessment.cases.ensembles[joint.ensemble].is_weak,
-        "fit": None if joint.fit is None else fit_record(joint.fit),
-    }
+def write_csv(results: Results, path: Path) -> None:
+    """Write items.csv: one row an item, UTF-8 with a byte order mark, by which Excel knows it.
+
+    A text that a spreadsheet would take for a formula is written behind an apostrophe; numbers stay numbers.
+    """
+    shape = Shape(item_fields(results))
+    with path.open("w", encoding="utf-8-sig", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow([field.key for field in shape.fields])
+        for one in results:
+            values = shape.flatten(one).values()
+            writer.writerow([value if type(value) in _PLAIN else disarm(value) for value in values])
 
 
-def fit_record(fit: "Fit") -> dict[str, float | None]:
-    """Return how generated motions meet their target."""
-    return {
-        "matched_to_s": fit.matched_to,
-        "mean_deviation": fit.mean_deviation,
-        "worst_deviation": fit.worst_deviation,
-        "worst_period_s": fit.worst_period,
-        "pfa_ratio": fit.pfa_ratio,
-        "pfa_scatter": fit.pfa_scatter,
-        "pfv_ratio": None if math.isnan(fit.pfv_ratio) else fit.pfv_ratio,
-        "pfv_scatter": fit.pfv_scatter,
-        "spectrum_scatter": fit.spectrum_scatter,
-    }
+def disarm(value: object) -> object:
+    """Return a value so that a spreadsheet takes none for a formula: such a text goes behind an apostrophe.
+
+    A list becomes one text, joined by "; ".
+    """
+    if isinstance(value, list):
+        value = "; ".join(map(str, value))
+    if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r", "\n"):
+        return "'" + value
+    return value
 
 
-def item_record(one: ItemResult, sheet: str = "Items") -> dict[str, Any]:
-    """Return one item as it stands in results.json; `sheet` is what the workbook calls its sheet of items."""
-    item, case = one.item, one.governing
-    return {
-        **_piece_record(one),
-        "pfa_g": edge(case.demand.pfa, "g"),
-        "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
-        "pfa_source": case.demand.label,
-        "methods": {key: method_record(method) for key, method in case.methods.items()},
-        "verification": verification_record(case.verification),
-        "adopted": adopted_record(one),
-        "axes": [axis_record(other) for other in one.cases],
-        "anchored": item.anchored,
-        "route": item.route or None,
-        "segment": item.segment or None,
-        "edge_distance_m": item.edge_distance,
-        "notes": item.notes,
-        "assumed": list(item.assumed),
-        "source": {"sheet": sheet, "row": item.row},
-    }
+# ---------------------------------------------------------------- outcomes.npz
 
 
-def _piece_record(one: ItemResult) -> dict[str, Any]:
-    item = one.item
-    return {
-        "item": item.item,
-        "floor": item.floor,
-        "room": item.room,
-        "description": item.description,
-        "type": item.type,
-        "quantity": item.quantity,
-        "breadth_cm": edge(item.breadth, "cm"),
-        "width_cm": edge(item.width, "cm"),
-        "height_cm": edge(item.height, "cm"),
-        "breadth_to_height": item.breadth / item.height,
-        "axis": one.governing.demand.axis,
-        "axis_given": item.axis,
-        "angle_deg": item.angle_deg,
-        "x_m": item.x,
-        "y_m": item.y,
-        "friction": item.friction,
-        "importance": item.importance or None,
-    }
+def write_npz(results: Results, path: Path) -> None:
+    """Write outcomes.npz: under which motions each piece overturned, for those who count what falls together.
+
+    Motion k is one earthquake on every floor of the building: two pieces fall together where both have bit k set.
+
+    Arrays: ``item``, ``row`` (of the sheet Items), ``axis``, ``source`` and ``governs`` (m,) describe the m simulated
+    cases (a piece under one floor motion), most of which have k motions; ``runs`` (m,) how many motions each was
+    simulated under, the first ones; ``overturned`` (m, ceil(k/8)) has one bit a motion, the first in the highest bit
+    (`numpy.unpackbits`); ``max_rotation_ratio`` (m, k) is the largest |theta| over the critical angle, NaN beyond the
+    runs.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    blocks = [(one, _outcomes(results, one.index)) for one in results.motions if one.ensemble is not None]
+    most = max((rotation.shape[1] for _, (_, _, _, rotation) in blocks), default=0)
+    cases = _joined([block[0] for _, block in blocks], np.zeros(0, dtype=np.int64))
+    items = [results.item_rows[at] for at in results.cases_table.item[cases]]
+    motions = [one for one, block in blocks for _ in block[0]]
+    with path.open("wb") as file:
+        np.savez_compressed(
+            file,
+            item=np.array([item.item for item in items], dtype=np.str_),
+            row=np.array([item.row for item in items], dtype=np.int64),
+            axis=np.array([motion.axis for motion in motions], dtype=np.str_),
+            source=np.array([motion.label for motion in motions], dtype=np.str_),
+            governs=np.isin(cases, [item.governing for item in results.item_rows]),
+            runs=_joined([block[1] for _, block in blocks], np.zeros(0, dtype=np.int64)),
+            overturned=_joined([_widen_bits(block[2], most) for _, block in blocks], np.zeros((0, 0), np.uint8)),
+            max_rotation_ratio=_joined(
+                [_widen(block[3], block[1], most) for _, block in blocks], np.zeros((0, 0), np.float32)
+            ),
+        )
 
 
-def method_record(method: MethodResult) -> dict[str, Any]:
-    """Return the value of one method with what stands beside it."""
-    return {"value": method.value, **method.detail, "flags": list(method.flags)}
+def _outcomes(results: Results, motion: int) -> tuple[NDArray[Any], ...]:
+    names = ("cases", "runs", "overturned", "rotation")
+    cases, runs, overturned, rotation = (results.series[f"motion/{motion}/{name}"] for name in names)
+    return cases.astype(np.int64), runs.astype(np.int64), overturned, rotation
 
 
-def verification_record(one: VerificationResult | None) -> dict[str, Any] | None:
-    """Return what direct integration found under the governing motion; None where it did not run."""
-    if one is None:
-        return None
-    record = {"overturned": one.record_overturned, "max_rotation_ratio": one.record_rotation}
-    return {
-        "runs": one.runs,
-        "overturned": one.overturned,
-        "probability": one.probability,
-        "low": one.low,
-        "high": one.high,
-        "record": None if one.record_overturned is None else record,
-    }
+def _joined(blocks: list[NDArray[Any]], empty: NDArray[Any]) -> NDArray[Any]:
+    return np.concatenate(blocks) if blocks else empty
 
 
-def adopted_record(one: ItemResult) -> dict[str, Any]:
-    """Return the adopted risk."""
-    adopted = one.adopted
-    return {
-        "method": adopted.method,
-        "probability": adopted.probability,
-        "low": adopted.low,
-        "high": adopted.high,
-        "class": adopted.risk.word,
-        "class_upper": adopted.upper.word,
-        "lowered_from": _word(adopted.lowered_from),
-        "flags": list(adopted.flags),
-    }
+def _widen_bits(packed: NDArray[Any], most: int) -> NDArray[Any]:
+    wide = np.zeros((len(packed), -(-most // 8)), dtype=np.uint8)
+    wide[:, : packed.shape[1]] = packed
+    return wide
 
 
-def axis_record(case: CaseResult) -> dict[str, Any]:
-    """Return one motion that the item was held against, with the value of every method."""
-    return {
-        "axis": case.demand.axis,
-        "source": case.demand.label,
-        "pfa_g": edge(case.demand.pfa, "g"),
-        "pfv_cm_s": edge(case.demand.pfv, "cm/s"),
-        "methods": {key: method.value for key, method in case.methods.items()},
-        "verification": verification_record(case.verification),
-    }
-
-
-def problem_record(problem: Problem) -> dict[str, str]:
-    """Return one warning or note."""
-    return asdict(problem)
-
-
-def edge(value: float | None, unit: str) -> float | None:
-    """Convert an SI value to a unit of the edge; None for what is unknown."""
-    if value is None or value != value:
-        return None
-    return to_edge(value, _FACTORS[unit])
-
-
-_FACTORS = {**LENGTH, **ACCELERATION, **VELOCITY}
-
-
-def _word(risk: RiskClass | None) -> str | None:
-    return None if risk is None else risk.word
+def _widen(rotation: NDArray[Any], runs: NDArray[Any], most: int) -> NDArray[Any]:
+    wide = np.full((len(rotation), most), np.nan, dtype=np.float32)
+    wide[:, : rotation.shape[1]] = rotation
+    wide[np.arange(most) >= runs[:, np.newaxis]] = np.nan
+    return wide

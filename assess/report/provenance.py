@@ -1,16 +1,16 @@
-"""What a report comes from: its date, the publications, and what its numbers were computed with."""
+"""What a report comes from: its date and the publications."""
 
 import contextlib
 import datetime
 import os
-import platform
 import re
-from collections.abc import Mapping
-from functools import cache
+from typing import TYPE_CHECKING
 
-from assess.language import LANGUAGES, spoken
-from assess.language import gettext as _
-from assess.methods._method import Reference
+from assess.i18n import LANGUAGES, spoken
+from assess.i18n import gettext as _
+
+if TYPE_CHECKING:
+    from assess.methods import Reference
 
 
 def report_time() -> datetime.datetime:
@@ -33,30 +33,6 @@ def say_date(iso: str) -> str:
     return iso
 
 
-def say_reference(reference: Reference) -> str:
+def say_reference(reference: "Reference") -> str:
     """Return a reference with its remark in the language in use; its bibliographic part is never translated."""
     return f"{reference.bibliographic} {_(reference.remark)}" if reference.remark else reference.bibliographic
-
-
-@cache
-def versions(*, has_rocked: bool = False, has_routes: bool = False) -> Mapping[str, str]:
-    """Return what the numbers were computed with; the verification also depends on the kind of processor."""
-    from importlib.metadata import version
-
-    import numpy as np
-
-    found = {
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "system": platform.system(),
-        "machine": platform.machine(),
-    }
-    if has_rocked:
-        from llvmlite.binding import get_host_cpu_name
-        from numba import config
-
-        processor = getattr(config, "CPU_NAME", None) or get_host_cpu_name()
-        found |= {"scipy": version("scipy"), "numba": version("numba"), "processor": processor}
-    if has_routes:
-        found |= {name: version(name) for name in ("shapely", "networkx")}
-    return found

@@ -1,125 +1,64 @@
-"""What a report states of itself: what was assumed, what the marks mean, and where the methods end."""
+"""What a report states about itself: assumptions, the meaning of the marks, limits, and how it was made."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
-from assess.cases import FLAGS as ITEM_FLAGS
-from assess.demand import FLAGS as DEMAND_FLAGS
-from assess.inventory.columns import ITEMS
-from assess.language import gettext as _
-from assess.language import ngettext, number
+from assess.i18n import gettext as _
+from assess.i18n import ngettext, number
 from assess.report import words
 from assess.report.findings import motions
-from assess.report.findings.routes import say_risk
-from assess.results import Assessment
-from assess.routes.couplings import EXACT
-from assess.routes.flags import FLAGS as ROUTE_FLAGS
-from assess.routes.model import Routes
+from assess.report.findings.route_words import say_risk
+from assess.results import MOTION_FLAGS, PIECE_FLAG_TEXTS, Results
+from assess.route_results import FLAGS as ROUTE_FLAGS
+from assess.route_results import RouteTables
 from assess.units import GRAVITY
-from assess.version import __version__
+from assess.workbook.schema import ITEMS
+
+if TYPE_CHECKING:
+    from assess.methods import MethodInfo
 
 MOST_FILES = 40
 """Input files whose hashes a report lists."""
+OBSERVED = ("standing_inside",)
+"""Flags of routes that state an observation rather than an assumption."""
+Lines = list[tuple[str, str]]
 
 
-def list_flags(assessment: Assessment) -> dict[str, str]:
-    """Return what every mark means; where methods mean different things by one, each with its method."""
+def list_flags(results: Results) -> dict[str, str]:
+    """Return the meaning of every mark; where methods mean different things by one, each with its method."""
     meanings: dict[str, dict[str, str]] = {}
-    for method in assessment.methods:
+    for method in results.methods:
         for flag, meaning in method.flags.items():
             meanings.setdefault(flag, {}).setdefault(_(meaning), _(method.title))
-    told = {
+    texts = {
         flag: next(iter(by_meaning))
         if len(by_meaning) == 1
         else "; ".join(f"{title}: {text}" for text, title in by_meaning.items())
         for flag, by_meaning in meanings.items()
     }
-    return told | {flag: _(text) for flag, text in (*ITEM_FLAGS.items(), *DEMAND_FLAGS.items())}
+    return texts | {flag: _(text) for flag, text in (*PIECE_FLAG_TEXTS.items(), *MOTION_FLAGS.items())}
 
 
-def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
+# ---------------------------------------------------------------- assumptions
+
+
+def list_assumptions(results: Results) -> Lines:
     """Return what was assumed, and for how many rows or where."""
-    items = assessment.inventory.items
+    lines, items = motions.list_assumptions(results), results.item_rows
     counted = Counter(name for item in items for name in item.assumed)
-    lines = motions.list_assumptions(assessment)
     for name, text in _assumed().items():
         if counted[name]:
             where = ngettext("{column} blank in {n:,} row", "{column} blank in {n:,} rows", counted[name],
                              column=_(ITEMS.column(name).label))  # fmt: skip
             lines.append((where, text))
-    axes, frictions = (sum(value is None for value in values) for values in
-                       ((item.axis for item in items), (item.friction for item in items)))  # fmt: skip
-    if axes:
-        lines.append((ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", axes),
-                      _("the worse of X and Y governs")))  # fmt: skip
-    if frictions:
-        lines.append((ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions),
-                      _("no sliding, as the paper assumes")))  # fmt: skip
-    of_routes = _list_for_routes(assessment.routes, assessment) if assessment.routes else []
-    return lines + of_routes + _list_constants(assessment)
-
-
-FOUND = ("standing_inside",)
-"""Flags of routes that tell what was found, not what was assumed."""
-
-
-def _list_for_routes(routes: Routes, assessment: Assessment) -> list[tuple[str, str]]:
-    """Return what was assumed of the evacuation routes."""
-    segments = Counter(flag for one in routes.segments for flag in one.flags)
-    pieces = Counter(flag for flags in _flags_beside(routes) for flag in flags)
-    lines = [(_("Routes: the chosen risk"), say_risk(routes.risk))]
-    for flag, text in ROUTE_FLAGS.items():
-        if flag in FOUND:
-            continue
-        if segments[flag]:
-            where = ngettext("Routes: {n:,} segment", "Routes: {n:,} segments", segments[flag])
-            lines.append((where, _(text)))
-        if pieces[flag]:
-            where = ngettext("Routes: {n:,} row of pieces", "Routes: {n:,} rows of pieces", pieces[flag])
-            lines.append((where, _(text)))
-    return lines + _list_couplings(routes, assessment)
-
-
-def _flags_beside(routes: Routes) -> list[set[str]]:
-    """Return the flags of every row of pieces beside a segment, each once."""
-    found: dict[int, set[str]] = {}
-    for one in routes.segments:
-        for near in one.beside:
-            found.setdefault(near.item, set()).update(near.flags)
-    return list(found.values())
-
-
-def _list_couplings(routes: Routes, assessment: Assessment) -> list[tuple[str, str]]:
-    """Return what was assumed of pieces that fall together; nothing where none reaches a route."""
-    outlooks = [*(one.outlook for one in routes.segments), *(one.outlook for one in routes.routes)]
-    chances = [outlook.blocked for outlook in outlooks]
-    if not any(chance.pieces for chance in chances):
-        return []
-    lines = [(_("Routes: where more than {exact:,} outcomes are too many to go through", exact=EXACT),
-              _("{draws:,} draws with seed {seed}", draws=routes.draws, seed=assessment.settings.seed))]  # fmt: skip
-    if any(chance.unverified for chance in chances):
-        lines.append((_("Routes: pieces that enter by the formula's chance alone"),
-                      _("fall independently of all others; the largest of the joint, the "
-                        "independent and the fully correlated chance counts")))  # fmt: skip
-    if any(chance.pieces > chance.unverified and not chance.is_joint for chance in chances):
-        lines.append((_("Routes: pieces on floors whose motions come from different sources"),
-                      _("fall independently of each other; the largest of the joint, the independent and the fully "
-                        "correlated chance counts")))  # fmt: skip
-    return lines
-
-
-def _list_constants(assessment: Assessment) -> list[tuple[str, str]]:
-    """Return the constants of the methods, and what holds for every number."""
-    settings = assessment.settings
-    return [
-        (_("Kaneko-Hayashi, standard deviations (not printed in the source)"),
-         f"ζ_A = {number(settings.zeta_acceleration, 'g')}, ζ_V = {number(settings.zeta_velocity, 'g')}"),
-        (_("Kaneko-Hayashi, slide coefficient α"), number(settings.slide_coefficient, "g")),
-        (_("Gravity"), f"{number(GRAVITY)} m/s²"),
-        (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
-        (_("Units"), _("Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
-                       "are.")),
-    ]  # fmt: skip
+    if axes := sum(item.axis_given is None for item in items):
+        where = ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", axes)
+        lines.append((where, _("the worse of X and Y governs")))
+    if frictions := sum(item.friction is None for item in items):
+        where = ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions)
+        lines.append((where, _("no sliding, as the paper assumes")))
+    return [*lines, *_list_for_routes(results), *_list_constants(results)]
 
 
 def _assumed() -> Mapping[str, str]:
@@ -135,17 +74,108 @@ def _assumed() -> Mapping[str, str]:
     }
 
 
-def list_limits(*, has_verified: bool, has_routes: bool = True) -> Sequence[str]:
-    """Return where the methods end, in plain words."""
-    verified, routes = _of_verification() if has_verified else (), _of_routes() if has_routes else ()
-    return _of_the_block() + _of_the_formulas() + verified + routes
+def _list_for_routes(results: Results) -> Lines:
+    if not results.has_routes:
+        return []
+    routes = results.route_tables
+    of_segments = Counter(flag for one in routes.segments for flag in one.flags)
+    of_pieces = Counter(
+        flag for __, flag in {(near.item_index, flag) for one in routes.segments for near in one.pieces
+                              for flag in near.flags}
+    )  # fmt: skip
+    lines = [(_("Routes: the chosen risk"), say_risk(routes.risk))]
+    for flag, text in ROUTE_FLAGS.items():
+        if flag not in OBSERVED and (n := of_segments[flag]):
+            lines.append((ngettext("Routes: {n:,} segment", "Routes: {n:,} segments", n), _(text)))
+        if flag not in OBSERVED and (n := of_pieces[flag]):
+            lines.append((ngettext("Routes: {n:,} row of pieces", "Routes: {n:,} rows of pieces", n), _(text)))
+    return lines + _list_couplings(routes, results.settings.seed)
 
 
-def _of_routes() -> tuple[str, ...]:
+def _list_couplings(routes: RouteTables, seed: int) -> Lines:
+    """Return the assumptions about pieces that fall together; nothing where none reaches a route."""
+    blocked = [*(one.blocked for one in routes.segments), *(one.blocked for one in routes.routes)]
+    chances = [chance for chance in blocked if chance is not None]
+    if not any(chance.pieces for chance in chances):
+        return []
+    lines = [(_("Routes: where there are too many combinations of falling pieces to go through"),
+              _("{draws:,} draws with seed {seed}", draws=routes.draws, seed=seed))]  # fmt: skip
+    if any(chance.unverified for chance in chances):
+        lines.append((_("Routes: pieces that enter by the formula's chance alone"),
+                      _("fall independently of all others; the largest of the joint, the independent and the fully "
+                        "correlated chance counts")))  # fmt: skip
+    if any(chance.pieces > chance.unverified and not chance.is_joint for chance in chances):
+        lines.append((_("Routes: pieces on floors whose motions come from different sources"),
+                      _("fall independently of each other; the largest of the joint, the independent and the fully "
+                        "correlated chance counts")))  # fmt: skip
+    return lines
+
+
+def _list_constants(results: Results) -> Lines:
+    """Return the parameters of the methods, and what holds for every number."""
+    return [
+        *((_(method.title), _list_parameters(results, method)) for method in results.methods if method.parameters),
+        (_("Gravity"), f"{number(GRAVITY)} m/s²"),
+        (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
+        (_("Units"), _("Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
+                       "are.")),
+    ]  # fmt: skip
+
+
+def _list_parameters(results: Results, method: "MethodInfo") -> str:
+    return ", ".join(
+        f"{one.symbol} = {number(getattr(results.settings, one.setting), 'g')}" for one in method.parameters
+    )
+
+
+# ---------------------------------------------------------------- limits
+
+
+def list_limits(results: Results) -> Sequence[str]:
+    """Return the limits of the methods, in plain words."""
+    return [
+        _(
+            "The chance is that of overturning in this scenario. It is not a chance per year, and does not state how "
+            "likely the scenario is."
+        ),
+        _(
+            "Every piece is a rigid block on a rigid floor, moving in one vertical plane, with its centroid at "
+            "mid-height. A top-heavy piece falls sooner, a bottom-heavy one later."
+        ),
+        _(
+            "No piece slides. On a smooth floor (friction below B/H) a piece slides before it rocks, and may still hit "
+            "people or block a way."
+        ),
+        _("Vertical motion is left out."),
+        _(
+            "Not covered: castors, stacked or leaning pieces, pieces linked to each other, open drawers, spilt "
+            "contents, fastenings that fail."
+        ),
+        *(f"{_(results.formula.title)}: {_(text)}" for text in results.formula.assumptions),
+        _("A piece marked as anchored is not classified: it depends on its anchors; its free-standing risk is shown."),
+        *(_limits_of_simulation() if results.has_simulated else ()),
+        *(_limits_of_routes() if results.has_routes else ()),
+    ]
+
+
+def _limits_of_simulation() -> tuple[str, ...]:
     return (
         _(
-            "Evacuation routes are screened, by a rule of ours, as none is published in closed form. Only what "
-            "overturns counts: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
+            "A simulated chance is that of the rigid block under motions that match the floor's spectrum and peak. Its "
+            "interval covers the number of motions only."
+        ),
+        _(
+            "Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
+            "The behaviour under the recorded motion itself is therefore shown next to the chance."
+        ),
+    )
+
+
+def _limits_of_routes() -> tuple[str, ...]:
+    return (
+        _(
+            "Evacuation routes are screened by a rule of this program, as no published rule exists. Only pieces that "
+            "overturn count: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
         ),
         _(
             "A route that is below the chosen risk in this scenario is not shown to be safe, and a segment that is not "
@@ -154,74 +184,24 @@ def _of_routes() -> tuple[str, ...]:
     )
 
 
-def _of_the_block() -> tuple[str, ...]:
-    return (
-        _(
-            "The chance is that of overturning in this scenario. It is not a chance per year, and says nothing of"
-            " how likely the scenario is."
-        ),
-        _(
-            "Every piece is a rigid block on a rigid floor, moving in one vertical plane, with its centroid at "
-            "mid-height. A top-heavy piece falls sooner, a bottom-heavy one later."
-        ),
-        _(
-            "No piece slides. On a smooth floor (friction below B/H) a piece slides before it rocks, and may "
-            "still hit people or block a way."
-        ),
-        _("Vertical motion is left out."),
-        _(
-            "Not covered: castors, stacked or leaning pieces, pieces linked to each other, open drawers, spilt "
-            "contents, fastenings that fail."
-        ),
-    )
+# ---------------------------------------------------------------- how it was made
 
 
-def _of_the_formulas() -> tuple[str, ...]:
-    return (
-        _(
-            "The proposed OR formula was fitted in three steel buildings and is checked by shaking-table tests "
-            "for B/H 0.14 to 0.39 and PFA 0.10 to 0.90 g only; results outside are marked."
-        ),
-        _(
-            "The proposed OR formula knows no size: a large piece and a small one of the same proportions get the"
-            " same value, although the larger is harder to overturn."
-        ),
-        _(
-            "The proposed OR formula calls pieces high below the acceleration at which they can start to rock; "
-            "the comparison shows the static criterion beside it."
-        ),
-        _("A piece marked as anchored is only as safe as its anchor; its free-standing risk is shown, never zero."),
-    )
-
-
-def _of_verification() -> tuple[str, ...]:
-    return (
-        _(
-            "A verified chance is that of the rigid block under motions that meet the floor's spectrum and peak. "
-            "Its interval covers the number of motions only."
-        ),
-        _(
-            "Rocking depends on details of a motion that a response spectrum does not hold, such as long pulses. "
-            "What a piece does under the recorded motion itself therefore stands beside its chance."
-        ),
-    )
-
-
-def list_making(assessment: Assessment, platform: Mapping[str, str]) -> list[tuple[str, str]]:
+def list_making(results: Results) -> Lines:
     """Return what a run is made again from: version, settings, seed, and the hash of every input."""
-    settings, inventory = assessment.settings, assessment.inventory
-    made_with = ", ".join(f"{name} {value}" for name, value in platform.items())
+    settings, provenance = results.settings, results.provenance
+    made_with = ", ".join(f"{name} {value}" for name, value in provenance.platform.items())
     lines = [
-        ("assess", f"{__version__} ({made_with})"),
-        (_("Scenario kind"), _(assessment.scenario)),
-        (_("Verification"), f"--verify {settings.verify}"),
+        ("assess", f"{provenance.version} ({made_with})"),
+        (_("Scenario kind"), _(provenance.scenario)),
+        (_("Verification"), settings.verify),
     ]
-    if assessment.joints and assessment.suite is None:
+    if results.has_simulated and provenance.suite is None:
         lines += [(_("Motions of each floor and axis"), f"{settings.runs}"), (_("Seed"), f"{settings.seed}")]
-    if assessment.routes:
+    if results.has_routes:
         lines.append((_("Routes: the chosen risk"), say_risk(settings.route_risk)))
-    lines.append((_("Workbook"), f"{words.cut(inventory.source.name, 80)}, SHA-256 {inventory.sha256}"))
-    files = list(inventory.files.items())
+    lines.append((_("Workbook"), f"{words.cut(provenance.workbook, 80)}, SHA-256 {provenance.sha256}"))
+    files = list(provenance.files.items())
     lines += [(_("File"), f"{words.cut(name, 80)}, SHA-256 {digest}") for name, digest in files[:MOST_FILES]]
     if len(files) > MOST_FILES:
         more = len(files) - MOST_FILES

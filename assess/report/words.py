@@ -1,13 +1,15 @@
 """Numbers and sentences as reports show them."""
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
-from assess.language import fill, ngettext, number
-from assess.language import gettext as _
-from assess.methods import Method
+from assess.i18n import gettext as _
+from assess.i18n import ngettext, number
 from assess.results import ItemResult
 from assess.risk import LIMITS, RiskClass, classify
-from assess.units import ACCELERATION, LENGTH, VELOCITY
+
+if TYPE_CHECKING:
+    from assess.methods import MethodInfo
 
 LONGEST = 160
 """Characters of a text from the workbook that a table shows; the Excel report and results.json hold all of it."""
@@ -18,18 +20,18 @@ DASH = "–"
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
-def name_ranges(method: Method) -> str:
-    """Return what the ranges of a method are, as a heading."""
+def name_ranges(method: "MethodInfo") -> str:
+    """Return the heading of the ranges of a method."""
     return _("Checked for") if method.fitted is None else _("Range of the data")
 
 
 def clip(text: str, longest: int = LONGEST) -> str:
-    """Return a text short enough for a table, saying how much was left out."""
+    """Return a text short enough for a table, with its full length where it was cut."""
     text = " ".join(text.split())
     if len(text) <= longest:
         return text
-    told = _("{count:,} characters; whole in report.xlsx", count=len(text))
-    return f"{text[:longest].rstrip()}… ({told})"
+    length = _("{count:,} characters; whole in report.xlsx", count=len(text))
+    return f"{text[:longest].rstrip()}… ({length})"
 
 
 def cut(text: str, longest: int) -> str:
@@ -38,9 +40,9 @@ def cut(text: str, longest: int) -> str:
     return text if len(text) <= longest else f"{text[: longest - 1].rstrip()}…"
 
 
-def name_first(names: Sequence[str], most: int) -> str:
-    """Return the first names, and how many more there are."""
-    named, more = ", ".join(names[:most]), len(names) - most
+def name_first(names: Sequence[str], most: int, mark: str = ", ") -> str:
+    """Return the first names with a mark between them, and how many more there are."""
+    named, more = mark.join(names[:most]), len(names) - most
     return _("{names} and {more:,} more", names=named, more=more) if more > 0 else named
 
 
@@ -76,18 +78,18 @@ def fixed(value: float | None, decimals: int) -> str:
 
 
 def in_g(value: float | None) -> str:
-    """Return an acceleration [m/s2] in g."""
-    return fixed(None if value is None else value / ACCELERATION["g"], 3)
+    """Return an acceleration [g]."""
+    return fixed(value, 3)
 
 
 def in_cm_s(value: float | None) -> str:
-    """Return a velocity [m/s] in cm/s."""
-    return fixed(None if value is None else value / VELOCITY["cm/s"], 1)
+    """Return a velocity [cm/s]."""
+    return fixed(value, 1)
 
 
 def in_cm(value: float | None) -> str:
-    """Return a length [m] in cm, with one decimal at most."""
-    return DASH if value is None else _short(value / LENGTH["cm"], 1)
+    """Return a length [cm], with one decimal at most."""
+    return DASH if value is None else _short(value, 1)
 
 
 def in_m(value: float | None) -> str:
@@ -102,7 +104,7 @@ def _short(value: float, decimals: int) -> str:
 
 def size(one: ItemResult) -> str:
     """Return breadth, width and height [cm]."""
-    return " × ".join(in_cm(side) for side in (one.item.breadth, one.item.width, one.item.height))
+    return " × ".join(in_cm(side) for side in (one.item.breadth_cm, one.item.width_cm, one.item.height_cm))
 
 
 _NOUNS: Mapping[str, Callable[[int], str]] = {
@@ -120,7 +122,7 @@ def plural(count: int, noun: str) -> str:
 
 
 def chance(one: ItemResult) -> str:
-    """Return the adopted chance, with its interval where it is verified: ``3.0 % (1.0 to 8.5 %)``."""
+    """Return the adopted chance, with its interval where it was simulated: ``3.0 % (1.0 to 8.5 %)``."""
     adopted = one.adopted
     if adopted.low is None or adopted.high is None:
         return percent(adopted.probability)
@@ -128,20 +130,14 @@ def chance(one: ItemResult) -> str:
     return f"{percent(adopted.probability)} {interval.replace(' ', NO_BREAK)}"
 
 
-def fell_in_record(one: ItemResult) -> bool:
-    """Tell whether it overturns under a recorded motion itself."""
-    return any(case.verification is not None and bool(case.verification.record_overturned) for case in one.cases)
-
-
 def under_record(one: ItemResult) -> str:
     """Return what it does under the recorded motion itself, the worst where there are several."""
-    found = [case.verification for case in one.cases if case.verification is not None]
-    turned = [verified.record_rotation for verified in found if verified.record_rotation is not None]
-    if fell_in_record(one):
+    if one.fell_in_record:
         return _("overturns")
-    if not turned:
+    found = [case.simulation.record_max_rotation_ratio for case in one.cases if case.simulation is not None]
+    most = max((ratio for ratio in found if ratio is not None), default=None)
+    if most is None:
         return DASH
-    most = max(turned)
     if most == 0:
         return _("stays at rest")
     if most < 0.005:
@@ -150,42 +146,46 @@ def under_record(one: ItemResult) -> str:
 
 
 def risk_words(one: ItemResult) -> str:
-    """Return the class in words, with what must be said beside it."""
-    words = free_words(one)
+    """Return the class in words, with its notes."""
+    words = ", ".join([risk_word(one.adopted.risk), *risk_notes(one)])
     return _("depends on its anchor (free-standing: {risk})", risk=words) if one.is_anchored else words
 
 
-def free_words(one: ItemResult) -> str:
-    """Return the class of a piece as if it were free-standing, with what must be said beside it."""
-    return ", ".join([risk_word(one.adopted.risk), *risk_notes(one)])
-
-
 def risk_notes(one: ItemResult) -> list[str]:
-    """Return what must be said beside the class: that it may be higher, was lowered, or is not that of the chance."""
+    """Return the notes on a class: that it could be higher, was lowered, or is not that of the chance."""
     adopted, notes = one.adopted, []
     if classify(adopted.probability) != adopted.risk:
         notes.append(_("as it overturns under the record itself"))
     if adopted.upper != adopted.risk:
-        notes.append(_("may be {risk}", risk=risk_word(adopted.upper)))
+        notes.append(could_be(risk_word(adopted.upper)))
     if adopted.lowered_from is not None:
-        notes.append(_("lowered by verification (formula: {risk})", risk=risk_word(adopted.lowered_from)))
+        notes.append(was_lowered(risk_word(adopted.lowered_from)))
     return notes
 
 
-MAY_BE, LOWERED = "?", "↓"
+def could_be(risk: str) -> str:
+    """Return the note that a class could be a higher one, `risk`."""
+    return _("could be {risk}", risk=risk)
+
+
+def was_lowered(risk: str) -> str:
+    """Return the note that simulation lowered the class of the formula, `risk`."""
+    return _("lowered by simulation (formula: {risk})", risk=risk)
+
+
+COULD_BE, LOWERED = "?", "↓"
 """Marks beside the symbol of a class where there is no room for words."""
-MARKS = fill("{may_be}: may be of a higher class; {lowered}: lowered by verification", may_be=MAY_BE, lowered=LOWERED)
 
 
 def marks() -> str:
-    """Say what the marks mean."""
-    return _(MARKS)
+    """Return the legend of the marks, without a full stop."""
+    return _("{could_be} could be a higher class; {lowered} lowered by simulation", could_be=COULD_BE, lowered=LOWERED)
 
 
 def class_marks(one: ItemResult) -> str:
     """Return the marks that stand beside the symbol of a class."""
-    may_be = MAY_BE if one.adopted.upper != one.adopted.risk else ""
-    return may_be + (LOWERED if one.adopted.lowered_from is not None else "")
+    could_be = COULD_BE if one.adopted.upper != one.adopted.risk else ""
+    return could_be + (LOWERED if one.adopted.lowered_from is not None else "")
 
 
 def risk_word(risk: RiskClass) -> str:

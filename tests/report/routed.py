@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Any
 
 import assess
-from assess.inventory.blank import Content, write_workbook
-from assess.results import Assessment
+from assess.results import Results
+from assess.workbook.template import Content, write_workbook
 from tests.workbooks import UNVERIFIED
 
 FLOORS: list[dict[str, Any]] = [
@@ -80,6 +80,6 @@ def write_routed(path: Path, **sheets: Any) -> Path:
     return path
 
 
-def assess_routed(path: Path, settings: assess.Settings = UNVERIFIED, **sheets: Any) -> Assessment:
+def assess_routed(path: Path, settings: assess.Settings = UNVERIFIED, **sheets: Any) -> Results:
     """Write the building and assess it, by the formulas alone where no settings are given."""
     return assess.run(assess.read_inventory(write_routed(path, **sheets)), settings)

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 
 import assess
-from assess.inventory.blank import Content, write_workbook
+from assess.workbook.template import Content, write_workbook
 from docs.screenshot import HEIGHT, WIDTH, find_browser
 from tests.workbooks import FLOORS, UNVERIFIED
 
 pytestmark = [
     pytest.mark.browser,
+    pytest.mark.slow,
     pytest.mark.skipif(
         find_browser() is None and "ASSESS_CI" not in os.environ, reason="no Chromium or Chrome is installed"
     ),

@@ -5,22 +5,41 @@ import math
 import jsonschema
 import pytest
 
-from assess.report.data import SCHEMA, item_record, write_json
-from assess.report.table import flatten, write_csv
+from assess.fields import item_fields
+from assess.report.data import SCHEMA, write_csv, write_json
+from assess.report.results_schema import build_schema
 from tests.workbooks import ITEMS, assessed
 
 
 @pytest.fixture
 def results(tmp_path):
-    assessment = assessed(tmp_path / "w.xlsx", period=0.9, building="Hall", scenario="A test")
-    write_json(assessment, tmp_path / "results.json")
-    return assessment, json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    run = assessed(tmp_path / "w.xlsx", period=0.9, building="Hall", scenario="A test")
+    write_json(run, tmp_path / "results.json")
+    return run, json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
 
 
 def test_results_follow_their_schema(results):
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     jsonschema.validate(results[1], schema)
+
+
+def test_the_schema_is_that_of_the_fields_and_rows():
+    assert json.loads(SCHEMA.read_text(encoding="utf-8")) == build_schema(), "run: make docs"
+
+
+def test_the_schema_describes_fields_of_rows_and_knows_their_limits():
+    definitions = build_schema()["$defs"]
+    chance, segment = definitions["chance"]["properties"], definitions["segment"]["properties"]
+    assert chance["probability"] == {"type": "number", "minimum": 0, "maximum": 1,
+                                     "description": chance["probability"]["description"]}  # fmt: skip
+    assert chance["probability"]["description"].startswith("From the joint outcomes")
+    assert {"from", "to"} <= set(segment)
+    assert not {"from_place", "workbook_row", "start_x_m"} & set(segment)
+    assert definitions["item"]["properties"]["friction"]["type"] == ["number", "null"]
+    assert definitions["verification"]["properties"]["runs"] == {
+        "type": "integer", "minimum": 0, "description": "Motions that the piece was simulated under.",
+    }  # fmt: skip
 
 
 def test_schema_refuses_an_unknown_field_and_a_probability_above_one(results):
@@ -35,7 +54,7 @@ def test_schema_refuses_an_unknown_field_and_a_probability_above_one(results):
 
 
 def test_results_hold_what_was_assessed(results):
-    assessment, found = results
+    run, found = results
     assert [item["item"] for item in found["items"]] == [item["item"] for item in ITEMS]
     first = found["items"][0]
     assert (first["breadth_cm"], first["width_cm"], first["height_cm"]) == (30.0, 80.0, 200.0)
@@ -48,23 +67,23 @@ def test_results_hold_what_was_assessed(results):
     assert first["methods"]["housner_monte_carlo"]["value"] is None
     assert {demand["ensemble"] for floor in found["floors"] for demand in floor["demands"]} == {None}
     settings = found["assess"]["settings"]
-    assert found["schema"] == "2.0"
+    assert found["schema"] == "3.0"
     assert found["assess"]["seed"] == settings["seed"] == 1
     assert (settings["verify"], settings["runs"], settings["scale_motions"]) == ("none", 200, False)
     assert found["assess"]["inputs"]["motions"] == {}
-    assert found["assess"]["inputs"]["sha256"] == assessment.inventory.sha256
+    assert found["assess"]["inputs"]["sha256"] == run.provenance.sha256
 
 
 def test_converted_sizes_carry_no_binary_noise(tmp_path):
     sizes = [29, 32.1, 47.2, 57, 58, 113.3]
     items = [{"item": str(at), "floor": "1", "breadth": size, "height": 206.4} for at, size in enumerate(sizes)]
-    assessment = assessed(tmp_path / "w.xlsx", items)
-    assert [item_record(one)["breadth_cm"] for one in assessment] == sizes
+    run = assessed(tmp_path / "w.xlsx", items)
+    assert [one.item.breadth_cm for one in run] == sizes
 
 
 def test_unknown_pfv_is_null_not_nan(tmp_path):
-    assessment = assessed(tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_y": 0.3}])
-    write_json(assessment, tmp_path / "r.json")
+    run = assessed(tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_y": 0.3}])
+    write_json(run, tmp_path / "r.json")
     found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"), parse_constant=pytest.fail)
     assert found["items"][0]["pfv_cm_s"] is None
     assert found["items"][0]["methods"]["fema_p58"] == {
@@ -74,14 +93,14 @@ def test_unknown_pfv_is_null_not_nan(tmp_path):
 
 
 def test_csv_is_the_same_table(results, tmp_path):
-    assessment, found = results
-    write_csv(assessment, tmp_path / "items.csv")
+    run, found = results
+    write_csv(run, tmp_path / "items.csv")
     assert (tmp_path / "items.csv").read_bytes().startswith(b"\xef\xbb\xbf")
     with (tmp_path / "items.csv").open(encoding="utf-8-sig", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(found["items"])
+    assert list(rows[0]) == [field.key for field in item_fields(run)]
     for row, item in zip(rows, found["items"], strict=True):
-        assert set(row) == set(flatten(item))
         assert float(row["proposed_or"]) == item["methods"]["proposed_or"]["value"]
         assert float(row["proposed_or_raw"]) == item["methods"]["proposed_or"]["raw"]
         assert row["adopted_class"] == item["adopted"]["class"]

@@ -1,32 +1,33 @@
 """Where methods disagree by more than one class: which rows, and whether the reasons are true of them."""
 
+import dataclasses
 import itertools
 import math
-from dataclasses import replace
+import re
 
 import pytest
 
 import assess
-from assess.language import load_catalogue, speaking
-from assess.methods import all_methods, fema_p58
-from assess.report.findings.disagreements import (
-    MOST_REASONS,
-    find_disagreements,
-    group_disagreements,
-    summarise_disagreements,
-)
-from assess.report.findings.facts import Facts, span
-from assess.report.findings.reasons import KINDS, find_kinds
+from assess.i18n import load_catalogue, speaking
+from assess.methods._fitted_model import Polynomial, build_method
+from assess.report.findings.disagreements import MOST_REASONS, NAMED, find_disagreements, group_disagreements, span
+from assess.report.words import name_ranges
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
-from assess.units import GRAVITY
-from tests.workbooks import RECORDS, UNVERIFIED, assessed
+from tests.methods.test_fitted import PROBIT, SURFACE
+from tests.workbooks import UNVERIFIED, assessed
 
-MARKET_STREET = RECORDS.parents[1] / "inventories" / "market-street.xlsx"
-PROBABILITIES = [method.key for method in all_methods() if method.kind == "probability"]
+NEVER = dataclasses.replace(
+    SURFACE,
+    key="fitted_never",
+    title="Never",
+    formula=Polynomial("x", ((0, 0, 0.0),)),
+    fitted=dataclasses.replace(SURFACE.fitted, error=0.5),
+)
+ALWAYS = dataclasses.replace(SURFACE, key="fitted_always", title="Always", formula=Polynomial("x", ((0, 0, 1.0),)))
 
 
-def rows(tmp_path, cases, settings=UNVERIFIED, **building):
+def run(tmp_path, cases, settings=UNVERIFIED, **building):
     """Assess pieces given as breadth, height [cm], PFA [g], PFV [cm/s]."""
     motions = sorted({case[2:] for case in cases}, key=str)
     floors = [{"floor": f"F{at}", "pfa_x": pfa, "pfv_x": pfv} for at, (pfa, pfv) in enumerate(motions)]
@@ -38,246 +39,204 @@ def rows(tmp_path, cases, settings=UNVERIFIED, **building):
     return assessed(tmp_path / "w.xlsx", items, floors, settings=settings, **building)
 
 
+def found(results):
+    return find_disagreements(results, tuple(results))
+
+
+def rows_of(results):
+    return [row for group in found(results).groups for row in group.rows]
+
+
 def one(tmp_path, *case, **named):
-    (found,) = find_disagreements(rows(tmp_path, [case], **named))
-    return found
+    (group,) = found(run(tmp_path, [case], **named)).groups
+    (row,) = group.rows
+    return row, " ".join(group.reasons)
 
 
-def classes(result):
-    values = [result.governing.methods[key].value for key in PROBABILITIES]
+def classes(results, row):
+    methods = [one.key for one in results.methods if one.kind == "probability" and one.fitted is None]
+    values = [row.governing.methods[key].value for key in methods]
     return [classify(value) for value in values if value is not None]
 
 
 @pytest.fixture(scope="module")
-def market_street():
-    return assess.run(assess.read_inventory(MARKET_STREET), UNVERIFIED)
-
-
-@pytest.fixture(scope="module")
 def swept(tmp_path_factory):
-    """Sizes and motions of all kinds, well beyond what a building holds."""
+    """Sizes and motions of all kinds, well beyond those of a building."""
     sizes = itertools.product((6, 20, 30, 45, 70, 120, 200), (40, 90, 200, 300))
     motions = list(itertools.product((0.02, 0.1, 0.25, 0.5, 0.9, 2.5), (None, 1, 10, 40, 120, 500)))
-    cases = [(*size, *motion) for size in sizes for motion in motions]
-    return rows(tmp_path_factory.mktemp("sweep"), cases)
+    return run(tmp_path_factory.mktemp("sweep"), [(*size, *motion) for size in sizes for motion in motions])
 
 
 class TestSweep:
-    def test_every_row_that_differs_by_more_than_one_class_is_found(self, swept):
-        found = {row.result.item.item for row in find_disagreements(swept)}
-        assert found == {result.item.item for result in swept if max(classes(result)) - min(classes(result)) > 1}
-        assert len(found) > 200
+    def test_every_row_that_differs_by_more_than_one_class_is_in_one_group(self, swept):
+        expected = [row.item.item for row in swept if max(classes(swept, row)) - min(classes(swept, row)) > 1]
+        groups = found(swept).groups
+        assert sorted(row.result.item.item for group in groups for row in group.rows) == sorted(expected)
+        assert len(groups) < len(expected) / 4
+        assert len(expected) > 200
 
-    def test_every_row_has_reasons_as_sentences(self, swept):
-        for row in find_disagreements(swept):
-            assert 1 <= len(row.reasons) <= MOST_REASONS
-            for reason in row.reasons:
+    def test_reasons_are_whole_sentences_about_both_methods(self, swept):
+        for group in found(swept).groups:
+            assert 2 <= len(group.reasons) <= MOST_REASONS
+            for reason in group.reasons:
                 assert reason.endswith(".")
-                assert "nan" not in reason
-                assert "{" not in reason
-
-    def test_what_is_high_and_low_is_explained(self, swept):
-        about = {
-            "proposed_or": {"or_below_start", "or_at_start", "or_at_most", "size", "or_alone"},
-            "kaneko_hayashi": {"kaneko_bound", "kaneko_velocity", "kaneko_acceleration"},
-            "fema_p58": {"fema"},
-        }
-        for row in find_disagreements(swept):
-            for verdict in (row.highest, row.lowest):
-                assert about[verdict.key] & set(row.kinds), row
-
-    def test_every_kind_that_needs_peaks_alone_occurs(self, swept):
-        kinds = {kind for row in find_disagreements(swept) for kind in find_kinds(_facts(row))}
-        rarer = {
-            "peaks_above",
-            "integration",
-            "peak_is_not_enough",
-            "quick",
-            "slow",
-            "generic",
-            "weak",
-            "estimated",
-        }
-        assert set(KINDS) - kinds <= rarer
+                assert not re.search(r"\bnan\b|None|[{}–]", reason)
+            first = group.rows[0]
+            assert {method.key for method, _ in first.reasons} == {first.highest.method.key, first.lowest.method.key}
 
     def test_reasons_are_true(self, swept):
-        for row in find_disagreements(swept):
-            for kind in row.kinds:
-                TRUE.get(kind, lambda row: None)(row)
+        for row in rows_of(swept):
+            item, case = row.result.item, row.result.governing
+            for method, reason in row.reasons:
+                detail, motion = case.methods[method.key].detail, case.motion
+                if reason.can_rock is False:
+                    assert motion.pfa_g <= item.breadth_to_height * (1 + 1e-9)
+                if reason.side:
+                    assert row.highest.method is method if reason.side == "above" else row.lowest.method is method
+                if reason.flag:
+                    assert reason.flag in case.methods[method.key].flags
+                if reason.equals == "pfv":
+                    assert motion.pfa_g * 980.665 / (2 * math.pi * motion.pfv_cm_s) > detail["boundary_frequency_hz"]
+                    assert (motion.pfv_cm_s < detail["median_pfv_cm_s"]) == (case.methods[method.key].value < 0.5)
 
-    def test_groups_hold_every_row_once(self, swept):
-        found = find_disagreements(swept)
-        groups = group_disagreements(found)
-        assert sorted(item for group in groups for item in group.items) == sorted(row.result.item.item for row in found)
-        assert len(groups) < len(found) / 4
+    def test_the_widest_come_first_and_rows_of_a_group_are_alike(self, swept):
+        groups = found(swept).groups
         spreads = [group.rows[0].spread for group in groups]
         assert spreads == sorted(spreads, reverse=True)
         for group in groups:
-            assert {row.kinds for row in group.rows} == {group.rows[0].kinds}
-            assert len(group.reasons) == len(group.rows[0].reasons)
-
-    def test_the_widest_come_first(self, swept):
-        order = [(row.spread, row.result.adopted.upper) for row in find_disagreements(swept)]
-        assert order == sorted(order, reverse=True)
-
-
-def _facts(row):
-    return Facts(row.result, row.highest.key, row.lowest.key)
-
-
-def _below_start(row):
-    case, item = row.result.governing, row.result.item
-    assert case.demand.pfa <= GRAVITY * item.breadth / item.height * (1 + 1e-9)
-    assert case.methods["static"].value == 0
-
-
-def _kaneko_velocity(row):
-    demand, formula = row.result.governing.demand, row.result.governing.methods["kaneko_hayashi"]
-    assert demand.pfa / (2 * math.pi * demand.pfv) > formula.detail["boundary_frequency_hz"]
-    assert (100 * demand.pfv < formula.detail["median_pfv_cm_s"]) == (formula.value < 0.5)
-
-
-def _size(row):
-    """A piece of the height that is named, of the same B/H, overturns by half."""
-    facts, item = _facts(row), row.result.item
-    height = facts.half_height / 100
-    median = fema_p58.median_pfv(height * item.breadth / item.height, height)
-    assert median == pytest.approx(row.result.governing.demand.pfv)
-    assert (facts.half_height < facts.height) == (row.highest.key == "proposed_or")
-
-
-def _at_most(row):
-    assert classify(_facts(row).or_at_most) < row.highest.risk
-    assert row.lowest.value <= _facts(row).or_at_most + 1e-12
-
-
-TRUE = {
-    "or_below_start": _below_start,
-    "velocity_below_start": _below_start,
-    "kaneko_velocity": _kaneko_velocity,
-    "size": _size,
-    "or_at_most": _at_most,
-}
+            alike = {(row.highest.risk, row.lowest.risk, *(reason for _, reason in row.reasons)) for row in group.rows}
+            assert len(alike) == 1
 
 
 class TestKnownRows:
     def test_the_formula_is_high_below_the_start_of_rocking(self, tmp_path):
-        # g·B/H = 0.25 g, PFA 0.165 g
-        row = one(tmp_path, 45.7, 182.9, 0.165, 22.7)
+        row, reasons = one(tmp_path, 45.7, 182.9, 0.165, 22.7)  # g·B/H = 0.25 g
         assert (row.highest.title, row.highest.risk) == ("Proposed OR formula", RiskClass.HIGH)
         assert (row.lowest.title, row.lowest.risk) == ("Kaneko-Hayashi formula", RiskClass.LOW)
         assert row.spread == 2
-        assert row.reasons[0] == (
-            "PFA 0.165 g is 0.66 times g·B/H = 0.250 g, above which rocking can start; the proposed formula is a "
-            f"surface fitted to results and knows no such threshold: it still gives {100 * row.highest.value:.1f} %."
-        )
-        assert row.reasons[1] == (
-            "The Kaneko-Hayashi formula goes by velocity here (F_f 1.13 Hz, above F_b 0.83 Hz): PFV 22.7 cm/s is 0.38 "
-            "times its median for such pieces, 59.0 cm/s."
-        )
-
-    def test_size_and_velocity_count_for_others(self, tmp_path):
-        tall, small = one(tmp_path, 60, 300, 0.4, 20), one(tmp_path, 20, 40, 0.02, 120)
-        assert (tall.highest.key, small.lowest.key) == ("proposed_or", "proposed_or")
-        assert "size" in tall.kinds
-        assert "size" in small.kinds
-        assert "here the height is 300 cm." in tall.reasons[tall.kinds.index("size")]
-        assert "here the height is 40 cm." in small.reasons[small.kinds.index("size")]
+        assert reasons.startswith("PFA 0.165 g is 0.66 times g·B/H, above which rocking can start;")
+        assert f"it still gives {100 * row.highest.value:.1f} %." in reasons
+        assert "(F_f 1.13 Hz, above F_b 0.83 Hz): PFV is 22.7 cm/s, its median for such pieces 59.0 cm/s." in reasons
 
     def test_an_unknown_velocity_is_an_upper_bound(self, tmp_path):
-        row = one(tmp_path, 120, 90, 0.9, None)
-        assert (row.highest.key, row.lowest.key) == ("proposed_or", "kaneko_hayashi")
-        assert row.reasons[row.kinds.index("kaneko_bound")].startswith(
-            "PFV is unknown: the Kaneko-Hayashi formula shows"
-        )
+        row, reasons = one(tmp_path, 120, 90, 0.9, None)
+        assert (row.highest.method.role, row.lowest.title) == ("adopted formula", "Kaneko-Hayashi formula")
+        assert "PFV is unknown: the Kaneko-Hayashi formula shows" in reasons
 
-    def test_an_estimated_velocity_is_said(self, tmp_path):
-        found = find_disagreements(rows(tmp_path, [(45.7, 182.9, 0.165, None)], period=0.7))
-        assert found
-        assert all("estimated" in find_kinds(_facts(row)) for row in found)
+    def test_an_estimated_velocity_is_said_once(self, tmp_path):
+        _, reasons = one(tmp_path, 45.7, 182.9, 0.165, None, period=0.7)
+        assert reasons.count("cm/s was not given: it is an estimate from PFA and the building's period T1") == 1
 
     def test_methods_that_agree_are_left_out(self, tmp_path):
-        assert find_disagreements(rows(tmp_path, [(30, 200, 0.8, 150)])) == ()
+        assert found(run(tmp_path, [(30, 200, 0.8, 150)])).groups == ()
 
-    def test_direct_integration_counts_once_it_ran(self, tmp_path):
+    @pytest.mark.slow
+    def test_simulation_counts_once_it_ran(self, tmp_path):
         settings = Settings(verify="all", runs=20)
-        row = one(tmp_path, 45, 180, 0.24, 35, settings=settings, period=1.0)
-        verified = row.result.governing.verification
-        assert (row.lowest.key, row.lowest.value) == ("housner_monte_carlo", verified.probability)
-        text = " ".join(row.reasons)
-        assert f"{100 * verified.probability:.1f} % of 20 motions overturn it." in text
-        assert "or_below_start" in row.kinds
-        assert "generic" in find_kinds(_facts(row))
+        row, reasons = one(tmp_path, 45, 180, 0.24, 35, settings=settings, period=1.0)
+        simulated = row.result.governing.simulation
+        assert (row.lowest.method.role, row.lowest.value) == ("simulation", simulated.probability)
+        assert f"{simulated.overturned} of 20 motions overturn it." in reasons
+        assert "follow a generic spectrum" in reasons
 
 
 class TestExampleBuilding:
-    def test_by_the_formulas(self, market_street):
-        found = find_disagreements(market_street)
-        assert summarise_disagreements(found, len(market_street)) == (
-            "On 9 of 121 rows, methods differ by more than one class: in every case Proposed OR formula lies above "
-            "Kaneko-Hayashi formula."
+    def test_by_the_formulas(self, example):
+        both = found(example)
+        assert both.summary == (
+            "On 9 of 121 rows, methods differ by more than one class; most often Proposed OR formula lies above "
+            "Kaneko-Hayashi formula (on 9)."
         )
-        groups = group_disagreements(found)
-        assert [len(group.rows) for group in groups] == [8, 1]
-        assert groups[0].items[:2] == ("42-07", "42-08")
-        assert groups[0].highest_value == "34.5 to 36.3 %"
-        assert groups[0].reasons[0].startswith("PFA 0.136 to 0.165 g is 0.59 to 0.66 times g·B/H = 0.231 to 0.254 g, ")
-        assert groups[1].items == ("G-04",)
-        assert "near_switch" in groups[1].rows[0].kinds
-        for row in found:
-            for kind in row.kinds:
-                TRUE.get(kind, lambda row: None)(row)
+        first, second = both.groups
+        assert (len(first.rows), first.named[:2], first.left) == (8, ["42-07", "42-08"], 0)
+        assert first.highest == "Proposed OR formula: ▲ high, 34.5 to 36.3 %"
+        assert first.reasons[0].startswith("PFA 0.136 to 0.165 g is 0.59 to 0.66 times g·B/H, ")
+        assert second.named == ["G-04"]
+        assert any("jumps between acceleration and velocity" in reason for reason in second.reasons)
 
-    def test_in_another_language_the_numbers_follow(self, market_street):
+    def test_in_another_language_the_numbers_follow(self, example):
         with speaking(load_catalogue("it")):
-            (row, *_) = find_disagreements(market_street)
-            assert "0,136" in row.reasons[0]
+            assert "0,136" in found(example).groups[0].reasons[0]
+
+    def test_a_long_group_names_some_and_counts_the_others(self, example):
+        (long, *_) = group_disagreements(rows_of(example) * 2)
+        assert (len(long.rows), len(long.named), long.left) == (16, NAMED, 4)
+
+    def test_the_most_frequent_pair_is_counted_where_there_are_others(self, example):
+        rows = [row for row in example if row.item.item != "42-25"]
+        row, key = example["42-25"], example.formula.key
+        methods = row.governing.methods | {key: row.governing.methods[key]._replace(value=0.0)}
+        other = dataclasses.replace(row, governing=dataclasses.replace(row.governing, methods=methods))
+        said = find_disagreements(example, [*rows, other]).summary
+        assert said.startswith("On 10 of 121 rows")
+        assert said.endswith("; most often Proposed OR formula lies above Kaneko-Hayashi formula (on 9).")
 
 
-def test_integration_kinds_by_made_up_verdicts(tmp_path):
-    """A sentence is made of every kind for a piece that was integrated, whichever the two methods are."""
-    settings = Settings(verify="all", runs=20)
-    found = rows(tmp_path, [(45, 180, 0.4, 35), (45, 180, 0.2, 35)], settings=settings)
-    for result in found:
-        for highest, lowest in itertools.permutations(PROBABILITIES, 2):
-            facts = Facts(result, highest, lowest)
-            kinds = find_kinds(facts)
-            assert kinds
-            for kind in kinds:
-                assert KINDS[kind].say([facts, facts]) == KINDS[kind].say([facts])
-    quick = Facts(found.result(0), "proposed_or", "housner_monte_carlo")
-    assert {"integration", "peak_is_not_enough", "quick"} <= set(find_kinds(quick))
-    slept = Facts(found.result(1), "housner_monte_carlo", "proposed_or")
-    assert "peaks_above" in find_kinds(slept)
-    assert "slow" not in find_kinds(slept)
+def test_no_disagreement_is_said(example):
+    rows = tuple(example)
+    assert find_disagreements(example, rows[:3]).summary == (
+        "On all 3 rows, the methods lie within one class of each other."
+    )
+    assert find_disagreements(example, rows[:1]).summary.startswith("On the 1 row, ")
 
 
-def test_the_most_frequent_pair_is_counted_where_there_are_others(market_street):
-    found = find_disagreements(market_street)
-    other = replace(found[0], lowest=replace(found[0].lowest, title="Another"))
-    said = summarise_disagreements([*found[1:], other], 121)
-    assert said.endswith("; most often Proposed OR formula lies above Kaneko-Hayashi formula (on 8).")
-
-
-def test_a_long_group_names_some_and_counts_the_others(market_street):
-    (group, *_) = group_disagreements(find_disagreements(market_street))
-    long = replace(group, rows=group.rows * 2)
-    assert (len(group.named), group.left, len(long.named), long.left) == (8, 0, 12, 4)
-
-
-def test_no_disagreement_is_said():
-    assert summarise_disagreements((), 3) == "On all 3 rows, the methods lie within one class of each other."
-    assert summarise_disagreements((), 1) == "On the 1 row, the methods lie within one class of each other."
-
-
-@pytest.mark.parametrize(("values", "text"), [([0.25, 0.31], "0.25 to 0.31"), ([0.251, 0.249], "0.25")])
+@pytest.mark.parametrize(
+    ("values", "text"), [([0.25, 0.31], "0.25 to 0.31"), ([0.251, 0.249], "0.25"), ([None], "–"), ([None, 1], "1.00")]
+)
 def test_ranges(values, text):
     assert span(values, ".2f") == text
 
 
-def test_pieces_on_which_the_lowest_and_highest_are_the_same_class_apart_are_one_group(tmp_path):
-    found = find_disagreements(rows(tmp_path, [(45.7, 182.9, 0.165, 22.7), (45.7, 182, 0.165, 22.7)]))
-    (group,) = group_disagreements(found)
-    assert len(group.rows) == 2
-    moved = replace(found[0], kinds=("fema",))
-    assert len(group_disagreements([moved, found[1]])) == 2
+# ---------------------------------------------------------------- fitted models
+
+
+@pytest.fixture(scope="module", params=[[NEVER], [ALWAYS], [NEVER, PROBIT, ALWAYS]], ids=len)
+def models(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def with_models(example_inventory, models):
+    return assess.run(example_inventory, UNVERIFIED, methods=[build_method(one, "m.toml") for one in models])
+
+
+def shown(group):
+    return group.named, group.highest, group.lowest, list(group.reasons)
+
+
+class TestFitted:
+    def test_what_is_said_of_the_published_methods_comes_first_unchanged(self, with_models, example):
+        plain, more = found(example), found(with_models)
+        assert list(map(shown, more.groups[: len(plain.groups)])) == list(map(shown, plain.groups))
+        assert more.summary.startswith(f"{plain.summary} Counted separately: ")
+        assert all(row.model for group in more.groups[len(plain.groups) :] for row in group.rows)
+
+    def test_every_row_on_which_one_differs_from_a_published_method_is_found_once(self, with_models, models):
+        for model in models:
+            expected = []
+            for row in with_models:
+                own, others = classify(row.governing.methods[model.key].value), classes(with_models, row)
+                if own is not None and max(abs(own - other) for other in others) > 1:
+                    expected.append(row.item.item)
+            rows = [row for row in rows_of(with_models) if row.model and row.model.key == model.key]
+            assert sorted(row.result.item.item for row in rows) == sorted(expected)
+            assert all(sum(one.method.fitted is not None for one in (row.highest, row.lowest)) == 1 for row in rows)
+            n = f"method on {len(expected):,} of 121 rows; most often "
+            assert (f" differs by more than one class from a published {n}" in found(with_models).summary) == bool(
+                expected
+            )
+        assert any(row.model for row in rows_of(with_models))
+
+    def test_its_reasons_come_first(self, tmp_path):
+        book = run(tmp_path, [(30, 180, 0.5, 200)]).provenance.workbook
+        method = build_method(NEVER, "m.toml")
+        results = assess.run(tmp_path / book, UNVERIFIED, methods=[method])
+        (group,) = [group for group in found(results).groups if group.rows[0].model]
+        assert group.reasons[0].startswith("The fitted model gives 0.0 % at B/H 0.167 and PFA 0.500 g: it approximates")
+        assert "no better than a constant" in " ".join(group.reasons)
+        assert group.rows[0].reasons[0][0].key == NEVER.key
+
+    def test_only_a_fitted_model_has_a_range_of_data(self, with_models, models):
+        titles = {name_ranges(one) for one in with_models.methods if one.fitted is None}
+        assert titles == {"Checked for"}
+        assert {name_ranges(one) for one in with_models.methods if one.fitted} == {"Range of the data"}

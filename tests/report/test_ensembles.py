@@ -11,7 +11,9 @@ from assess.motion.formats import read_records
 from assess.motion.record import treat
 from assess.motion.spectrum import build_periods
 from assess.motion.target import generic_shape
-from assess.report.commands.ensembles import draw_ensemble, draw_targets
+from docs.ensemble_figures import draw_ensemble, draw_targets
+
+pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 RECORD = "575 Market Street, 34th floor, 225°"

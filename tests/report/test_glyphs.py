@@ -1,5 +1,6 @@
 """Characters that the report's fonts lack: told by cell, never a crash, and the PDF stays valid."""
 
+import json
 import os
 import subprocess
 import sys
@@ -7,12 +8,15 @@ import sys
 import pypdfium2
 import pytest
 
-from assess.language import load_catalogue, speaking
-from assess.report.look import Look
+from assess.i18n import load_catalogue, speaking
+from assess.report.content import build_content
+from assess.report.fonts import find_missing
 from assess.report.pages import glyphs, pdf
+from assess.report.pages.pdf_layout import lay_out
+from assess.report.report_options import ReportOptions
 from tests.workbooks import assessed, write
 
-MEND = "Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk)."
+FIX = "Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk)."
 
 
 def _items(*descriptions, **more):
@@ -38,35 +42,35 @@ def _items(*descriptions, **more):
     ],
 )
 def test_the_fonts_hold(text, missing):
-    assert glyphs.find_missing(text) == missing
+    assert find_missing(text) == missing
 
 
 def test_every_text_of_ours_is_in_our_fonts():
     for code in ("en", "it"):
         with speaking(load_catalogue(code)):
             texts = [text for texts in load_catalogue(code).messages.values() for text in texts]
-        assert glyphs.find_missing("".join(texts)) == ""
+        assert find_missing("".join(texts)) == ""
 
 
 def test_each_field_is_told_once_with_its_first_cell(tmp_path, monkeypatch):
-    monkeypatch.setattr(pdf, "_find_nowhere", frozenset)
+    monkeypatch.setattr(pdf, "find_nowhere", frozenset)
     items = [*_items("Shelf"), *_items("本棚", "椅子", room="書庫", notes="机")]
     items = [item | {"item": f"A{at}"} for at, item in enumerate(items)]
-    assessment = assessed(tmp_path / "w.xlsx", items, building="東京", scenario="a quake")
-    assert [str(one) for one in pdf.list_problems(assessment)] == [
-        f"Building!B1: Building: no font here holds 東 (U+6771), 京 (U+4EAC); the PDF has � instead. {MEND}",
-        f"Items!C3: Room of 2 rows: no font here holds 書 (U+66F8), 庫 (U+5EAB); the PDF has � instead. {MEND}",
+    results = assessed(tmp_path / "w.xlsx", items, building="東京", scenario="a quake")
+    assert [str(one) for one in pdf.list_problems(results)] == [
+        f"Building!B1: Building: no font here holds 東 (U+6771), 京 (U+4EAC); the PDF has � instead. {FIX}",
+        f"Items!C3: Room of 2 rows: no font here holds 書 (U+66F8), 庫 (U+5EAB); the PDF has � instead. {FIX}",
         "Items!D3: Description of 2 rows: no font here holds 本 (U+672C), 棚 (U+68DA), 椅 (U+6905), 子 (U+5B50); "
-        f"the PDF has � instead. {MEND}",
-        f"Items!T3: Notes of 2 rows: no font here holds 机 (U+673A); the PDF has � instead. {MEND}",
+        f"the PDF has � instead. {FIX}",
+        f"Items!T3: Notes of 2 rows: no font here holds 机 (U+673A); the PDF has � instead. {FIX}",
     ]
-    assert {one.severity for one in pdf.list_problems(assessment)} == {"warning"}
+    assert {one.severity for one in pdf.list_problems(results)} == {"warning"}
 
 
 def test_a_font_of_the_machine_that_helps_out_is_a_note(tmp_path, monkeypatch):
-    monkeypatch.setattr(pdf, "_find_nowhere", lambda _: frozenset())
-    assessment = assessed(tmp_path / "w.xlsx", _items("一二三四五六七"))
-    (problem,) = pdf.list_problems(assessment)
+    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
+    results = assessed(tmp_path / "w.xlsx", _items("一二三四五六七"))
+    (problem,) = pdf.list_problems(results)
     assert problem.severity == "note"
     assert problem.message == (
         "Description: a font of this machine lends the PDF 一 (U+4E00), 二 (U+4E8C), 三 (U+4E09), 四 (U+56DB), "
@@ -75,7 +79,7 @@ def test_a_font_of_the_machine_that_helps_out_is_a_note(tmp_path, monkeypatch):
 
 
 def test_marks_that_nobody_sees_are_not_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(pdf, "_find_nowhere", lambda _: frozenset())
+    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
     text = "wide\u3000space, \u2068isolate\u2069, \ufe0f, \u00ad"
     assert pdf.list_problems(assessed(tmp_path / "w.xlsx", _items(text))) == []
 
@@ -90,16 +94,20 @@ def test_many_fields_are_counted():
 
 _ON_A_BARE_MACHINE = """
 import sys
+from pathlib import Path
 import assess
+from assess.report.content import build_content
 from assess.report.pages import pdf
-from assess.report.look import Look
-assessment = assess.run(assess.read_inventory(sys.argv[1]), assess.Settings(verify="none"))
-print(*pdf.list_problems(assessment), sep="\\n")
+from assess.report.pages.pdf_layout import lay_out
+from assess.report.report_options import ReportOptions
+results = assess.run(sys.argv[1], verify="none")
+print(*pdf.list_problems(results), sep="\\n")
 for accessible in (False, True):
-    pdf.write_pdf(assessment, sys.argv[2 + accessible], Look(accessible=accessible))
+    pdf.write_pdf(build_content(results), Path(sys.argv[2 + accessible]), ReportOptions(accessible=accessible))
 """
 
 
+@pytest.mark.slow
 def test_a_machine_without_fonts_writes_the_same_report(tmp_path):
     """WeasyPrint ends the process where a family has no font at all: every family of ours is embedded."""
     (tmp_path / "fonts.conf").write_text('<?xml version="1.0"?><fontconfig></fontconfig>')
@@ -123,11 +131,14 @@ def test_a_machine_without_fonts_writes_the_same_report(tmp_path):
         assert not set(text) & set("東京本棚🪑")
 
 
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # WeasyPrint's own profile of colours
 def test_no_box_is_in_a_pdf(tmp_path, caplog, monkeypatch):
     """PDF/A forbids them; WeasyPrint would log each."""
-    monkeypatch.setattr(pdf, "_find_nowhere", frozenset)
-    assessment = assessed(tmp_path / "表.xlsx", _items("本棚 \u20d0", room="🪑"), building="ビル")
-    pdf.write_pdf(assessment, tmp_path / "a.pdf", Look())
+    monkeypatch.setattr(pdf, "find_nowhere", frozenset)
+    results = assessed(tmp_path / "表.xlsx", _items("本棚 \u20d0", room="🪑"), building="ビル")
+    monkeypatch.setattr(pdf, "_lay_out", lambda job, _progress: lay_out(json.loads(job)))  # here, for its log
+    pdf.write_pdf(build_content(results), tmp_path / "a.pdf", ReportOptions())
     assert ".notdef" not in caplog.text
     assert "��" in _read(tmp_path / "a.pdf")
 

@@ -8,11 +8,11 @@ import pypdfium2
 import pytest
 
 import assess
-from assess.cases import FLAGS as CASE_FLAGS
 from assess.methods import all_methods
 from assess.report.pages.context import LIMITS
-from assess.report.pages.html import render
-from assess.report.pages.parts import script_hash
+from assess.report.pages.html import hash_script
+from assess.results import MOTION_FLAGS, PIECE_FLAG_TEXTS
+from tests.report.reading import render
 from tests.workbooks import assessed, write
 
 
@@ -55,16 +55,17 @@ def test_html_is_well_formed_and_says_what_must_be_said(report):
     assessment, written = report
     text = _read(written["html"].read_text(encoding="utf-8"))
     assert (
-        "chance of overturning in this scenario , not per year; the interval covers the number of records only" in text
+        "chance of overturning in this scenario , not per year; there are no intervals, as no rocking has been "
+        "simulated" in text
     )
-    assert "Not verified" in text
+    assert "Not simulated" in text
     assert "Town hall" in text
     for method in all_methods():
         assert method.title in text
         assert " ".join(str(method.reference).split()) in text
         for flag, meaning in method.flags.items():
             assert flag.replace("_", " ") in text
-            assert meaning in text or flag in assess.demand.FLAGS or flag in CASE_FLAGS
+            assert meaning in text or flag in MOTION_FLAGS or flag in PIECE_FLAG_TEXTS
     for one in assessment:
         assert one.item.item in text
         assert f"{100 * one.adopted.probability:.1f} %" in text
@@ -82,7 +83,7 @@ def test_anchored_pieces_stand_outside_the_classes(report):
     _, written = report
     text = _read(written["html"].read_text(encoding="utf-8"))
     assert "depends on its anchor (free-standing:" in text
-    assert "1 further piece is anchored, and only as safe as its anchor." in text
+    assert "1 further piece is anchored and not classified: it depends on its anchors." in text
 
 
 def test_html_fetches_nothing_and_runs_its_one_script_alone(report):
@@ -92,7 +93,7 @@ def test_html_fetches_nothing_and_runs_its_one_script_alone(report):
     assert not re.search(r'(?:src|href)="(?!data:image/|#)', html)
     (script,) = re.findall(r"<script>(.*?)</script>", html, flags=re.DOTALL)
     assert html.count("<script") == 1
-    assert f"script-src '{script_hash(script)}'" in html
+    assert f"script-src '{hash_script(script)}'" in html
     assert "url(" not in re.sub(r"url\((data:|#)", "", html)
 
 

@@ -3,13 +3,14 @@
 import pytest
 
 import assess
-from assess.inventory.blank import Content, write_workbook
-from assess.report.look import Look
-from assess.report.pages.html import render
-from assess.report.pages.pdf import load_weasyprint
+from assess.report.report_options import ReportOptions
+from assess.workbook.template import Content, write_workbook
+from tests.report.reading import render
 from tests.workbooks import UNVERIFIED
 
-weasyprint = load_weasyprint()
+pytestmark = pytest.mark.slow
+
+weasyprint = pytest.importorskip("weasyprint")
 boxes = pytest.importorskip("weasyprint.formatting_structure.boxes")
 
 LONG = "Supercalifragilisticexpialidocious-wing"
@@ -35,19 +36,17 @@ ROUTES = [
 
 
 @pytest.fixture(scope="module")
-def assessment(tmp_path_factory):
+def results(tmp_path_factory):
     path = tmp_path_factory.mktemp("layout") / "w.xlsx"
     building = [{"building": f"{LONG} hall", "revision": "B", "azimuth_deg": 45, "prepared_by": LONG}]
     rows = {"Building": building, "Floors": FLOORS, "Items": PIECES, "Places": PLACES, "Routes": ROUTES}
     write_workbook(path, Content(rows=rows), "si")
-    return assess.run(assess.read_inventory(path), UNVERIFIED)
+    return assess.run(path, UNVERIFIED)
 
 
 @pytest.fixture(scope="module", params=["en", "it"])
-def pages(request, assessment):
-    look = Look(language=request.param)
-    with look.spoken():
-        html = render(assessment, look, for_print=True)
+def pages(request, results):
+    html = render(results, ReportOptions(language=request.param), for_print=True)
     return [page._page_box for page in weasyprint.HTML(string=html).render().pages]
 
 

@@ -6,11 +6,11 @@ import pytest
 from typer.testing import CliRunner
 
 import assess
-from assess.cli import app
+from assess.cli.app import app
 from assess.errors import InputError
-from assess.language import load_catalogue
-from assess.report.look import Look
-from assess.report.pages.html import render
+from assess.i18n import load_catalogue
+from assess.report.report_options import ReportOptions
+from tests.report.reading import render
 from tests.workbooks import ITEMS, assessed, write
 
 HEAD = """msgid ""
@@ -30,31 +30,26 @@ def own(folder, name, text):
     path = folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text, encoding="utf-8")
-    return Look(templates=folder)
-
-
-def rendered(assessment, look):
-    with look.spoken():
-        return render(assessment, look)
+    return ReportOptions(templates=folder)
 
 
 def test_a_file_of_the_firms_own_stands_in(assessment, tmp_path):
     look = own(
         tmp_path, "sections/limits.html.j2", '<section id="limits"><h2>Our limits: {{ content.title }}</h2></section>'
     )
-    html = rendered(assessment, look)
+    html = render(assessment, look)
     assert "Our limits: Town hall" in html
     assert "Every piece is a rigid block" not in html
     assert "Data-quality log" in html
 
 
 def test_a_style_of_the_firms_own_stands_in(assessment, tmp_path):
-    assert "h1 { color: teal; }" in rendered(assessment, own(tmp_path, "style/screen.css", "h1 { color: teal; }"))
+    assert "h1 { color: teal; }" in render(assessment, own(tmp_path, "style/screen.css", "h1 { color: teal; }"))
 
 
 def test_texts_of_the_firms_own_come_first(assessment, tmp_path):
     look = own(tmp_path, "texts/en.po", HEAD + 'msgid "Summary"\nmsgstr "What matters"\n')
-    assert "<h2>What matters</h2>" in rendered(assessment, look)
+    assert "<h2>What matters</h2>" in render(assessment, look)
 
 
 @pytest.mark.parametrize(
@@ -68,8 +63,8 @@ def test_texts_of_the_firms_own_come_first(assessment, tmp_path):
     ],
 )
 def test_a_fault_in_a_template_is_told_with_its_place(assessment, tmp_path, text, told):
-    with pytest.raises(InputError, match=f"^--template: .*{told}"):
-        rendered(assessment, own(tmp_path, "sections/limits.html.j2", f"\n{text}"))
+    with pytest.raises(InputError, match=f"^templates: .*{told}"):
+        render(assessment, own(tmp_path, "sections/limits.html.j2", f"\n{text}"))
 
 
 @pytest.mark.parametrize(
@@ -102,7 +97,7 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
     [
         (
             "sections/limit.html.j2",
-            r"limit.html.j2 stands in for no template of ours. Did you mean sections/limits.html",
+            r"limit.html.j2 replaces no standard template. Did you mean sections/limits.html",
         ),
         (
             ".hidden",
@@ -116,13 +111,13 @@ def test_a_folder_without_templates_is_told(tmp_path, name, told):
 
 
 def test_a_folder_that_is_not_there_is_told(tmp_path):
-    with pytest.raises(InputError, match="--template: there is no folder"):
-        Look(templates=tmp_path / "none")
+    with pytest.raises(InputError, match="templates: there is no folder"):
+        ReportOptions(templates=tmp_path / "none")
 
 
 def test_a_language_that_is_not_there_is_told():
-    with pytest.raises(InputError, match="language 'xx' is unknown: expected one of en, it"):
-        Look(language="xx")
+    with pytest.raises(InputError, match="language is 'xx', expected one of en, it"):
+        ReportOptions(language="xx")
 
 
 def test_an_italian_report_holds_no_english_sentence(tmp_path):
@@ -130,8 +125,8 @@ def test_an_italian_report_holds_no_english_sentence(tmp_path):
     stool = {"item": "A6", "x": 1.0, "y": 2.0, "floor": "1", "breadth": 90, "width": 90, "height": 45, "friction": 0.2}
     items = [*ITEMS[:4], stool]
     found = assessed(tmp_path / "w.xlsx", items, period=0.9, ground_pga=0.2, language="Italiano")
-    assert found.inventory.report_language == "it"
-    html = rendered(found, Look(language="it"))
+    assert found.provenance.language == "it"
+    html = render(found, ReportOptions(language="it"))
     assert '<html lang="it">' in html
     text = " ".join(re.sub(r"<(style|script)>.*?</\1>|<[^>]*>", " ", html, flags=re.DOTALL).split())
     english = {
@@ -150,6 +145,6 @@ def test_an_italian_report_holds_no_english_sentence(tmp_path):
 def test_the_files_for_programs_are_the_same_in_every_language(assessment, tmp_path):
     formats = ("json", "csv")
     english = assess.write_reports(assessment, tmp_path / "en", formats)
-    italian = assess.write_reports(assessment, tmp_path / "it", formats, Look(language="it"))
+    italian = assess.write_reports(assessment, tmp_path / "it", formats, ReportOptions(language="it"))
     for name in formats:
         assert english[name].read_bytes() == italian[name].read_bytes()

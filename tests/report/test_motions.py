@@ -7,13 +7,13 @@ import openpyxl
 import pytest
 
 import assess
-from assess.demand import FLAGS, MAY_BE_LOWER
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
+from assess.report.content import build_content
 from assess.report.data import SCHEMA
-from assess.report.findings.cautions import list_cautions, list_short_cautions
-from assess.report.findings.motions import ENVELOPES, describe_origin, describe_source, list_sources
-from assess.report.pages.parts import write_equation
-from tests.report.test_html import _read
+from assess.report.findings.motions import ENVELOPES, describe_origin, describe_source
+from assess.report.pages.html import write_equation
+from assess.results import MAY_BE_LOWER, MOTION_FLAGS
+from tests.report.reading import read_text
 from tests.workbooks import UNVERIFIED as BY_FORMULA
 from tests.workbooks import write
 
@@ -31,10 +31,8 @@ WORKED_OUT = "ASCE 7-22, 13.3.1.1, Eq. 13.3-5: z/h 0.800, amplification 3.000 of
 
 
 def _reports(folder, scenario=None, formats=("html", "xlsx", "json"), floors=FLOORS, **building):
-    inventory = assess.read_inventory(write(folder / "w.xlsx", ITEMS, floors, **building))
-    return assess.write_reports(
-        assess.run(inventory, assess.Settings(scenario=scenario, verify="none")), folder / "out", formats
-    )
+    path = write(folder / "w.xlsx", ITEMS, floors, **building)
+    return assess.write_reports(assess.run(path, scenario=scenario, verify="none"), folder / "out", formats)
 
 
 @pytest.fixture(scope="module")
@@ -74,10 +72,10 @@ def test_json_holds_what_was_used_on_each_floor_and_axis(mixed):
 
 
 def test_html_says_what_was_used_and_what_to_beware_of(mixed):
-    text = _read(mixed["html"].read_text(encoding="utf-8"))
+    text = read_text(mixed["html"].read_text(encoding="utf-8"))
     assert text.count(f"Floor 4: the motion is that of ASCE 7-22. {ENVELOPES}") == 1
     assert text.count("Floor 4: the motion is a code's design profile, an envelope.") == 1  # the summary
-    assert text.count("Floor 2: nothing is known of the motion there, it is interpolated between the floors above") == 1
+    assert text.count("Floor 2: no motion is known there; it is interpolated between the floors above") == 1
     assert text.count("Floor 2: interpolated between floors; it may be lower than the truth.") == 1
     assert text.count("The floors' motion comes from mixed sources") == 2
     assert "All 3 cautions on the motion of the floors" in text
@@ -88,7 +86,7 @@ def test_html_says_what_was_used_and_what_to_beware_of(mixed):
 
 
 def test_the_methods_list_every_profile_with_clause_and_equation(mixed):
-    text, rows = _read(mixed["html"].read_text(encoding="utf-8")), _rows(mixed, "Methods")
+    text, rows = read_text(mixed["html"].read_text(encoding="utf-8")), _rows(mixed, "Methods")
     for profile in PROFILES.values():
         own = {what: words for title, what, words in rows if title == profile.title}
         assert own["Clause"].startswith(profile.clause)
@@ -96,24 +94,24 @@ def test_the_methods_list_every_profile_with_clause_and_equation(mixed):
         assert own["Source"] == profile.reference
         for what in ("Clause", "Status"):
             assert own[what] in text
-        assert _read(str(write_equation(own["Equation"]))) in text
+        assert read_text(str(write_equation(own["Equation"]))) in text
         assert (profile.reference in text) == (profile.key == "ASCE 7-22"), "references name what was used"
-        told = VERIFIED if profile.verified else UNVERIFIED
-        assert own["Status"] == f"{told[0].upper()}{told[1:]}. {profile.remark}"
+        status = VERIFIED if profile.verified else UNVERIFIED
+        assert own["Status"] == f"{status[0].upper()}{status[1:]}. {profile.remark}"
 
 
-def test_the_assumptions_tell_what_the_profile_started_from(mixed, tmp_path):
-    told = dict(row[:2] for row in _rows(mixed, "Assumptions"))
-    assert told["Motion of floors 4"] == "design profile of ASCE 7-22, the default, as nothing is known of them"
-    assert told["Ground motion of the profile"] == "0.250 g, Ground PGA; it stands for 0.4 SDS and for αS"
-    assert told["Roof height h of the profile"] == "20 m, Height"
-    assert told["R_μ of ASCE 7-22"] == "1: no reduction for the building's ductility"
-    assert told["Period T1 in the profile"].startswith("unknown: Eq. 13.3-5")
-    told = dict(row[:2] for row in _rows(_reports(tmp_path, "EN 1998-1", ("xlsx",), sds=0.5, period=1), "Assumptions"))
-    assert told["Motion of floors 1, 2, 3, 4"] == f"design profile of EN 1998-1 ({UNVERIFIED}), the scenario"
-    assert told["Ground motion of the profile"].startswith("0.200 g, 0.4 SDS, as Ground PGA is blank")
-    assert told["Roof height h of the profile"] == "16 m, the highest floor, as Height is blank"
-    assert "R_μ of ASCE 7-22" not in told
+def test_the_assumptions_give_what_the_profile_started_from(tmp_path):
+    assumed = dict(_content(tmp_path, FLOORS, ground_pga=0.25, height=20).assumptions)
+    assert assumed["Motion of floors 4"] == "design profile of ASCE 7-22, the default, as no motion of them is known"
+    assert assumed["Ground motion of the profile"] == "0.250 g, Ground PGA; it stands for 0.4 SDS and for αS"
+    assert assumed["Roof height h of the profile"] == "20 m, Height"
+    assert assumed["R_μ of ASCE 7-22"] == "1: no reduction for the building's ductility"
+    assert assumed["Period T1 in the profile"].startswith("unknown: Eq. 13.3-5")
+    assumed = dict(_content(tmp_path, FLOORS, scenario_kind="EN 1998-1", sds=0.5, period=1).assumptions)
+    assert assumed["Motion of floors 1, 2, 3, 4"] == f"design profile of EN 1998-1 ({UNVERIFIED}), the scenario"
+    assert assumed["Ground motion of the profile"].startswith("0.200 g, 0.4 SDS, as Ground PGA is blank")
+    assert assumed["Roof height h of the profile"] == "16 m, the highest floor, as Height is blank"
+    assert "R_μ of ASCE 7-22" not in assumed
 
 
 def test_excel_says_it_on_summary_floors_and_motions(mixed):
@@ -128,14 +126,14 @@ def test_excel_says_it_on_summary_floors_and_motions(mixed):
 
 def test_a_report_of_given_floors_alone_says_nothing_of_profiles_on_its_summary(tmp_path):
     written = _reports(tmp_path, None, ("html", "xlsx"), [floor | {"pfa_x": 0.2} for floor in FLOORS])
-    text = _read(written["html"].read_text(encoding="utf-8"))
+    text = read_text(written["html"].read_text(encoding="utf-8"))
     assert text.count(ENVELOPES) == 1  # in the methods
     assert not any("profile" in str(row[0]) for row in _rows(written, "Assumptions"))
 
 
 def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
     written = _reports(tmp_path, "NTC 2018", ground_pga=0.3)
-    text = _read(written["html"].read_text(encoding="utf-8"))
+    text = read_text(written["html"].read_text(encoding="utf-8"))
     assert text.count(f"the motion is that of NTC 2018 ({UNVERIFIED}). {ENVELOPES}") == 1
     assert text.count("Floors 1, 2, 3, 4: the motion is a code's design profile, an envelope.") == 1
     assert {one["profile_verified"] for floor in _json(written)["floors"] for one in floor["demands"]} == {False}
@@ -143,60 +141,57 @@ def test_an_unverified_profile_says_so_where_it_is_used(tmp_path):
     assert "NTC 2018 (the workbook: as filled)" in text
 
 
-def _cautions(folder, floors, **building):
-    inventory = assess.read_inventory(write(folder / "w.xlsx", ITEMS, floors, **building))
-    return list_cautions(assess.run(inventory, BY_FORMULA))
+def _content(folder, floors, **building):
+    return build_content(assess.run(write(folder / "w.xlsx", ITEMS, floors, **building), BY_FORMULA))
 
 
 def test_interpolation_is_said_to_be_possibly_too_low(mixed):
-    text = _read(mixed["html"].read_text(encoding="utf-8"))
+    text = read_text(mixed["html"].read_text(encoding="utf-8"))
     assert text.count(f"the floors above and below. This {MAY_BE_LOWER}.") == 1
-    assert MAY_BE_LOWER in FLAGS["interpolated"]
+    assert MAY_BE_LOWER in MOTION_FLAGS["interpolated"]
 
 
 def test_that_more_is_known_than_is_used_stands_on_summary_and_floors(tmp_path):
     floors = [FLOORS[0] | {"pfa_x": 0.3}, *FLOORS[1:]]
-    message = "the profile would give 0.250 g on floor '1', 0.300 g is known there: floors on the profile may come"
+    message = "the profile would give 0.250 g on floor '1', where 0.300 g is known: the PFA of floors that follow"
     written = _reports(tmp_path, floors=floors, ground_pga=0.25, height=20)
-    text = _read(written["html"].read_text(encoding="utf-8"))
+    text = read_text(written["html"].read_text(encoding="utf-8"))
     assert text.count(f"More is known than is used: {message[:60]}") == 1
     assert text.count("More is known than is used: 1 warning, see the data-quality log.") == 1
     assert text.count(message) >= 2  # the floors, and the data-quality log
     assert any(message in str(row[0]) for row in _rows(written, "Summary"))
 
 
-def test_of_many_such_warnings_the_first_are_told_and_the_rest_counted(tmp_path):
+def test_of_many_such_warnings_the_first_are_given_and_the_rest_counted(tmp_path):
     floors = [{"floor": name, "elevation": 3, "pfa_x": 0.9, "pfa_y": 0.8} for name in "1234"]
-    told = _cautions(tmp_path, floors, ground_pga=0.1, scenario_kind="ASCE 7-16")
-    known = [text for text in told if text.startswith("More is known than is used: ")]
+    cautions = _content(tmp_path, floors, ground_pga=0.1, scenario_kind="ASCE 7-16").cautions
+    known = [text for text in cautions if text.startswith("More is known than is used: ")]
     assert known[0].startswith("More is known than is used: PFA X 0.900 g of floor '1' is not used: the scenario")
     assert len(known) == 6
-    assert known[5].endswith(": 3 warnings of this kind beside these, see the data-quality log.")
+    assert known[5].endswith(": 3 further warnings of this kind, see the data-quality log.")
 
 
 def test_a_floor_at_the_height_of_a_known_one_is_said_to_be_the_same(tmp_path):
     known = {"floor": "3", "elevation": 3, "pfa_x": 0.2}
     floors = [known, {"floor": "1", "elevation": 3}, {"floor": "2", "elevation": 3}, {"floor": "4", "elevation": 3}]
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS, floors, period=0.5))
-    assessment = assess.run(inventory, BY_FORMULA)
-    (one,) = assessment.demands["1", "X"]
+    content = _content(tmp_path, floors, period=0.5)
+    (one,) = content.run.motions_of("1", "X")
     assert (one.label, describe_origin(one)) == ("as floor 3", "the same as floor 3, at the same height")
     assert describe_source(one) == "the same as floor 3, at the same height (PFV estimated from T1)"
-    told = "Floors 1, 2, 4: nothing is known of the motion there, it is the same as that of a known floor at the same"
-    assert list_cautions(assessment)[0] == f"{told} height."
+    text = "Floors 1, 2, 4: no motion is known there; it is that of a known floor at the same height."
+    assert content.cautions[0] == text
 
 
 def test_flags_beside_a_source_are_short_where_a_neighbour_brings_them(tmp_path):
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", ITEMS[:3], FLOORS[:3], period=0.5))
-    demands = assess.run(inventory, BY_FORMULA).demands
-    assert describe_source(demands["2", "Y"][0]) == "interpolated between floors 1 and 3 (one axis only)"
-    assert "serves both" in describe_source(demands["3", "Y"][0])
+    results = assess.run(write(tmp_path / "w.xlsx", ITEMS[:3], FLOORS[:3], period=0.5), BY_FORMULA)
+    assert describe_source(results.motions_of("2", "Y")[0]) == "interpolated between floors 1 and 3 (one axis only)"
+    assert "used for both" in describe_source(results.motions_of("3", "Y")[0])
 
 
 def test_basements_alone_print_no_negative_roof(tmp_path):
     floors = [{"floor": name, "elevation": -3 * at} for at, name in enumerate("1234", 1)]
-    told = dict(row[:2] for row in _rows(_reports(tmp_path, None, ("xlsx",), floors, ground_pga=0.2), "Assumptions"))
-    assert told["Roof height h of the profile"] == "0 m, no floor above the ground, Height is blank"
+    assumed = dict(_content(tmp_path, floors, ground_pga=0.2).assumptions)
+    assert assumed["Roof height h of the profile"] == "0 m, no floor above the ground, Height is blank"
 
 
 def test_units_in_headings_do_not_break(mixed):
@@ -209,17 +204,17 @@ def _many(folder, count, known):
     floors = [{"floor": f"F{at}", "elevation": 3 * at} | ({"pfa_x": 0.2} if at in known else {})
               for at in range(count)]  # fmt: skip
     items = [{"item": "i", "floor": "F0", "breadth": 30, "width": 40, "height": 100}]
-    return assess.run(assess.read_inventory(write(folder / "w.xlsx", items, floors, ground_pga=0.2)), BY_FORMULA)
+    return build_content(assess.run(write(folder / "w.xlsx", items, floors, ground_pga=0.2), BY_FORMULA))
 
 
 def test_short_cautions_are_whole_however_many_floors_there_are(tmp_path):
-    short = list_short_cautions(_many(tmp_path, 60, known=(0, 30)))
-    told = "Floors F1, F2, F3, F4, F5, F6 and 23 more: interpolated between floors; it may be lower than the truth."
-    assert told in short
+    short = _many(tmp_path, 60, known=(0, 30)).short_cautions
+    text = "Floors F1, F2, F3, F4, F5, F6 and 23 more: interpolated between floors; it may be lower than the truth."
+    assert text in short
     assert all(len(text) <= 130 and text.endswith(".") for text in short), short
     assert len(short) == len(set(short)) >= 3
 
 
 def test_of_many_floors_with_one_source_the_first_are_named(tmp_path):
-    (given, *_) = list_sources(_many(tmp_path, 30, known=range(30)).demands)
+    (given, *_) = _many(tmp_path, 30, known=range(30)).sources
     assert given == f"given PFA: {', '.join(f'F{at} X' for at in range(20))} and 10 more"

@@ -5,7 +5,7 @@ import hashlib
 
 import pytest
 
-from assess.report.pages.parts import script_hash, write_equation
+from assess.report.pages.html import hash_script, write_equation
 
 
 @pytest.mark.parametrize(
@@ -25,4 +25,4 @@ def test_equations(text, html):
 
 def test_hash():
     digest = base64.b64encode(hashlib.sha256(b"x();").digest()).decode()
-    assert script_hash("x();") == f"sha256-{digest}"
+    assert hash_script("x();") == f"sha256-{digest}"

@@ -2,15 +2,22 @@
 
 import ctypes
 import re
+import subprocess
+from dataclasses import replace
+from importlib.metadata import version
+from threading import Event
 
 import pypdfium2
 import pypdfium2.raw as pdfium
 import pytest
 
 import assess
-from assess.report.look import Look
-from assess.report.pages.attached import list_attached
-from assess.report.pages.pdf import list_problems, write_pdf
+from assess.errors import CancelledError
+from assess.progress import Progress
+from assess.report.content import build_content
+from assess.report.pages.pdf import find_weasyprint, list_attached, list_problems, write_pdf
+from assess.report.report_options import ReportOptions
+from assess.results import Series
 from tests.workbooks import assessed
 
 EPOCH = 1_700_000_000
@@ -24,7 +31,7 @@ def report(tmp_path_factory):
     assessment = assessed(folder / "Büro 1.xlsx", **PREPARED)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", str(EPOCH))
-        written = assess.write_reports(assessment, folder / "out", ("pdf", "json"), Look(language="it"))
+        written = assess.write_reports(assessment, folder / "out", ("pdf", "json"), ReportOptions(language="it"))
     document = pypdfium2.PdfDocument(written["pdf"])
     yield assessment, written, document
     document.close()
@@ -58,8 +65,8 @@ def _language(document):
 
 
 def test_workbook_and_results_are_attached_byte_for_byte(report):
-    assessment, written, document = report
-    source = assessment.inventory.source
+    _, written, document = report
+    source = written["pdf"].parents[1] / "Büro 1.xlsx"
     assert _attachments(document) == {
         source.name: source.read_bytes(),
         "results.json": written["json"].read_bytes(),
@@ -97,9 +104,10 @@ def test_every_font_is_embedded_and_of_the_report(report):
     assert {name.split("+")[-1].split("-")[0] for name in fonts} <= {"Report", "emoji"}
 
 
+@pytest.mark.slow
 def test_an_accessible_report_has_the_same_attachments(tmp_path):
     assessment = assessed(tmp_path / "w.xlsx")
-    write_pdf(assessment, tmp_path / "a.pdf", Look(accessible=True))
+    write_pdf(build_content(assessment), tmp_path / "a.pdf", ReportOptions(accessible=True))
     assert b"pdfuaid" in _unpack(tmp_path / "a.pdf")
     document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
     assert list(_attachments(document)) == ["results.json", "w.xlsx"]
@@ -114,25 +122,56 @@ def _unpack(path):
     return b"".join(zlib.decompress(one) for one in found if one[:1] == b"\x78" and len(one) < 50_000)
 
 
-def test_a_workbook_that_is_no_longer_what_was_read_is_not_attached(tmp_path):
-    assessment = assessed(tmp_path / "w.xlsx")
-    assert list_problems(assessment) == []
+@pytest.mark.slow
+def test_the_workbook_that_was_read_is_attached_whatever_became_of_its_file(tmp_path):
+    results, read = assessed(tmp_path / "w.xlsx"), (tmp_path / "w.xlsx").read_bytes()
     (tmp_path / "w.xlsx").write_bytes(b"changed")
-    assert [str(one) for one in list_problems(assessment)] == [
-        "w.xlsx is not attached to the PDF: it has changed since it was read. "
-        "Run it again, so that report and workbook agree."
-    ]
-    (tmp_path / "w.xlsx").unlink()
-    assert [str(one) for one in list_problems(assessment)] == [
-        "w.xlsx is not attached to the PDF: it can no longer be read."
-    ]
-    assert [file.name for file in list_attached(assessment)] == ["results.json"]
-    write_pdf(assessment, tmp_path / "a.pdf", Look())
+    assert list_problems(results) == []
+    write_pdf(build_content(results), tmp_path / "a.pdf", ReportOptions())
     document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
-    text = " ".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
-    assert list(_attachments(document)) == ["results.json"]
-    assert "w.xlsx is not attached to the PDF" in " ".join(text.split())
+    assert _attachments(document)["w.xlsx"] == read
     document.close()
+
+
+@pytest.mark.slow
+def test_without_its_series_a_report_names_what_is_left_out(tmp_path):
+    results = assessed(tmp_path / "w.xlsx")
+    gone = replace(results, series=Series(tmp_path / "none.npz"))
+    assert [str(one) for one in list_problems(gone)] == [
+        "w.xlsx is not attached to the PDF: the results hold no copy of it."
+    ]
+    assert [file.name for file in list_attached(gone)] == ["results.json"]
+    write_pdf(build_content(gone), tmp_path / "a.pdf", ReportOptions())
+    document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
+    text = " ".join(" ".join(document[at].get_textpage().get_text_range() for at in range(len(document))).split())
+    assert list(_attachments(document)) == ["results.json"]
+    assert "w.xlsx is not attached to the PDF" in text
+    assert "Figures are left out" in text
+    assert "risk over breadth and acceleration" in text
+    document.close()
+
+
+def test_a_cancelled_layout_ends_at_once(tmp_path, monkeypatch):
+    """Cancelled while WeasyPrint lays the page out: its process is gone when the error arrives."""
+    cancel, started, results = Event(), [], assessed(tmp_path / "w.xlsx")
+    content = build_content(results)
+
+    class Started(subprocess.Popen[bytes]):
+        def __init__(self, *args, **named):
+            super().__init__(*args, **named)
+            started.append(self)
+            cancel.set()
+
+    monkeypatch.setattr(subprocess, "Popen", Started)
+    with pytest.raises(CancelledError):
+        write_pdf(content, tmp_path / "a.pdf", ReportOptions(), Progress(None, cancel))
+    (process,) = started
+    assert process.returncode not in (None, 0)
+    assert not (tmp_path / "a.pdf").exists()
+
+
+def test_weasyprint_is_found():
+    assert find_weasyprint() == version("weasyprint")
 
 
 def test_a_date_of_no_use_is_today(tmp_path, monkeypatch):

@@ -11,6 +11,8 @@ from assess.risk import classify
 from assess.settings import Settings
 from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, assessed
 
+pytestmark = pytest.mark.slow
+
 VERIFIED = Settings(verify="all", runs=20)
 SYMBOLS = {"low": "○ low", "medium": "◇ medium", "high": "▲ high", "very high": "■ very high"}
 
@@ -102,7 +104,7 @@ def test_the_table_of_all_pieces(small):
 def test_the_comparison_of_the_methods(small):
     path, results = small
     text = read_section(path, "Comparison of the methods", "Methods")
-    assert_rows(text[text.index("What every method says") :], results["items"], of_comparison)
+    assert_rows(text[text.index("Results of every method for each row") :], results["items"], of_comparison)
 
 
 def test_the_counts(small):
@@ -126,9 +128,9 @@ def test_a_long_list_in_the_appendix(tmp_path):
     at = (
         text.rindex("Appendix: all pieces Piece")
         if "Appendix: all pieces Piece" in text
-        else text.rindex("One line a row")
+        else text.rindex("One line for each row")
     )
-    pieces, _, methods = text[at:].partition("What every method says of each row under its governing motion")
+    pieces, _, methods = text[at:].partition("Results of every method for each row under its governing motion")
 
     def compact(item):
         cells = of_row(item)

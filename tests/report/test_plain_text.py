@@ -11,8 +11,8 @@ import pypdfium2
 import pytest
 
 import assess
-from assess.inventory.blank import Content, write_workbook
-from assess.inventory.columns import SHEETS
+from assess.workbook.schema import SHEETS
+from assess.workbook.template import Content, write_workbook
 
 FORMULA = '=HYPERLINK("http://x","y")'
 SCRIPT = "<script>alert(1)</script>"
@@ -50,9 +50,8 @@ def outputs(tmp_path_factory):
     path = folder / "w.xlsx"
     write_workbook(path, Content(rows=rows))
     _unescape_controls(path)
-    assessment = assess.run(assess.read_inventory(path))
-    written = assess.write_reports(assessment, folder / "out")
-    return assessment, written
+    results = assess.run(path)
+    return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv"))
 
 
 def _unescape_controls(path):
@@ -65,12 +64,12 @@ def _unescape_controls(path):
 
 
 def test_the_inventory_is_cleaned_and_says_so(outputs):
-    assessment, _ = outputs
-    texts = [one.item.notes for one in assessment]
+    results, _ = outputs
+    texts = [one.item.notes for one in results]
     assert texts[:4] == [FORMULA, SCRIPT, PATH, LONG.strip()]
     assert texts[4] == "bell\ufffdnull\ufffd end"
     assert texts[5] == "abcdef"
-    assert any("control or direction characters" in one.message for one in assessment.problems)
+    assert any("control or direction characters" in one.message for one in results.problem_rows)
 
 
 def _no_hidden(text):
@@ -100,12 +99,12 @@ def test_csv(outputs):
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_excel_counts_a_floor_with_such_a_name(outputs):
     """A name such as =HYPERLINK(...) is no criterion: the floor's pieces are counted."""
-    assessment, written = outputs
+    results, written = outputs
     book = formualizer.load_workbook(str(written["xlsx"]))
     book.evaluate_all()
     summary = openpyxl.load_workbook(written["xlsx"])["Summary"]
     top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
-    assert book.get_value("Summary", top + 1, 7) == len(assessment)
+    assert book.get_value("Summary", top + 1, 7) == len(results)
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -140,8 +139,10 @@ def test_html(outputs):
     assert _no_hidden(text)
 
 
-def test_pdf(outputs):
-    _, written = outputs
+@pytest.mark.slow
+def test_pdf(outputs, tmp_path):
+    results, _ = outputs
+    written = assess.write_reports(results, tmp_path, ("pdf",))
     document = pypdfium2.PdfDocument(written["pdf"])
     text = "".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
     flat = re.sub(r"[\s\ufffe]+", "", text)

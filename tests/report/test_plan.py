@@ -9,14 +9,13 @@ import pypdfium2
 import pytest
 
 import assess
-from assess.inventory.blank import Content, write_workbook
 from assess.report.content import build_content
 from assess.report.figures.labels import overlap, place_labels
-from assess.report.figures.plan import build_plan
+from assess.report.figures.plan import build_plan, fallen, rectangle
 from assess.report.figures.ways import build_stretches, list_styles
-from assess.report.pages.html import render
-from assess.routes.footprint import fallen, rectangle
-from assess.routes.model import RouteState
+from assess.route_results import RouteState
+from assess.workbook.template import Content, write_workbook
+from tests.report.reading import render
 from tests.workbooks import FLOORS, UNVERIFIED
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -49,9 +48,9 @@ def html(assessment):
 
 
 def _plans(assessment):
-    ways = build_stretches(assessment.inventory, assessment.routes)
+    ways = build_stretches(assessment.route_tables)
     pages = build_content(assessment).floors
-    return [build_plan(page, assessment.inventory, ways.get(page.floor.floor, ())) for page in pages]
+    return [build_plan(page, assessment, ways.get(page.floor.floor, ())) for page in pages]
 
 
 @pytest.fixture(scope="module")
@@ -227,6 +226,7 @@ def test_colours_are_those_of_the_classes_and_each_has_its_symbol(html):
     assert low.find(f"{SVG}text").text == "○"
 
 
+@pytest.mark.slow
 def test_the_pdf_draws_the_plan_without_links(assessment, tmp_path):
     html = render(assessment, for_print=True)
     assert not any(list(drawing.iter(f"{SVG}a")) for drawing in _drawings(html))
@@ -304,7 +304,7 @@ def test_states_are_told_by_colour_line_and_sign(routed):
     assert len({(one.symbol, one.ground) for one in styles}) == len({(one.dash, one.width) for one in styles}) == 4
     assert len({one.dash for one in styles}) == 3
     assert {one.fill for one in styles} == {state.fill for state in RouteState}
-    greys = sorted(sum(int(state.fill[at : at + 2], 16) for at in (1, 3, 5)) for state in RouteState)
+    greys = sorted(sum(int(fill[at : at + 2], 16) for at in (1, 3, 5)) for fill in {state.fill for state in RouteState})
     assert all(darker + 90 < lighter for darker, lighter in itertools.pairwise(greys))
 
 
@@ -326,10 +326,10 @@ def test_the_drawing_shows_each_state_with_its_sign_and_dash(routed):
 
 
 def test_a_worse_state_that_is_not_excluded_has_a_mark(routed):
-    *others, lane, flight, roof = routed.routes.segments
-    assert lane.segment.segment == "lane"
-    unsure = replace(lane, outlook=replace(lane.outlook, upper=RouteState.REDUCED))
-    changed = replace(routed, routes=replace(routed.routes, segments=(*others, unsure, flight, roof)))
+    *others, lane, flight, roof = routed.route_tables.segments
+    assert lane.segment == "lane"
+    unsure = replace(lane, state_upper=RouteState.REDUCED)
+    changed = replace(routed, route_tables=replace(routed.route_tables, segments=(*others, unsure, flight, roof)))
     assert [one.name for one in _plans(changed)[0].ways if one.may_be] == ["lane"]
     for assessment, marks in ((routed, 0), (changed, 1)):
         signs = _drawings(render(assessment))[0].find(f"{SVG}g[@class='signs']")

@@ -5,18 +5,17 @@ import re
 from dataclasses import replace
 
 import pytest
+import weasyprint
 
 import assess
-from assess.inventory.blank import Content, write_workbook
 from assess.report import words
 from assess.report.findings import at_risk, route_rows
-from assess.report.findings import routes as said
+from assess.report.findings import route_words as said
 from assess.report.pages.context import LIMITS
-from assess.report.pages.html import render
-from assess.report.pages.pdf import load_weasyprint
-from assess.routes.flags import FLAGS
-from assess.routes.model import RouteState
+from assess.route_results import FLAGS, RouteState
 from assess.routes.widths import RULES
+from assess.workbook.template import Content, write_workbook
+from tests.report.reading import render
 from tests.workbooks import UNVERIFIED
 
 FLOORS = [
@@ -100,35 +99,34 @@ def _bounds(chance):
     return said.say_bounds(chance).replace(words.NO_BREAK, " ")
 
 
-def _item(assessment, at):
-    return "–" if at is None else assessment.inventory.items[at].item
+def _item(piece):
+    return "–" if piece is None else piece.item
 
 
 def test_the_building_has_every_state(assessment):
-    west, balcony, back, yard = assessment.routes.routes
-    assert west.outlook.state == RouteState.BLOCKED
-    assert balcony.outlook.state == RouteState.REDUCED
-    assert not back.is_mended
-    assert yard.outlook.state == RouteState.OPEN
-    assert yard.outlook.if_anchors_fail.probability > 0.1
+    west, balcony, back, yard = assessment.route_tables.routes
+    assert west.state == RouteState.BLOCKED
+    assert balcony.state == RouteState.REDUCED
+    assert not back.is_fixed
+    assert yard.state == RouteState.OPEN
+    assert yard.blocked_if_anchors_fail.probability > 0.1
 
 
 @pytest.mark.parametrize("name", ["assessment", "verified"])
 def test_every_number_of_a_route_is_shown(name, request):
     assessment = request.getfixturevalue(name)
     rows = _rows(render(assessment), "routes")
-    assert len(rows) == len(assessment.routes.routes) == 4
-    for row, one in zip(rows, assessment.routes.routes, strict=True):
-        outlook = one.outlook
+    assert len(rows) == len(assessment.route_tables.routes) == 4
+    for row, one in zip(rows, assessment.route_tables.routes, strict=True):
         route, _floors, state, *numbers, rests, unanchored, piece = row
         assert route == one.route
-        assert said.say_route_state(one, assessment.routes.risk) in state
-        assert numbers == [_chance(outlook.blocked), _chance(outlook.taken)]
-        bounds = f"{_bounds(outlook.blocked)} " if outlook.blocked.pieces else ""
-        left_out = f"; {said.say_left_out(one.unevaluated)}" if one.unevaluated else ""
-        assert rests == f"{bounds}{said.say_basis(outlook.blocked)}{left_out}"
-        assert unanchored == _chance(outlook.if_anchors_fail)
-        assert piece == _item(assessment, outlook.blocker)
+        assert said.say_route_state(one, assessment.route_tables.risk) in state
+        assert numbers == [_chance(one.blocked), _chance(one.blocked_or_reduced)]
+        bounds = f"{_bounds(one.blocked)} " if one.blocked.pieces else ""
+        left_out = f"; {said.say_left_out(one.unevaluated_segments)}" if one.unevaluated_segments else ""
+        assert rests == f"{bounds}{said.say_basis(one.blocked)}{left_out}"
+        assert unanchored == _chance(one.blocked_if_anchors_fail)
+        assert piece == _item(one.most_likely_piece)
 
 
 WEST = "20 motions, all together; 2 segments not evaluated"
@@ -136,9 +134,9 @@ WEST = "20 motions, all together; 2 segments not evaluated"
 
 def test_a_verified_route_rests_on_its_motions(verified):
     (row, *_others) = _rows(render(verified), "routes")
-    assert row[5] == f"{_bounds(verified.routes.routes[0].outlook.blocked)} {WEST}"
+    assert row[5] == f"{_bounds(verified.route_tables.routes[0].blocked)} {WEST}"
     assert re.fullmatch(r"[\d.]+ % \([\d.]+ to [\d.]+ %\)", row[3])
-    assert verified.routes.routes[0].outlook.blocked.is_joint
+    assert verified.route_tables.routes[0].blocked.is_joint
 
 
 def test_what_is_blocked_as_it_stands_is_told_from_what_may_be(html, assessment):
@@ -150,7 +148,7 @@ def test_what_is_blocked_as_it_stands_is_told_from_what_may_be(html, assessment)
         "Yard": "✓ open if the anchors hold ⚓",
     }
     assert "widen them, or move what stands inside; check the Clear width. Back: gap" in _text(_section(html))
-    certain = replace(assessment.routes.routes[2], is_mended=True)
+    certain = replace(assessment.route_tables.routes[2], is_fixed=True)
     assert said.say_route_state(certain) == "✕ blocked"
 
 
@@ -159,47 +157,49 @@ def test_every_number_of_a_segment_is_shown(name, request):
     assessment = request.getfixturevalue(name)
     rows = _rows(render(assessment), "segments")
     assert len(rows) == len(ROUTES)
-    for row, one in zip(rows, assessment.routes.segments, strict=True):
-        assert row[0] == f"{one.segment.route}: {one.segment.segment}"
-        assert row[1] == (one.segment.floor or "–")
-        assert row[2] == f"{one.segment.start} – {one.segment.end}".strip()
-        assert row[3:6] == [words.in_m(width) for width in (one.clear, one.required, one.standing)]
-        assert said.say_segment_state(one, assessment.routes.risk) in row[7]
-        if not one.is_evaluated:
+    for row, one in zip(rows, assessment.route_tables.segments, strict=True):
+        assert row[0] == f"{one.route}: {one.segment}"
+        assert row[1] == (one.floor or "–")
+        assert row[2] == f"{one.from_place or ''} – {one.to_place or ''}".strip()
+        assert row[3:6] == [
+            words.in_m(width) for width in (one.clear_width_used_m, one.required_width_used_m, one.standing_width_m)
+        ]
+        assert said.say_segment_state(one, assessment.route_tables.risk) in row[7]
+        if not one.evaluated:
             assert row[6:11] == ["–", "– not evaluated", "–", "–", "–"]
             continue
-        assert row[6] == words.in_m(one.least)
-        assert row[8:11] == [_chance(one.outlook.blocked), _bounds(one.outlook.blocked), _chance(one.outlook.taken)]
+        assert row[6] == words.in_m(one.least_width_m)
+        assert row[8:11] == [_chance(one.blocked), _bounds(one.blocked), _chance(one.blocked_or_reduced)]
         for flag in one.flags:
             assert flag.replace("_", " ") in row[11]
-        if one.outlook.if_anchors_fail:
-            assert f"if anchors fail: blocked in {_chance(one.outlook.if_anchors_fail)}" in row[11]
+        if one.blocked_if_anchors_fail:
+            assert f"if anchors fail: blocked in {_chance(one.blocked_if_anchors_fail)}" in row[11]
 
 
 def test_a_segment_that_is_too_narrow_for_its_occupants_says_so(html, assessment):
     aisle, flight = _rows(html, "segments")[:2]
-    first, second = assessment.routes.segments[:2]
-    assert second.is_short
+    first, second = assessment.route_tables.segments[:2]
+    assert second.insufficient_for_occupants
     assert "1.52 m: insufficient for occupants" in flight[11]
-    assert f"0.15 m: less in {_chance(first.crowded)}" in aisle[11]
+    assert f"0.15 m: less in {_chance(first.insufficient_after_falls)}" in aisle[11]
     assert "<i>wet</i>" in aisle[11]
 
 
 @pytest.mark.parametrize("name", ["assessment", "verified"])
 def test_every_piece_beside_a_segment_is_shown(name, request):
     assessment = request.getfixturevalue(name)
-    found = [(one, near) for one, near in route_rows.list_beside(assessment.routes) if near]
+    found = [(one, near) for one, near in route_rows.list_beside(assessment.route_tables) if near]
     rows = [row for row in _rows(render(assessment), "beside") if "no piece reaches it" not in row]
-    assert {assessment.inventory.items[near.item].item for _one, near in found} == {"tall & thin", "low", "held"}
-    assert len(rows) == len(found) == sum(len(one.beside) for one in assessment.routes.segments)
+    assert {assessment.item_rows[near.item_index].item for _one, near in found} == {"tall & thin", "low", "held"}
+    assert len(rows) == len(found) == sum(len(one.pieces) for one in assessment.route_tables.segments)
     for row, (one, near) in zip(rows, found, strict=True):
-        result = assessment.result(near.item)
-        assert row[0] == f"{one.segment.route}: {one.segment.segment}"
+        result = assessment.result(near.item_index)
+        assert row[0] == f"{one.route}: {one.segment}"
         assert row[2].startswith(result.item.item)
         assert row[3] == ("the plan" if near.by_plan else "Edge distance")
-        assert row[4:7] == [words.in_m(value) for value in (near.distance, near.reach, near.left)]
+        assert row[4:7] == [words.in_m(value) for value in (near.distance_m, near.reach_m, near.left_m)]
         assert row[7] == ("yes" if near.blocks_alone else "no")
-        assert row[8] == words.percent(near.together)
+        assert row[8] == words.percent(near.falls_while_blocked)
         assert row[9].startswith(words.chance(result).replace(words.NO_BREAK, " "))
         assert ("⚓ anchored" in row[10]) == result.is_anchored
         assert all(flag.replace("_", " ") in row[10] for flag in near.flags)
@@ -212,7 +212,7 @@ def test_segments_with_nothing_beside_them_are_listed_where_they_are_too_narrow(
 
 def test_marks_are_explained_where_they_occur(html, assessment):
     text = _text(_section(html))
-    told = route_rows.list_flags(assessment.routes)
+    told = route_rows.list_flags(assessment.route_tables)
     assert {"side_unknown", "no_plan", "required_assumed"} <= told.keys() < FLAGS.keys()
     for flag, meaning in FLAGS.items():
         assert (f"{flag.replace('_', ' ')} {meaning}" in text) == (flag in told)
@@ -221,32 +221,39 @@ def test_marks_are_explained_where_they_occur(html, assessment):
 @pytest.mark.parametrize("name", ["assessment", "verified"])
 def test_every_room_says_how_it_may_lose_its_exits_and_its_ways(name, request):
     assessment = request.getfixturevalue(name)
-    rows, rooms = _rows(render(assessment), "rooms"), assessment.routes.rooms
-    assert [row[0] for row in rows] == [one.place.place for one in rooms] == ["Office <1>", "Archive"]
+    rows, rooms = _rows(render(assessment), "rooms"), assessment.route_tables.rooms
+    assert [row[0] for row in rows] == [one.room for one in rooms] == ["Office <1>", "Archive"]
     for row, one in zip(rows, rooms, strict=True):
         assert row[2] == ", ".join(one.exits)
-        assert row[3:5] == [_chance(one.loses), _chance(one.if_anchors_fail)]
-        assert row[5] == _item(assessment, one.blocker)
+        assert row[3:5] == [_chance(one.loses_every_exit), _chance(one.loses_if_anchors_fail)]
+        assert row[5] == _item(one.most_likely_piece)
         assert one.ways[0].end in row[6]
         for way in one.ways:
-            assert said.say_way(way, assessment.routes).replace(words.NO_BREAK, " ") in row[6]
+            assert said.say_way(way, assessment.route_tables).replace(words.NO_BREAK, " ") in row[6]
         assert ("no other way" in row[6]) == (len(one.ways) == 1)
 
 
 def test_floors_say_what_is_to_be_expected(html, assessment):
-    for row, one in zip(_rows(html, "route-floors"), assessment.routes.floors, strict=True):
-        counted = (one.segments, one.blocked_segments, one.routes, one.blocked_routes, one.rooms, one.cut_off_rooms)
+    for row, one in zip(_rows(html, "route-floors"), assessment.route_tables.floors, strict=True):
+        counted = (
+            one.segments,
+            one.blocked_segments_expected,
+            one.routes,
+            one.blocked_routes_expected,
+            one.rooms,
+            one.cut_off_rooms_expected,
+        )
         shown = [f"{value:.2f}" if isinstance(value, float) else str(value) for value in counted]
-        assert row[1:7] == [*shown[:5], f"{one.cut_off_rooms:.2f}"]
-        assert row[7:] == [_chance(one.any_room), str(one.uncounted)]
+        assert row[1:7] == [*shown[:5], f"{one.cut_off_rooms_expected:.2f}"]
+        assert row[7:] == [_chance(one.any_room_cut_off), str(one.uncounted_pieces)]
 
 
 def test_the_lead_counts_routes_and_rooms(html, assessment):
-    text, routes = _text(_section(html)), assessment.routes
+    text, routes = _text(_section(html)), assessment.route_tables
     assert "4 evacuation routes: 2 may be blocked, 1 may be reduced, 1 below the chosen risk." in text
-    assert "Of evaluated routes, 2 segments are not: nothing tells what can reach them." in text
-    assert f"To be expected: {routes.blocked_routes:.2f} blocked routes." in text
-    assert f"Of 2 rooms, {routes.cut_off_rooms:.2f} are expected to lose every exit." in text
+    assert "2 segments of the other routes could not be evaluated." in text
+    assert f"On average {routes.blocked_routes_expected:.2f} routes would be blocked." in text
+    assert f"Of 2 rooms, on average {routes.cut_off_rooms_expected:.2f} would lose all exits." in text
     assert "in this scenario, not per year" in text
     for sentence in said.list_cautions(routes):
         assert sentence in text
@@ -256,19 +263,19 @@ def test_the_lead_counts_routes_and_rooms(html, assessment):
 @pytest.mark.parametrize("name", ["assessment", "verified"])
 def test_every_step_of_what_to_fix_is_shown(name, request):
     assessment = request.getfixturevalue(name)
-    steps = route_rows.list_steps(assessment.routes)
+    steps = route_rows.list_steps(assessment.route_tables)
     assert steps
     rows = _rows(render(assessment), "steps")
     assert len(rows) == len(steps)
     for row, (one, number, step) in zip(rows, steps, strict=True):
-        assert row[:3] == [one.route, str(number), at_risk.say_row(assessment.result(step.item))]
+        assert row[:3] == [one.route, str(number), at_risk.say_row(assessment.result(step.item_index))]
         assert row[3:5] == [words.percent(step.gain), words.percent(step.left)]
-        assert row[5] == ("under the chosen risk" if number == len(one.fixes) else "")
-        assert not one.is_mended or one.fixes[-1].left < assessment.routes.risk
+        assert row[5] == ("below the chosen risk" if number == len(one.fixes) else "")
+        assert not one.is_fixed or one.fixes[-1].left < assessment.route_tables.risk
 
 
 def test_routes_that_need_nothing_are_named(html):
-    assert "As they are, 2 routes are blocked with less than the chosen risk: Balcony, Yard." in _text(_section(html))
+    assert "2 routes are already below the limit of 3 %: Balcony, Yard." in _text(_section(html))
 
 
 def test_widths_are_given_with_their_publications(html):
@@ -322,10 +329,11 @@ def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
     assert "80 more routes, less likely to be blocked, are in the Excel report." in text
     assert "30 more segments, less likely to be blocked, are in the Excel report." in text
     assert "30 more rooms, less likely to be cut off, are in the Excel report." in text
-    assert "160 routes are not evaluated: nothing tells what can reach them." in text
-    assert "blocked with less than the chosen risk" not in text
+    assert "160 routes could not be evaluated: the workbook places no furniture there." in text
+    assert "already below the limit" not in text
 
 
+@pytest.mark.slow
 def test_the_section_prints_on_the_page(verified):
     boxes = pytest.importorskip("weasyprint.formatting_structure.boxes")
 
@@ -335,7 +343,7 @@ def test_the_section_prints_on_the_page(verified):
             yield from walk(child)
 
     tables = 0
-    for page in load_weasyprint().HTML(string=render(verified, for_print=True)).render().pages:
+    for page in weasyprint.HTML(string=render(verified, for_print=True)).render().pages:
         for table in (one for one in walk(page._page_box) if isinstance(one, boxes.TableBox)):
             tables += table.element.get("class", "") in ("routes", "segments", "beside", "rooms", "steps")
             assert table.position_x + table.margin_width() <= page._page_box.content_box_x() + page._page_box.width + 1
@@ -348,7 +356,7 @@ def test_the_section_prints_on_the_page(verified):
 
 @pytest.fixture(scope="module")
 def unknown(tmp_path_factory):
-    """Two routes of which nothing tells what can reach them, one with a piece in another room, pieces not placed."""
+    """Two routes of which without furniture, one with a piece in another room, pieces not placed."""
     routes = [
         {"route": "Dark", "segment": "flight", "start": "Landing", "end": "Foot", "clear_width": 1.2},
         {"route": "Blind", "segment": "lane", "floor": "G", "clear_width": 1.5},
@@ -373,14 +381,14 @@ def test_what_is_not_evaluated_is_neither_open_nor_has_a_chance(unknown):
     assert 'class="way-state unevaluated"' in html
     text = _text(_section(html))
     assert "1 evacuation route: 0 may be blocked, 0 may be reduced, 1 below the chosen risk." in text
-    assert "2 routes are not evaluated: nothing tells what can reach them." in text
-    assert "blocked with less than the chosen risk: Hall." in text
+    assert "2 routes could not be evaluated: the workbook places no furniture there." in text
+    assert "1 route is already below the limit of 3 %: Hall." in text
 
 
 def test_where_nothing_is_evaluated_no_state_is_counted(unknown):
-    routes = replace(unknown.routes, routes=unknown.routes.routes[:2])
+    routes = replace(unknown.route_tables, routes=unknown.route_tables.routes[:2])
     lines = route_rows.describe_routes(routes)
-    assert lines[0] == "2 routes are not evaluated: nothing tells what can reach them."
+    assert lines[0] == "2 routes could not be evaluated: the workbook places no furniture there."
     assert not any("below the chosen risk" in line for line in lines)
 
 
@@ -391,13 +399,13 @@ def test_pieces_in_other_rooms_are_named_with_their_room(unknown):
     assert "<Store>" not in html
 
 
-def test_pieces_that_are_not_counted_are_told(unknown, tmp_path):
-    sentence = "3 pieces have neither a position that tells nor a Route"
+def test_pieces_that_are_left_out_are_counted(unknown, tmp_path):
+    sentence = "3 pieces have no usable position or route and are left out."
     html = render(unknown)
     assert sentence in _text(_section(html))
     assert {row[0]: row[8] for row in _rows(html, "route-floors")} == {"1 – First": "3", "Floor G": "0"}
     alone = _assess(tmp_path / "w.xlsx", Items=ITEMS[:3])
-    assert route_rows.say_uncounted(alone.routes) == ""
+    assert route_rows.say_uncounted(alone.route_tables) == ""
 
 
 def test_print_leaves_out_segments_that_nothing_reaches(unknown):
@@ -408,15 +416,15 @@ def test_print_leaves_out_segments_that_nothing_reaches(unknown):
 
 
 def test_a_way_says_what_it_shares_with_the_first(assessment):
-    way = assessment.routes.rooms[0].ways[0]
-    (said_alone, said_shared) = (said.say_way(one, assessment.routes) for one in
-                                 (way, replace(way, shared=way.segments[:1])))  # fmt: skip
-    name = assessment.routes.segments[way.segments[0]].segment.segment
+    way = assessment.route_tables.rooms[0].ways[0]
+    name = assessment.route_tables.segments[way.segment_indices[0]].segment
+    ways = (way, replace(way, shared=(name,)))
+    said_alone, said_shared = (said.say_way(one, assessment.route_tables) for one in ways)
     assert said_shared == f"{said_alone}; shares {name} with the first"
 
 
 def test_a_room_whose_ways_are_not_evaluated_has_no_chance(assessment):
-    room = assessment.routes.rooms[0]
-    assert route_rows.has_evaluated_way(room)
-    segments = tuple(at for way in room.ways for at in way.segments)
-    assert not route_rows.has_evaluated_way(replace(room, unevaluated=segments))
+    room = assessment.route_tables.rooms[0]
+    assert route_rows.has_evaluated_way(room, assessment.route_tables)
+    segments = tuple(replace(one, evaluated=False) for one in assessment.route_tables.segments)
+    assert not route_rows.has_evaluated_way(room, replace(assessment.route_tables, segments=segments))

@@ -10,16 +10,13 @@ import openpyxl
 import pytest
 
 import assess
-from assess.demand import Demand
-from assess.inventory.blank import Content, write_workbook
-from assess.language import Catalogue, gettext, speaking
+from assess.i18n import Catalogue, gettext, speaking
 from assess.motion.formats import read_records
-from assess.motion.scenario import PROFILES
 from assess.motion.suite import read_suite
 from assess.report import words
-from assess.report.findings import motions, trials
-from assess.report.findings.cautions import list_cautions, list_short_cautions
-from assess.report.findings.verified import build_verified, describe_verification, list_summary
+from assess.report.content import build_content
+from assess.report.findings import motions
+from assess.workbook.template import Content, write_workbook
 from docs.texts import collect
 from tests.report.test_verified import _assess
 from tests.workbooks import RECORDS, write
@@ -87,17 +84,16 @@ def _write(folder, **last):
 
 @pytest.fixture(scope="module", params=["as filled", "given", "ASCE 7-22"])
 def odd(request, tmp_path_factory):
-    """Return the assessment of a workbook that gives rise to much that is remarked."""
+    """Return the results of a workbook that gives rise to many remarks."""
     last = {"pfa_x": 0.1} if request.param == "given" else {}
-    inventory = assess.read_inventory(_write(tmp_path_factory.mktemp("odd"), **last))
-    return assess.run(inventory, assess.Settings(scenario=request.param, verify="none"))
+    return assess.run(_write(tmp_path_factory.mktemp("odd"), **last), scenario=request.param, verify="none")
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_every_warning_and_note_is_said(odd, spoken):
-    assert len(odd.problems) >= 10
-    for problem in odd.problems:
-        for text in filter(None, (problem.message, problem.mend)):
+    assert len(odd.problem_rows) >= 10
+    for problem in odd.problem_rows:
+        for text in filter(None, (problem.message, problem.fix)):
             with speaking(spoken):
                 said = gettext(text)
             assert said.startswith("⟦"), text
@@ -107,25 +103,32 @@ def test_every_warning_and_note_is_said(odd, spoken):
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_what_shakes_the_floors_is_said(odd, spoken):
-    demands = [demand for ones in odd.demands.values() for demand in ones]
     with speaking(spoken):
-        for demand in demands:
-            assert motions.describe_source(demand).startswith("⟦")
-            assert not _left(motions.describe_source(demand))
-            assert not _left(motions.describe_origin(demand), *_names(demand))
-            assert not _left(motions.describe_treatment(demand))
-        for text in (*motions.list_sources(odd.demands), *list_cautions(odd), *list_short_cautions(odd)):
+        for motion in odd.motions:
+            names = re.findall(r"[^\W\d_]+", f"{motion.station} {motion.record}")
+            assert motions.describe_source(motion).startswith("⟦")
+            assert not _left(motions.describe_source(motion))
+            assert not _left(motions.describe_origin(motion), *names)
+            assert not _left(motions.describe_treatment(motion))
+        content = build_content(odd)
+        for text in (*content.sources, *content.cautions, *content.short_cautions):
             assert text.startswith("⟦")
             assert not _left(text), text
-        for line in motions.list_assumptions(odd):
-            assert not _left(" ".join(line)), line
-        for profile in PROFILES.values():
+        for line in (*content.assumptions, *content.flags.items()):
+            assert not _left(" ".join(line[1:]), "EXP", "sin"), line
+        assert not _left(" ".join((*content.limits, *content.summary.plainly)))
+        for profile in odd.provenance.profiles:
             assert not _left(motions.profile_status(profile))
 
 
-def _names(demand: Demand):
-    record = demand.record
-    return re.findall(r"[^\W\d_]+", f"{record.station} {demand.name}") if record else ()
+def test_why_methods_disagree_and_the_worked_example_are_said(example, spoken):
+    with speaking(spoken):
+        content = build_content(example)
+        assert content.disagreements.groups
+        for group in content.disagreements.groups:
+            assert not _left(" ".join((*group.reasons, group.highest, group.lowest))), group.reasons
+        for one in content.worked:
+            assert not _left(one.title + one.result), one
 
 
 def test_what_reading_changed_of_a_record_is_said(spoken, tmp_path):
@@ -140,33 +143,31 @@ def test_what_reading_changed_of_a_record_is_said(spoken, tmp_path):
 
 @pytest.mark.parametrize(("peaks", "more"), [([0.1] * 40, {}), ([1.0] * 10 + [0.1] * 30, {"scale_motions": True})])
 def test_the_verification_is_said(peaks, more, spoken, tmp_path):
-    assessment = _assess(tmp_path, peaks, SLENDER_AND_STOCKY, **more)
+    results = _assess(tmp_path, peaks, SLENDER_AND_STOCKY, **more)
     with speaking(spoken):
-        verified = build_verified(assessment, tuple(assessment))
-        section = trials.build_trials(assessment, verified)
+        content = build_content(results)
+        verified, section = content.verified, content.trials
         texts = [*verified.status, verified.footer, verified.interval, verified.adopted, *section.paragraphs]
-        texts += [*list_summary(verified), *list_cautions(assessment), describe_verification(assessment)]
-        for text in texts:
+        for text in (*texts, *verified.summary, *content.cautions, verified.sentence):
             assert text.startswith("⟦")
             assert not _left(text, "ours"), text
-        lines = [*trials.list_assumptions(assessment, verified), *((row.kind, row.source) for row in section.motions)]
-        for line in lines:
-            assert not _left(" ".join(line)), line
-        for one in assessment:
+        for line in (*content.assumptions, *((row.kind, row.source) for row in section.motions)):
+            assert not _left(" ".join(line), "sin"), line
+        for one in results:
             assert not _left(f"{words.risk_words(one)} {words.under_record(one)} {words.chance(one)}")
 
 
 def test_what_is_remarked_of_the_users_own_motions_is_said(spoken, tmp_path):
     (tmp_path / "ours").mkdir()
     shutil.copy(RECORDS / SMC, tmp_path / "ours" / SMC)
-    inventory = assess.read_inventory(write(tmp_path / "w.xlsx", SLENDER_AND_STOCKY, [
+    path = write(tmp_path / "w.xlsx", SLENDER_AND_STOCKY, [
         {"floor": "1", "pfa_x": 0.9, "pfv_x": 90}, {"floor": "2", "pfa_x": 0.9},
-    ]))  # fmt: skip
-    assessment = assess.run(inventory, assess.Settings(verify="all"), suite=read_suite(tmp_path / "ours"), jobs=1)
-    assert {problem.severity for problem in assessment.problems} >= {"warning", "note"}
+    ])  # fmt: skip
+    results = assess.run(path, verify="all", suite=read_suite(tmp_path / "ours"), jobs=1)
+    assert {problem.severity for problem in results.problem_rows} >= {"warning", "note"}
     with speaking(spoken):
-        for problem in assessment.problems:
-            assert not _left(f"{gettext(problem.message)} {gettext(problem.mend)}", "ours"), problem
+        for problem in results.problem_rows:
+            assert not _left(f"{gettext(problem.message)} {gettext(problem.fix)}", "ours"), problem
 
 
 def test_words_are_said(spoken):
@@ -176,15 +177,3 @@ def test_words_are_said(spoken):
         assert words.clip("1" * 500, 3) == "111… (⟦500 xxxxxxxxxx; xxxxx xx xxxxxx.xxxx⟧)"
         assert not _left(words.marks())
         assert not _left("".join(words.risk_label(risk) for risk in assess.risk.RiskClass))
-
-
-def test_a_noun_without_a_plural_is_a_slip():
-    with pytest.raises(KeyError, match="sheep"):
-        words.plural(2, "sheep")
-
-
-def test_numbers_are_those_of_the_language():
-    with speaking(Catalogue("xx", {}, decimal=",", group=".")):
-        assert (words.percent(0.0316), words.fixed(1.25, 2), words.in_g(9.80665)) == ("3,2 %", "1,25", "1,000")
-        assert (words.in_m(3.5), words.in_cm(0.305), words.in_cm_s(0.5)) == ("3,5", "30,5", "50,0")
-        assert (words.plural(1200, "row"), words.percent(None)) == ("1.200 rows", "–")

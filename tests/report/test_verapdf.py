@@ -12,10 +12,12 @@ import subprocess
 from pathlib import Path
 
 import pytest
+import weasyprint
 
 import assess
-from assess.report.look import Look
-from assess.report.pages.pdf import load_weasyprint, write_pdf
+from assess.report.content import build_content
+from assess.report.pages.pdf import write_pdf
+from assess.report.report_options import ReportOptions
 from tests.workbooks import UNVERIFIED, assessed
 
 HERE = Path(__file__).parents[1] / "verapdf"
@@ -68,10 +70,10 @@ def _validate(jars, *pairs):
     return [broken for _, _, broken in verdicts]
 
 
-def _write(assessment, path, *, accessible=False, language="en"):
-    look = Look(language=language, accessible=accessible)
-    with look.spoken():
-        write_pdf(assessment, path, look)
+def _write(results, path, *, accessible=False, language="en"):
+    options = ReportOptions(language=language, accessible=accessible)
+    with options.spoken():
+        write_pdf(build_content(results), path, options)
     return path
 
 
@@ -80,7 +82,7 @@ def test_a_small_report_is_valid_and_the_validator_can_say_no(tmp_path, jars):
     strange = assessed(tmp_path / "表.xlsx", JAPANESE, building="東京", organisation="Us & Co")
     archival, accessible = _write(small, tmp_path / "a.pdf"), _write(small, tmp_path / "u.pdf", accessible=True)
     plain = tmp_path / "plain.pdf"
-    load_weasyprint().HTML(string="<h1>Plain</h1>").write_pdf(plain)
+    weasyprint.HTML(string="<h1>Plain</h1>").write_pdf(plain)
     good = _validate(
         jars,
         (archival, "3u"),

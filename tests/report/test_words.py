@@ -1,4 +1,4 @@
-"""Numbers and sentences of the reports: none contradicts the class, the counts, or the other reports beside it."""
+"""Numbers and sentences of the reports: none contradicts the class, the counts, or another report."""
 
 from dataclasses import replace
 
@@ -6,15 +6,15 @@ import openpyxl
 import pytest
 
 import assess
+from assess.i18n import Catalogue, speaking
 from assess.report import words
 from assess.report.content import build_content
-from assess.report.counts import CannotRock, count, count_cannot_rock
-from assess.report.pages.html import render
+from assess.report.counts import CannotRock, build_bars, count, count_cannot_rock
 from assess.report.statements import list_assumptions
 from assess.report.summary import describe, say_plainly
 from assess.risk import LIMITS, RiskClass, classify
 from assess.settings import Settings
-from tests.report.test_html import _read
+from tests.report.reading import write_html
 from tests.workbooks import ITEMS, assessed
 
 FLOORS = [{"floor": "1", "pfa_x": 0.4, "pfv_x": 40, "pfa_y": 0.4, "pfv_y": 40}]
@@ -42,23 +42,34 @@ def test_that_holds_beside_every_limit():
 
 
 @pytest.mark.parametrize(
-    ("length", "cm", "m"),
+    ("length", "shown", "in_m"),
     [
-        (0.3048, "30.5", "0.3"), (0.9144, "91.4", "0.91"), (1.8288, "182.9", "1.83"), (18.288, "1828.8", "18.29"),
-        (3.5, "350", "3.5"), (0.0, "0", "0"), (-0.001, "-0.1", "0"), (12345.678, "1234567.8", "12345.68"),
-        (None, "–", "–"),
+        (30.48, "30.5", "30.48"), (350.0, "350", "350"), (0.0, "0", "0"), (-0.001, "0", "0"),
+        (1828.8, "1828.8", "1828.8"), (None, "–", "–"),
     ],
 )  # fmt: skip
-def test_lengths_have_no_needless_decimals(length, cm, m):
-    assert (words.in_cm(length), words.in_m(length)) == (cm, m)
+def test_lengths_have_no_needless_decimals(length, shown, in_m):
+    assert (words.in_cm(length), words.in_m(length)) == (shown, in_m)
+
+
+def test_numbers_are_those_of_the_language():
+    with speaking(Catalogue("xx", {}, decimal=",", group=".")):
+        assert (words.percent(0.0316), words.fixed(1.25, 2), words.in_g(1.0)) == ("3,2 %", "1,25", "1,000")
+        assert (words.in_m(3.5), words.in_cm(30.5), words.in_cm_s(50.0)) == ("3,5", "30,5", "50,0")
+        assert (words.plural(1200, "row"), words.percent(None)) == ("1.200 rows", "–")
+
+
+def test_a_noun_without_a_plural_is_a_slip():
+    with pytest.raises(KeyError, match="sheep"):
+        words.plural(2, "sheep")
 
 
 def test_an_imperial_workbook_is_shown_in_short_numbers(tmp_path):
     items = [{"item": "a", "floor": "1", "breadth": 30.48, "width": 91.44, "height": 182.88}]
-    assessment = assessed(tmp_path / "w.xlsx", items, FLOORS, "us", height=18.288)
-    (one,) = assessment
+    results = assessed(tmp_path / "w.xlsx", items, FLOORS, "us", height=18.288)
+    (one,) = results
     assert words.size(one) == "30.5 × 91.4 × 182.9"
-    content = build_content(assessment)
+    content = build_content(results)
     assert content.building["height"][1] == "18.29 m"
     assert ("Units", "Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
             "are.") in content.assumptions  # fmt: skip
@@ -66,48 +77,43 @@ def test_an_imperial_workbook_is_shown_in_short_numbers(tmp_path):
 
 @pytest.fixture(scope="module")
 def rocked(tmp_path_factory):
-    """Only the piece of high class was verified; one more is partly anchored."""
+    """Only the piece of high class was simulated; it is partly anchored."""
     items = [PIECE | {"item": "thin", "anchored": "partly", "description": "Bookcase with a very long description"},
              PIECE | {"item": "stout", "floor": "2", "breadth": 60, "axis": "X"}]  # fmt: skip
     floors = [*FLOORS, {"floor": "2", "pfa_x": 0.1, "pfv_x": 20}]
     return assessed(tmp_path_factory.mktemp("w") / "w.xlsx", items, floors, settings=Settings(runs=20))
 
 
-def test_a_chance_of_the_formula_is_marked_beside_verified_ones(rocked, tmp_path):
-    assert [one.is_verified for one in rocked] == [True, False]
-    html = render(rocked)
+def test_a_chance_of_the_formula_is_marked_beside_simulated_ones(rocked, tmp_path):
+    assert [one.is_simulated for one in rocked] == [True, False]
     bare = [one for one in rocked if one.adopted.low is None]
-    assert html.count("<small>formula</small>") == len(bare) == 1
-    assert "<small>formula</small>" not in render(assessed(tmp_path / "w.xlsx"))
+    assert write_html(rocked, tmp_path / "some").count("<small>formula</small>") == len(bare) == 1
+    assert "<small>formula</small>" not in write_html(assessed(tmp_path / "w.xlsx"), tmp_path / "none")
 
 
-def test_a_partly_anchored_piece_says_so_in_short_tables(rocked):
+def test_a_partly_anchored_piece_says_so_in_short_tables(rocked, tmp_path):
     thin, stout = rocked
     assert describe(thin, 28) == "Bookcase wi…, partly anchored"
     assert "partly" not in describe(stout)
-    text = _read(render(rocked))
-    assert text.count("thin: Bookcase wi…, partly anchored") == 3  # the worst, what to fix first, the floor
+    html = write_html(rocked, tmp_path)
+    assert html.count("thin: Bookcase wi…, partly anchored") == 3  # the worst, what to fix first, the floor
 
 
 @pytest.mark.parametrize(
-    ("very_high", "high", "low", "may_be", "told"),
+    ("very_high", "high", "low", "could_be", "text"),
     [
         (0, 0, 1, 0, "The 1 free-standing piece has no high or very high chance of overturning in this scenario."),
-        (0, 0, 5, 2, "Of 5 free-standing pieces, none has a high or very high chance of overturning in this scenario. "
-                     "2 may have either."),
+        (0, 0, 5, 2, "None of 5 free-standing pieces has a high or very high chance of overturning in this scenario. "
+                     "2 could be high or very high."),
         (1, 0, 0, 0, "The one free-standing piece has a very high chance of overturning in this scenario."),
         (0, 1, 0, 0, "The one free-standing piece has a high chance of overturning in this scenario."),
-        (0, 1, 4, 0, "Of 5 free-standing pieces, 1 has a high chance of overturning in this scenario, none a very high "
-                     "one."),
-        (2, 0, 3, 0, "Of 5 free-standing pieces, 2 have a very high chance of overturning in this scenario, none a "
-                     "high one."),
-        (1, 3, 0, 1, "Of 4 free-standing pieces, 1 has a very high chance of overturning in this scenario and 3 a high "
-                     "one. 1 more may have either."),
+        (1, 3, 0, 1, "Of 4 free-standing pieces, the chance of overturning in this scenario is very high for 1 and "
+                     "high for 3. 1 more could be either."),
     ],
 )  # fmt: skip
-def test_the_first_sentence_for_none_one_and_many(very_high, high, low, may_be, told):
+def test_the_first_sentence_for_none_one_and_many(very_high, high, low, could_be, text):
     by_class = dict(zip(reversed(RiskClass), (very_high, high, 0, low), strict=True))
-    assert " ".join(say_plainly(replace(count("all", []), by_class=by_class), may_be, [], [])) == told
+    assert " ".join(say_plainly(replace(count("all", []), by_class=by_class), could_be, [], [])) == text
 
 
 @pytest.mark.parametrize(
@@ -128,34 +134,43 @@ def test_pieces_that_cannot_rock_are_counted(tmp_path):
     items = [PIECE | {"item": "stocky", "breadth": 145, "width": 145, "height": 100, "quantity": 2},
              PIECE | {"item": "still", "breadth": 36, "height": 144, "quantity": 3},
              PIECE | {"item": "thin"}, PIECE | {"item": "held", "anchored": "yes"}]  # fmt: skip
-    found = list(assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.24, "pfv_x": 35}]))
-    high = {one.item.item for one in found if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH}
-    counted = count_cannot_rock(found)
-    assert counted.stocky == (2 if "stocky" in high else 0)
-    assert counted.still == (3 if "still" in high else 0)
-    assert counted.risky == sum(one.item.quantity for one in found if one.item.item in high)
-    risky = [replace(one, adopted=replace(one.adopted, risk=RiskClass.HIGH)) for one in found]
-    assert count_cannot_rock(risky) == CannotRock(risky=6, still=3, kept=0, stocky=2)
+    results = assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.24, "pfv_x": 35}])
+    high = {one.item.item: one for one in results if one.adopted.risk >= RiskClass.HIGH and not one.is_anchored}
+    assert high.keys() == {"still", "thin"}
+    assert count_cannot_rock(list(results), results.methods) == CannotRock(risky=4, still=3, kept=0, stocky=0)
+    risky = [replace(one, adopted=replace(one.adopted, risk=RiskClass.HIGH)) for one in results]
+    assert count_cannot_rock(risky, results.methods) == CannotRock(risky=6, still=3, kept=0, stocky=2)
+
+
+def test_bars_show_every_piece_in_proportion(tmp_path):
+    counts = count("1", list(assessed(tmp_path / "w.xlsx")))
+    bars = build_bars([counts, count("empty", []), count("left out", [])], most=2)
+    (bar,) = bars.bars
+    assert (bar.total, sum(part.pieces for part in bar.parts), bars.left_out) == (counts.total, counts.total, 0)
+    assert len({round(part.width / part.pieces, 6) for part in bar.parts}) == 1
+    assert build_bars([counts] * 3, most=2).left_out == 1
+    assert build_bars([]) is None
 
 
 def test_without_pieces_nothing_is_said_of_them(tmp_path):
-    assessment = assessed(tmp_path / "w.xlsx", [])
-    assert not [name for name, _ in list_assumptions(assessment) if name.startswith(("Axis unknown", "Friction"))]
-    assert "K-H: Kaneko-Hayashi" not in _read(render(assessment))
+    results = assessed(tmp_path / "w.xlsx", [])
+    assert not [name for name, _ in list_assumptions(results) if name.startswith(("Axis unknown", "Friction"))]
+    assert build_content(results).summary.plainly == ["There are no free-standing pieces."]
+    assert "Raw: as printed" not in write_html(results, tmp_path)
 
 
 def test_long_names_are_cut_without_a_remark_where_there_is_no_room(tmp_path):
     long = "N" * 300
     items = [PIECE | {"item": long, "room": long, "description": long}]
-    html = render(assessed(tmp_path / "w.xlsx", items, [FLOORS[0] | {"name": long}]))
+    html = write_html(assessed(tmp_path / "w.xlsx", items, [FLOORS[0] | {"name": long}]), tmp_path)
     assert "whole in report.xlsx" not in html
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
-def test_what_is_saved_is_the_same_number_in_every_report(tmp_path):
-    assessment = assessed(tmp_path / "w.xlsx", ITEMS)
-    fix = build_content(assessment).summary.fixes[0]
-    assert f" {fix.saved:.3f} " in _read(render(assessment))
-    written = assess.write_reports(assessment, tmp_path / "out", ("xlsx",))
+def test_what_is_avoided_is_the_same_number_in_every_report(tmp_path):
+    results = assessed(tmp_path / "w.xlsx", ITEMS)
+    fix = build_content(results).summary.fixes[0]
+    written = assess.write_reports(results, tmp_path / "out", ("xlsx", "html"))
+    assert f">{fix.saved:.3f}<" in written["html"].read_text(encoding="utf-8")
     cell = openpyxl.load_workbook(written["xlsx"])["Fix first"]["M2"]
     assert (cell.number_format, cell.value) == ("0.000", pytest.approx(fix.saved))

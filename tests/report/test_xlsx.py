@@ -4,8 +4,7 @@ import formualizer
 import openpyxl
 import pytest
 
-from assess.report.xlsx import write_xlsx
-from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells
+from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells, write_report
 from tests.workbooks import ITEMS, UNVERIFIED, assessed
 
 FLOORS = [
@@ -31,9 +30,9 @@ def _column(sheet, label):
 
 @pytest.fixture
 def report(tmp_path):
-    assessment = assessed(tmp_path / "w.xlsx", _items(), FLOORS, period=0.9)
-    write_xlsx(assessment, tmp_path / "report.xlsx")
-    return assessment, tmp_path / "report.xlsx"
+    results = assessed(tmp_path / "w.xlsx", _items(), FLOORS, period=0.9)
+    write_report(results, tmp_path / "report.xlsx")
+    return results, tmp_path / "report.xlsx"
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -56,19 +55,19 @@ def test_libreoffice_agrees(report, tmp_path):
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_items_agree_with_the_program(report):
-    assessment, path = report
+    results, path = report
     book = formualizer.load_workbook(str(path))
     book.evaluate_all()
     sheet = openpyxl.load_workbook(path)["Items"]
     at = {
         label: _column(sheet, label)
-        for label in ("B/H", "PFA used [g]", "OR raw", "OR", "Kaneko-Hayashi", "Class (formula)")
+        for label in ("B/H", "PFA used [g]", "OR as printed", "OR", "Kaneko-Hayashi", "Class (formula)")
     }
-    for row, one in enumerate(assessment, 2):
+    for row, one in enumerate(results, 2):
         methods = one.governing.methods
         found = {label: book.get_value("Items", row, column) for label, column in at.items()}
-        assert found["B/H"] == pytest.approx(one.item.breadth / one.item.height, abs=1e-9)
-        assert found["OR raw"] == pytest.approx(methods["proposed_or"].detail["raw"], abs=1e-9)
+        assert found["B/H"] == pytest.approx(one.item.breadth_to_height, abs=1e-9)
+        assert found["OR as printed"] == pytest.approx(methods["proposed_or"].detail["raw"], abs=1e-9)
         assert found["OR"] == pytest.approx(methods["proposed_or"].value, abs=1e-9)
         assert found["Kaneko-Hayashi"] == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
         assert found["Class (formula)"].rstrip("*") == one.adopted.risk.label
@@ -108,15 +107,15 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_an_edited_class_limit_moves_the_classes(report):
-    assessment, path = report
+    results, path = report
     book = formualizer.load_workbook(str(path))
     sheet = openpyxl.load_workbook(path)["Items"]
-    before = sum(one.adopted.risk.word == "very high" for one in assessment)
+    before = sum(one.adopted.risk.word == "very high" for one in results)
     book.set_value("Assumptions", 4, 2, 0.999999)
     book.evaluate_all()
     after = sum(
         book.get_value("Items", row, _column(sheet, "Class (formula)")).startswith("■")
-        for row in range(2, 2 + len(assessment))
+        for row in range(2, 2 + len(results))
     )
     assert after < before
 
@@ -133,17 +132,17 @@ def test_unknown_columns_come_back(tmp_path):
     book.save(path)
     import assess
 
-    assessment = assess.run(assess.read_inventory(path), UNVERIFIED)
-    write_xlsx(assessment, tmp_path / "r.xlsx")
+    results = assess.run(assess.read_inventory(path), UNVERIFIED)
+    write_report(results, tmp_path / "r.xlsx")
     items = openpyxl.load_workbook(tmp_path / "r.xlsx")["Items"]
     assert items.cell(2, _column(items, "Inventory tag")).value == "T-17"
 
 
 def test_bytes_are_the_same_twice(tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    assessment = assessed(tmp_path / "w.xlsx")
-    write_xlsx(assessment, tmp_path / "a.xlsx")
-    write_xlsx(assessment, tmp_path / "b.xlsx")
+    results = assessed(tmp_path / "w.xlsx")
+    write_report(results, tmp_path / "a.xlsx")
+    write_report(results, tmp_path / "b.xlsx")
     assert (tmp_path / "a.xlsx").read_bytes() == (tmp_path / "b.xlsx").read_bytes()
 
 
@@ -170,7 +169,7 @@ def test_a_size_that_is_cleared_shows_check_and_leaves_the_counts_alive(report):
     sheet = openpyxl.load_workbook(path)["Items"]
     book.set_value("Items", 2, _column(sheet, "Breadth [cm]"), "abc")
     book.evaluate_all()
-    for label in ("B/H", "OR raw", "OR", "Kaneko-Hayashi", "Class (formula)"):
+    for label in ("B/H", "OR as printed", "OR", "Kaneko-Hayashi", "Class (formula)"):
         assert book.get_value("Items", 2, _column(sheet, label)) == "check"
     summary = openpyxl.load_workbook(path)["Summary"]
     top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
@@ -179,9 +178,9 @@ def test_a_size_that_is_cleared_shows_check_and_leaves_the_counts_alive(report):
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_an_anchored_piece_is_marked_and_not_coloured(tmp_path):
-    from assess.report.xlsx.said import ANCHORED
+    from assess.report.xlsx.item_formulas import ANCHORED
 
-    write_xlsx(assessed(tmp_path / "w.xlsx", ITEMS), tmp_path / "r.xlsx")
+    write_report(assessed(tmp_path / "w.xlsx", ITEMS), tmp_path / "r.xlsx")
     sheet = openpyxl.load_workbook(tmp_path / "r.xlsx", data_only=True)["Items"]
     shown = {row[0].value: row[_column(sheet, "Class (formula)") - 1].value for row in sheet.iter_rows(min_row=2)}
     assert shown["A4"].startswith(ANCHORED)
@@ -198,4 +197,5 @@ def test_without_verification_the_class_is_that_of_the_formula(report):
         assert row[verified - 1] == "not verified"
         assert row[shown - 1] == row[by_formula - 1]
     assert "Verification" not in book.sheetnames
-    assert any(str(row[0]).startswith("Not verified") for row in book["Summary"].iter_rows(values_only=True))
+    lines = [str(row[0]) for row in book["Summary"].iter_rows(values_only=True)]
+    assert any(line.startswith("Not simulated: classes come from a published formula") for line in lines)

@@ -5,11 +5,11 @@ import zipfile
 
 import formualizer
 import openpyxl
+import openpyxl.utils
 import pytest
 
-from assess.report.xlsx import write_xlsx
 from assess.risk import RiskClass
-from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
+from tests.recalculate import libreoffice, needs_libreoffice, stored_cells, write_report
 from tests.workbooks import assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -43,7 +43,7 @@ EDITED_ITEM, EDITED_FLOOR = 1, 0
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
     folder = tmp_path_factory.mktemp("edits")
-    write_xlsx(assessed(folder / "w.xlsx", ITEMS, FLOORS), folder / "r.xlsx")
+    write_report(assessed(folder / "w.xlsx", ITEMS, FLOORS), folder / "r.xlsx")
     return folder / "r.xlsx"
 
 
@@ -144,7 +144,7 @@ def test_every_chart_draws_cells_that_follow_an_edit(path):
         assert areas
         for sheet, area in areas:
             cells = [cell for row in book[sheet][area.replace("$", "")] for cell in row]
-            assert all(cell.data_type == "f" or cell.style == "Input" for cell in cells), (sheet, area)
+            assert all(cell.data_type == "f" or cell.fill.fgColor.rgb == "FFFFFBE6" for cell in cells), (sheet, area)
 
 
 def test_charts_have_the_colours_of_the_classes_and_patterns(path):

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import openpyxl
 import pytest
 
-from assess.language import Catalogue, speaking
-from assess.report.xlsx import write_xlsx
-from assess.report.xlsx.said import hole, join, literal, name_sheets, refer
+from assess.i18n import Catalogue, speaking
+from assess.report.xlsx.item_formulas import literal, sentence
+from assess.report.xlsx.pen import name_sheets, refer
 from assess.settings import Settings
-from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells
+from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells, write_report
 from tests.workbooks import FLOORS, ITEMS, assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -19,9 +19,9 @@ ITALIAN = Catalogue(
     {
         "Summary": ("Riepilogo",), "Floors": ("Piani e quote",), "Items": ("L'arredo",), "Assumptions": ("Ipotesi",),
         "low": ("basso",), "medium": ("medio",), "high": ("alto",), "very high": ("molto alto",), "yes": ("sì",),
-        "no": ("no",), "void: inputs changed": ("nullo: dati cambiati",), "may be {risk}": ("forse {risk}",),
-        "lowered by verification (formula: {risk})": ("{risk} per la formula, abbassato dalla verifica",),
-        "Rows whose class verification lowers: {lowered}; void, as an input was edited: {void}.": (
+        "no": ("no",), "void: inputs changed": ("nullo: dati cambiati",), "could be {risk}": ("forse {risk}",),
+        "lowered by simulation (formula: {risk})": ("{risk} per la formula, abbassato dalla verifica",),
+        "Rows whose class simulation lowers: {lowered}; void, as an input was edited: {void}.": (
             "Righe nulle, perché un dato è cambiato: {void}; abbassate: {lowered}.",
         ),
     },
@@ -57,12 +57,13 @@ def plain(tmp_path_factory):
     return assessed(tmp_path_factory.mktemp("language") / "w.xlsx", ITEMS, FLOORS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("catalogue", [ITALIAN, MARKED], ids=["italian", "marked"])
 @pytest.mark.parametrize("which", ["plain", "verified"])
 def test_formulas_agree_in_another_language(catalogue, which, request, tmp_path):
-    assessment = request.getfixturevalue(which)
+    results = request.getfixturevalue(which)
     with speaking(catalogue):
-        write_xlsx(assessment, tmp_path / "r.xlsx")
+        write_report(results, tmp_path / "r.xlsx")
     stored = stored_cells(tmp_path / "r.xlsx")
     assert not [place for place, value in stored.items() if isinstance(value, str) and value.startswith("#")]
     assert compare_formulas(tmp_path / "r.xlsx") > 12 * len(ITEMS)
@@ -73,7 +74,7 @@ def test_formulas_agree_in_another_language(catalogue, which, request, tmp_path)
 def test_libreoffice_agrees_in_another_language(verified, tmp_path):
     path = tmp_path / "r.xlsx"
     with speaking(MARKED):
-        write_xlsx(verified, path)
+        write_report(verified, path)
     stored = stored_cells(path)
     poison(path)
     found = stored_cells(libreoffice(path, tmp_path / "again.xlsx"))
@@ -82,7 +83,7 @@ def test_libreoffice_agrees_in_another_language(verified, tmp_path):
 
 def test_words_and_counts_are_translated(plain, tmp_path):
     with speaking(ITALIAN):
-        write_xlsx(plain, tmp_path / "r.xlsx")
+        write_report(plain, tmp_path / "r.xlsx")
     book = openpyxl.load_workbook(tmp_path / "r.xlsx", data_only=True)
     assert book.sheetnames[0] == "Riepilogo"
     assert {"Piani e quote", "L'arredo", "Ipotesi"} <= set(book.sheetnames)
@@ -96,7 +97,7 @@ def test_words_and_counts_are_translated(plain, tmp_path):
 
 def test_every_heading_is_translated(verified, tmp_path):
     with speaking(MARKED):
-        write_xlsx(verified, tmp_path / "r.xlsx")
+        write_report(verified, tmp_path / "r.xlsx")
     for sheet in openpyxl.load_workbook(tmp_path / "r.xlsx"):
         assert sheet.title.startswith("l'"), sheet.title
         heads = [str(cell.value) for cell in sheet[1] if cell.value]
@@ -116,4 +117,4 @@ def test_names_of_sheets_hold_excels_rules():
 
 def test_a_sentence_with_holes_is_an_expression():
     assert literal('a "b"') == '"a ""b"""'
-    assert join(f"{hole(1)} of {hole(0)}.", "A1", "B2") == 'B2&" of "&A1&"."'
+    assert sentence("{all} of {some}.", some="A1", all="B2") == 'B2&" of "&A1&"."'

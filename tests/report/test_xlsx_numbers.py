@@ -7,9 +7,9 @@ import openpyxl
 import pytest
 
 import assess
+from assess import fields
 from assess.report import write_reports
-from assess.report.content import build_content
-from assess.report.xlsx.columns import item_columns
+from assess.report.xlsx.items_sheet import item_columns
 from assess.risk import RiskClass
 from assess.settings import Settings
 from tests.workbooks import UNVERIFIED, assessed
@@ -32,12 +32,12 @@ def run(request, tmp_path_factory):
     """Return the stored Items by key, the other sheets, and results.json."""
     folder = tmp_path_factory.mktemp(request.param)
     if request.param == "formula":
-        assessment = assess.run(assess.read_inventory(STREET), UNVERIFIED)
+        results = assess.run(assess.read_inventory(STREET), UNVERIFIED)
     else:
-        assessment = assessed(folder / "w.xlsx", ITEMS, FLOORS, settings=Settings(verify="all", runs=20))
-    written = write_reports(assessment, folder / "out", ["xlsx", "json"])
+        results = assessed(folder / "w.xlsx", ITEMS, FLOORS, settings=Settings(verify="all", runs=20))
+    written = write_reports(results, folder / "out", ["xlsx", "json"])
     book = openpyxl.load_workbook(written["xlsx"], data_only=True)
-    keys = [column.key for column in item_columns(build_content(assessment))]
+    keys = [column.key for column in item_columns(results)]
     rows = [dict(zip(keys, row, strict=True)) for row in book["Items"].iter_rows(min_row=2, values_only=True)]
     return rows, book, json.loads(written["json"].read_text(encoding="utf-8"))
 
@@ -58,11 +58,11 @@ def test_sizes_and_motions_are_those_of_the_results(run):
         assert row["floor"] == one["floor"]
         assert row["quantity"] == one["quantity"]
         assert row["anchored"] == one["anchored"]
-        for side in ("breadth", "width", "height"):
-            assert row[side] == _is(one[f"{side}_cm"])
-        assert row["ratio"] == _is(one["breadth_to_height"])
-        served = [axis for axis in one["axes"] if axis["axis"] == row["axis"]]
-        assert any((row["pfa"], row["pfv"] or None) == (_is(axis["pfa_g"]), _is(axis["pfv_cm_s"])) for axis in served)
+        for side in ("breadth_cm", "width_cm", "height_cm"):
+            assert row[side] == _is(one[side])
+        assert row["breadth_to_height"] == _is(one["breadth_to_height"])
+        served = [(axis["pfa_g"], axis["pfv_cm_s"]) for axis in one["axes"] if axis["axis"] == row["axis"]]
+        assert any((row["pfa_g"], row["pfv_cm_s"] or None) == (_is(pfa), _is(pfv)) for pfa, pfv in served)
         assert row["axis_run"] == one["axis"]
 
 
@@ -70,12 +70,12 @@ def test_chances_of_the_formulas_are_those_of_the_results(run):
     rows, _, results = run
     for row, one in zip(rows, results["items"], strict=True):
         if row["axis"] == one["axis"]:
-            assert row["pfa"] == _is(one["pfa_g"])
-            assert row["raw"] == _is(one["methods"]["proposed_or"]["raw"])
-            assert row["or"] == _is(one["methods"]["proposed_or"]["value"])
-            assert row["kh"] == _is(one["methods"]["kaneko_hayashi"]["value"])
+            assert row["pfa_g"] == _is(one["pfa_g"])
+            assert row["proposed_or_raw"] == _is(one["methods"]["proposed_or"]["raw"])
+            assert row["proposed_or"] == _is(one["methods"]["proposed_or"]["value"])
+            assert row["kaneko_hayashi"] == _is(one["methods"]["kaneko_hayashi"]["value"])
         by_axis = [axis["methods"] for axis in one["axes"] if axis["axis"] == row["axis"]]
-        assert any(row["or"] == _is(methods["proposed_or"]) for methods in by_axis)
+        assert any(row["proposed_or"] == _is(methods["proposed_or"]) for methods in by_axis)
         for key in ("fema_p58", "housner_monte_carlo"):
             value = one["methods"][key]["value"]
             assert row[key] == ("not evaluated" if value is None else _is(value))
@@ -87,14 +87,14 @@ def test_what_verification_found_is_that_of_the_results(run):
         found, adopted = one["verification"], one["adopted"]
         assert row["runs"] == (found and found["runs"])
         is_adopted = adopted["method"] == "housner_monte_carlo"
-        assert row["verified_chance"] == (_is(adopted["probability"]) if is_adopted else None)
+        assert row["simulated_chance"] == (_is(adopted["probability"]) if is_adopted else None)
         assert (row["low"], row["high"]) == (_is(adopted["low"]), _is(adopted["high"]))
         assert row["chance"] == _is(adopted["probability"])
         shown = row["class"].removeprefix("⚓ ").removesuffix("*")
         assert shown == _label(adopted["class"])
         if found:
-            assert row["class_verified"].removeprefix("⚓ ").startswith(_label(adopted["class"]))
-            assert ("may be " in row["class_verified"]) == (adopted["class_upper"] != adopted["class"])
+            assert row["class_simulated"].removeprefix("⚓ ").startswith(_label(adopted["class"]))
+            assert ("could be " in row["class_simulated"]) == (adopted["class_upper"] != adopted["class"])
 
 
 def _counts(items):
@@ -102,6 +102,18 @@ def _counts(items):
     by_class = [sum(one["quantity"] for one in free if one["adopted"]["class"] == risk.word) for risk in RiskClass]
     anchored = sum(one["quantity"] for one in items if one["anchored"] == "yes")
     return [*by_class, anchored, sum(by_class) + anchored]
+
+
+def test_a_new_field_shows_without_a_change_to_the_report(tmp_path, monkeypatch):
+    weight = fields.Field(key="weight_kg", read=lambda one: 2.5 * one.item.row, label="Weight", unit="kg", format="0.0",
+                          kind="number")  # fmt: skip
+    monkeypatch.setattr(fields, "PIECE_FIELDS", (*fields.PIECE_FIELDS, weight))
+    written = write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ["xlsx", "json", "csv"])
+    sheet = openpyxl.load_workbook(written["xlsx"])["Items"]
+    at = next(cell.column for cell in sheet[1] if cell.value == "Weight [kg]")
+    assert (sheet.cell(2, at).value, sheet.cell(2, at).number_format) == (5.0, "0.0")
+    assert json.loads(written["json"].read_text(encoding="utf-8"))["items"][0]["weight_kg"] == 5.0
+    assert "weight_kg" in written["csv"].read_text(encoding="utf-8-sig").splitlines()[0].split(",")
 
 
 def test_counts_are_those_of_the_results(run):
@@ -162,5 +174,5 @@ def test_inputs_and_settings_are_those_of_the_results(run):
     assert {("platform", name, value) for name, value in made["platform"].items()} <= set(rows)
     assert {("setting", name, str(value)) for name, value in made["settings"].items()} <= set(rows)
     assert ("program", "assess", made["version"]) in rows
-    problems = [(one["severity"], one["message"]) for one in results["problems"]] or [("note", "Nothing to remark.")]
+    problems = [(one["severity"], one["message"]) for one in results["problems"]] or [("note", "No warnings or notes.")]
     assert [(row[0], row[2]) for row in rows if row[0] in ("warning", "note")] == problems

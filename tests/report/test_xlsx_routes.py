@@ -1,18 +1,17 @@
-"""The sheets of the routes in the Excel report: every number is that of the assessment, and cells are texts."""
+"""The sheets of the routes in the Excel report: every number is that of the results, and cells are texts."""
 
 from typing import Any
 
 import openpyxl
 import pytest
 
-from assess.language import Catalogue, load_catalogue, speaking
+from assess.i18n import Catalogue, load_catalogue, speaking
 from assess.report.findings import at_risk
-from assess.report.findings.routes import say_basis, say_segment_state
+from assess.report.findings.route_words import say_basis, say_segment_state
 from assess.report.summary import ROUTES as MOST
-from assess.report.xlsx import write_xlsx
-from assess.routes.model import RouteState
+from assess.route_results import RouteState
 from assess.settings import Settings
-from tests.recalculate import compare_formulas
+from tests.recalculate import compare_formulas, write_report
 from tests.report.routed import ITEMS, PARTLY, assess_routed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -22,9 +21,9 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def written(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("routes")
     more = {"settings": Settings(verify="all", runs=20)} if request.param == "verified" else {}
-    assessment = assess_routed(folder / "w.xlsx", **more)
-    write_xlsx(assessment, folder / "r.xlsx")
-    return assessment, openpyxl.load_workbook(folder / "r.xlsx"), folder / "r.xlsx"
+    results = assess_routed(folder / "w.xlsx", **more)
+    write_report(results, folder / "r.xlsx")
+    return results, openpyxl.load_workbook(folder / "r.xlsx"), folder / "r.xlsx"
 
 
 def _is(value):
@@ -52,86 +51,91 @@ def _tables(sheet):
 
 
 def test_a_row_a_segment(written):
-    assessment, book, _ = written
+    results, book, _ = written
     rows = _tables(book["Routes"])[""]
-    assert len(rows) == len(assessment.routes.segments)
-    items = assessment.inventory.items
-    for row, one in zip(rows, assessment.routes.segments, strict=True):
-        segment, outlook = one.segment, one.outlook
+    assert len(rows) == len(results.route_tables.segments)
+    for row, one in zip(rows, results.route_tables.segments, strict=True):
         assert [row[name] for name in ("Route", "Segment", "Floor", "From", "To", "Notes")] == [
-            text or None
-            for text in (segment.route, segment.segment, segment.floor, segment.start, segment.end, segment.notes)
+            text or None for text in (one.route, one.segment, one.floor, one.from_place, one.to_place, one.notes)
         ]
-        assert _is(one.standing) == row["Width now [m]"]
-        assert row["State"] == say_segment_state(one, assessment.routes.risk)
-        if not one.is_evaluated:
+        assert _is(one.standing_width_m) == row["Width now [m]"]
+        assert row["State"] == say_segment_state(one, results.route_tables.risk)
+        if not one.evaluated:
             continue
-        blocked = outlook.blocked
+        blocked = one.blocked
         for name, value in {
             "Chance blocked": blocked.probability, "Interval low": blocked.low, "Interval high": blocked.high,
-            "Chance blocked or reduced": outlook.taken.probability, "Blocked, all independent": blocked.independent,
-            "Blocked, fully correlated": blocked.correlated, "Clear width [m]": one.clear,
-            "Required width [m]": one.required, "Width if all fall [m]": one.least,
-            "Width that they need [m]": one.needed, "Pieces": blocked.pieces,
-            "By the formula alone": blocked.unverified, "Occupants": segment.occupants,
+            "Chance blocked or reduced": one.blocked_or_reduced.probability,
+            "Blocked, all independent": blocked.independent,
+            "Blocked, fully correlated": blocked.correlated, "Clear width [m]": one.clear_width_used_m,
+            "Required width [m]": one.required_width_used_m, "Width if all fall [m]": one.least_width_m,
+            "Width that they need [m]": one.needed_width_m, "Pieces": blocked.pieces,
+            "By the formula alone": blocked.unverified, "Occupants": one.occupants,
         }.items():  # fmt: skip
             assert row[name] == _is(value), name
-        anchors = outlook.if_anchors_fail
+        anchors = one.blocked_if_anchors_fail
         assert row["Blocked if anchors fail"] == _is(anchors.probability if anchors else None)
-        assert row["Most likely piece"] == (None if outlook.blocker is None else items[outlook.blocker].item)
+        assert row["Most likely piece"] == (one.most_likely_piece and one.most_likely_piece.item)
         assert row["Basis"] == say_basis(blocked)
-        assert row["Insufficient for occupants"] == (None if one.needed is None else "yes" if one.is_short else "no")
+        assert row["Insufficient for occupants"] == (
+            None if one.needed_width_m is None else "yes" if one.insufficient_for_occupants else "no"
+        )
     assert [row["Insufficient for occupants"] for row in rows] == ["no", "yes", None, None, None]
-    assert "0.9 m is taken" in rows[3]["Remarks"]
+    assert "0.9 m is used" in rows[3]["Remarks"]
 
 
 def test_routes_and_floors_below(written):
-    assessment, book, _ = written
+    results, book, _ = written
     tables = _tables(book["Routes"])
-    for row, one in zip(tables["Routes"], assessment.routes.routes, strict=True):
-        assert (row["Route"], row["Segments"]) == (one.route, len(one.segments))
-        assert row["Chance blocked"] == _is(one.outlook.blocked.probability)
-        fixed = ", ".join(assessment.inventory.items[fix.item].item for fix in one.fixes)
+    for row, one in zip(tables["Routes"], results.route_tables.routes, strict=True):
+        assert (row["Route"], row["Segments"]) == (one.route, len(one.segment_indices))
+        assert row["Chance blocked"] == _is(one.blocked.probability)
+        fixed = ", ".join(results.item_rows[fix.item_index].item for fix in one.fixes)
         assert row["Pieces to anchor or move"] == (fixed or None)
         assert row["Chance left then"] == _is(one.fixes[-1].left if one.fixes else None)
-    for row, floor in zip(tables["To be expected floor by floor"], assessment.routes.floors, strict=True):
-        assert row["Blocked routes expected"] == _is(floor.blocked_routes)
-        assert row["Rooms expected to lose every exit"] == _is(floor.cut_off_rooms)
-        assert row["Pieces not counted"] == floor.uncounted
-        assert row["Chance that any room does"] == _is(floor.any_room.probability if floor.any_room else None)
+    for row, floor in zip(tables["To be expected floor by floor"], results.route_tables.floors, strict=True):
+        assert row["Blocked routes expected"] == _is(floor.blocked_routes_expected)
+        assert row["Rooms expected to lose every exit"] == _is(floor.cut_off_rooms_expected)
+        assert row["Pieces not counted"] == floor.uncounted_pieces
+        assert row["Chance that any room does"] == _is(
+            floor.any_room_cut_off.probability if floor.any_room_cut_off else None
+        )
 
 
 def test_pieces_beside_and_steps(written):
-    assessment, book, _ = written
+    results, book, _ = written
     tables = _tables(book["Route pieces"])
-    expected = [(one, near) for one in assessment.routes.segments for near in one.beside]
+    expected = [(one, near) for one in results.route_tables.segments for near in one.pieces]
     assert len(tables[""]) == len(expected) == 3
     for row, (one, near) in zip(tables[""], expected, strict=True):
-        result = assessment.result(near.item)
+        result = results.result(near.item_index)
         assert (row["Segment"], row["Item"], row["Pieces"]) == (
-            one.segment.segment, result.item.item, result.item.quantity,
+            one.segment, result.item.item, result.item.quantity,
         )  # fmt: skip
         assert row["Chance of overturning"] == _is(result.adopted.probability)
-        assert row["Falls and blocked"] == _is(near.together)
-        assert row["Width left beside it alone [m]"] == _is(near.left)
+        assert row["Falls and blocked"] == _is(near.falls_while_blocked)
+        assert row["Width left beside it alone [m]"] == _is(near.left_m)
         assert row["Known by"] == ("plan" if near.by_plan else "Edge distance")
     assert tables[""][2]["Class (as run)"].startswith("⚓ depends on its anchor")
     assert tables[""][2]["Remarks"].startswith("anchored: its chances are those without the anchor")
     steps = tables["What to anchor or move for each route, step by step"]
-    given = [(one, fix) for one in assessment.routes.routes for fix in one.fixes]
+    given = [(one, fix) for one in results.route_tables.routes for fix in one.fixes]
     for row, (one, fix) in zip(steps, given, strict=True):
-        assert (row["Route"], row["Item"]) == (one.route, assessment.inventory.items[fix.item].item)
+        assert (row["Route"], row["Item"]) == (one.route, results.item_rows[fix.item_index].item)
         assert row["Chance blocked before"] == _is(fix.left + fix.gain)
         assert row["Chance blocked after"] == _is(fix.left)
 
 
 def test_rooms_with_their_ways(written):
-    assessment, book, _ = written
+    results, book, _ = written
     rows = _tables(book["Route rooms"])[""]
-    for row, one in zip(rows, assessment.routes.rooms, strict=True):
-        assert (row["Room"], row["Exits that can be reached"]) == (one.place.place, "Street")
-        assert row["Chance of losing every exit"] == _is(one.loses.probability)
-        assert (row["Interval low"], row["Interval high"]) == (_is(one.loses.low), _is(one.loses.high))
+    for row, one in zip(rows, results.route_tables.rooms, strict=True):
+        assert (row["Room"], row["Exits that can be reached"]) == (one.room, "Street")
+        assert row["Chance of losing every exit"] == _is(one.loses_every_exit.probability)
+        assert (row["Interval low"], row["Interval high"]) == (
+            _is(one.loses_every_exit.low),
+            _is(one.loses_every_exit.high),
+        )
         assert row["Safest way: chance of a blockage"] == _is(one.ways[0].blocked.probability)
         assert row["Ways out"] == 1
     assert rows[0]["Safest way: by"] == "West: aisle, West: flight, West: hall"
@@ -141,7 +145,7 @@ def test_rooms_with_their_ways(written):
 @pytest.fixture(scope="module")
 def partly(tmp_path_factory):
     folder = tmp_path_factory.mktemp("partly")
-    write_xlsx(assess_routed(folder / "w.xlsx", **PARTLY), folder / "r.xlsx")
+    write_report(assess_routed(folder / "w.xlsx", **PARTLY), folder / "r.xlsx")
     return openpyxl.load_workbook(folder / "r.xlsx")
 
 
@@ -163,8 +167,8 @@ def test_what_is_not_evaluated_has_no_chance(partly):
     assert (routes["Out"]["Segments not evaluated"], routes["Cellar"]["Segments not evaluated"]) == (
         "ladder", "tunnel, gap",
     )  # fmt: skip
-    assert {cell.style for row in partly["Routes"].iter_rows() for cell in row
-            if cell.value == "– not evaluated"} == {"Explanatory Text"}  # fmt: skip
+    assert {cell.fill.fill_type for row in partly["Routes"].iter_rows() for cell in row
+            if cell.value == "– not evaluated"} == {None}  # fmt: skip
 
 
 def test_what_is_not_counted_is_told(partly):
@@ -183,23 +187,26 @@ def test_an_alternative_says_what_it_shares_with_the_safest_way(partly):
 
 def test_a_way_of_which_nothing_is_evaluated_has_no_chance(tmp_path):
     ladder = {"route": "Up", "segment": "ladder", "floor": "G", "start": "Lab", "end": "Shaft", "clear_width": 1.2}
-    write_xlsx(assess_routed(tmp_path / "w.xlsx", **PARTLY | {"Routes": [ladder]}), tmp_path / "r.xlsx")
+    write_report(assess_routed(tmp_path / "w.xlsx", **PARTLY | {"Routes": [ladder]}), tmp_path / "r.xlsx")
     (lab,) = _tables(openpyxl.load_workbook(tmp_path / "r.xlsx")["Route rooms"])[""]
     assert (lab["Safest way: by"], lab["Safest way: chance of a blockage"]) == ("Up: ladder", None)
     assert lab["Segments not evaluated, taken as open"] == "Up: ladder"
 
 
-def test_states_have_sign_and_named_style(written):
-    assessment, book, _ = written
-    styles = {RouteState.OPEN: "Route open", RouteState.REDUCED: "Route reduced", RouteState.BLOCKED: "Route blocked"}
-    for at, one in enumerate(assessment.routes.segments, 2):
+def _colour(state):
+    return f"FF{state.fill.removeprefix('#').upper()}"
+
+
+def test_states_have_sign_and_colour(written):
+    results, book, _ = written
+    for at, one in enumerate(results.route_tables.segments, 2):
         cell = book["Routes"].cell(at, 6)
-        if not one.is_evaluated:
-            assert (cell.value, cell.style) == ("– not evaluated", "Explanatory Text")
+        if not one.evaluated:
+            assert (cell.value, cell.fill.fill_type) == ("– not evaluated", None)
             continue
-        assert cell.value.startswith(f"{one.outlook.state.symbol} ")
-        assert cell.style == styles[one.outlook.state]
-    assert "Route blocked" in {cell.style for row in book["Routes"].iter_rows() for cell in row}
+        assert cell.value.startswith(f"{one.state.symbol} ")
+        assert cell.fill.fgColor.rgb == _colour(one.state)
+    assert _colour(RouteState.BLOCKED) in {cell.fill.fgColor.rgb for row in book["Routes"].iter_rows() for cell in row}
 
 
 def test_the_sheets_are_set_up(written):
@@ -211,7 +218,7 @@ def test_the_sheets_are_set_up(written):
         assert sheet.auto_filter.ref == area
         assert sheet.print_title_rows == "$1:$1"
         assert sheet.page_setup.orientation == "landscape"
-        assert sheet["A1"].style == "Heading 1"
+        assert sheet["A1"].fill.fgColor.rgb == "FF1F3A4D"
     assert book["Routes"]["G2"].number_format == "0.0%"
     assert book["Routes"]["S2"].number_format == "0.00"
 
@@ -228,20 +235,20 @@ def test_no_text_is_a_formula(written):
 
 
 def test_the_summary_sheet_says_what_the_page_says(written):
-    assessment, book, _ = written
+    results, book, _ = written
     lines = [str(row[0]) for row in book["Summary"].iter_rows(max_row=20, max_col=1, values_only=True)]
     text = next(line for line in lines if line.startswith("Evacuation routes: "))
-    for said in at_risk.say_routes(assessment):
+    for said in at_risk.say_routes(results):
         assert said in text
-    for one in at_risk.list_routes_at_risk(assessment)[:MOST]:
+    for one in at_risk.list_routes_at_risk(results)[:MOST]:
         assert at_risk.describe_at_risk(one) in lines
 
 
 def test_what_to_fix_first_says_for_which_route(written):
-    assessment, book, _ = written
+    results, book, _ = written
     rows = {row[1]: row for row in book["Fix first"].iter_rows(min_row=2, values_only=True)}
-    before = assessment.routes.routes[0].outlook.blocked.probability
-    assert book["Fix first"]["N1"].comment.text.startswith("High and very high classes come first")
+    before = results.route_tables.routes[0].blocked.probability
+    assert book["Fix first"]["N1"].comment.text.startswith("Sorted by class (upper estimate)")
     assert rows["tall"][13] == f"route West: {100 * before:.1f} % → 0.0 % (step 1 of 1)"
 
 
@@ -258,7 +265,7 @@ def test_headings_in_another_language_stay_apart(written, language, tmp_path):
     """Columns are told apart by their headings: two with the same translation would be one."""
     texts = {"Clear width": ("Larghezza",), "Route": ("Via",)}
     with speaking(load_catalogue("it") if language == "it" else Catalogue("xx", texts)):
-        write_xlsx(written[0], tmp_path / "r.xlsx")
+        write_report(written[0], tmp_path / "r.xlsx")
     book = openpyxl.load_workbook(tmp_path / "r.xlsx")
     own = [sheet for sheet in book.worksheets if sheet.title not in written[1].sheetnames] or book.worksheets
     for sheet in own:

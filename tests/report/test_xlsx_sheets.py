@@ -6,12 +6,17 @@ import subprocess
 import sys
 import zipfile
 from html import unescape
+from threading import Event
 
 import openpyxl
+import openpyxl.utils
 import pytest
 
+from assess.errors import CancelledError
+from assess.progress import Progress
+from assess.report.content import build_content
 from assess.report.xlsx import write_xlsx
-from tests.recalculate import compare_formulas, stored_cells
+from tests.recalculate import compare_formulas, stored_cells, write_report
 from tests.workbooks import ITEMS, assessed, write
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -21,7 +26,7 @@ LONG = "A very long name of a cabinet " * 10
 
 
 def _report(folder, *args, **named):
-    write_xlsx(assessed(folder / "w.xlsx", *args, **named), folder / "r.xlsx")
+    write_report(assessed(folder / "w.xlsx", *args, **named), folder / "r.xlsx")
     return folder / "r.xlsx"
 
 
@@ -111,9 +116,9 @@ def test_long_names_are_whole_in_rows_that_grow(tmp_path):
     assert [row[1:3] for row in book["Notes"].iter_rows(min_row=2, values_only=True)] == [("A1", "https://example.org")]
 
 
-def test_the_quality_log_tells_what_to_mend(tmp_path):
+def test_the_quality_log_says_how_to_fix_it(tmp_path):
     rows = list(openpyxl.load_workbook(_report(tmp_path, [ITEMS[0] | {"height": 400}]))["Quality log"].values)
-    assert rows[0] == ("Kind", "Place", "What", "Mend")
+    assert rows[0] == ("Kind", "Place", "What", "How to fix it")
     assert any(row[0] == "warning" and "Items" in row[1] and row[2] for row in rows)
     kinds = {row[0] for row in rows[1:]}
     assert {"input", "program", "setting", "platform"} <= kinds
@@ -135,12 +140,27 @@ def test_without_routes_there_is_one_sheet_that_says_so(tmp_path):
     assert said == ["The workbook names no routes."]
 
 
+def test_a_cancelled_report_leaves_nothing(tmp_path):
+    content, cancel, rows = build_content(assessed(tmp_path / "w.xlsx")), Event(), []
+
+    class Fifth(Progress):
+        def check(self):
+            rows.append(1)
+            if len(rows) == 5:
+                cancel.set()
+            super().check()
+
+    with pytest.raises(CancelledError):
+        write_xlsx(content, tmp_path / "r.xlsx", Fifth(cancel=cancel))
+    assert [path.name for path in tmp_path.iterdir()] == ["w.xlsx"]
+
+
 def test_two_processes_write_the_same_bytes(tmp_path):
     write(tmp_path / "w.xlsx")
     code = (
-        "import sys; from pathlib import Path; import assess; from assess.report.xlsx import write_xlsx;"
+        "import sys; from pathlib import Path; import assess; from tests.recalculate import write_report;"
         "from assess.settings import Settings;"
-        "write_xlsx(assess.run(assess.read_inventory(Path(sys.argv[1])), Settings(verify='none')), Path(sys.argv[2]))"
+        "write_report(assess.run(assess.read_inventory(Path(sys.argv[1])), Settings(verify='none')), Path(sys.argv[2]))"
     )
     for name, seed, zone in (("a", "1", "UTC"), ("b", "2", "Pacific/Auckland")):
         environment = os.environ | {"SOURCE_DATE_EPOCH": "1700000000", "PYTHONHASHSEED": seed, "TZ": zone}

@@ -1,4 +1,4 @@
-"""The Excel report of a verified assessment: what stands beside the formula, and what an edit makes void."""
+"""The Excel report of a verified results: what stands beside the formula, and what an edit makes void."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -8,17 +8,16 @@ from typing import Any
 import formualizer
 import numpy as np
 import openpyxl
+import openpyxl.utils
 import pytest
 
 import assess
 from assess.motion.suite import read_suite
-from assess.report.data import ensemble_record
-from assess.report.xlsx import write_xlsx
-from assess.report.xlsx.said import ANCHORED
-from assess.results import Assessment
+from assess.report.xlsx.item_formulas import ANCHORED
+from assess.results import Results
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
-from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells
+from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells, write_report
 from tests.workbooks import UNVERIFIED, assessed, write
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -57,16 +56,16 @@ def _write_records(folder):
 
 @dataclass(frozen=True)
 class Report:
-    """A report with its assessment; `places` are the columns of Items."""
+    """A report with its results; `places` are the columns of Items."""
 
-    assessment: Assessment
+    results: Results
     path: Path
     places: dict[str, int]
 
     @property
     def rows(self):
         """Row in the sheet, by item."""
-        return {one.item.item: row for row, one in enumerate(self.assessment, 2)}
+        return {one.item.item: row for row, one in enumerate(self.results, 2)}
 
     def cell(self, item, label):
         """Address of a cell of Items."""
@@ -91,20 +90,18 @@ class Report:
 
     def named(self, floor, *axes):
         """Items on a floor that are verified and whose axis is one of `axes` ("" is blank)."""
-        return {one.item.item for one in self.assessment
-                if one.is_verified and one.item.floor == floor and (one.item.axis or "") in axes}  # fmt: skip
+        return {one.item.item for one in self.results
+                if one.is_simulated and one.item.floor == floor and (one.item.axis_given or "") in axes}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("verified")
     _write_records(folder)
-    assessment = assessed(
-        folder / "w.xlsx", _items(), FLOORS, settings=Settings(verify="all", runs=30), restitution=0.9
-    )
-    write_xlsx(assessment, folder / "report.xlsx")
+    results = assessed(folder / "w.xlsx", _items(), FLOORS, settings=Settings(verify="all", runs=30), restitution=0.9)
+    write_report(results, folder / "report.xlsx")
     heads = openpyxl.load_workbook(folder / "report.xlsx")["Items"][1]
-    return Report(assessment, folder / "report.xlsx", {str(cell.value): int(cell.column or 0) for cell in heads})
+    return Report(results, folder / "report.xlsx", {str(cell.value): int(cell.column or 0) for cell in heads})
 
 
 def _copy(report, folder):
@@ -126,7 +123,7 @@ def _expected(report, void, edited=None):
     path = write(report.path.parent / "edited.xlsx", items, FLOORS)
     again = {one.item.item: one for one in assess.run(assess.read_inventory(path), UNVERIFIED)}
     counts: dict[str, Counter[Any]] = {floor["floor"]: Counter() for floor in FLOORS}
-    for one in report.assessment:
+    for one in report.results:
         now = again[one.item.item]
         risk = now.adopted.risk if one.item.item in void else one.adopted.risk
         counts[now.item.floor]["anchored" if now.is_anchored else risk] += now.item.quantity
@@ -150,10 +147,10 @@ def test_libreoffice_agrees(report, tmp_path):
 def test_items_show_what_the_program_found(report):
     book = report.edit()
     shown = {label: report.read(book, label) for label in report.places}
-    for one in report.assessment:
+    for one in report.results:
         found = {label: values[one.item.item] for label, values in shown.items()}
         adopted, mark = one.adopted, ANCHORED if one.is_anchored else ""
-        if not one.is_verified:
+        if not one.is_simulated:
             assert found["Class (verified)"] == "not verified"
             assert found["Class"] == found["Class (formula)"]
             continue
@@ -161,24 +158,24 @@ def test_items_show_what_the_program_found(report):
         assert found["Class"] == mark + adopted.risk.label
         assert found["Class (verified)"].startswith(mark + adopted.risk.label)
         assert ("lowered" in found["Class (verified)"]) == (adopted.lowered_from is not None)
-        assert ("may be" in found["Class (verified)"]) == (adopted.upper > adopted.risk)
+        assert ("could be" in found["Class (verified)"]) == (adopted.upper > adopted.risk)
         is_kept = "not_lowered" in adopted.flags
         assert [found["Verified chance"], found["Interval low"], found["Interval high"]] == [
             None if is_kept else pytest.approx(value, abs=1e-12)
             for value in (adopted.probability, adopted.low, adopted.high)
         ]
         assert found["OR"] == pytest.approx(one.by_formula.methods["proposed_or"].value, abs=1e-9)
-        assert found["Axis"] == one.by_formula.demand.axis
-    assert any(one.governing.demand.axis != one.by_formula.demand.axis for one in report.assessment)
-    assert not all(one.is_verified for one in report.assessment)
+        assert found["Axis"] == one.by_formula.motion.axis
+    assert any(one.governing.motion.axis != one.by_formula.motion.axis for one in report.results)
+    assert not all(one.is_simulated for one in report.results)
 
 
 def test_what_a_piece_does_under_the_record_is_told(report):
     shown = report.read(report.edit(), "Under the record")
-    assert all((shown[one.item.item] is None) == (one.item.floor != "2" or not one.is_verified)
-               for one in report.assessment)  # fmt: skip
-    kinds = {str(value).split(" (")[0].split(" to ")[0] for value in shown.values() if value}
-    assert kinds == {"overturns", "rotates"} or kinds == {"overturns", "rotates", "stays still"}
+    assert all((shown[one.item.item] is None) == (one.item.floor != "2" or not one.is_simulated)
+               for one in report.results)  # fmt: skip
+    kinds = {str(value).split(" (")[0].lstrip("<0123456789. ") for value in shown.values() if value}
+    assert kinds - {"stays at rest"} == {"overturns", "of critical"}
 
 
 def test_counts_are_those_of_the_adopted_classes(report):
@@ -196,8 +193,8 @@ def test_the_list_on_the_summary_follows_an_edit(report):
         for item, *_, chance, low, high, said in rows:
             assert chance == pytest.approx(chances[item], abs=1e-12)
             assert said.startswith(shown[item])
-            is_verified = next(one for one in report.assessment if one.item.item == item).is_verified
-            if item in void or not is_verified:
+            is_simulated = next(one for one in report.results if one.item.item == item).is_simulated
+            if item in void or not is_simulated:
                 assert (low, high) == ("", "")
         free = [item for item, label in shown.items() if not label.startswith(ANCHORED)]
         assert max(chances[item] for item in free) == pytest.approx(max(row[4] for row in rows))
@@ -263,7 +260,7 @@ def test_an_edited_quantity_counts_and_voids_nothing(report):
 
 
 def test_an_edited_class_limit_reclasses_verified_rows(report):
-    chances = {one.item.item: one.adopted.probability for one in report.assessment
+    chances = {one.item.item: one.adopted.probability for one in report.results
                if one.adopted.low is not None and "fell_in_record" not in one.adopted.flags}  # fmt: skip
     item = next(item for item, chance in chances.items() if classify(chance) == RiskClass.MEDIUM)
     book = report.edit((MEDIUM, chances[item] / 4), (HIGH, chances[item] / 3), (VERY_HIGH, chances[item] / 2))
@@ -277,8 +274,8 @@ def test_no_limits_let_verification_lower_what_it_may_not(report, limits):
     book = report.edit(*zip((MEDIUM, HIGH, VERY_HIGH), limits, strict=True))
     by_formula, shown = report.read(book, "Class (formula)"), report.read(book, "Class")
     labels = [risk.label for risk in RiskClass]
-    for one in report.assessment:
-        if one.is_verified:
+    for one in report.results:
+        if one.is_simulated:
             ranks = [labels.index(found[one.item.item].removeprefix(ANCHORED).rstrip("*"))
                      for found in (shown, by_formula)]  # fmt: skip
             if "fell_in_record" in one.adopted.flags:
@@ -288,7 +285,7 @@ def test_no_limits_let_verification_lower_what_it_may_not(report, limits):
 
 
 def test_a_piece_that_falls_in_the_record_is_at_least_high(report):
-    fell = [one for one in report.assessment if "fell_in_record" in one.adopted.flags]
+    fell = [one for one in report.results if "fell_in_record" in one.adopted.flags]
     small = next(one for one in fell if one.adopted.probability < 0.3).item.item
     for book in (report.edit(), report.edit((HIGH, 0.65))):
         assert report.read(book, "Class")[small] == RiskClass.HIGH.label
@@ -296,7 +293,7 @@ def test_a_piece_that_falls_in_the_record_is_at_least_high(report):
 
 
 def test_a_class_that_may_not_be_lowered_is_that_of_the_formula(report):
-    kept = [one for one in report.assessment if "not_lowered" in one.adopted.flags]
+    kept = [one for one in report.results if "not_lowered" in one.adopted.flags]
     book = report.edit()
     by_formula, shown = report.read(book, "Class (formula)"), report.read(book, "Class (verified)")
     assert kept
@@ -305,38 +302,36 @@ def test_a_class_that_may_not_be_lowered_is_that_of_the_formula(report):
 
 
 def test_a_lowered_class_says_so_wherever_it_stands(report):
-    lowered = {one.item.item: one.adopted for one in report.assessment
+    lowered = {one.item.item: one.adopted for one in report.results
                if one.adopted.lowered_from is not None and not one.is_anchored}  # fmt: skip
     assert {adopted.risk for adopted in lowered.values()} >= {RiskClass.LOW, RiskClass.MEDIUM}
     shown = report.read(report.edit(), "Class (verified)")
     book = openpyxl.load_workbook(report.path)
     fix_first = {row[1]: row for row in book["Fix first"].iter_rows(min_row=2, values_only=True)}
     for item, adopted in lowered.items():
-        assert shown[item].endswith(f"lowered by verification (formula: {adopted.lowered_from.label})")
+        assert shown[item].endswith(f"lowered by simulation (formula: {adopted.lowered_from.label})")
         row = fix_first[item]
         assert row[7].startswith(f"{adopted.risk.label}")
-        assert f"lowered by verification (formula: {adopted.lowered_from.word})" in row[7]
+        assert f"lowered by simulation (formula: {adopted.lowered_from.word})" in row[7]
         assert row[8:11] == pytest.approx((adopted.probability, adopted.low, adopted.high))
     summary = openpyxl.load_workbook(report.path, data_only=True)["Summary"]
-    assert any("lowered by verification" in str(row[7]) for row in summary.iter_rows(values_only=True))
+    assert any("lowered by simulation" in str(row[7]) for row in summary.iter_rows(values_only=True))
 
 
 def test_the_sheet_verification_holds_the_fit_of_every_floor_and_axis(report):
     rows = list(openpyxl.load_workbook(report.path)["Verification"].iter_rows(values_only=True))
     heads, found = rows[0], {row[:2]: row for row in rows[1:]}
     assert set(found) == {(floor, axis) for floor in "123" for axis in "XY"}
-    for demand, joint in report.assessment.joints.items():
-        row = dict(zip(heads, found[demand.floor.floor, demand.axis], strict=True))
-        record = ensemble_record(report.assessment, demand)
-        assert record is not None
-        assert row["Motions"] == record["motions"] == 30
-        assert row["Spectrum"] == ("recorded" if demand.floor.floor == "2" else "generic")
+    for motion in (one for one in report.results.motions if one.ensemble):
+        row, ensemble = dict(zip(heads, found[motion.floor, motion.axis], strict=True)), motion.ensemble
+        assert row["Motions"] == ensemble.motions == 30
+        assert row["Spectrum"] == ("recorded" if motion.floor == "2" else "generic")
         assert row["Seed"] == 1
-        assert row["Rows"] == joint.cases.size
-        assert row["Worst deviation"] == pytest.approx(record["fit"]["worst_deviation"])
-        assert row["PFA over the target's"] == pytest.approx(record["fit"]["pfa_ratio"])
-        fell = row["Rows that overturn under the record"]
-        assert (fell is None) == (demand.floor.floor != "2")
+        assert row["Rows"] == ensemble.cases
+        assert row["Worst deviation"] == pytest.approx(ensemble.fit.worst_deviation)
+        assert row["PFA over the target's"] == pytest.approx(ensemble.fit.pfa_ratio)
+        assert row["Rows that overturn under the record"] == ensemble.fell_in_record
+        assert (ensemble.fell_in_record is None) == (motion.floor != "2")
     assert found["2", "Y"][-1] >= 2
 
 
@@ -352,7 +347,7 @@ def test_a_suite_and_parallel_records_hold_too(tmp_path):
     ]
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx", _items(), floors, period=0.9))
     settings = Settings(verify="all", scale_motions=True)
-    write_xlsx(assess.run(inventory, settings, suite=read_suite(folder)), tmp_path / "report.xlsx")
+    write_report(assess.run(inventory, settings, suite=read_suite(folder)), tmp_path / "report.xlsx")
     rows = list(openpyxl.load_workbook(tmp_path / "report.xlsx")["Verification"].iter_rows(min_row=2, values_only=True))
     served = [("1", "X"), ("1", "Y"), *[("2", "X")] * 2, *[("2", "Y")] * 2, ("3", "X"), ("3", "Y")]
     assert [row[:2] for row in rows] == served

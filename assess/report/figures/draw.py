@@ -2,7 +2,7 @@
 
 import math
 import re
-import warnings
+import threading
 from collections.abc import Callable
 from functools import partial
 from io import BytesIO
@@ -10,35 +10,64 @@ from typing import Any
 
 import numpy as np
 
-from assess.demand import Demand
-from assess.language import gettext as _
-from assess.language import spoken
+from assess.i18n import spoken
+from assess.progress import SILENT, Progress
 from assess.report import words
+from assess.report.fonts import find_missing, replace_signs
 from assess.risk import RiskClass
-from assess.units import ACCELERATION
 
 MOST_POINTS = 1500
 _UNDATED = {"svg": ("Date", "Creator"), "pdf": ("CreationDate", "Creator", "Producer"), "png": ("Software",)}
 """What is left out of each kind of file, so that the same figure has the same bytes."""
+_DRAWING = threading.Lock()
+"""One figure at a time: while one is drawn, defaults of matplotlib are set, and then set back."""
 
 
-def draw(width: float, height: float, paint: Callable[[Any], None], kind: str = "svg") -> bytes:
-    """Draw one figure [inches] and return it as "svg", "pdf" or "png"; nothing global of matplotlib is touched.
+def draw(
+    width: float, height: float, paint: Callable[[Any], None], kind: str = "svg", progress: Progress = SILENT
+) -> bytes:
+    """Draw one figure [inches] and return it as "svg", "pdf" or "png".
 
-    Numbers along the axes are written as the language in use writes them.
+    Numbers along the axes are written as the language in use writes them; a character without a glyph shows as �.
+    It can be cancelled before it is painted, and before each panel is drawn.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     style = mpl.rc_context({"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "hatch.linewidth": 0.5})
-    with style, warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph .* missing")  # a character without a glyph shows as a box
+    with _DRAWING, style:
         figure = Figure(figsize=(width, height), layout="constrained")
+        progress.check()
         paint(figure)
+        _add_checks(figure, progress)
+        _replace_missing(figure)
         _write_numbers(figure)
         file = BytesIO()
         figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
     return _shorten(file.getvalue()) if kind == "svg" else file.getvalue()
+
+
+def _add_checks(figure: Any, progress: Progress) -> None:
+    """Have the work be cancelled while a figure is drawn: an empty artist checks that before and after each panel."""
+    from matplotlib.artist import Artist
+
+    class Check(Artist):
+        def draw(self, _renderer: Any) -> None:
+            progress.check()
+
+    for axes in figure.axes:
+        check = Check()
+        check.set_zorder(axes.get_zorder())
+        check.set_in_layout(False)
+        axes.figure.add_artist(check)
+
+
+def _replace_missing(figure: Any) -> None:
+    from matplotlib.text import Text
+
+    for one in figure.findobj(Text):
+        if missing := find_missing(one.get_text()):
+            one.set_text(replace_signs(one.get_text(), missing))
 
 
 def _write_numbers(figure: Any) -> None:
@@ -71,30 +100,6 @@ HATCHES = {RiskClass.LOW: "", RiskClass.MEDIUM: r"\\", RiskClass.HIGH: "//", Ris
 def label(text: str, longest: int = 28) -> str:
     """Return a text of the workbook for a figure: short, and not taken for mathematics."""
     return words.cut(text, longest).replace("$", r"\$")
-
-
-def draw_motion(demand: Demand) -> bytes:
-    """Draw the treated acceleration of a recorded motion."""
-    return draw(7, 1.6, partial(_paint_motion, demand))
-
-
-def _paint_motion(demand: Demand, figure: Any) -> None:
-    motion = demand.motion
-    if motion is None:
-        raise ValueError("the demand has no motion to draw")
-    axes = figure.subplots()
-    values = motion.acceleration / ACCELERATION["g"]
-    times = np.arange(values.size) * motion.time_step
-    times, values = thin_out(times, values)
-    axes.plot(times, values, lw=0.5, color="#1f3a4d")
-    peak = int(np.abs(values).argmax())
-    axes.plot([times[peak]], [values[peak]], "o", ms=4, mfc="none", color="#8c1d3f")
-    axes.annotate(_("PFA {pfa:.3f} g", pfa=abs(values[peak])), (times[peak], values[peak]), xytext=(6, 0),
-                  textcoords="offset points", fontsize=7, va="center")  # fmt: skip
-    axes.set_xlabel(_("time [s]"))
-    axes.set_ylabel(_("acceleration [g]"))
-    axes.margins(x=0.01)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 def thin_out(times: Any, values: Any, most: int = MOST_POINTS) -> tuple[Any, Any]:

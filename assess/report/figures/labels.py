@@ -7,6 +7,7 @@ from dataclasses import dataclass
 Point = tuple[float, float]
 Bounds = tuple[float, float, float, float]
 """Left, low, right and high end."""
+Corners = tuple[Point, Point, Point, Point]
 
 LINE = 10.0
 """Height of a line of a name [px]."""
@@ -107,3 +108,9 @@ def overlap(one: Bounds, other: Bounds) -> float:
     wide = min(one[2], other[2]) - max(one[0], other[0])
     tall = min(one[3], other[3]) - max(one[1], other[1])
     return wide * tall if wide > 0 and tall > 0 else 0.0
+
+
+def bounds(corners: Corners) -> Bounds:
+    """Return the box around some corners."""
+    xs, ys = zip(*corners, strict=True)
+    return min(xs), min(ys), max(xs), max(ys)

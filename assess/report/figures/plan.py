@@ -8,15 +8,14 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from assess.inventory.model import Inventory, Place
-from assess.language import gettext as _
+from assess.i18n import gettext as _
+from assess.model import Place
 from assess.report import words
 from assess.report.content import FloorPage
-from assess.report.figures.labels import LINE, Bounds, Label, Point, overlap, place_labels, text_width
+from assess.report.figures.labels import LINE, Bounds, Corners, Label, Point, bounds, overlap, place_labels, text_width
 from assess.report.figures.ways import Stretch, Style, name_ways, place_signs, sign_box
-from assess.results import ItemResult
+from assess.results import ItemResult, ItemRow, Results
 from assess.risk import RiskClass
-from assess.routes.footprint import Corners, fallen, rectangle, turn
 
 ANCHORED, INK = "#d0d0d0", "#1c1c1c"
 """Fill of an anchored piece, which stands outside the classes, and the colour of its symbol."""
@@ -156,26 +155,25 @@ class Plan:
         return self.x(max(x for x, _y in piece.corners))
 
 
-def build_plan(page: FloorPage, inventory: Inventory, ways: Sequence[Stretch] = ()) -> Plan | None:
+def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) -> Plan | None:
     """Return the plan of a floor with its segments, or None where neither a piece nor a segment has a position."""
-    numbers = {item.row: at for at, item in enumerate(inventory.items, start=1)}
     pieces = tuple(
-        _piece(one, (one.item.x, one.item.y), numbers[one.item.row])
+        _piece(one, (one.item.x_m, one.item.y_m))
         for one in page.results
-        if one.item.x is not None and one.item.y is not None
+        if one.item.x_m is not None and one.item.y_m is not None
     )
     if not pieces and not ways:
         return None
-    places = [(place, at) for place in inventory.places if (at := _position(place, page.floor.floor))]
+    places = [(place, at) for place in results.places if (at := _position(place, page.floor.floor))]
     low, high = _frame(pieces, ways, [at for _place, at in places])
     unit, frame = _unit(low, high), (*low, *high)
-    signed = tuple(place_signs(ways, [_bounds(one.corners) for one in pieces], unit))
+    signed = tuple(place_signs(ways, [bounds(one.corners) for one in pieces], unit))
     signs = [sign_box(one.sign, unit) for one in signed if one.sign is not None]
     spots = tuple(_spots(places, pieces, signs, high, unit))
     labels = tuple(_labels(pieces, [*(spot.box for spot in spots), *signs], frame, unit))
-    taken = [*(_bounds(one.corners) for one in pieces), *(spot.box for spot in spots), *(one.box for one in labels)]
+    taken = [*(bounds(one.corners) for one in pieces), *(spot.box for spot in spots), *(one.box for one in labels)]
     return Plan(
-        key=f"plan-{[floor.floor for floor in inventory.floors].index(page.floor.floor) + 1}",
+        key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}",
         title=page.title,
         pieces=pieces,
         places=spots,
@@ -185,7 +183,7 @@ def build_plan(page: FloorPage, inventory: Inventory, ways: Sequence[Stretch] = 
         low=low,
         high=high,
         unit=unit,
-        north=inventory.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
+        north=results.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
     )
 
 
@@ -193,12 +191,13 @@ def _position(place: Place, floor: str) -> Point | None:
     return None if place.floor != floor or place.x is None or place.y is None else (place.x, place.y)
 
 
-def _piece(one: ItemResult, at: Point, number: int) -> Piece:
+def _piece(one: ItemResult, at: Point) -> Piece:
     item, risk = one.item, one.adopted.risk
-    across, angle = item.width or item.breadth, turn(item)
+    breadth, height = item.breadth_cm / 100, item.height_cm / 100
+    across, angle = (item.width_cm or item.breadth_cm) / 100, turn(item)
     falls = not one.is_anchored and max(risk, one.adopted.upper) >= RiskClass.MEDIUM
     return Piece(
-        number=number,
+        number=item.index + 1,
         name=words.cut(item.item, SHORT),
         upper=None if one.is_anchored else max(risk, one.adopted.upper),
         title=_title(one),
@@ -207,11 +206,37 @@ def _piece(one: ItemResult, at: Point, number: int) -> Piece:
         ink=INK if one.is_anchored else risk.ink,
         symbol="⚓" if one.is_anchored else risk.symbol,
         marks="" if one.is_anchored else words.class_marks(one),
-        side=min(item.breadth, across),
+        side=min(breadth, across),
         at=at,
-        corners=rectangle(at, angle, (-item.breadth / 2, item.breadth / 2), across),
-        fallen=fallen(at, angle, item.breadth, across, item.height) if falls else (),
+        corners=rectangle(at, angle, (-breadth / 2, breadth / 2), across),
+        fallen=fallen(at, angle, breadth, across, height) if falls else (),
     )
+
+
+def turn(item: ItemRow) -> float:
+    """Return the direction of Breadth [deg], anticlockwise from X: that of the axis where no angle is given."""
+    if item.angle_deg is not None:
+        return item.angle_deg
+    return 90.0 if item.axis_given == "Y" else 0.0
+
+
+def rectangle(at: Point, angle: float, along: tuple[float, float], across: float) -> Corners:
+    """Return the corners of a rectangle [m], anticlockwise.
+
+    `at` is the centre of the piece, `angle` [deg] the direction of Breadth, `along` where the rectangle begins and ends
+    along it from the centre, `across` its width across it.
+    """
+    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    (x, y), (near, far), half = at, along, across / 2
+    local = ((near, -half), (far, -half), (far, half), (near, half))
+    one, two, three, four = ((x + u * cos - v * sin, y + u * sin + v * cos) for u, v in local)
+    return one, two, three, four
+
+
+def fallen(at: Point, angle: float, breadth: float, width: float, height: float) -> tuple[Corners, Corners]:
+    """Return what a piece covers beyond its footprint if it falls over either of its edges across Breadth [m]."""
+    edge = breadth / 2
+    return rectangle(at, angle, (edge, edge + height), width), rectangle(at, angle, (-edge - height, -edge), width)
 
 
 def _title(one: ItemResult) -> str:
@@ -235,7 +260,7 @@ def _spots(
     places: Sequence[tuple[Place, Point]], pieces: Sequence[Piece], signs: Sequence[Bounds], high: Point, unit: float
 ) -> Iterator[Spot]:
     """Place the name of each place above or below it, right or left, where it covers least of what is drawn already."""
-    taken = [*(_bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)), *signs]
+    taken = [*(bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)), *signs]
     for place, (x, y) in places:
         shown = words.cut(place.place, NAMED)
         wide, tall, off = text_width(shown) * unit, LINE * unit, (8 if place.kind in LARGE else 4) * unit
@@ -251,19 +276,14 @@ def _labels(pieces: Sequence[Piece], others: Sequence[Bounds], frame: Bounds, un
     risky = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
     least = RiskClass.HIGH if any(upper >= RiskClass.HIGH for upper, _one in risky) else RiskClass.MEDIUM
     named = sorted((pair for pair in risky if pair[0] >= least), key=lambda pair: -pair[0])
-    taken = [*(_bounds(one.corners) for one in pieces), *others]
-    return place_labels([(one.name, _bounds(one.corners)) for _upper, one in named], taken, frame, unit)
+    taken = [*(bounds(one.corners) for one in pieces), *others]
+    return place_labels([(one.name, bounds(one.corners)) for _upper, one in named], taken, frame, unit)
 
 
 def _cost(box: Bounds, taken: Sequence[Bounds], high: Point) -> float:
     """Return how much [m2] of a name lies over other things; outside the drawing is worse than over anything."""
     over = sum(overlap(box, other) for other in taken)
     return over + (1e6 if box[2] > high[0] or box[3] > high[1] else 0)
-
-
-def _bounds(corners: Corners) -> Bounds:
-    xs, ys = zip(*corners, strict=True)
-    return min(xs), min(ys), max(xs), max(ys)
 
 
 def _step(least: float) -> float:

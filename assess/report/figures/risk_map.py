@@ -1,20 +1,23 @@
 """What is painted on a map of risk over breadth and PFA: classes, lines of equal chance, pieces and names."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from assess.language import gettext as _
-from assess.language import number
-from assess.methods import Method
-from assess.methods._method import FloatArray
+from assess.i18n import gettext as _
+from assess.i18n import number
 from assess.report import words
 from assess.report.figures.draw import HATCHES, label
-from assess.report.figures.placing import GAP, LETTER, LINE, Box, box_around, find_clearest, find_room
 from assess.results import ItemResult
 from assess.risk import LIMITS, RiskClass
-from assess.units import LENGTH, ROUNDING
+from assess.units import ROUNDING
+
+if TYPE_CHECKING:
+    from assess.methods import MethodInfo
+
+FloatArray = NDArray[np.float64]
 
 LINES = (0.03, 0.1, 0.3, 0.5, 0.7, 0.9)
 """Chances at which lines are drawn [-]."""
@@ -23,6 +26,11 @@ PANEL = (205.0, 190.0)
 """About the size of a panel [points], by which texts are kept off each other."""
 MARKERS = {RiskClass.LOW: "o", RiskClass.MEDIUM: "D", RiskClass.HIGH: "^", RiskClass.VERY_HIGH: "s"}
 """The symbols of the classes, as matplotlib names them."""
+LETTER, LINE, GAP = 3.7, 7.0, 5.0
+"""About the width of a letter and the height of a line of 6 points, and a text's distance from a symbol."""
+
+Box = tuple[float, float, float, float]
+"""Left, low, right and high end."""
 INK, HALO, HATCHING = "#1c1c1c", "#ffffff", "#a08c78"
 _BACKING = {"boxstyle": "round,pad=0.1", "facecolor": HALO, "alpha": 0.75, "linewidth": 0}
 """Behind a text, so that it can be read on a hatch."""
@@ -52,12 +60,12 @@ def paint_risk(axes: Any, breadth: FloatArray, pfa: FloatArray, risk: FloatArray
     return [(level, path.vertices) for level, path in zip(levels, lines.get_paths(), strict=True)]
 
 
-def paint_checked(axes: Any, method: Method, height: float) -> None:
-    """Outline where a method has been checked, in so far as it says."""
+def paint_checked(axes: Any, method: "MethodInfo", height_cm: float) -> None:
+    """Outline where a method has been checked, in so far as it says, for pieces of one height."""
     slender, pfa = method.valid.get("breadth_to_height"), method.valid.get("pfa")
     if slender is None or pfa is None:
         return
-    left, right = (end * height / LENGTH["cm"] for end in (slender.low, slender.high))
+    left, right = (end * height_cm for end in (slender.low, slender.high))
     corners = ([left, right, right, left, left], [pfa.low, pfa.low, pfa.high, pfa.high, pfa.low])
     axes.plot(*corners, color=HALO, linewidth=2.2)
     axes.plot(*corners, color=INK, linewidth=1.2, linestyle=":")[0].set_gid("checked")
@@ -119,3 +127,39 @@ def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
     checked = Line2D([], [], color=INK, linewidth=1.2, linestyle=":", label=_("range in which the formula is checked"))
     handles = [*fields, checked] if has_checked else fields
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=6, frameon=False)
+
+
+# ---------------------------------------------------------------- where texts go, in points
+
+
+def box_around(x: float, y: float, width: float, height: float) -> Box:
+    """Return the box with its centre at (x, y)."""
+    return x - width / 2, y - height / 2, x + width / 2, y + height / 2
+
+
+def find_room(at: tuple[float, float], text: str, panel: tuple[float, float], taken: Sequence[Box]) -> Box | None:
+    """Return a box for a text beside the symbol `at`, within the panel and on no box that is taken; None if none is.
+
+    Tried are right, left, above and below.
+    """
+    (x, y), width = at, LETTER * len(text)
+    aside, above = GAP + width / 2, GAP + LINE / 2
+    for centre in ((x + aside, y), (x - aside, y), (x, y + above), (x, y - above)):
+        box = box_around(*centre, width, LINE)
+        if box[0] >= 0 and box[1] >= 0 and box[2] <= panel[0] and box[3] <= panel[1] and not _hits(box, taken):
+            return box
+    return None
+
+
+def _hits(box: Box, taken: Sequence[Box]) -> bool:
+    return any(box[0] < right and left < box[2] and box[1] < high and low < box[3] for left, low, right, high in taken)
+
+
+def find_clearest(line: FloatArray, panel: tuple[float, float], others: FloatArray, margin: float) -> int | None:
+    """Return the place on a line (n, 2) that is farthest from `others` (k, 2), inside by `margin`; None without one."""
+    inside = np.all((line >= margin) & (line <= np.array(panel) - margin), axis=1)
+    if not inside.any():
+        return None
+    away = np.hypot(*(line[:, np.newaxis] - others[np.newaxis]).transpose(2, 0, 1)) if len(others) else np.ones((1, 1))
+    nearest = np.where(inside, away.min(axis=1), -1.0)
+    return int(nearest.argmax())

@@ -3,14 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from assess.inventory.model import Inventory
-from assess.language import gettext as _
+from assess.i18n import gettext as _
 from assess.report import words
-from assess.report.figures.labels import LINE, Bounds, Label, Point, overlap, place_labels
-from assess.report.findings.routes import is_held, say_chance, say_segment, say_segment_state
-from assess.routes.band import Band, build_bands
-from assess.routes.footprint import Corners
-from assess.routes.model import Routes, RouteState, SegmentResult
+from assess.report.figures.labels import LINE, Bounds, Corners, Label, Point, overlap, place_labels
+from assess.report.findings.route_words import is_held, say_chance, say_segment, say_segment_state
+from assess.route_results import RouteState, RouteTables, SegmentRow
 
 NAMED = 20
 """Characters of a segment's name that are drawn."""
@@ -82,50 +79,50 @@ def list_styles() -> dict[str, Style]:
     }
 
 
-def build_stretches(inventory: Inventory, routes: Routes | None) -> Mapping[str, Sequence[Stretch]]:
+def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
     """Return by floor the segments whose places both have a position on it, those with most to warn of last."""
     found: dict[str, list[Stretch]] = {}
-    if routes is None:
-        return found
     styles, order = list_styles(), list(list_styles())
-    bands = build_bands(inventory, {at: one.clear for at, one in enumerate(routes.segments)})
-    for at, band in bands.items():
-        if band.length > 0:
-            one = routes.segments[at]
-            found.setdefault(one.segment.floor, []).append(_stretch(at + 1, one, routes.risk, band, styles))
+    for number, one in enumerate(routes.segments, start=1):
+        if one.length_m and one.floor is not None:
+            found.setdefault(one.floor, []).append(_stretch(number, one, routes.risk, styles))
     return {floor: sorted(own, key=lambda one: order.index(one.style.name)) for floor, own in found.items()}
 
 
-def _stretch(number: int, one: SegmentResult, risk: float, band: Band, styles: Mapping[str, Style]) -> Stretch:
+def _stretch(number: int, one: SegmentRow, risk: float, styles: Mapping[str, Style]) -> Stretch:
     return Stretch(
         number=number,
-        name=words.cut(one.segment.segment, NAMED),
+        name=words.cut(one.segment, NAMED),
         title=_(
             "{segment}: {state}; chance of blockage {chance}",
             segment=say_segment(one),
             state=say_segment_state(one, risk),
-            chance=say_chance(one.outlook.blocked),
+            chance=say_chance(one.blocked) if one.blocked else words.DASH,
         ),
         style=styles[_style_name(one)],
-        start=band.start,
-        end=band.end,
-        corners=_outline(band),
-        may_be=one.outlook.upper > one.outlook.state,
-        is_held=is_held(one.outlook, risk),
+        start=(one.start_x_m or 0.0, one.start_y_m or 0.0),
+        end=(one.end_x_m or 0.0, one.end_y_m or 0.0),
+        corners=_outline(one),
+        may_be=one.state_upper.severity > one.state.severity,
+        is_held=is_held(one, risk),
     )
 
 
-def _style_name(one: SegmentResult) -> str:
-    return "standing" if one.is_blocked_standing else one.outlook.state.word
+def _style_name(one: SegmentRow) -> str:
+    if one.is_blocked_standing:
+        return "standing"
+    return str(one.state) if one.evaluated else "open"
 
 
-def _outline(band: Band) -> Corners:
+def _outline(one: SegmentRow) -> Corners:
     """Return the corners of a band on the plan, as far as it goes on round a bend."""
-    (x0, y0), (x1, y1), long, half = band.start, band.end, band.length, band.width / 2
+    x0, y0, x1, y1 = (at or 0.0 for at in (one.start_x_m, one.start_y_m, one.end_x_m, one.end_y_m))
+    long, half, before = one.length_m or 0.0, one.clear_width_used_m / 2, -one.extends_start_m
+    behind = long + one.extends_end_m
     along, across = ((x1 - x0) / long, (y1 - y0) / long), (-(y1 - y0) / long, (x1 - x0) / long)
-    local = ((-band.before, -half), (long + band.behind, -half), (long + band.behind, half), (-band.before, half))
-    one, two, three, four = ((x0 + u * along[0] + v * across[0], y0 + u * along[1] + v * across[1]) for u, v in local)
-    return one, two, three, four
+    local = ((before, -half), (behind, -half), (behind, half), (before, half))
+    first, two, three, four = ((x0 + u * along[0] + v * across[0], y0 + u * along[1] + v * across[1]) for u, v in local)
+    return first, two, three, four
 
 
 def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -> Iterator[Stretch]:

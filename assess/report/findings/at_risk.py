@@ -1,15 +1,22 @@
-"""The routes at risk and what is to be fixed for them, as the summaries and the list of what to fix say it."""
+"""The routes at risk and what to fix for them, in the words of the summaries."""
 
 from dataclasses import dataclass
 
-from assess.language import gettext as _
-from assess.language import ngettext
-from assess.ranking import RouteStep
+from assess.i18n import gettext as _
+from assess.i18n import ngettext
 from assess.report import words
-from assess.report.findings.route_rows import count_uncounted, say_unknown
-from assess.report.findings.routes import is_blocked_standing, is_held, name_few, say_chance, say_risk, say_route_state
-from assess.results import Assessment, ItemResult
-from assess.routes.model import RoomResult, RouteResult, Routes, RouteState
+from assess.report.findings.route_rows import say_uncounted, say_unknown
+from assess.report.findings.route_words import (
+    find_chance,
+    is_blocked_standing,
+    is_held,
+    name_few,
+    say_chance,
+    say_risk,
+    say_route_state,
+)
+from assess.results import ItemResult, Results
+from assess.route_results import RoomRow, RouteRow, RouteTables
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +26,7 @@ class RouteAtRisk:
     `risk` is the chosen one [-].
     """
 
-    result: RouteResult
+    result: RouteRow
     risk: float
     blocker: str
     needed: str
@@ -42,31 +49,29 @@ class RouteAtRisk:
     @property
     def chance(self) -> str:
         """The chance that it is blocked, with its interval."""
-        return say_chance(self.result.outlook.blocked)
+        return say_chance(self.result.blocked) if self.result.blocked else words.DASH
 
 
-def list_routes_at_risk(assessment: Assessment) -> list[RouteAtRisk]:
+def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
     """Return the routes that may be blocked or reduced, or of which that is not excluded, the worst first."""
-    routes = assessment.routes
-    if routes is None:
-        return []
-    found = [one for one in routes.routes if _worst(one) > RouteState.OPEN]
-    found.sort(key=lambda one: (-one.outlook.state, -one.outlook.blocked.probability, one.route.casefold()))
+    routes = results.route_tables
+    found = [one for one in routes.routes if max(one.state.severity, one.state_upper.severity)]
+    found.sort(key=lambda one: (-one.state.severity, -find_chance(one), one.route.casefold()))
     return [
         RouteAtRisk(
             one,
             routes.risk,
-            _blocker(one, assessment),
-            ", ".join(say_row(assessment.result(fix.item)) for fix in one.fixes),
+            _blocker(one),
+            ", ".join(say_row(results.result(fix.item_index)) for fix in one.fixes),
         )
         for one in found
     ]
 
 
-def _blocker(one: RouteResult, assessment: Assessment) -> str:
+def _blocker(one: RouteRow) -> str:
     """Return the piece that most likely blocks a route; of one that is blocked as it stands, none does."""
-    at = one.outlook.blocker
-    return "" if at is None or is_blocked_standing(one) else assessment.inventory.items[at].item
+    piece = one.most_likely_piece
+    return "" if piece is None or is_blocked_standing(one) else piece.item
 
 
 def say_row(one: ItemResult) -> str:
@@ -85,39 +90,23 @@ def describe_at_risk(one: RouteAtRisk) -> str:
              route=route, state=one.state, chance=one.chance, item=one.blocker)  # fmt: skip
 
 
-def _worst(one: RouteResult) -> RouteState:
-    return max(one.outlook.state, one.outlook.upper)
-
-
-def list_rooms_at_risk(routes: Routes) -> list[RoomResult]:
+def list_rooms_at_risk(routes: RouteTables) -> list[RoomRow]:
     """Return the rooms that may lose every exit, or of which that is not excluded, the worst first."""
-    found = [one for one in routes.rooms if one.loses.high >= routes.risk]
-    return sorted(found, key=lambda one: (-one.loses.probability, -one.loses.high, one.place.place.casefold()))
-
-
-def say_step(step: RouteStep) -> str:
-    """Return for which route a step is, and what it gains: ``route West: 15.5 % → 3.0 % (step 3 of 3)``.
-
-    Pieces that fall together must all be fixed before any of it shows: then it is what all steps gain.
-    """
-    route, before, after = words.cut(step.route, 30), words.percent(step.before), words.percent(step.after)
-    if before != after:
-        return _("route {route}: {before} → {after} (step {place:,} of {steps:,})",
-                 route=route, before=before, after=after, place=step.place, steps=step.steps)  # fmt: skip
-    at_last = words.percent(step.at_last)
-    return _("route {route}: {before} → {after} (with all {steps:,} steps)",
-             route=route, before=before, after=at_last, steps=step.steps)  # fmt: skip
+    found = [one for one in routes.rooms if one.loses_every_exit.high >= routes.risk]
+    return sorted(
+        found, key=lambda one: (-one.loses_every_exit.probability, -one.loses_every_exit.high, one.room.casefold())
+    )
 
 
 # ---------------------------------------------------------------- sentences
 
 
-def say_routes(assessment: Assessment) -> list[str]:
+def say_routes(results: Results) -> list[str]:
     """Return what a summary says of the routes; nothing where the workbook names none."""
-    routes = assessment.routes
-    if routes is None:
+    routes = results.route_tables
+    if not results.has_routes:
         return []
-    at_risk = list_routes_at_risk(assessment)
+    at_risk = list_routes_at_risk(results)
     return [
         *_say_at_risk(routes, len(at_risk)),
         *say_unknown(routes),
@@ -127,60 +116,60 @@ def say_routes(assessment: Assessment) -> list[str]:
     ]
 
 
-def _say_at_risk(routes: Routes, at_risk: int) -> list[str]:
-    risk, found = say_risk(routes.risk), [one for one in routes.routes if one.is_evaluated]
+def _say_at_risk(routes: RouteTables, at_risk: int) -> list[str]:
+    risk, found = say_risk(routes.risk), [one for one in routes.routes if one.evaluated]
     if not found:
         return []
     if not at_risk:
-        told = ngettext(
+        safe = ngettext(
             "The {n:,} route is not at risk: its chance of being blocked or reduced is below the chosen {risk}, also "
             "at the upper end of its interval.",
             "None of the {n:,} routes is at risk: the chance of each of being blocked or reduced is below the chosen "
             "{risk}, also at the upper end of its interval.",
             len(found), risk=risk,
         )  # fmt: skip
-        return [told]
-    sure = sum(one.outlook.state > RouteState.OPEN for one in found)
-    told = _("Routes that may be blocked or reduced: {n:,} of {all:,}, at the chosen risk of {risk}.",
+        return [safe]
+    sure = sum(one.state.severity > 0 for one in found)
+    counted = _("Routes that may be blocked or reduced: {n:,} of {all:,}, at the chosen risk of {risk}.",
              n=sure, all=len(found), risk=risk)  # fmt: skip
     if sure == at_risk:
-        return [told]
-    return [told, ngettext("For {n:,} more it is not excluded.", "For {n:,} more it is not excluded.", at_risk - sure)]
+        return [counted]
+    return [counted, ngettext("{n:,} more cannot be excluded.", "{n:,} more cannot be excluded.", at_risk - sure)]
 
 
-def _say_expected(routes: Routes) -> str:
-    blocked, rooms = words.fixed(routes.blocked_routes, 2), words.fixed(routes.cut_off_rooms, 2)
+def _say_expected(routes: RouteTables) -> str:
+    blocked, rooms = words.fixed(routes.blocked_routes_expected, 2), words.fixed(routes.cut_off_rooms_expected, 2)
     if not routes.rooms:
-        return _("To be expected: {count} blocked routes.", count=blocked)
-    return _("To be expected: {count} blocked routes, {rooms} rooms that lose every exit.", count=blocked, rooms=rooms)
+        return _("On average {count} routes would be blocked.", count=blocked)
+    return _(
+        "On average {count} routes would be blocked and {rooms} rooms would lose all exits.", count=blocked, rooms=rooms
+    )
 
 
-def _say_rooms(routes: Routes) -> list[str]:
+def _say_rooms(routes: RouteTables) -> list[str]:
     if not routes.rooms:
-        return [_("No room is joined to a way out, so none is evaluated.")]
+        return [_("No room has a way out in the workbook, so none is evaluated.")]
     found = list_rooms_at_risk(routes)
     if not found:
-        return [_("No room comes to that risk of losing every exit.")]
-    worst, chance = found[0].place, found[0].loses
-    return [_("Rooms that may lose every exit: {n:,} of {all:,}, the worst {room} with {chance}.",
-              n=len(found), all=len(routes.rooms), room=words.cut(worst.place, 30),
+        return [_("No room reaches that risk of losing all exits.")]
+    worst, chance = found[0].room, found[0].loses_every_exit
+    return [_("Rooms that may lose all exits: {n:,} of {all:,}, the worst {room} with {chance}.",
+              n=len(found), all=len(routes.rooms), room=words.cut(worst, 30),
               chance=say_chance(chance))]  # fmt: skip
 
 
-def _say_beside(routes: Routes) -> list[str]:
-    """Say which routes hang on anchors, how many segments are too narrow as they stand, and what is not counted."""
+def _say_beside(routes: RouteTables) -> list[str]:
+    """Say which routes depend on anchors, how many segments are too narrow as they stand, and what is left out."""
     texts = []
-    held = [one.route for one in routes.routes if is_held(one.outlook, routes.risk)]
+    held = [one.route for one in routes.routes if is_held(one, routes.risk)]
     if held:
         texts.append(ngettext("If anchors fail, {n:,} more may be blocked: {names}.",
                               "If anchors fail, {n:,} more may be blocked: {names}.",
                               len(held), names=name_few(held)))  # fmt: skip
-    short = sum(one.is_short for one in routes.segments)
+    short = sum(one.insufficient_for_occupants for one in routes.segments)
     if short:
         texts.append(ngettext("{n:,} segment is too narrow for its occupants as it stands.",
                               "{n:,} segments are too narrow for their occupants as they stand.", short))  # fmt: skip
-    if uncounted := count_uncounted(routes):
-        texts.append(ngettext("{n:,} piece is not counted: whether it falls onto a route is not known.",
-                              "{n:,} pieces are not counted: whether they fall onto a route is not known.",
-                              uncounted))  # fmt: skip
+    if routes.uncounted_pieces:
+        texts.append(say_uncounted(routes))
     return texts

@@ -1,160 +1,125 @@
-"""What to beware of in the floors' motion: in full where the floors are, in short on the summary."""
+"""Cautions on the floors' motion: in full in the section on floors, in short on the summary."""
 
-import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from assess.demand import MAY_BE_LOWER, Demand, Demands
-from assess.language import gettext as _
-from assess.language import ngettext
-from assess.remarks import MOST, list_floors, list_too_low
+from assess.i18n import gettext as _
+from assess.i18n import ngettext
 from assess.report import words
-from assess.report.findings.motions import ENVELOPES, describe_suite, used_profiles, with_status
-from assess.results import Assessment
+from assess.report.findings.motions import ENVELOPES, describe_suite, list_floors, used_profiles, with_status
+from assess.results import MAY_BE_LOWER, MotionRow, Results, SuiteInfo
 
 UNLIKE = 0.10
-"""Difference between the mean PFA of the user's own motions and that of a floor above which it is told [-]."""
+"""Difference between the median PFA of the user's own motions and the PFA of a floor above which it is reported [-]."""
+MOST_WARNINGS = 5
+"""Warnings that are given in full."""
 MOST_PLACES = 8
-"""Floors and axes that such a sentence names."""
+"""Floors and axes that a sentence names."""
 MOST_FLOORS, LONGEST_FLOOR = 6, 10
 """Floors that a short caution names, and the characters of each."""
 
 
 @dataclass(frozen=True, slots=True)
 class Caution:
-    """What a reader must know of the floors' motion: the whole `text`, and in `short` what a summary has room for."""
+    """A caution: the whole `text`, and `short`, what a summary has room for."""
 
     text: str
     short: str
 
 
-def build_cautions(assessment: Assessment) -> list[Caution]:
-    """Return what a reader must know of the floors' motion before trusting a class."""
-    demands = assessment.demands
-    told = list_too_low(assessment.inventory, demands, assessment.scenario, assessment.settings.ductility_reduction)
-    cautions = [
-        *_profiled(demands),
-        *_interpolated(demands),
-        *_more_known(list(dict.fromkeys(_(problem.message) for problem in told))),
-    ]
-    if len({demand.source for ones in demands.values() for demand in ones}) > 1:
+def build_cautions(results: Results) -> list[Caution]:
+    """Return what a reader must know about the floors' motion before trusting a class."""
+    cautions = [*_profiled(results), *_interpolated(results.motions), *_underestimates(results)]
+    if len({motion.source for motion in results.motions}) > 1:
         text = _("The floors' motion comes from mixed sources: compare floors with care.")
         cautions.append(Caution(text, text))
-    return cautions + _verification(assessment)
+    if results.has_simulated:
+        suite = results.provenance.suite
+        cautions += _generic(results.motions) if suite is None else _own_motions(results, suite)
+    return cautions
 
 
-def list_cautions(assessment: Assessment) -> list[str]:
-    """Return the cautions in full."""
-    return [one.text for one in build_cautions(assessment)]
-
-
-def list_short_cautions(assessment: Assessment) -> list[str]:
-    """Return the cautions in short, each once."""
-    return list(dict.fromkeys(one.short for one in build_cautions(assessment)))
-
-
-def _profiled(demands: Demands) -> Iterator[Caution]:
-    """Say which floors shake as a code has it."""
-    floors = list_floors(demands, "profile")
+def _profiled(results: Results) -> Iterator[Caution]:
+    """Name the floors on a code's profile."""
+    floors = list_floors(results.motions, "profile")
     if floors:
-        names = ", ".join(with_status(profile) for profile in used_profiles(demands))
+        names = ", ".join(map(with_status, used_profiles(results)))
         text = _("{floors}: the motion is that of {profile}.", floors=_name(floors), profile=names)
         short = _("{floors}: the motion is a code's design profile, an envelope.", floors=_name_some(floors))
         yield Caution(f"{text} {_(ENVELOPES)}", short)
 
 
-def _more_known(messages: Sequence[str]) -> Iterator[Caution]:
-    """Say that more is known than is used, as warnings have it; the first of them, and how many more there are."""
-    short = ngettext(
-        "More is known than is used: {n:,} warning, see the data-quality log.",
-        "More is known than is used: {n:,} warnings, see the data-quality log.",
-        len(messages),
-    )
-    for message in messages[:MOST]:
-        yield Caution(_("More is known than is used: {warning}", warning=words.clip(message, 400)), short)
-    if len(messages) > MOST:
-        text = ngettext(
-            "More is known than is used: {n:,} warning of this kind beside these, see the data-quality log.",
-            "More is known than is used: {n:,} warnings of this kind beside these, see the data-quality log.",
-            len(messages) - MOST,
-        )
-        yield Caution(text, short)
-
-
-def _verification(assessment: Assessment) -> list[Caution]:
-    """Say under which motions pieces were verified where these are not made for the floor's own record."""
-    joints, ensembles = assessment.joints, assessment.cases.ensembles
-    if assessment.suite is not None:
-        text = _("Verification uses {motions}.", motions=describe_suite(assessment))
-        own = Caution(text, _("Verification uses the user's own motions."))
-        return [own, *_unlike(assessment)] if joints else []
-    generic = list(
-        dict.fromkeys(demand.floor.floor for demand, joint in joints.items() if ensembles[joint.ensemble].is_generic)
-    )
-    if not generic:
-        return []
-    text = _(
-        "{floors}: motions follow a generic spectrum; verification may raise a class there, never lower it.",
-        floors=_name(generic),
-    )
-    short = _(
-        "{floors}: generic spectrum; verification may raise a class there, never lower it.", floors=_name_some(generic)
-    )
-    return [Caution(text, short)]
-
-
-def _unlike(assessment: Assessment) -> list[Caution]:
-    """Say where the user's own motions, not scaled, have another PFA than the floor."""
-    if assessment.suite is None or assessment.settings.scale_motions:
-        return []
-    median = statistics.median(motion.pfa for __, motion in assessment.suite.motions)
-    off = {demand: median / demand.pfa - 1 for demand in assessment.joints if demand.pfa > 0}
-    places = [_off(demand, ratio) for demand, ratio in off.items() if abs(ratio) > UNLIKE]
-    if not places:
-        return []
-    named, more = "; ".join(places[:MOST_PLACES]), len(places) - MOST_PLACES
-    text = _(
-        "The median PFA of these motions, {pfa} g, is not that of {places}. Where it is below, chances come out "
-        "too low; they lower no class.",
-        pfa=words.in_g(median),
-        places=_("{names} and {more:,} more", names=named, more=more) if more > 0 else named,
-    )
-    short = _("The user's own motions are not as strong as the floors': where weaker, chances come out too low.")
-    return [Caution(text, short)]
-
-
-def _off(demand: Demand, ratio: float) -> str:
-    """Say by how much the user's own motions are above or below a floor's."""
-    floor, pfa, off = words.cut(demand.floor.floor, 20), words.in_g(demand.pfa), 100 * abs(ratio)
-    if ratio > 0:
-        return _("floor {floor} {axis} ({pfa} g), {off:.0f} % above", floor=floor, axis=demand.axis, pfa=pfa, off=off)
-    return _("floor {floor} {axis} ({pfa} g), {off:.0f} % below", floor=floor, axis=demand.axis, pfa=pfa, off=off)
-
-
-def _interpolated(demands: Demands) -> Iterator[Caution]:
-    """Say which floors are interpolated, and which have the motion of another floor at their height."""
-    found: dict[bool, dict[str, None]] = {False: {}, True: {}}
-    for (floor, __), ones in demands.items():
-        for demand in ones:
-            if demand.between:
-                found[demand.is_level][floor] = None
-    between, level = (list(found[is_level]) for is_level in (False, True))
+def _interpolated(motions: Sequence[MotionRow]) -> Iterator[Caution]:
+    """Name the floors that are interpolated, and those with the motion of another floor at their height."""
+    between = list(dict.fromkeys(one.floor for one in motions if one.between and not one.is_level))
+    level = list(dict.fromkeys(one.floor for one in motions if one.is_level))
     if between:
         text = _(
-            "{floors}: nothing is known of the motion there, it is interpolated between the floors above and below. "
-            "This {caution}.",
-            floors=_name(between),
-            caution=_(MAY_BE_LOWER),
-        )
+            "{floors}: no motion is known there; it is interpolated between the floors above and below. This "
+            "{caution}.",
+            floors=_name(between), caution=MAY_BE_LOWER,
+        )  # fmt: skip
         short = _("{floors}: interpolated between floors; it may be lower than the truth.", floors=_name_some(between))
         yield Caution(text, short)
     if level:
-        text = _(
-            "{floors}: nothing is known of the motion there, it is the same as that of a known floor at the same "
-            "height.",
-            floors=_name(level),
-        )
+        text = _("{floors}: no motion is known there; it is that of a known floor at the same height.",
+                 floors=_name(level))  # fmt: skip
         yield Caution(text, _("{floors}: the same as a known floor at the same height.", floors=_name_some(level)))
+
+
+def _underestimates(results: Results) -> Iterator[Caution]:
+    """Give the first warnings that more shaking is known than is used, and the number of the others."""
+    warnings = list(dict.fromkeys(map(_, results.underestimates)))
+    short = ngettext(
+        "More is known than is used: {n:,} warning, see the data-quality log.",
+        "More is known than is used: {n:,} warnings, see the data-quality log.",
+        len(warnings),
+    )
+    for warning in warnings[:MOST_WARNINGS]:
+        yield Caution(_("More is known than is used: {warning}", warning=words.clip(warning, 400)), short)
+    if len(warnings) > MOST_WARNINGS:
+        text = ngettext(
+            "More is known than is used: {n:,} further warning of this kind, see the data-quality log.",
+            "More is known than is used: {n:,} further warnings of this kind, see the data-quality log.",
+            len(warnings) - MOST_WARNINGS,
+        )
+        yield Caution(text, short)
+
+
+def _generic(motions: Sequence[MotionRow]) -> Iterator[Caution]:
+    """Name the floors whose pieces were simulated under motions with a generic spectrum."""
+    floors = list(dict.fromkeys(one.floor for one in motions if one.ensemble and one.ensemble.generic_spectrum))
+    if floors:
+        text = _("{floors}: the generated motions follow a generic spectrum; simulation may raise a class there, never "
+                 "lower it.", floors=_name(floors))  # fmt: skip
+        short = _("{floors}: generic spectrum; simulation may raise a class there, never lower it.",
+                  floors=_name_some(floors))  # fmt: skip
+        yield Caution(text, short)
+
+
+def _own_motions(results: Results, suite: SuiteInfo) -> Iterator[Caution]:
+    """Say that pieces were simulated under the user's own motions, and where these differ from the floor's."""
+    text = _("Simulation uses {motions}.", motions=describe_suite(results))
+    yield Caution(text, _("Simulation uses the user's own motions."))
+    median = suite.median_pfa_g
+    off = {one: median / one.pfa_g - 1 for one in results.motions if one.ensemble and one.pfa_g > 0}
+    places = [_off(motion, ratio) for motion, ratio in off.items() if abs(ratio) > UNLIKE]
+    if places and not suite.is_scaled:
+        text = _(
+            "The median PFA of these motions, {pfa} g, differs from that of {places}. Where it is below, chances come "
+            "out too low; they lower no class.",
+            pfa=words.in_g(median), places=words.name_first(places, MOST_PLACES, "; "),
+        )  # fmt: skip
+        short = _("The user's own motions are not as strong as the floors': where weaker, chances come out too low.")
+        yield Caution(text, short)
+
+
+def _off(motion: MotionRow, ratio: float) -> str:
+    """Return by how much the user's own motions are above or below a floor's."""
+    place = {"floor": words.cut(motion.floor, 20), "axis": motion.axis, "pfa": words.in_g(motion.pfa_g)}
+    if ratio > 0:
+        return _("floor {floor} {axis} ({pfa} g), {off:.0f} % above", **place, off=100 * ratio)
+    return _("floor {floor} {axis} ({pfa} g), {off:.0f} % below", **place, off=-100 * ratio)
 
 
 def _name(floors: Sequence[str]) -> str:

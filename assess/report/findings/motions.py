@@ -1,172 +1,170 @@
-"""How each floor shakes, in the words of reports: sources, what stands behind each number, and what to beware of."""
+"""How each floor shakes, in the words of reports: the source of each motion, what it was computed from, assumptions."""
 
-from assess.demand import FLAGS, Demand, Demands, Ground, find_ground
-from assess.language import fill, ngettext, number
-from assess.language import gettext as _
-from assess.motion.record import treatment
-from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
-from assess.remarks import list_floors
+from collections.abc import Iterable
+
+from assess.i18n import fill, ngettext, number
+from assess.i18n import gettext as _
 from assess.report import words
-from assess.results import Assessment
+from assess.results import MOTION_FLAGS, MotionRow, ProfileInfo, Results
 
 ENVELOPES = fill(
     "Profiles of building codes are design envelopes, not expected values: they mostly lie above what is recorded, and "
     "so bias a scenario high. Not on every floor, nor for every code: as long as T1 is unknown, the profiles of EN "
     "1998-1 and NTC 2018 for rigid pieces are the lowest of the four; a long T1 lowers that of ASCE 7-22."
 )
-"""What must be said wherever a code's profile was used."""
-
-
+"""The caution that goes with a code's profile."""
 MOST_PLACES = 20
 """Floors and axes of a source that are named."""
 
+_OWN = {"one_axis_only": MOTION_FLAGS["one_axis_only"], "pfv_estimated": fill("PFV estimated from T1")}
+_CARRIED = _OWN | {"one_axis_only": fill("one axis only")}
+"""Flags next to a source: of the floor itself, and of a neighbouring floor."""
 
-def describe_source(demand: Demand) -> str:
-    """Return where a motion comes from, in words, with its flags."""
+
+def describe_source(motion: MotionRow) -> str:
+    """Return the source of a motion, with its flags."""
     source = _("recorded motion")
-    if demand.profile:
-        source = _("design profile of {code}", code=demand.profile.key)
-    elif demand.between:
-        source = _between(demand)
-    elif demand.source == "given":
-        is_pfv_given = demand.pfv == demand.pfv and "pfv_estimated" not in demand.flags
+    if motion.profile:
+        source = _("design profile of {code}", code=motion.profile.key)
+    elif motion.between:
+        source = _describe_between(motion)
+    elif motion.source == "given":
+        is_pfv_given = motion.pfv_cm_s is not None and "pfv_estimated" not in motion.flags
         source = _("given PFA and PFV") if is_pfv_given else _("given PFA")
-    told = _CARRIED if demand.between else _OWN
-    flags = [_(told[flag]) for flag in demand.flags if flag in told]
+    texts = _CARRIED if motion.between else _OWN
+    flags = [_(texts[flag]) for flag in motion.flags if flag in texts]
     return source + (f" ({'; '.join(flags)})" if flags else "")
 
 
-_OWN = {"one_axis_only": FLAGS["one_axis_only"], "pfv_estimated": fill("PFV estimated from T1")}
-_CARRIED = _OWN | {"one_axis_only": fill("one axis only")}
-"""Flags beside a source, in short where they come from a neighbour."""
-
-
-def _between(demand: Demand) -> str:
-    lower, upper = (words.cut(name, 40) for name in demand.between)
-    if demand.is_level:
+def _describe_between(motion: MotionRow) -> str:
+    lower, upper = (words.cut(name, 40) for name in motion.between)
+    if motion.is_level:
         return _("the same as floor {floor}, at the same height", floor=lower)
     return _("interpolated between floors {lower} and {upper}", lower=lower, upper=upper)
 
 
-def describe_origin(demand: Demand) -> str:
-    """Return what stands behind a motion: the record, or what was computed from what."""
-    if demand.profile and demand.height_ratio is not None and demand.amplification is not None:
+def describe_origin(motion: MotionRow) -> str:
+    """Return the record of a motion, or how the motion was computed."""
+    if motion.profile and motion.height_ratio is not None and motion.amplification is not None:
         return _(
             "{code}, {clause}: {factors} of ground PGA {pga} g",
-            code=demand.profile.key,
-            clause=demand.clause + ("" if demand.profile.verified else f" ({_(UNVERIFIED)})"),
-            factors=factors(demand),
-            pga=words.in_g(demand.pfa / demand.amplification),
-        )
-    if demand.is_level:
-        return _between(demand)
-    if demand.between:
-        return _("linear over elevation, PFA and PFV each: {source}", source=_between(demand))
-    if demand.record is None:
+            code=motion.profile.key, clause=_with_status(motion.clause, motion.profile), factors=factors(motion),
+            pga=words.in_g(motion.pfa_g / motion.amplification),
+        )  # fmt: skip
+    if motion.is_level:
+        return _describe_between(motion)
+    if motion.between:
+        return _("linear over elevation, PFA and PFV each: {source}", source=_describe_between(motion))
+    if not motion.has_record:
         return words.DASH
-    azimuth = "" if demand.record.azimuth_deg is None else f", {number(demand.record.azimuth_deg, 'g')}°"
-    return f"{words.cut(demand.name, 60)}: {words.cut(demand.record.station, 60)}{azimuth}"
+    azimuth = "" if motion.azimuth_deg is None else f", {number(motion.azimuth_deg, 'g')}°"
+    return f"{words.cut(motion.record, 60)}: {words.cut(motion.station, 60)}{azimuth}"
 
 
-def factors(demand: Demand) -> str:
-    """Return where a floor stands in the building and what a code's profile gave it."""
-    ratio, amplification = words.fixed(demand.height_ratio, 3), words.fixed(demand.amplification, 3)
+def factors(motion: MotionRow) -> str:
+    """Return the relative height of a floor and the amplification of a code's profile there."""
+    ratio, amplification = words.fixed(motion.height_ratio, 3), words.fixed(motion.amplification, 3)
     return _("z/h {ratio}, amplification {amplification}", ratio=ratio, amplification=amplification)
 
 
-def describe_treatment(demand: Demand) -> str:
-    """Say what was done to the record of a demand."""
-    if demand.record is None:
+def describe_treatment(motion: MotionRow) -> str:
+    """Return what was done to a record."""
+    if not motion.has_record:
         return ""
-    parts = (treatment(demand.record), *demand.record.notes)
-    return "; ".join(_(part).rstrip(".") for part in parts) + "."
+    return "; ".join(_(part).rstrip(".") for part in (motion.treatment, *motion.notes)) + "."
 
 
-def list_sources(demands: Demands) -> list[str]:
-    """Say which floors got their motion from where: mixed sources are listed, not hidden."""
-    kinds: dict[str, list[str]] = {}
-    for (floor, axis), ones in demands.items():
-        for source in dict.fromkeys(describe_source(demand) for demand in ones):
-            kinds.setdefault(source, []).append(f"{words.cut(floor, 20)} {axis}")
-    return [f"{source}: {words.name_first(places, MOST_PLACES)}" for source, places in kinds.items()]
+def list_sources(motions: Iterable[MotionRow]) -> list[str]:
+    """Return the floors and axes of each source."""
+    kinds: dict[str, dict[str, None]] = {}
+    for motion in motions:
+        kinds.setdefault(describe_source(motion), {})[f"{words.cut(motion.floor, 20)} {motion.axis}"] = None
+    return [f"{source}: {words.name_first(list(places), MOST_PLACES)}" for source, places in kinds.items()]
 
 
-def describe_suite(assessment: Assessment) -> str:
-    """Return the user's own motions in words: their number, folder and names, and whether they are scaled."""
-    if assessment.suite is None:
+def list_floors(motions: Iterable[MotionRow], source: str) -> list[str]:
+    """Return the names of the floors with a source along any axis."""
+    return list(dict.fromkeys(one.floor for one in motions if one.source == source))
+
+
+def describe_suite(results: Results) -> str:
+    """Return the user's own motions: their number, folder and names, and whether they are scaled."""
+    suite = results.provenance.suite
+    if suite is None:
         return _("no motions of the user's own")
-    names = ", ".join(words.cut(name, 60) for name, _ in assessment.suite.motions)
-    is_scaled = assessment.settings.scale_motions
     return ngettext(
         "{n:,} motion of the folder {folder}, {scaled}: {names}",
         "{n:,} motions of the folder {folder}, {scaled}: {names}",
-        len(assessment.suite),
-        folder=words.cut(assessment.suite.folder, 60),
-        scaled=_("scaled to each floor's PFA") if is_scaled else _("as they are, not scaled"),
-        names=words.clip(names, 400),
+        len(suite),
+        folder=words.cut(suite.folder, 60),
+        scaled=_("scaled to each floor's PFA") if suite.is_scaled else _("as they are, not scaled"),
+        names=words.clip(", ".join(words.cut(name, 60) for name in suite.names), 400),
     )
 
 
-def with_status(profile: Profile) -> str:
-    """Return the name of a profile, and that it was not held against its source where that is so."""
-    return profile.key + ("" if profile.verified else f" ({_(UNVERIFIED)})")
+# ---------------------------------------------------------------- codes' profiles
 
 
-def used_profiles(demands: Demands) -> list[Profile]:
+def used_profiles(results: Results) -> list[ProfileInfo]:
     """Return the codes' profiles that serve a floor."""
-    return [
-        profile
-        for profile in PROFILES.values()
-        if any(demand.profile is profile for ones in demands.values() for demand in ones)
-    ]
+    used = {one.profile.key for one in results.motions if one.profile}
+    return [profile for profile in results.provenance.profiles if profile.key in used]
 
 
-def list_clauses(profile: Profile) -> str:
+def with_status(profile: ProfileInfo) -> str:
+    """Return the name of a profile, and that it was not checked against its source where that is so."""
+    return _with_status(profile.key, profile)
+
+
+def _with_status(text: str, profile: ProfileInfo) -> str:
+    return text if profile.verified else f"{text} ({_(profile.status)})"
+
+
+def list_clauses(profile: ProfileInfo) -> str:
     """Return every clause of a profile, and when each applies."""
     if not profile.clause_without_period:
         return profile.clause
     return _("{known} (T1 known); {unknown} (T1 unknown)", known=profile.clause, unknown=profile.clause_without_period)
 
 
-def profile_status(profile: Profile) -> str:
-    """Say whether a profile was held against its source, and what was left out of it."""
-    status = _(VERIFIED if profile.verified else UNVERIFIED)
+def profile_status(profile: ProfileInfo) -> str:
+    """Return whether a profile was checked against its source, and what was left out of it."""
+    status = _(profile.status)
     return f"{status[0].upper()}{status[1:]}. {_(profile.remark)}"
 
 
-def list_assumptions(assessment: Assessment) -> list[tuple[str, str]]:
-    """Return what was assumed of the floors that a code's profile serves."""
-    used = used_profiles(assessment.demands)
-    if not used:
+def list_assumptions(results: Results) -> list[tuple[str, str]]:
+    """Return the assumptions about the floors that a code's profile serves."""
+    used, served = used_profiles(results), [one for one in results.motions if one.profile and one.amplification]
+    if not used or not served:
         return []
-    ground, floors = find_ground(assessment.inventory), ", ".join(list_floors(assessment.demands, "profile"))
-    if assessment.scenario == "as filled":
-        chosen = _("design profile of {code}, the default, as nothing is known of them", code=with_status(used[0]))
-    else:
-        chosen = _("design profile of {code}, the scenario", code=with_status(used[0]))
-    pga = _("0.4 SDS, as Ground PGA is blank") if ground.is_from_sds else _("Ground PGA")
+    building, floors = results.building, ", ".join(list_floors(results.motions, "profile"))
+    chosen = _("design profile of {code}, the scenario", code=with_status(used[0]))
+    if results.provenance.scenario == "as filled":
+        chosen = _("design profile of {code}, the default, as no motion of them is known", code=with_status(used[0]))
+    is_from_sds = building.ground_pga is None and building.sds is not None
+    pga = served[0].pfa_g / (served[0].amplification or 1.0)
+    source = _("0.4 SDS, as Ground PGA is blank") if is_from_sds else _("Ground PGA")
     lines = [
         (_("Motion of floors {floors}", floors=words.clip(floors, 300)), chosen),
-        (
-            _("Ground motion of the profile"),
-            _("{pga} g, {source}; it stands for 0.4 SDS and for αS", pga=words.in_g(ground.pga), source=pga),
-        ),
-        (_("Roof height h of the profile"), _describe_roof(ground)),
-    ]
-    return lines + (_list_reduction(assessment) if any(profile.reduced for profile in used) else [])
+        (_("Ground motion of the profile"),
+         _("{pga} g, {source}; it stands for 0.4 SDS and for αS", pga=words.in_g(pga), source=source)),
+        (_("Roof height h of the profile"), _describe_roof(results)),
+    ]  # fmt: skip
+    return lines + (_list_reduction(results) if any(profile.reduced for profile in used) else [])
 
 
-def _describe_roof(ground: Ground) -> str:
-    height = words.in_m(ground.roof)
-    if not ground.is_highest_floor:
-        return _("{height} m, Height", height=height)
-    if ground.roof:
-        return _("{height} m, the highest floor, as Height is blank", height=height)
-    return _("{height} m, no floor above the ground, Height is blank", height=height)
+def _describe_roof(results: Results) -> str:
+    if results.building.height is not None:
+        return _("{height} m, Height", height=words.in_m(results.building.height))
+    highest = max((one.elevation_m for one in results.floor_rows if one.elevation_m is not None), default=0.0)
+    if highest > 0:
+        return _("{height} m, the highest floor, as Height is blank", height=words.in_m(highest))
+    return _("{height} m, no floor above the ground, Height is blank", height=words.in_m(0.0))
 
 
-def _list_reduction(assessment: Assessment) -> list[tuple[str, str]]:
-    period, reduction = assessment.inventory.building.period, assessment.settings.ductility_reduction
+def _list_reduction(results: Results) -> list[tuple[str, str]]:
+    period, reduction = results.building.period, results.settings.ductility_reduction
     known = _("unknown: Eq. 13.3-5, which is never below Eq. 13.3-4")
     if period:
         known = f"{number(period, 'g')} s"

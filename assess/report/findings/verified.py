@@ -1,42 +1,36 @@
-"""What a report says of the verification: how much was verified, what it changed, what is still open."""
+"""How many pieces were simulated, what that changed, and what is still open, in the words of reports."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from assess.language import fill, ngettext
-from assess.language import gettext as _
-from assess.methods._method import Reference
-from assess.methods.housner_monte_carlo import LOOKS
+from assess.i18n import fill, ngettext
+from assess.i18n import gettext as _
 from assess.report import words
-from assess.results import Assessment, ItemResult
+from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 from assess.settings import AUTO
 
 NAMED = 12
 """Pieces that a sentence names; the rest are counted."""
 SCENARIO = fill("Chance of overturning in this scenario, not per year.")
-INTERVAL = fill("the interval covers the number of records only")
-WILSON = Reference(
-    authors="Wilson EB",
-    year="1927",
-    title="Probable inference, the law of succession, and statistical inference",
-    source="Journal of the American Statistical Association 22(158):209-212",
-    doi="10.1080/01621459.1927.10502953",
+INTERVAL = fill("the interval covers the number of motions only")
+WILSON = (
+    "Wilson EB (1927). Probable inference, the law of succession, and statistical inference. Journal of the American "
+    "Statistical Association 22(158):209-212. doi:10.1080/01621459.1927.10502953"
 )
-"""The interval of a verified chance."""
+"""The interval of a simulated chance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verified:
-    """The rows of a report by what verification did to them.
+    """The rows of a report by what simulation found.
 
-    `done` were verified, `lowered` and `raised` have another class than the formula's, of `kept` a lower class was
-    found but not adopted, of `may_be` the interval reaches into a higher class, `undecided` have an open class after
-    the last look of "auto", `fell` overturn under a recorded motion itself.
+    `done` were simulated and `left` were not. Of those done, `lowered` and `raised` have another class than the
+    formula's; for `kept` a lower class was found but not adopted; `may_be` have an interval that reaches into a higher
+    class; `undecided` are not resolved after the last check of "auto"; `fell` overturn under a recorded motion itself.
     """
 
-    rows: int
-    motions: str
+    run: Results
     left: Sequence[ItemResult]
     done: Sequence[ItemResult]
     lowered: Sequence[ItemResult]
@@ -48,209 +42,192 @@ class Verified:
 
     @property
     def is_all(self) -> bool:
-        """Whether every row was verified."""
+        """Whether every row was simulated."""
         return bool(self.done) and not self.left
+
+    @property
+    def motions(self) -> str:
+        """Number and kind of the motions."""
+        if suite := self.run.provenance.suite:
+            return ngettext("{n:,} motion of the user's own", "{n:,} motions of the user's own", len(suite))
+        return _("{motions} on each floor and axis", motions=count_motions(self.run))
 
     @property
     def status(self) -> tuple[str, str]:
         """The state of the report in one or two words, and what it means."""
         if not self.done:
-            meaning = _("classes are those of a published formula; no direct integration has been run")
-            return _("Not verified"), meaning
-        done, kept, motions = len(self.done), len(self.kept), self.motions
+            return _("Not simulated"), _("classes come from a published formula; no rocking has been simulated")
         texts = [
             ngettext(
-                "{done:,} of {n:,} row by direct integration, {motions}",
-                "{done:,} of {n:,} rows by direct integration, {motions}",
-                self.rows,
-                done=done,
-                motions=motions,
+                "rocking of {done:,} of {n:,} row simulated, {motions}",
+                "rocking of {done:,} of {n:,} rows simulated, {motions}",
+                len(self.run), done=len(self.done), motions=self.motions,
             )
-        ]
-        if kept:
+        ]  # fmt: skip
+        if self.kept:
             texts.append(
                 ngettext(
-                    "of {n:,} row the formula's higher class is kept",
-                    "of {n:,} rows the formula's higher class is kept",
-                    kept,
+                    "for {n:,} row the formula's higher class is kept",
+                    "for {n:,} rows the formula's higher class is kept",
+                    len(self.kept),
                 )
             )
-        if self.is_all:
-            return _("Verified"), "; ".join(texts)
-        texts.append(_("the classes of the other rows are those of a published formula"))
-        return _("Partly verified"), "; ".join(texts)
+        if self.left:
+            texts.append(_("the classes of the other rows come from a published formula"))
+        return _("Simulated") if self.is_all else _("Partly simulated"), "; ".join(texts)
 
     @property
     def footer(self) -> str:
-        """What stands at the foot of every page."""
+        """The foot of every page."""
         if not self.done:
-            status = _("Not verified.")
-            return f"{_(SCENARIO)} {status}"
-        told = ngettext(
-            "Verified: {done:,} of {n:,} row; {interval}.",
-            "Verified: {done:,} of {n:,} rows; {interval}.",
-            self.rows,
-            done=len(self.done),
-            interval=INTERVAL,
-        )
-        return f"{_(SCENARIO)} {told}"
+            return f"{_(SCENARIO)} {self.sentence}"
+        extent = ngettext(
+            "Simulated: {done:,} of {n:,} row; {interval}.", "Simulated: {done:,} of {n:,} rows; {interval}.",
+            len(self.run), done=len(self.done), interval=INTERVAL,
+        )  # fmt: skip
+        return f"{_(SCENARIO)} {extent}"
 
     @property
     def interval(self) -> str:
-        """What the interval covers, and which pieces have none."""
+        """What the interval covers, and which percentages have none; without a full stop."""
         if not self.done:
-            return _(
-                "{interval}, and there is none yet: nothing has been verified by direct integration in this run",
-                interval=INTERVAL,
-            )
+            return _("there are no intervals, as no rocking has been simulated in this run")
         covers = _("{interval}, not the formula, the motion of the floor or the earthquake", interval=INTERVAL)
-        if self.is_all and not self.kept:
-            return covers
-        without = _("A chance without an interval is the formula's: it is not verified")
         if self.kept:
             without = _(
-                "A chance without an interval is the formula's: it is not verified, or verification gave a lower "
-                "class, which is not adopted"
+                "Percentages without a range come from the formula only; they were not simulated, or the simulation "
+                "gave a lower class, which is not adopted"
             )
-        return f"{covers}. {without}"
+            return f"{covers}. {without}"
+        if self.left:
+            without = _("Percentages without a range come from the formula only; they were not simulated")
+            return f"{covers}. {without}"
+        return covers
 
     @property
     def adopted(self) -> str:
-        """Which method the chances of the report are those of."""
+        """Which method the adopted chances come from."""
+        titles = {"formula": _(self.run.formula.title), "simulation": _(self.run.simulation.title)}
         if not self.done:
-            return _("The adopted risk is that of the proposed OR formula; the others stand beside it for comparison.")
-        text = _(
-            "The adopted risk is that of Housner Monte Carlo (direct integration) where a piece was verified, and that "
-            "of the proposed OR formula where it was not; the others stand beside it for comparison."
-        )
-        if self.is_all:
+            text = _("Adopted risk: {formula}. The other methods are shown for comparison.", **titles)
+        else:
             text = _(
-                "The adopted risk is that of Housner Monte Carlo (direct integration) where a piece was verified; the "
-                "others stand beside it for comparison."
+                "Adopted risk: {simulation} (direct integration) where a piece was simulated, otherwise {formula}. The "
+                "other methods are shown for comparison.", **titles,
+            )  # fmt: skip
+        if self.kept:
+            text += " " + _(
+                "Where simulation gave a lower class that may not be adopted, {formula} counts (not lowered).", **titles
             )
-        kept = _(
-            "Where verification gave a lower class that may not be adopted, it is that of the proposed OR formula (not "
-            "lowered)."
-        )
-        return f"{text} {kept}" if self.kept else text
+        return text
+
+    @property
+    def sentence(self) -> str:
+        """How much was simulated, and what that changed, in one sentence."""
+        if not self.done:
+            return _("Not simulated.")
+        extent = ngettext(
+            "Simulated by direct integration: {done:,} of {n:,} row, {motions} each",
+            "Simulated by direct integration: {done:,} of {n:,} rows, {motions} each",
+            len(self.run), done=len(self.done), motions=count_motions(self.run),
+        )  # fmt: skip
+        return "; ".join([extent, *self._list_changes()]) + "."
+
+    def _list_changes(self) -> Iterator[str]:
+        if self.lowered:
+            yield _("class lowered: {pieces}", pieces=count_rows(self.lowered))
+        if self.raised:
+            yield _("class raised: {pieces}", pieces=count_rows(self.raised))
+        if self.may_be:
+            yield _("could be of a higher class: {pieces}", pieces=count_rows(self.may_be))
+        if n := len(self.kept):
+            yield ngettext(
+                "{n:,} row keeps the formula's class, which simulation may not lower",
+                "{n:,} rows keep the formula's class, which simulation may not lower",
+                n,
+            )
+        if n := len(self.fell):
+            yield ngettext(
+                "{n:,} row overturns under the record itself", "{n:,} rows overturn under the record itself", n
+            )
+        if n := len(self.undecided):
+            yield ngettext("{n:,} row still undecided", "{n:,} rows still undecided", n)
+
+    @property
+    def summary(self) -> list[str]:
+        """What simulation changed, and what is open, line by line."""
+        if not self.done:
+            return []
+        most = self.run.provenance.looks[-1]
+        lines = [
+            (_("Class lowered by simulation"), self.lowered,
+             ", ".join(_("{n:,} from {risk}", n=n, risk=risk)
+                       for n, risk in _by_class(self.lowered, lambda one: one.adopted.lowered_from))),
+            (_("Class raised by simulation"), self.raised,
+             ", ".join(_("{n:,} to {risk}", n=n, risk=risk)
+                       for n, risk in _by_class(self.raised, lambda one: one.adopted.risk))),
+            (_("Class of the formula kept although simulation gave a lower one (see the comparison of the methods): "
+               "the motions follow a generic spectrum or are weaker than the floor's, or its PFV is an estimate"),
+             self.kept, ""),
+            (_("Could be of a higher class: the interval reaches into it"), self.may_be, ""),
+            (_("Undecided: the interval still covers more than one class after {most:,} motions", most=most),
+             self.undecided, name_some(self.undecided)),
+            (_("Overturn under the recorded motion itself, and so are at least high"), self.fell, name_some(self.fell)),
+            (_("Not simulated: chance and class come from the formula"), self.left, ""),
+        ]  # fmt: skip
+        return [
+            f"{label}: {count_rows(results)}{': ' if more else ''}{more}." for label, results, more in lines if results
+        ]
 
 
-def build_verified(assessment: Assessment, results: Sequence[ItemResult]) -> Verified:
-    """Sort the rows by what verification did to them."""
+def build_verified(run: Results, results: Sequence[ItemResult]) -> Verified:
+    """Sort the rows by what simulation found."""
 
     def of(test: Callable[[ItemResult], bool]) -> tuple[ItemResult, ...]:
         return tuple(one for one in done if test(one))
 
-    done = tuple(one for one in results if one.is_verified)
+    done = tuple(one for one in results if one.is_simulated)
     return Verified(
-        rows=len(results),
-        motions=_motions(assessment),
-        left=tuple(one for one in results if not one.is_verified),
+        run=run,
+        left=tuple(one for one in results if not one.is_simulated),
         done=done,
         lowered=of(lambda one: one.adopted.lowered_from is not None),
         raised=of(lambda one: one.adopted.risk > one.formula_class),
         kept=of(lambda one: "not_lowered" in one.adopted.flags),
         may_be=of(lambda one: one.adopted.upper > one.adopted.risk),
         undecided=of(lambda one: "undecided" in one.adopted.flags),
-        fell=of(words.fell_in_record),
+        fell=of(lambda one: one.fell_in_record),
     )
 
 
-def _motions(assessment: Assessment) -> str:
-    if assessment.suite is not None:
-        return ngettext("{n:,} motion of the user's own", "{n:,} motions of the user's own", len(assessment.suite))
-    return _("{motions} on each floor and axis", motions=count_motions(assessment))
+def describe_verification(results: Results) -> str:
+    """Return how much was simulated, and what that changed, in one sentence."""
+    return build_verified(results, tuple(results)).sentence
 
 
-def count_motions(assessment: Assessment) -> str:
-    """Return how many motions each piece was integrated under."""
-    runs = assessment.settings.runs
+def count_motions(results: Results) -> str:
+    """Return how many motions each piece was simulated under."""
+    runs, looks = results.settings.runs, results.provenance.looks
     if runs == AUTO:
-        return _("{least:,} to {most:,} motions", least=LOOKS[0], most=LOOKS[-1])
+        return _("{least:,} to {most:,} motions", least=looks[0], most=looks[-1])
     return words.plural(int(runs), "motion")
 
 
-def describe_verification(assessment: Assessment) -> str:
-    """Say in one or two sentences how much has been verified, and what that changed."""
-    verified = build_verified(assessment, tuple(assessment))
-    if not verified.done:
-        return _("Not verified.")
-    extent = ngettext(
-        "Verified by direct integration: {done:,} of {n:,} row, {motions} each",
-        "Verified by direct integration: {done:,} of {n:,} rows, {motions} each",
-        verified.rows,
-        done=len(verified.done),
-        motions=count_motions(assessment),
-    )
-    return "; ".join([extent, *_list_changes(verified)]) + "."
-
-
-def _list_changes(verified: Verified) -> Iterator[str]:
-    """Say what the verification changed, and what is open."""
-    if verified.lowered:
-        yield _("class lowered by it: {pieces}", pieces=count_pieces(verified.lowered))
-    if verified.raised:
-        yield _("class raised by it: {pieces}", pieces=count_pieces(verified.raised))
-    if verified.may_be:
-        yield _("may be of a higher class: {pieces}", pieces=count_pieces(verified.may_be))
-    if n := len(verified.kept):
-        yield ngettext(
-            "{n:,} row keeps the formula's class, which verification may not lower",
-            "{n:,} rows keep the formula's class, which verification may not lower",
-            n,
-        )
-    if n := len(verified.fell):
-        yield ngettext("{n:,} row overturns under the record itself", "{n:,} rows overturn under the record itself", n)
-    if n := len(verified.undecided):
-        yield ngettext("{n:,} row still undecided", "{n:,} rows still undecided", n)
-
-
-def list_summary(verified: Verified) -> list[str]:
-    """Say for the summary what verification changed, and what is open."""
-    if not verified.done:
-        return []
-    lines = [
-        (_("Class lowered by verification"), verified.lowered, _lowered_from(verified.lowered)),
-        (_("Class raised by verification"), verified.raised, _raised_to(verified.raised)),
-        (_("Class of the formula kept although verification gave a lower one (see the comparison of the methods), as "
-           "the motions follow a generic spectrum or are weaker than the floor's, or its PFV is an estimate"),
-         verified.kept, ""),
-        (_("May be of a higher class, as the interval reaches into it"), verified.may_be, ""),
-        (_("Undecided, as the interval still reaches over more than one class after {most:,} motions", most=LOOKS[-1]),
-         verified.undecided, name_some(verified.undecided)),
-        (_("Overturn under the recorded motion itself, and so are at least high"), verified.fell,
-         name_some(verified.fell)),
-        (_("Not verified, chance and class are the formula's"), verified.left, ""),
-    ]  # fmt: skip
-    return [
-        f"{label}: {count_pieces(results)}{': ' if told else ''}{told}." for label, results, told in lines if results
-    ]
-
-
-def _lowered_from(results: Sequence[ItemResult]) -> str:
-    """Return how many pieces were lowered from each class."""
-    counts = _by_class(results, lambda one: one.adopted.lowered_from or RiskClass.LOW)
-    return ", ".join(_("{count:,} from {risk}", count=count, risk=words.risk_word(risk)) for risk, count in counts)
-
-
-def _raised_to(results: Sequence[ItemResult]) -> str:
-    """Return how many pieces were raised to each class."""
-    counts = _by_class(results, lambda one: one.adopted.risk)
-    return ", ".join(_("{count:,} to {risk}", count=count, risk=words.risk_word(risk)) for risk, count in counts)
-
-
-def _by_class(results: Sequence[ItemResult], risk_of: Callable[[ItemResult], RiskClass]) -> list[tuple[RiskClass, int]]:
-    """Return the classes that there are, the highest first, with the pieces of each."""
-    counts = [(risk, _pieces(one for one in results if risk_of(one) == risk)) for risk in reversed(RiskClass)]
-    return [(risk, count) for risk, count in counts if count]
+def _by_class(
+    results: Sequence[ItemResult], risk_of: Callable[[ItemResult], RiskClass | None]
+) -> Iterator[tuple[int, str]]:
+    """Yield the number of pieces and the class, the highest first."""
+    for risk in reversed(RiskClass):
+        if count := _pieces(one for one in results if risk_of(one) == risk):
+            yield count, words.risk_word(risk)
 
 
 def _pieces(results: Iterable[ItemResult]) -> int:
     return sum(one.item.quantity for one in results)
 
 
-def count_pieces(results: Sequence[ItemResult]) -> str:
-    """Return ``5 pieces in 3 rows``, with those that are anchored, which stand outside the classes."""
+def count_rows(results: Sequence[ItemResult]) -> str:
+    """Return ``5 pieces in 3 rows``, with the number of anchored pieces, which have no class."""
     anchored = _pieces(one for one in results if one.is_anchored)
     pieces, rows = words.plural(_pieces(results), "piece"), words.plural(len(results), "row")
     if not anchored:

@@ -3,13 +3,16 @@
 import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from assess.language import gettext as _
-from assess.methods import Method
+from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.summary import describe
 from assess.results import ItemResult
 from assess.risk import RiskClass
+
+if TYPE_CHECKING:
+    from assess.methods import MethodInfo
 
 LINES = 58
 """Lines of one block: what a page holds."""
@@ -70,7 +73,7 @@ def _places(character: str) -> int:
     return 2 if unicodedata.east_asian_width(character) in "WF" else 1
 
 
-def list_pieces(results: Sequence[ItemResult], *, has_verified: bool) -> list[Block]:
+def list_pieces(results: Sequence[ItemResult], methods: Sequence["MethodInfo"], *, has_simulated: bool) -> list[Block]:
     """Return all pieces, a line a row, with what the table of all pieces shows."""
     columns = [
         _Column(_("Item"), 12, lambda one: one.item.item),
@@ -79,35 +82,34 @@ def list_pieces(results: Sequence[ItemResult], *, has_verified: bool) -> list[Bl
         _Column(_("Description"), 30, lambda one: describe(one, 30)),
         _Column(_("No."), 5, lambda one: f"{one.item.quantity}", is_number=True),
         _Column("B × W × H [cm]", 17, words.size, is_number=True),
-        _Column("B/H", 6, lambda one: words.fixed(one.item.breadth / one.item.height, 3), is_number=True),
-        _Column(_("Axis"), 5, lambda one: one.governing.demand.axis),
-        _Column("PFA [g]", 7, lambda one: words.in_g(one.governing.demand.pfa), is_number=True),
-        _Column("OR", 7, lambda one: words.percent(one.governing.methods["proposed_or"].value), is_number=True),
-        _Column("K-H", 7, lambda one: words.percent(one.governing.methods["kaneko_hayashi"].value), is_number=True),
-        _Column(_("Chance"), 25 if has_verified else 7, words.chance, is_number=True),
+        _Column("B/H", 6, lambda one: words.fixed(one.item.breadth_to_height, 3), is_number=True),
+        _Column(_("Axis"), 5, lambda one: one.governing.motion.axis),
+        _Column("PFA [g]", 7, lambda one: words.in_g(one.governing.motion.pfa_g), is_number=True),
+        *(_Column(_(one.short_title), 7, _reader(one), is_number=True) for one in methods if one.is_live),
+        _Column(_("Chance"), 25 if has_simulated else 7, words.chance, is_number=True),
     ]
     return _blocks(columns, results)
 
 
-def list_methods(results: Sequence[ItemResult], methods: Sequence[Method]) -> list[Block]:
-    """Return what every method says of each row under its governing motion, a line a row."""
+def list_methods(results: Sequence[ItemResult], methods: Sequence["MethodInfo"]) -> list[Block]:
+    """Return what every method gives for each row under its governing motion, a line a row."""
     columns = [
         _Column(_("Item"), 12, lambda one: one.item.item),
         _Column(_("Floor"), 6, lambda one: one.item.floor),
-        _Column("B/H", 6, lambda one: words.fixed(one.item.breadth / one.item.height, 3), is_number=True),
-        _Column("PFA [g]", 7, lambda one: words.in_g(one.governing.demand.pfa), is_number=True),
-        _Column("PFV [cm/s]", 10, lambda one: words.in_cm_s(one.governing.demand.pfv), is_number=True),
+        _Column("B/H", 6, lambda one: words.fixed(one.item.breadth_to_height, 3), is_number=True),
+        _Column("PFA [g]", 7, lambda one: words.in_g(one.governing.motion.pfa_g), is_number=True),
+        _Column("PFV [cm/s]", 10, lambda one: words.in_cm_s(one.governing.motion.pfv_cm_s), is_number=True),
         *(_Column(_(method.title), _width(method), _reader(method), is_number=True) for method in methods),
     ]
     return _blocks(columns, results)
 
 
-def _width(method: Method) -> int:
+def _width(method: "MethodInfo") -> int:
     """Return the width of a method's column: that of a criterion's longer word."""
     return max(len(_(word)) for word in method.words) if any(method.words) else 17
 
 
-def _reader(method: Method) -> Callable[[ItemResult], str]:
+def _reader(method: "MethodInfo") -> Callable[[ItemResult], str]:
     def read(one: ItemResult) -> str:
         value = one.governing.methods[method.key].value
         if method.kind == "probability" or value is None:

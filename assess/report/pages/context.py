@@ -2,28 +2,24 @@
 
 import base64
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from assess.language import gettext as _
-from assess.language import markup, nmarkup, number
-from assess.motion.scenario import PROFILES
+from assess.errors import Problem
+from assess.i18n import fill, markup, nmarkup, number
+from assess.i18n import gettext as _
+from assess.progress import SILENT, Progress
 from assess.report import summary, words
 from assess.report.content import Content, has_worse_motion
 from assess.report.counts import build_bars
-from assess.report.example.worked import choose_example, work_example
-from assess.report.figures.captions import caption_traced
-from assess.report.figures.contours import choose_contours, draw_contours
-from assess.report.figures.draw import draw_motion
+from assess.report.figures.motion_figures import choose_traced, draw_motion, draw_traced, get_acceleration
 from assess.report.figures.plan import build_plan
-from assess.report.figures.verification import choose_traced, draw_traced
+from assess.report.figures.risk_contours import build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
-from assess.report.findings import motions, route_rows, routes, trials, verified
-from assess.report.findings.disagreements import find_disagreements, group_disagreements, summarise_disagreements
-from assess.report.look import Look
+from assess.report.findings import motions, route_rows, route_words, trials
 from assess.report.pages import compact
-from assess.report.pages.parts import read_script, script_hash, write_equation
 from assess.report.provenance import say_reference
+from assess.report.report_options import ReportOptions
+from assess.results import MotionRow
 
 FULL_ROWS = 150
 """Rows up to which a PDF shows whole tables of all pieces; longer ones go to the appendix in a compact form."""
@@ -38,35 +34,32 @@ MOST_RECORDS = 16
 """Recorded motions that are drawn; the others are described."""
 
 
-def build_context(content: Content, look: Look, *, for_print: bool) -> dict[str, Any]:
-    """Return the names that the templates use."""
+def build_context(
+    content: Content, options: ReportOptions, *, for_print: bool, progress: Progress = SILENT
+) -> dict[str, Any]:
+    """Return the names that the templates use; figures are cancelled while they are drawn."""
     is_long = len(content.results) > FULL_ROWS
-    is_compact = is_long and for_print and not look.accessible
-    script = read_script(look, for_print=for_print)
-    context = {
+    is_compact = is_long and for_print and not options.accessible
+    return {
         **LIMITS,
         "content": content,
-        "language": look.language,
+        "language": options.language,
         "for_print": for_print,
         "is_long": is_long,
         "is_compact": is_compact,
-        "parts": _parts(content, is_compact),
+        "parts": _list_parts(content, is_compact),
         "listings": _listings(content) if is_compact else {},
         "logo": _logo(content),
-        "script": script,
-        "script_hash": script_hash(script),
+        "floor_bars": build_bars(content.worst_floors),
+        "marks": words.marks(),
+        **_of_floors(content, progress),
+        **_of_routes(content, for_print=for_print),
+        **_of_methods(content),
+        **_of_figures(content, progress),
     }
-    parts = (
-        _of_summary(content),
-        _of_floors(content),
-        _of_routes(content, for_print=for_print),
-        _of_methods(content),
-        _of_figures(content),
-    )
-    return context | {name: value for part in parts for name, value in part.items()}
 
 
-def _parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
+def _list_parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
     """Return the parts of a report in their order: file of the template, which is the anchor as well, and heading."""
     parts = {
         "summary": _("Summary"),
@@ -84,91 +77,64 @@ def _parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
         "appendix": _("Appendix"),
         "lists": _("Appendix: all pieces"),
     }
-    if not content.results:
-        del parts["contours"]
-    if not is_compact:
-        del parts["lists"]
-    return list(parts.items())
+    left_out = {"contours": "contours/items" not in content.run.series, "lists": not is_compact}
+    return [(name, heading) for name, heading in parts.items() if not left_out.get(name)]
 
 
 def _listings(content: Content) -> dict[str, Sequence[compact.Block]]:
+    has_simulated = bool(content.verified.done)
     return {
-        "pieces": compact.list_pieces(content.results, has_verified=bool(content.verified.done)),
+        "pieces": compact.list_pieces(content.results, content.methods, has_simulated=has_simulated),
         "methods": compact.list_methods(content.results, content.methods),
     }
 
 
-def _of_summary(content: Content) -> dict[str, Any]:
-    return {
-        "floor_bars": build_bars(content.worst_floors),
-        "summary_lines": verified.list_summary(content.verified),
-        "verification_sentence": verified.describe_verification(content.assessment),
-        "marks": words.marks(),
-        "risky": summary.list_risky(content.results),
-    }
-
-
-def _of_floors(content: Content) -> dict[str, Any]:
-    inventory = content.assessment.inventory
-    ways = build_stretches(inventory, content.assessment.routes)
-    plans = {
-        page.floor.floor: build_plan(page, inventory, ways.get(page.floor.floor, ())) for page in content.shown_floors
-    }
+def _of_floors(content: Content, progress: Progress) -> dict[str, Any]:
+    stretches = build_stretches(content.run.route_tables)
+    plans = {}
+    for page in content.shown_floors:
+        progress.check()
+        plans[page.floor.floor] = build_plan(page, content.run, stretches.get(page.floor.floor, ()))
     return {"plans": plans, "source": motions.describe_source, "origin": motions.describe_origin}
 
 
 def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
     """Return the evacuation routes, and the rows of each of their tables as far as they are shown: fewer in print."""
-    found = content.assessment.routes
-    if found is None:
+    found = content.run.route_tables
+    if not content.run.has_routes:
         return {"routes": None, "segment_rows": ()}
     segments = route_rows.list_segments(found, LIMITS["most_segments"], is_short=for_print)
     return {
         "routes": found,
-        "shown_routes": route_rows.choose_rows(
-            found.routes, LIMITS["most_routes"], lambda one: one.outlook.blocked.probability
-        ),
+        "shown_routes": route_rows.choose_rows(found.routes, LIMITS["most_routes"], route_words.find_chance),
         "shown_segments": segments,
         "left_out": sum(map(route_rows.is_untouched, found.segments)) if for_print else 0,
         "segment_rows": {number for number, _segment in segments},
-        "shown_rooms": route_rows.choose_rows(found.rooms, LIMITS["most_rooms"], lambda one: one.loses.probability),
+        "shown_rooms": route_rows.choose_rows(
+            found.rooms, LIMITS["most_rooms"], lambda one: one.loses_every_exit.probability
+        ),
         "beside": route_rows.list_beside(found),
         "steps": route_rows.list_steps(found),
-        "unmended": routes.list_unmended(found),
+        "unfixable": route_words.list_unfixable(found),
         "untouched": route_rows.name_untouched(found),
         "route_lines": route_rows.describe_routes(found),
         "uncounted": route_rows.say_uncounted(found),
-        "route_cautions": routes.list_cautions(found),
+        "route_cautions": route_words.list_cautions(found),
         "route_flags": route_rows.list_flags(found),
         "floor_names": {page.floor.floor: page.title for page in content.floors},
-        "widths": routes.list_widths(),
-        "default_width": routes.say_default_width(),
+        "widths": route_words.list_widths(),
+        "default_width": route_words.say_default_width(),
     }
 
 
 def _of_methods(content: Content) -> dict[str, Any]:
-    assessment = content.assessment
-    example = choose_example(content.results)
-    found = find_disagreements(content.results, content.methods)
-    types = {item.type for item in assessment.inventory.items}
+    types = {item.type for item in content.run.item_rows}
     return {
-        "example": example,
-        "worked": work_example(
-            example,
-            assessment.settings,
-            restitution=assessment.inventory.building.restitution,
-            methods=content.methods,
-        )
-        if example
-        else (),
-        "disagreement": summarise_disagreements(found, len(content.results)),
-        "disagreements": group_disagreements(found),
         "more": has_worse_motion,
         "quantities": {"breadth_to_height": "B/H", "pfa": "PFA", "height": "H", "pfv": "PFV"},
         "name_ranges": words.name_ranges,
-        "profiles": tuple(PROFILES.values()),
-        "used_profiles": motions.used_profiles(assessment.demands),
-        "used_types": [one for one in assessment.inventory.catalogue if one.source and one.type in types],
+        "used_profiles": motions.used_profiles(content.run),
+        "used_types": [one for one in content.run.catalogue if one.source and one.type in types],
         "status": motions.profile_status,
         "clauses": motions.list_clauses,
         "envelopes": _(motions.ENVELOPES),
@@ -176,31 +142,52 @@ def _of_methods(content: Content) -> dict[str, Any]:
     }
 
 
-def _of_figures(content: Content) -> dict[str, Any]:
-    """Draw the figures: the motions of the verification, contours and records."""
-    traced, contours = choose_traced(content), choose_contours(content)
-    drawn = draw_traced(content, traced)
-    figures = {"contours": _svg(draw_contours(contours, content.assessment.settings))} if contours else {}
-    captions = [
-        {"image": _svg(drawn[one.name]), "caption": one.caption, "alternative": one.alternative}
-        for one in caption_traced(content, traced)
-    ]
-    return {"contours": contours, "figures": figures, "traced_figures": captions, "recorded": _recorded(content)}
+# ---------------------------------------------------------------- figures
 
 
-def _recorded(content: Content) -> list[tuple[str, Any, str]]:
-    """Return every record with its floor, and the figures of those of the floors that are shaken most."""
-    found = [
-        (page.title, demand)
-        for page in content.floors
-        for demand in page.demands
-        if demand.motion is not None and demand.record is not None and not demand.is_borrowed
+def _of_figures(content: Content, progress: Progress) -> dict[str, Any]:
+    """Draw the figures: the map of risk, the motions of the simulation, and the records."""
+    contours = build_contours(content.run)
+    figures = {"contours": _svg(draw_contours(contours, progress))} if contours else {}
+    traced = [
+        {"image": _svg(one.drawing), "caption": one.caption, "alternative": one.alternative}
+        for one in draw_traced(content, choose_traced(content), progress)
     ]
-    strongest = sorted(range(len(found)), key=lambda at: -found[at][1].pfa)[:MOST_RECORDS]
+    recorded = _recorded(content, progress)
+    return {"contours": contours, "figures": figures, "traced_figures": traced, "recorded": recorded}
+
+
+def _list_recorded(content: Content) -> list[tuple[str, MotionRow]]:
+    """Return every recorded motion with the title of its floor."""
     return [
-        (title, demand, _svg(draw_motion(demand)) if at in strongest else "")
-        for at, (title, demand) in enumerate(found)
+        (page.title, one) for page in content.floors for one in page.motions if one.has_record and not one.is_borrowed
     ]
+
+
+def _recorded(content: Content, progress: Progress) -> list[tuple[str, MotionRow, str]]:
+    """Return every record with its floor, and the figures of those of the floors that are shaken most."""
+    found, drawn = _list_recorded(content), {}
+    for _title, motion in sorted(found, key=lambda one: -one[1].pfa_g)[:MOST_RECORDS]:
+        values, step = get_acceleration(content.run, motion), motion.time_step_s or 0.0
+        drawn[motion.index] = "" if values is None else _svg(draw_motion(values, step, progress))
+    return [(title, motion, drawn.get(motion.index, "")) for title, motion in found]
+
+
+def list_missing_figures(content: Content) -> list[Problem]:
+    """Return a note that names the figures which are left out because the file with their series is gone."""
+    if content.run.series.is_there:
+        return []
+    named = {
+        _("risk over breadth and acceleration"): any(not one.is_anchored for one in content.results),
+        _("motions and rotations of simulated pieces"): bool(content.verified.done),
+        _("recorded motions"): bool(_list_recorded(content)),
+        _("the logo"): content.run.building.logo is not None,
+    }
+    names = ", ".join(name for name, is_there in named.items() if is_there)
+    if not names:
+        return []
+    return [Problem("note", "", "", fill("Figures are left out, as the file of series of this run is gone: {names}.",
+                                         names=names))]  # fmt: skip
 
 
 def _svg(drawing: bytes) -> str:
@@ -212,10 +199,9 @@ def _data_uri(data: bytes, kind: str) -> str:
 
 
 def _logo(content: Content) -> str:
-    path: Path | None = content.assessment.inventory.building.logo
-    if path is None:
+    if "logo" not in content.run.series:
         return ""
-    data = path.read_bytes()
+    data = content.run.series["logo"].tobytes()
     return _data_uri(data, "image/png" if data.startswith(b"\x89PNG") else "image/jpeg")
 
 
@@ -229,17 +215,17 @@ FILTERS: Mapping[str, Any] = {
     "class_name": words.class_name,
     "clip": words.clip,
     "cut": words.cut,
-    "equation": write_equation,
     "described": summary.describe,
-    "first_names": routes.name_few,
+    "first_names": route_words.name_few,
     "fixed": words.fixed,
     "flag_name": lambda flag: _(flag.replace("_", " ")),
+    "name_rooms": route_words.name_rooms,
     "has_evaluated_way": route_rows.has_evaluated_way,
     "in_cm_s": words.in_cm_s,
     "in_g": words.in_g,
     "in_m": words.in_m,
     "in_whole": lambda value: number(value, ",d"),
-    "is_blocked_standing": routes.is_blocked_standing,
+    "is_blocked_standing": route_words.is_blocked_standing,
     "percent": words.percent,
     "plural": words.plural,
     "reference": say_reference,
@@ -247,18 +233,18 @@ FILTERS: Mapping[str, Any] = {
     "risk_notes": words.risk_notes,
     "risk_word": words.risk_word,
     "say": _,
-    "say_basis": routes.say_basis,
-    "say_bounds": routes.say_bounds,
-    "say_chance": routes.say_chance,
-    "say_left_out": routes.say_left_out,
-    "say_other_rooms": routes.say_other_rooms,
-    "say_risk": routes.say_risk,
-    "say_occupants": routes.say_occupants,
-    "say_recorded": routes.say_recorded,
-    "say_route_state": routes.say_route_state,
-    "say_segment": routes.say_segment,
-    "say_segment_state": routes.say_segment_state,
-    "say_way": routes.say_way,
+    "say_basis": route_words.say_basis,
+    "say_bounds": route_words.say_bounds,
+    "say_chance": route_words.say_chance,
+    "say_left_out": route_words.say_left_out,
+    "say_other_rooms": route_words.say_other_rooms,
+    "say_risk": route_words.say_risk,
+    "say_occupants": route_words.say_occupants,
+    "say_recorded": route_words.say_recorded,
+    "say_route_state": route_words.say_route_state,
+    "say_segment": route_words.say_segment,
+    "say_segment_state": route_words.say_segment_state,
+    "say_way": route_words.say_way,
     "share": _share,
     "size": words.size,
     "under_record": words.under_record,

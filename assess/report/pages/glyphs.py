@@ -1,22 +1,21 @@
-"""Which characters of the workbook the report's own fonts do not hold, and what becomes of them in the PDF."""
+"""Which characters of the workbook the report's own fonts do not hold, and how the PDF shows them."""
 
 import unicodedata
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
-from assess import resources
 from assess.errors import Problem
-from assess.inventory.columns import BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, Sheet
-from assess.inventory.model import Inventory
-from assess.language import fill, nfill
+from assess.i18n import fill, nfill
+from assess.report.fonts import find_missing
+from assess.results import Results
+from assess.route_results import SegmentRow
+from assess.workbook.schema import BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, Sheet
 
-MOST_TOLD = 10
+MOST_LISTED = 10
 """Fields that are named, one line each."""
 MOST_NAMED = 5
 """Characters of a field that are named; the others are counted."""
-REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,38 +29,26 @@ class Missing:
     characters: str
 
 
-def list_missing(inventory: Inventory) -> list[Missing]:
+def list_missing(results: Results) -> list[Missing]:
     """Return the fields of a workbook of which a report cannot show every character in its own fonts."""
     found = []
-    for sheet, name, label, rows in _list_fields(inventory):
-        lacking = [(row, lack) for row in rows if (lack := find_missing(_text(row, name)))]
+    for sheet, name, label, rows in _list_fields(results):
+        lacking = [(row, lack) for row in rows if (lack := find_missing(_text(results, row, name)))]
         if lacking:
             characters = "".join(dict.fromkeys("".join(lack for _, lack in lacking)))
-            cell = _cell(inventory, sheet, lacking[0][0], name)
+            cell = _cell(results, sheet, lacking[0][0], name)
             found.append(Missing(sheet.name, cell, label, len(lacking), characters))
     return found
 
 
-def find_missing(text: str) -> str:
-    """Return the characters of a text that the report's fonts do not hold, each once, in their order."""
-    if text.isascii():
-        return ""
-    return "".join(sign for sign in dict.fromkeys(text) if not sign.isascii() and ord(sign) not in _held())
-
-
-def replace(text: str, signs: Collection[str]) -> str:
-    """Return a text with � for characters that no font holds: PDF/A allows no boxes in their place."""
-    return text.translate(dict.fromkeys(map(ord, signs), REPLACEMENT)) if signs else text
-
-
 def describe(missing: Sequence[Missing], nowhere: Collection[str]) -> list[Problem]:
-    """Return what to tell of missing characters, of which `nowhere` are in no font of this machine either."""
-    told = [problem for one in missing if (problem := _describe(one, nowhere))]
-    left = len(told) - MOST_TOLD
+    """Return problems about missing characters, of which `nowhere` are in no font of this machine either."""
+    listed = [problem for one in missing if (problem := _describe(one, nowhere))]
+    left = len(listed) - MOST_LISTED
     if left <= 0:
-        return told
+        return listed
     message = nfill("the same is true of {n} more field.", "the same is true of {n} more fields.", left)
-    return [*told[:MOST_TOLD], Problem("warning" if nowhere else "note", "", "", message)]
+    return [*listed[:MOST_LISTED], Problem("warning" if nowhere else "note", "", "", message)]
 
 
 def _describe(one: Missing, nowhere: Collection[str]) -> Problem | None:
@@ -75,8 +62,8 @@ def _describe(one: Missing, nowhere: Collection[str]) -> Problem | None:
             label=fill(one.label),
             characters=_name(lost),
         )
-        mend = fill("Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk).")
-        return Problem("warning", one.sheet, one.cell, message, mend)
+        fix = fill("Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk).")
+        return Problem("warning", one.sheet, one.cell, message, fix)
     if lent:
         message = nfill(
             "{label}: a font of this machine lends the PDF {characters}; figures may have boxes instead.",
@@ -96,45 +83,41 @@ def _name(signs: Sequence[str]) -> str:
     return fill("{names} and {more:,} more", names=named, more=left) if left > 0 else named
 
 
-def _list_fields(inventory: Inventory) -> Iterator[tuple[Sheet, str, str, Sequence[Any]]]:
+def _list_fields(results: Results) -> Iterator[tuple[Sheet, str, str, Sequence[Any]]]:
     """Yield every field that holds text of the user's own and that reports show, with the rows that have it."""
     rows: dict[Sheet, Sequence[Any]] = {
-        BUILDING: [inventory.building],
-        FLOORS: inventory.floors,
-        ITEMS: inventory.items,
-        PLACES_SHEET: inventory.places,
-        ROUTES: inventory.routes,
+        BUILDING: [results.building],
+        FLOORS: results.floor_rows,
+        ITEMS: results.item_rows,
+        PLACES_SHEET: results.places,
+        ROUTES: results.route_tables.segments,
     }
     for sheet, own in rows.items():
         for column in sheet.columns:
-            if (
-                column.kind in ("text", "records") and column.source != FLOORS.name
-            ):  # those of Floors are looked at there
+            if column.kind in ("text", "records") and column.source != FLOORS.name:  # those are checked in Floors
                 yield sheet, column.name, column.label, own
 
 
-def _text(row: Any, name: str) -> str:
+_OF_SEGMENTS = {"start": "from_place", "end": "to_place"}
+"""Fields of the sheet Routes that `SegmentRow` calls otherwise."""
+
+
+def _text(results: Results, row: Any, name: str) -> str:
     """Return a field of a row as reports show it: of a record its name and what its file calls the event."""
     if name.startswith("record_"):
-        records = row.records.get(name.removeprefix("record_").upper(), ())
-        return " ".join(f"{one.name} {one.record.event}" for one in records)
-    return str(getattr(row, name))
+        axis = name.removeprefix("record_").upper()
+        return " ".join(f"{one.record} {one.event}" for one in results.motions_of(row.floor, axis))
+    if isinstance(row, SegmentRow):
+        name = _OF_SEGMENTS.get(name, name)
+    return str(getattr(row, name) or "")
 
 
-def _cell(inventory: Inventory, sheet: Sheet, row: Any, name: str) -> str:
+def _cell(results: Results, sheet: Sheet, row: Any, name: str) -> str:
     """Return the cell of a field; the first column where the sheet lacks it."""
     if hasattr(row, "cell"):
         return str(row.cell(name))
-    return f"{inventory.letters.get(sheet.name, {}).get(name, 'A')}{row.row}"
-
-
-@cache
-def _held() -> frozenset[int]:
-    """Return the code points of the regular font; what another style lacks is taken from it."""
-    from matplotlib.ft2font import FT2Font
-
-    path = resources.fonts().get(("Report", "regular"))
-    return frozenset(FT2Font(str(path)).get_charmap()) if path else frozenset()
+    number = row.workbook_row if isinstance(row, SegmentRow) else row.row
+    return f"{results.provenance.letters.get(sheet.name, {}).get(name, 'A')}{number}"
 
 
 def _is_invisible(sign: str) -> bool:

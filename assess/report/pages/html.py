@@ -1,103 +1,151 @@
 """The HTML report: one file, nothing fetched, every text of the workbook escaped."""
 
+import base64
+import hashlib
+import re
 import traceback
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from assess.errors import InputError
-from assess.report.content import build_content
-from assess.report.look import Look
-from assess.report.pages.context import FILTERS, GLOBALS, build_context
-from assess.report.pages.fonts import font_faces
+from assess.errors import InputError, Problem
+from assess.progress import SILENT, Progress
+from assess.report.content import Content
+from assess.report.fonts import font_faces
+from assess.report.pages.context import FILTERS, GLOBALS, build_context, list_missing_figures
+from assess.report.report_options import ReportOptions
 from assess.report.words import class_name
-from assess.results import Assessment
 from assess.risk import RiskClass
 
+SCRIPT = "script/report.js"
 
-def write_html(assessment: Assessment, path: Path, look: Look) -> None:
+
+def write_html(content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
     """Write report.html; raises InputError where a template of the firm's own cannot be used."""
-    path.write_text(render(assessment, look), encoding="utf-8")
+    page = render(with_problems(content, list_missing_figures(content)), options, progress=progress)
+    path.write_text(page, encoding="utf-8")
 
 
-def render(assessment: Assessment, look: Look | None = None, *, for_print: bool = False) -> str:
-    """Return the report as HTML in the language in use (see `Look.spoken`).
+def with_problems(content: Content, problems: list[Problem]) -> Content:
+    """Return content whose data-quality log lists further problems, which concern one format alone."""
+    if not problems:
+        return content
+    return replace(content, run=replace(content.run, problem_rows=(*content.run.problem_rows, *problems)))
+
+
+def render(
+    content: Content,
+    options: ReportOptions | None = None,
+    *,
+    for_print: bool = False,
+    progress: Progress = SILENT,
+) -> str:
+    """Return the report as HTML in the language in use (see `ReportOptions.spoken`).
 
     `for_print` takes the style of the page and the embedded fonts of the PDF, and leaves the script out.
 
     Raises
     ------
     InputError
-        If a template cannot be used: it names the file, the line and what is the matter.
+        If a template cannot be used: it names the file, the line and the reason.
+    CancelledError
+        If the work was cancelled.
     """
     from jinja2 import TemplateError
     from jinja2.exceptions import SecurityError
 
-    look = look or Look()
-    context = build_context(build_content(assessment), look, for_print=for_print)
+    options = options or ReportOptions()
+    script = "" if for_print else options.read(SCRIPT)
+    context = build_context(content, options, for_print=for_print, progress=progress)
+    context |= {"script": script, "script_hash": hash_script(script), "style": _style(options, for_print)}
+    parts = []
     try:
-        page: str = _environment(look).get_template("report.html.j2").render(**context, style=_style(look, for_print))
+        for part in _environment(options).get_template("report.html.j2").generate(**context):
+            progress.check()
+            parts.append(part)
     except (TemplateError, SecurityError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
-        if look.templates is None:
-            raise  # ours are right, or it is a fault of ours
-        raise InputError(_describe(error, look)) from None
-    return page
+        if options.templates is None:
+            raise  # the standard templates are right, or it is a fault of this program
+        raise InputError(_describe(error, options)) from None
+    return "".join(parts)
 
 
-def check_look(look: Look) -> None:
+def check_templates(options: ReportOptions) -> None:
     """Raise InputError if a template or catalogue of the firm's own cannot be read: before the long work.
 
-    What only shows when a report is rendered, such as an undefined name, `render` tells.
+    What only shows when a report is rendered, such as an undefined name, is found by `render`.
     """
     from jinja2 import TemplateError
 
-    if look.templates is None:
+    if options.templates is None:
         return
-    with look.spoken():
-        environment = _environment(look)
-        for path in sorted(look.templates.rglob("*.j2")):
+    with options.spoken():
+        environment = _environment(options)
+        for path in sorted(options.templates.rglob("*.j2")):
             try:
-                environment.get_template(path.relative_to(look.templates).as_posix())
+                environment.get_template(path.relative_to(options.templates).as_posix())
             except TemplateError as error:
-                raise InputError(_describe(error, look)) from None
+                raise InputError(_describe(error, options)) from None
 
 
-def _describe(error: Exception, look: Look) -> str:
+def _describe(error: Exception, options: ReportOptions) -> str:
     """Return where in the templates something is wrong, and what."""
     name, line = getattr(error, "name", None), getattr(error, "lineno", None)
     if line is None:  # one that came up while rendering has its place in the traceback alone
         frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.endswith(".j2")]
-        name, line = (_place(Path(frames[-1].filename), look), frames[-1].lineno) if frames else (name, None)
+        name, line = (_place(Path(frames[-1].filename), options), frames[-1].lineno) if frames else (name, None)
     place = f"{name or 'a template'}{f', line {line}' if line else ''}"
-    return f"--template: {place}: {error}"
+    return f"templates: {place}: {error}"
 
 
-def _place(path: Path, look: Look) -> str:
+def _place(path: Path, options: ReportOptions) -> str:
     """Return the name of a template within its folder."""
-    return next(path.relative_to(folder).as_posix() for folder in look.folders if path.is_relative_to(folder))
+    return next(path.relative_to(folder).as_posix() for folder in options.folders if path.is_relative_to(folder))
 
 
-def _environment(look: Look) -> Any:
+def _environment(options: ReportOptions) -> Any:
     """Return where templates are rendered: a sandbox that escapes every text and is strict about names."""
     from jinja2 import FileSystemLoader, StrictUndefined
     from jinja2.sandbox import ImmutableSandboxedEnvironment
 
     environment = ImmutableSandboxedEnvironment(
-        loader=FileSystemLoader(look.folders),
+        loader=FileSystemLoader(options.folders),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= FILTERS
+    environment.filters |= {**FILTERS, "equation": write_equation}
     environment.globals |= GLOBALS
     return environment
 
 
-def _style(look: Look, for_print: bool) -> str:
+# ---------------------------------------------------------------- parts of the page that are no plain text
+
+
+def _style(options: ReportOptions, for_print: bool) -> str:
     names = ("base.css", "print.css") if for_print else ("base.css", "screen.css")
-    sheets = [font_faces()] if for_print else []
-    return "\n".join([*sheets, _class_colours(), *(look.read(f"style/{name}") for name in names)])
+    colours = [f".{class_name(risk)} {{ background: {risk.fill}; color: {risk.ink}; }}" for risk in RiskClass]
+    fonts = [font_faces()] if for_print else []
+    return "\n".join([*fonts, *colours, *(options.read(f"style/{name}") for name in names)])
 
 
-def _class_colours() -> str:
-    return "\n".join(f".{class_name(risk)} {{ background: {risk.fill}; color: {risk.ink}; }}" for risk in RiskClass)
+def hash_script(text: str) -> str:
+    """Return the source expression that allows an inline script of exactly this text.
+
+    Source: W3C, Content Security Policy Level 3, section 2.3.1 (hash-source).
+    """
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"sha256-{base64.b64encode(digest).decode()}"
+
+
+_INDEX = re.compile(r"(?<=[^\W\d_])_([^\W_]+\*?)")
+_POWER = re.compile(r"\^(?:\((-?\d+(?:[.,]\d+)?)\)|(-?\d+(?:[.,]\d+)?))")
+
+
+def write_equation(text: str) -> Any:
+    """Return an equation of a method as HTML: what stands behind _ below the line, a number behind ^ above it."""
+    from markupsafe import Markup, escape
+
+    lowered = _INDEX.sub(r"<sub>\1</sub>", str(escape(text)))
+    return Markup(_POWER.sub(lambda found: f"<sup>{found[1] or found[2]}</sup>", lowered))  # noqa: S704 - escaped above

@@ -1,135 +1,193 @@
-"""The PDF report: the HTML with print.css, laid out by WeasyPrint; its source and its data are attached to it."""
+"""The PDF report: the HTML with print.css, laid out by WeasyPrint; the workbook and results.json are attached to it."""
 
 import base64
 import contextlib
-import datetime
-import io
-import logging
+import json
+import subprocess
 import sys
-import warnings
-from dataclasses import replace
-from functools import cache
+import tempfile
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO
 
-from assess.errors import PdfUnavailableError, Problem
-from assess.report.look import Look
+from assess.errors import AssessError, PdfUnavailableError, Problem
+from assess.i18n import fill
+from assess.i18n import gettext as _
+from assess.progress import SILENT, Progress
+from assess.report.content import Content
+from assess.report.fonts import find_missing, find_nowhere, replace_signs
 from assess.report.pages import glyphs
-from assess.report.pages.attached import Attached, list_attached, list_unattached
-from assess.report.pages.fonts import font_faces
-from assess.report.pages.html import render
+from assess.report.pages.context import list_missing_figures
+from assess.report.pages.html import render, with_problems
+from assess.report.pages.pdf_layout import MISSING, UNWRITTEN
 from assess.report.provenance import report_time
-from assess.results import Assessment
+from assess.report.report_options import ReportOptions
+from assess.results import Results
 
 DEBIAN = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 ARCHIVAL, ACCESSIBLE = "pdf/a-3u", "pdf/ua-1"
+DATA = "results.json"
+_KINDS = {
+    ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    ".xlsm": "application/vnd.ms-excel.sheet.macroenabled.12",
+    ".json": "application/json",
+}
+_CHECKED_EVERY = 0.1
+"""Time [s] after which it is looked whether the work was cancelled."""
 
 
-def write_pdf(assessment: Assessment, path: Path, look: Look) -> None:
-    """Write report.pdf: PDF/A-3u, or PDF/UA-1 where the look is to be accessible.
+@dataclass(frozen=True, slots=True)
+class Attached:
+    """One file inside the PDF; `relationship` is one of PDF/A-3's, `kind` its media type, `data` in base64."""
+
+    name: str
+    kind: str
+    relationship: str
+    description: str
+    data: str
+
+
+def write_pdf(
+    content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT, *, data: Path | None = None
+) -> None:
+    """Write report.pdf: PDF/A-3u, or PDF/UA-1 where it is to be accessible.
+
+    Parameters
+    ----------
+    content, path, options, progress
+        What to write, where to, and how.
+    data : Path, optional
+        results.json where it has been written already.
 
     Raises
     ------
     PdfUnavailableError
         If WeasyPrint's native libraries are missing.
+    OSError
+        If the file cannot be written.
+    CancelledError
+        If the work was cancelled; what is written of the file is of no use.
     """
-    weasyprint = load_weasyprint()
-    moment, problems = report_time(), list_problems(assessment)
-    told = replace(assessment, problems=(*assessment.problems, *problems)) if problems else assessment
-    html = render(told, look, for_print=True)
-    html = glyphs.replace(html, _find_nowhere(glyphs.find_missing(html)))
-    document = weasyprint.HTML(string=html, url_fetcher=_closed_fetcher()).render()
-    document.metadata.created = document.metadata.modified = f"{moment:%Y-%m-%dT%H:%M:%SZ}"
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "unclosed file .*icc", ResourceWarning)  # WeasyPrint's own profile of colours
-        document.write_pdf(
-            path,
-            pdf_variant=ACCESSIBLE if look.accessible else ARCHIVAL,
-            pdf_tags=True,
-            attachments=[_attachment(file, moment) for file in list_attached(assessment)],
-        )
+    problems = [*list_problems(content.run), *list_missing_figures(content)]
+    html = render(with_problems(content, problems), options, for_print=True, progress=progress)
+    files = list_attached(content.run, data)
+    job = {
+        "html": replace_signs(html, find_nowhere(find_missing(html))),
+        "path": str(path),
+        "variant": ACCESSIBLE if options.accessible else ARCHIVAL,
+        "time": report_time().isoformat(),
+        "attachments": [asdict(file) for file in files],
+    }
+    _lay_out(json.dumps(job).encode(), progress)
 
 
-def list_problems(assessment: Assessment) -> list[Problem]:
-    """Return what is to be told of the PDF alone: characters that it cannot show, a workbook that it cannot hold."""
-    missing = glyphs.list_missing(assessment.inventory)
-    nowhere = _find_nowhere("".join(sorted({sign for one in missing for sign in one.characters})))
-    return [*list_unattached(assessment.inventory), *glyphs.describe(missing, nowhere)]
+def list_problems(results: Results) -> list[Problem]:
+    """Return what concerns the PDF alone: characters that it cannot show, a workbook that it cannot hold."""
+    missing = glyphs.list_missing(results)
+    nowhere = find_nowhere("".join(sorted({sign for one in missing for sign in one.characters})))
+    return [*_list_unattached(results), *glyphs.describe(missing, nowhere)]
 
 
-def load_weasyprint() -> Any:
-    """Return the module weasyprint; raises PdfUnavailableError with the mend where its libraries are missing."""
-    logging.getLogger("weasyprint").addHandler(logging.NullHandler())
-    try:
-        with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):  # advice where a library is missing
-            warnings.filterwarnings("ignore", ".*FontConfig")  # a machine without fonts: the report brings its own
-            import weasyprint
-    except (ImportError, OSError) as error:
-        reason = str(error).splitlines()[0]
-        raise PdfUnavailableError(
-            f"the PDF was not written: a native library is missing ({reason}). {mend()}"
-        ) from None
-    return weasyprint
+def find_weasyprint() -> str:
+    """Return the version of WeasyPrint; raises PdfUnavailableError with how to fix it where it cannot be loaded."""
+    return _lay_out(b"", SILENT).strip()
 
 
-def mend() -> str:
+def fix() -> str:
     """Return how to install the native libraries on this system."""
     if sys.platform == "darwin":
-        found = "export DYLD_FALLBACK_LIBRARY_PATH=$(brew --prefix)/lib"
+        found = "export DYLD_FALLBACK_LIBRARY_PATH=/opt/homebrew/lib (on Intel /usr/local/lib)"
         return f"Install them: brew install pango. If they are not found then: {found}"
     if sys.platform == "win32":
         return "Install MSYS2, then in its UCRT64 shell: pacman -S mingw-w64-ucrt-x86_64-pango"
     return f"Install them: {DEBIAN} (Debian, Ubuntu), or the packages of Pango of your system."
 
 
-def _closed_fetcher() -> Any:
-    """Return a fetcher that opens data: URIs and nothing else: a report never reads the network or the disk."""
-    from weasyprint.urls import URLFetcher
-
-    return URLFetcher(allowed_protocols={"data"}, allow_redirects=False, fail_on_errors=True)
+# ---------------------------------------------------------------- attached files
 
 
-def _attachment(file: Attached, moment: datetime.datetime) -> Any:
-    """Return an attachment of WeasyPrint; as a data: URI, so that it takes our media type, not the system's guess."""
-    from weasyprint import Attachment
+def list_attached(results: Results, data: Path | None = None) -> list[Attached]:
+    """Return what to attach, sorted by name as a PDF wants it: the workbook as it was read, and results.json."""
+    files = [_attach(DATA, "Data", _("The results, for other programs"), _read_data(results, data))]
+    if "workbook" in results.series:
+        description = _("The inventory that this report was made from")
+        workbook = results.series["workbook"].tobytes()
+        files.append(_attach(results.provenance.workbook, "Source", description, workbook))
+    return sorted(files, key=lambda file: file.name.encode("utf-8", "ignore"))
 
-    return Attachment(
-        url=f"data:{file.kind};base64,{base64.b64encode(file.data).decode()}",
-        url_fetcher=_closed_fetcher(),
-        name=file.name,
-        description=file.description,
-        relationship=file.relationship,
-        created=moment,
-        modified=moment,
+
+def _attach(name: str, relationship: str, description: str, data: bytes) -> Attached:
+    kind = _KINDS.get(Path(name).suffix.lower(), "application/octet-stream")
+    return Attached(name, kind, relationship, description, base64.b64encode(data).decode())
+
+
+def _read_data(results: Results, data: Path | None) -> bytes:
+    from assess.report.data import write_json
+
+    if data is not None:
+        return data.read_bytes()
+    with tempfile.TemporaryDirectory(prefix="assess-") as folder:
+        write_json(results, Path(folder) / DATA)
+        return (Path(folder) / DATA).read_bytes()
+
+
+def _list_unattached(results: Results) -> list[Problem]:
+    """Return a warning where the workbook cannot be attached."""
+    if "workbook" in results.series:
+        return []
+    message = fill(
+        "{name} is not attached to the PDF: the results hold no copy of it.", name=results.provenance.workbook
     )
+    return [Problem("warning", "", "", message)]
 
 
-@cache
-def _find_nowhere(characters: str) -> frozenset[str]:
-    """Return those of some characters that no font of this machine holds: WeasyPrint says so of a page of them."""
-    if not characters:
-        return frozenset()
-    try:
-        weasyprint = load_weasyprint()
-    except PdfUnavailableError:  # no PDF, nothing to show
-        return frozenset()
-    style = f"{font_faces()} p {{ font-family: Report, sans-serif; }}"
-    page = f"<style>{style}</style><p>{' '.join(f'&#{ord(sign)};' for sign in characters)}</p>"
-    log = _Log()
-    logging.getLogger("weasyprint").addHandler(log)
-    try:
-        weasyprint.HTML(string=page, url_fetcher=_closed_fetcher()).write_pdf()
-    finally:
-        logging.getLogger("weasyprint").removeHandler(log)
-    return frozenset(sign for sign in characters if any(f"(U+{ord(sign):04X})" in line for line in log.lines))
+# ---------------------------------------------------------------- the process that lays it out
 
 
-class _Log(logging.Handler):
-    """Keeps what is logged."""
+def _lay_out(job: bytes, progress: Progress) -> str:
+    """Pass a job to `assess.report.pages.pdf_layout` in a process, which is killed where the work is cancelled.
 
-    def __init__(self) -> None:
-        super().__init__()
-        self.lines: list[str] = []
+    Returns what it printed.
+    """
+    with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as printed, tempfile.TemporaryFile() as errors:
+        given.write(job)
+        given.seek(0)
+        process = subprocess.Popen(  # noqa: S603 - this Python, with code of this program
+            _command(), stdin=given, stdout=printed, stderr=errors,
+            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+        )  # fmt: skip
+        try:
+            _wait(process, progress)
+        finally:
+            process.kill()
+            process.wait()
+        answer, reason = (_read_text(file) for file in (printed, errors))
+    lines = reason.strip().splitlines() or ["no reason is given"]
+    if process.returncode == MISSING:
+        raise PdfUnavailableError(f"the PDF was not written: a native library is missing ({lines[-1]}). {fix()}")
+    if process.returncode == UNWRITTEN:
+        raise OSError(*json.loads(lines[-1]))
+    if process.returncode:
+        raise AssessError(f"the PDF could not be laid out: {lines[-1]}")
+    return answer
 
-    def emit(self, record: logging.LogRecord) -> None:
-        self.lines.append(record.getMessage())
+
+def _command() -> list[str]:
+    """Return the command of the process: this Python, with the same folders of modules."""
+    from assess.report.pages import pdf_layout
+
+    code = f"import sys, runpy; sys.path[:] = {sys.path!r}; runpy.run_path({pdf_layout.__file__!r})['main']()"
+    return [sys.executable, "-W", "ignore", "-c", code]
+
+
+def _wait(process: "subprocess.Popen[bytes]", progress: Progress) -> None:
+    while True:
+        progress.check()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(_CHECKED_EVERY)
+            return
+
+
+def _read_text(file: IO[bytes]) -> str:
+    file.seek(0)
+    return file.read().decode("utf-8", "replace")

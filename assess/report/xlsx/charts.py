@@ -4,24 +4,27 @@ Each class has a pattern beside its colour, as a grey printer shows no more.
 """
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
-from assess.language import gettext as _
+from assess.i18n import gettext as _
 from assess.report.xlsx.pen import Pen
 from assess.risk import RiskClass
 
 _PATTERNS = {RiskClass.MEDIUM: "percent_20", RiskClass.HIGH: "wide_upward_diagonal"}
 """Of the classes in between; the lowest and the highest are plain, light and dark."""
-
+_LINES = {"X": ("#1f3a4d", "solid", "square"), "Y": ("#b3541e", "dash", "circle")}
 LOWEST, HIGHEST = 320, 720
 """Heights of the chart by floor [pixels]: it stays on one printed page."""
 OUTLINED = 40
 """Floors up to which bars have an outline, which would cover thinner ones."""
 FLOOR_HEIGHT, LABEL_HEIGHT, AROUND = 22, 14, 120
 """Height of the bar of a floor, of its label, and of what stands around them [pixels]."""
-
 ROW_HEIGHT = 20
 """Height of a row [pixels]."""
+
+Cell = tuple[int, int]
+Area = tuple[int, int, int, int]
 
 
 def fill(risk: RiskClass, *, outlined: bool = True) -> dict[str, Any]:
@@ -32,65 +35,46 @@ def fill(risk: RiskClass, *, outlined: bool = True) -> dict[str, Any]:
     return look | {"fill": {"color": risk.fill}}
 
 
-def add_classes(pen: Pen, page: Any, cell: tuple[int, int], top: int) -> None:
-    """Draw the pieces of each class; `top` is the row of the classes, below which stand the counts."""
-    sheet = pen.sheets["Summary"]
+def add_classes(pen: Pen, page: Any, cell: Cell, top: int) -> None:
+    """Draw the pieces of each class; `top` is the row of the classes, below which are the counts."""
+    series = {"name": _("Pieces"), "points": [fill(risk) for risk in RiskClass], "data_labels": {"value": True}}
     chart = pen.book.add_chart({"type": "column"})
-    first, last = 1, len(RiskClass)
-    chart.add_series({
-        "name": _("Pieces"),
-        "categories": [sheet, top, first, top, last],
-        "values": [sheet, top + 1, first, top + 1, last],
-        "points": [fill(risk) for risk in RiskClass],
-        "data_labels": {"value": True},
-        "gap": 60,
-    })  # fmt: skip
+    _add(chart, pen.sheets["Summary"], (top, 1, top, len(RiskClass)), (top + 1, 1, top + 1, len(RiskClass)),
+         {"gap": 60, **series})  # fmt: skip
     chart.set_y_axis({"visible": False, "major_gridlines": {"visible": False}, "min": 0})
-    chart.set_legend({"none": True})
     _place(page, cell, chart, _("Pieces by class"), (470, 280), _("Pieces of each class in the whole building"))
+    chart.set_legend({"none": True})
 
 
-def add_highest(pen: Pen, page: Any, cell: tuple[int, int], rows: tuple[int, int], columns: tuple[int, int]) -> None:
+def add_highest(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Cell) -> None:
     """Draw the highest chances, in the colour of their class.
 
     `rows` are the first and the last, `columns` those of the names and of the chances of the lowest class.
     """
-    sheet, (first, last), (names, chances) = pen.sheets["Summary"], rows, columns
+    (first, last), (names, chances) = rows, columns
     chart = pen.book.add_chart({"type": "bar", "subtype": "stacked"})
     for at, risk in enumerate(RiskClass, chances):
-        chart.add_series({
-            "name": pen.terms.labels[risk],
-            "categories": [sheet, first, names, last, names],
-            "values": [sheet, first, at, last, at],
-            "gap": 40,
-            **fill(risk),
-        })  # fmt: skip
+        _add(chart, pen.sheets["Summary"], (first, names, last, names), (first, at, last, at),
+             {"name": pen.terms.labels[risk], "gap": 40, **fill(risk)})  # fmt: skip
     chart.set_x_axis({"min": 0, "max": 1, "num_format": "0%"})
     chart.set_y_axis({"reverse": True, "num_font": {"size": 8}, "label_position": "low"})
-    chart.set_legend({"position": "bottom"})
     chart.show_hidden_data()
-    told = _("Chances of the pieces most likely to fall, as in the table below")
-    _place(page, cell, chart, _("Highest chances"), (715, 280), told)
+    description = _("Chances of the pieces most likely to fall, as in the table below")
+    _place(page, cell, chart, _("Highest chances"), (715, 280), description)
 
 
-def add_floors(pen: Pen, page: Any, cell: tuple[int, int], rows: tuple[int, int]) -> None:
+def add_floors(pen: Pen, page: Any, cell: Cell, rows: Cell) -> None:
     """Draw the pieces of each class on every floor; `rows` are those of the first and the last floor."""
     sheet, (first, last) = pen.sheets["Summary"], rows
     chart, floors = pen.book.add_chart({"type": "bar", "subtype": "stacked"}), last - first + 1
+    outlined, height = floors <= OUTLINED, _height(floors)
     for at, risk in enumerate(RiskClass, 1):
-        chart.add_series({
-            "name": [sheet, first - 1, at],
-            "categories": [sheet, first, 0, last, 0],
-            "values": [sheet, first, at, last, at],
-            "gap": 40 if floors <= OUTLINED else 0,
-            **fill(risk, outlined=floors <= OUTLINED),
-        })  # fmt: skip
-    height = _height(floors)
+        _add(chart, sheet, (first, 0, last, 0), (first, at, last, at),
+             {"name": [sheet, first - 1, at], "gap": 40 * outlined, **fill(risk, outlined=outlined)})  # fmt: skip
     every = math.ceil(floors * LABEL_HEIGHT / (height - AROUND))
     chart.set_y_axis({"reverse": True, "interval_unit": every, "num_font": {"size": 8}})
-    chart.set_legend({"position": "bottom"})
-    told = _("Pieces of each class on every floor, as in the table above")
-    _place(page, cell, chart, _("Pieces by class and floor"), (1185, height), told)
+    description = _("Pieces of each class on every floor, as in the table above")
+    _place(page, cell, chart, _("Pieces by class and floor"), (1185, height), description)
 
 
 def _height(floors: int) -> int:
@@ -102,29 +86,30 @@ def count_rows(floors: int) -> int:
     return math.ceil(_height(floors) / ROW_HEIGHT) + 1
 
 
-def add_motion(pen: Pen, page: Any, cell: tuple[int, int], rows: tuple[int, int], columns: dict[str, int]) -> None:
+def add_motion(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Mapping[str, int]) -> None:
     """Draw the PFA of every floor along both axes; `columns` are where it stands, by the axis."""
     sheet, (first, last) = pen.sheets["Floors"], rows
     chart = pen.book.add_chart({"type": "line"})
-    looks = {"X": ("#1f3a4d", "solid", "square"), "Y": ("#b3541e", "dash", "circle")}
     for axis, column in columns.items():
-        color, dash, marker = looks[axis]
-        chart.add_series({
-            "name": [sheet, 0, column],
-            "categories": [sheet, first, 0, last, 0],
-            "values": [sheet, first, column, last, column],
-            "line": {"color": color, "width": 1.5, "dash_type": dash},
-            "marker": {"type": marker, "size": 5, "fill": {"color": color}, "border": {"color": color}},
-        })  # fmt: skip
+        color, dash, marker = _LINES[axis]
+        line = {"color": color, "width": 1.5, "dash_type": dash}
+        mark = {"type": marker, "size": 5, "fill": {"color": color}, "border": {"color": color}}
+        _add(chart, sheet, (first, 0, last, 0), (first, column, last, column),
+             {"name": [sheet, 0, column], "line": line, "marker": mark})  # fmt: skip
     chart.set_x_axis({"name": _("Floor"), "num_font": {"size": 8}})
     chart.set_y_axis({"min": 0, "num_format": "0.0"})
-    chart.set_legend({"position": "bottom"})
-    told = _("Peak acceleration of every floor along X and Y, as in the table above")
-    _place(page, cell, chart, _("PFA by floor"), (1000, 300), told)
+    description = _("Peak acceleration of every floor along X and Y, as in the table above")
+    _place(page, cell, chart, _("PFA by floor"), (1000, 300), description)
 
 
-def _place(page: Any, cell: tuple[int, int], chart: Any, title: str, size: tuple[int, int], told: str) -> None:
+def _add(chart: Any, sheet: str, categories: Area, values: Area, more: Mapping[str, Any]) -> None:
+    """Add a series; areas are first row and column, last row and column."""
+    chart.add_series({"categories": [sheet, *categories], "values": [sheet, *values], **more})
+
+
+def _place(page: Any, cell: Cell, chart: Any, title: str, size: tuple[int, int], description: str) -> None:
     """Set a chart on a page with its title, its size [pixels] and its text for those who cannot see it."""
     chart.set_title({"name": title, "name_font": {"size": 11}})
     chart.set_size({"width": size[0], "height": size[1]})
-    page.insert_chart(*cell, chart, {"description": told, "object_position": 2})
+    chart.set_legend({"position": "bottom"})
+    page.insert_chart(*cell, chart, {"description": description, "object_position": 2})

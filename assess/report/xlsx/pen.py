@@ -1,23 +1,87 @@
-"""What the sheets share: names, styles, cells written as what they are, tables."""
+"""What the sheets share: looks, columns, tables, names of sheets, print set-up; cells are written as what they are."""
 
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+from assess.fields import Field
+from assess.i18n import gettext as _
+from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.xlsx.said import Terms, refer, say_terms
-from assess.report.xlsx.styles import LOOKS, Style, class_looks, state_looks, write_names
+from assess.report.findings.verified import SCENARIO
+from assess.report.xlsx.item_formulas import Terms, build_terms
 from assess.risk import RiskClass
+from assess.route_results import RouteState
 
 LONGEST = 32_000
 """Characters of a text that are kept; a cell holds 32,767."""
-
 LINE = 15
 """Height of a line [points]: not every program grows a row to its text by itself."""
 MOST_LINES = 20
 """Lines of a row; Excel allows 409 points."""
+CHANCE, COUNT = "0.0%", "#,##0"
+A4 = 9
+_LONGEST_NAME = 31
+"""Characters of a sheet's name."""
 
-ITALIC: dict[str, Any] = {"font_color": "#a03000", "italic": True}
+LOOKS: Mapping[str, Mapping[str, Any]] = {
+    "title": {"bold": True, "font_size": 15, "font_color": "#1f3a4d"},
+    "head": {"bold": True, "bg_color": "#1f3a4d", "font_color": "#ffffff", "text_wrap": True, "valign": "top",
+             "border": 1},
+    "heading": {"bold": True, "font_size": 12, "font_color": "#1f3a4d"},
+    "input": {"font_color": "#0000c0", "bg_color": "#fffbe6", "valign": "top"},
+    "live": {"font_color": "#1f3a4d", "valign": "top"},
+    "total": {"bold": True, "top": 1, "valign": "top"},
+    "warning": {"font_color": "#a03000", "italic": True},
+    "text": {"text_wrap": True, "valign": "top"},
+    "plain": {"valign": "top"},
+}  # fmt: skip
+"""The looks of cells."""
+_INKS = {RouteState.OPEN: "#1a1a1a", RouteState.REDUCED: "#1a1a1a", RouteState.BLOCKED: "#ffffff"}
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of a sheet.
+
+    Parameters
+    ----------
+    label : str
+        Its heading, in the language in use, with the unit.
+    width : int
+        In characters.
+    read : callable
+        From a row to its value.
+    format : str
+        How Excel shows a number.
+    key : str
+        Its name in formulas, in the sheet Items.
+    look : str
+        One of `LOOKS`; "" goes by the value.
+    is_live, needs_simulation, is_hidden : bool
+        In Items: whether it holds a formula, of which `read` gives the result; whether it does so in simulated rows
+        only, and holds the value in the others; whether it is hidden.
+    align : str
+        "center" or "".
+    """
+
+    label: str
+    width: int
+    read: Callable[[Any], Any]
+    format: str = ""
+    key: str = ""
+    look: str = ""
+    is_live: bool = False
+    needs_simulation: bool = False
+    is_hidden: bool = False
+    align: str = ""
+
+
+def of_field(field: Field, **more: Any) -> Column:
+    """Return the column of a field of the results; `more` are parameters of `Column` that differ."""
+    return replace(Column(field.heading(), field.width, field.read, field.format, field.key), **more)
 
 
 class Pen:
@@ -26,50 +90,27 @@ class Pen:
     `sheets` are the names of its sheets by their keys.
     """
 
-    def __init__(self, book: Any, sheets: Mapping[str, str]) -> None:
-        self.book, self.sheets = book, sheets
-        self.terms: Terms = say_terms()
+    def __init__(self, book: Any, sheets: Mapping[str, str], progress: Progress = SILENT) -> None:
+        self.book, self.sheets, self.progress = book, sheets, progress
+        self.terms: Terms = build_terms()
         self._formats: dict[str, Any] = {}
-        self._named: dict[str, tuple[int | None, list[Any]]] = {}
-        self.head, self.title, self.wrap = map(self.style, ("Heading 1", "Title", "Explanatory Text"))
-        self.heading, self.total, self.input = map(self.style, ("Heading 2", "Total", "Input"))
-        self.percent, self.live = self.style("Percent"), self.style("Calculation")
-        self.classes = {risk: self._name(name, None, look) for risk, (name, look) in class_looks().items()}
-        self.states = {state: self._name(name, None, look) for state, (name, look) in state_looks().items()}
-        self._marked: dict[str, Any] = {risk.symbol: form for risk, form in self.classes.items()}
-        self._marked |= {state.symbol: form for state, form in self.states.items()}
-        self.warning = self.style("Warning Text")
-        self.top, self.void = self.format(valign="top"), self.format(**ITALIC)
-        write_names(book, self._styles)
+        self.classes = {risk: self.style("text", bg_color=risk.fill, font_color=risk.ink) for risk in RiskClass}
+        states = {
+            state.symbol: self.style("text", bold=True, bg_color=state.fill, font_color=ink)
+            for state, ink in _INKS.items()
+        }
+        self._marked = {risk.symbol: style for risk, style in self.classes.items()} | states
 
-    def format(self, num_format: str = "General", **more: Any) -> Any:
+    def format(self, **look: Any) -> Any:
         """Return a format, the same one for the same look."""
-        name = repr((num_format, sorted(more.items())))
+        name = repr(sorted(look.items()))
         if name not in self._formats:
-            self._formats[name] = self.book.add_format({"num_format": num_format, **more})
+            self._formats[name] = self.book.add_format(look)
         return self._formats[name]
 
-    def style(self, name: str, **more: Any) -> Any:
-        """Return the format of a named style, with what is otherwise in some of its cells."""
-        builtin, look = LOOKS[name]
-        if more:
-            self.style(name)
-        return self._name(name, builtin, look | more)
-
-    def _name(self, name: str, builtin: int | None, look: Mapping[str, Any]) -> Any:
-        made = self.format(**look)
-        made._get_xf_index()  # so that it is written whether or not a cell has it
-        formats = self._named.setdefault(name, (builtin, []))[1]
-        if made not in formats:
-            formats.append(made)
-        return made
-
-    def _styles(self) -> list[Style]:
-        """Return the named styles with the places of their formats, once all have been made."""
-        return [
-            Style(name, builtin, [one._get_xf_index() for one in formats])
-            for name, (builtin, formats) in self._named.items()
-        ]
+    def style(self, name: str, code: str = "", **more: Any) -> Any:
+        """Return the format of one of `LOOKS`, with a number format and what differs."""
+        return self.format(**LOOKS[name], **({"num_format": code} if code else {}), **more)
 
     def refer(self, sheet: str) -> str:
         """Return a sheet by its key as formulas write it before a cell."""
@@ -86,64 +127,52 @@ class Pen:
             text = str(value)
             page.write_string(row, column, text if len(text) <= LONGEST else f"{text[:LONGEST]}…", form)
 
-    def heads(self, page: Any, heads: Sequence[str], widths: Sequence[int], row: int = 0) -> None:
+    def heads(self, page: Any, labels: Sequence[str], widths: Sequence[int], row: int = 0) -> None:
         """Write the heading row of a table, and set its columns' widths where it begins a sheet."""
-        page.set_row(row, LINE * max(count_lines(label, width) for label, width in zip(heads, widths, strict=True)))
-        for at, (label, width) in enumerate(zip(heads, widths, strict=True)):
+        page.set_row(row, row_height(labels, widths))
+        for at, label in enumerate(labels):
             if row == 0:
-                page.set_column(at, at, width)
-            page.write_string(row, at, label, self.head)
+                page.set_column(at, at, widths[at])
+            page.write_string(row, at, label, self.style("head"))
 
-    def listing(
-        self,
-        page: Any,
-        heads: Sequence[str],
-        widths: Sequence[int],
-        rows: Sequence[Sequence[Any]],
-        formats: Mapping[int, str] | None = None,
-    ) -> None:
+    def listing(self, page: Any, columns: Sequence[Column], rows: Sequence[Any]) -> int:
         """Write a sheet that is one table: frozen head, filter, head repeated on each printed page.
 
-        `formats` are the number formats of columns that need one. A class stands in the style of the class.
+        A class or a state is coloured by the symbol that it begins with. Returns the row below the table.
         """
-        self.heads(page, heads, widths)
-        self._rows(page, 1, widths, rows, formats or {})
+        widths = [one.width for one in columns]
+        self.heads(page, [one.label for one in columns], widths)
+        below = self._rows(page, 1, columns, widths, rows)
         page.freeze_panes(1, 0)
         page.repeat_rows(0)
         if rows:
-            page.autofilter(0, 0, len(rows), len(heads) - 1)
+            page.autofilter(0, 0, len(rows), len(columns) - 1)
+        return below
 
     def below(
-        self, page: Any, row: int, title: str, heads: Mapping[str, str], widths: Sequence[int],
-        rows: Sequence[Sequence[Any]],
-    ) -> int:  # fmt: skip
-        """Write a further table below the first of a sheet, whose columns have `widths`; return the row below it.
+        self, page: Any, row: int, title: str, columns: Sequence[Column], widths: Sequence[int], rows: Sequence[Any]
+    ) -> int:
+        """Write a further table below the first of a sheet, whose columns have `widths`; return the row below it."""
+        page.write_string(row, 0, title, self.style("heading"))
+        self.heads(page, [one.label for one in columns], widths, row + 1)
+        return self._rows(page, row + 2, columns, widths, rows)
 
-        `heads` holds the number formats by the headings.
-        """
-        widths = widths[: len(heads)]
-        page.write_string(row, 0, title, self.heading)
-        self.heads(page, tuple(heads), widths, row + 1)
-        self._rows(page, row + 2, widths, rows, {at: code for at, code in enumerate(heads.values()) if code})
-        return row + 2 + len(rows)
-
-    def _rows(
-        self, page: Any, top: int, widths: Sequence[int], rows: Sequence[Sequence[Any]], formats: Mapping[int, str]
-    ) -> None:
-        shown = {at: self._format(code) for at, code in formats.items()}
+    def _rows(self, page: Any, top: int, columns: Sequence[Column], widths: Sequence[int], rows: Sequence[Any]) -> int:
+        shown = [self.style("plain", one.format) for one in columns]
         for number, row in enumerate(rows, top):
-            lines = max(count_lines(value, width) for value, width in zip(row, widths, strict=True))
-            page.set_row(number, LINE * lines)
-            for at, value in enumerate(row):
-                text = self._class(value) if isinstance(value, str) else None
-                self.put(page, number, at, value, text or shown.get(at, self.top))
+            self.progress.check()
+            values = [one.read(row) for one in columns]
+            page.set_row(number, row_height(values, widths))
+            for at, value in enumerate(values):
+                self.put(page, number, at, value, self._style_of(value) or shown[at])
+        return top + len(rows)
 
-    def _format(self, code: str) -> Any:
-        return self.percent if code == "0.0%" else self.format(code, valign="top")
-
-    def _class(self, text: str) -> Any:
-        """Return the style of a text: that of a class or state where it begins with the symbol of one."""
-        return self._marked.get(text[0], self.wrap) if text[1:2] == " " else self.wrap
+    def _style_of(self, value: Any) -> Any:
+        """Return the style of a text, that of a class or state where it begins with its symbol; None for a number."""
+        if not isinstance(value, str):
+            return None
+        text = self.style("text")
+        return self._marked.get(value[0], text) if value[1:2] == " " else text
 
     def colour(self, page: Any, area: str) -> None:
         """Colour the cells of an area by the symbol of the class that they begin with."""
@@ -160,6 +189,11 @@ class Pen:
         page.conditional_format(area, rule)
 
 
+def row_height(values: Iterable[Any], widths: Iterable[int]) -> int:
+    """Return the height of a row [points] by its texts in columns of these widths [characters]."""
+    return LINE * max(count_lines(value, width) for value, width in zip(values, widths, strict=False))
+
+
 def count_lines(value: Any, width: int, most: int = MOST_LINES) -> int:
     """Return the lines that a text takes in a column of a width [characters], `most` at most."""
     return min(most, max(1, math.ceil(len(value) * 1.1 / width))) if isinstance(value, str) else 1
@@ -170,6 +204,43 @@ def with_unit(label: str, unit: str) -> str:
     return f"{label} [{unit}]"
 
 
-def clip(text: str, longest: int) -> str:
-    """Return a text on one line, cut where it is longer."""
-    return words.cut(text, longest)
+# ---------------------------------------------------------------- sheets
+
+
+def refer(name: str) -> str:
+    """Return a sheet's name as formulas write it before a cell."""
+    return "'" + name.replace("'", "''") + "'!"
+
+
+def name_sheets(titles: Mapping[str, str]) -> dict[str, str]:
+    """Return the names of sheets by their keys: of 31 characters at most, without those that Excel forbids, unique."""
+    names: dict[str, str] = {}
+    for key, title in titles.items():
+        plain = re.sub(r"[\[\]:*?/\\]", " ", title).strip().strip("'")[:_LONGEST_NAME].strip() or key
+        names[key] = _unlike(plain, names.values())
+    return names
+
+
+def _unlike(name: str, taken: Iterable[str]) -> str:
+    """Return a name with a number behind it where it is taken; letter case does not count."""
+    known, at, found = {one.casefold() for one in taken}, 1, name
+    while found.casefold() in known:
+        at += 1
+        found = f"{name[: _LONGEST_NAME - len(f' {at}')]} {at}"
+    return found
+
+
+def set_print(page: Any, title: str, sheet: str) -> None:
+    """Set up the printed pages of a sheet: A4 across, fit to the width, with headers; a sheet may set more itself."""
+    page.set_landscape()
+    page.set_paper(A4)
+    page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
+    page.fit_to_pages(1, 0)
+    pages = _plain(_("Page {page} of {pages}", page="\x01", pages="\x02"))
+    page.set_header(f"&L&8 {_plain(words.cut(title, 80))}&R&8 {_plain(sheet)}")
+    page.set_footer(f"&L&8 {_plain(_(SCENARIO).rstrip('.'))}&R&8 {pages}".replace("\x01", "&P").replace("\x02", "&N"))
+
+
+def _plain(text: str) -> str:
+    """Return a text in which an ampersand is no command; a blank stands before it, as digits would be a size."""
+    return text.replace("&", "&&")

@@ -1,25 +1,17 @@
-"""The words for evacuation routes: what may become of them, how likely, and what that rests on."""
+"""The words for evacuation routes: their states, how likely these are, and what that rests on."""
 
 import math
 from collections.abc import Sequence
 
-from assess.inventory.routes import DEFAULT_WIDTH
-from assess.language import gettext as _
-from assess.language import ngettext, number
+from assess.i18n import gettext as _
+from assess.i18n import ngettext, number
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.results import ItemResult
-from assess.routes.model import (
-    Chance,
-    Outlook,
-    RouteResult,
-    Routes,
-    RouteState,
-    SegmentResult,
-    Way,
-)
+from assess.route_results import Chance, RouteRow, RouteState, RouteTables, SegmentRow, WayRow
 from assess.routes.widths import LEVEL, RULES, STAIR
 from assess.units import LENGTH
+from assess.workbook.schema import DEFAULT_WIDTH
 
 MOST_NAMED = 3
 """Names that stand in one cell; of a longer list it is said how many more there are."""
@@ -28,6 +20,7 @@ MOST_NAMED = 3
 def say_state(state: RouteState) -> str:
     """Return a state with its sign, as a chance: ``✕ may be blocked``."""
     said = {
+        RouteState.NOT_EVALUATED: _("not evaluated"),
         RouteState.OPEN: _("open"),
         RouteState.REDUCED: _("may be reduced"),
         RouteState.BLOCKED: _("may be blocked"),
@@ -35,18 +28,18 @@ def say_state(state: RouteState) -> str:
     return f"{state.symbol} {said[state]}"
 
 
-def say_outlook(outlook: Outlook, risk: float = math.inf) -> str:
-    """Return the state, and the one that it may come to by the upper end of the interval.
+def say_outlook(one: SegmentRow | RouteRow, risk: float = math.inf) -> str:
+    """Return the state, and the worse one that the upper end of the interval does not exclude.
 
-    With the chosen risk it is said as well where the state hangs on anchors.
+    With the chosen risk it says where the state depends on anchors.
     """
-    if outlook.blocked.low >= 1:
+    if one.blocked is not None and one.blocked.low >= 1:
         blocked = _("blocked")
         return f"{RouteState.BLOCKED.symbol} {blocked}"
-    said = _say_held(outlook.state) if is_held(outlook, risk) else say_state(outlook.state)
-    if outlook.upper == outlook.state:
+    said = _say_held(one.state) if is_held(one, risk) else say_state(one.state)
+    if one.state_upper == one.state:
         return said
-    upper = say_state(outlook.upper)
+    upper = say_state(one.state_upper)
     return _("{state}, not excluded: {upper}", state=said, upper=upper)
 
 
@@ -58,41 +51,41 @@ def _say_held(state: RouteState) -> str:
     return f"{state.symbol} {said} ⚓"
 
 
-def is_held(outlook: Outlook, risk: float) -> bool:
+def is_held(one: SegmentRow | RouteRow, risk: float) -> bool:
     """Tell whether anchors alone keep something from being blocked, by the chosen risk."""
-    fails = outlook.if_anchors_fail
-    return outlook.state < RouteState.BLOCKED and fails is not None and fails.probability >= risk
+    fails = one.blocked_if_anchors_fail
+    return one.state != RouteState.BLOCKED and fails is not None and fails.probability >= risk
 
 
 def say_unevaluated() -> str:
-    """Return what is said of a segment or route of which nothing tells what can reach it."""
+    """Return the state of a segment or route that could not be evaluated."""
     said = _("not evaluated")
     return f"{words.DASH} {said}"
 
 
 def say_standing() -> str:
-    """Return what is said of a segment or route that is blocked with nothing fallen."""
+    """Return the state of a segment or route that is blocked with nothing fallen."""
     standing = _("blocked as it stands")
     return f"{RouteState.BLOCKED.symbol} {standing}"
 
 
-def say_segment_state(one: SegmentResult, risk: float = math.inf) -> str:
-    """Return the state of a segment, told apart from one blocked with nothing fallen and from one not evaluated."""
+def say_segment_state(one: SegmentRow, risk: float = math.inf) -> str:
+    """Return the state of a segment, as distinct from one blocked with nothing fallen and from one not evaluated."""
     if one.is_blocked_standing:
         return say_standing()
-    return say_outlook(one.outlook, risk) if one.is_evaluated else say_unevaluated()
+    return say_outlook(one, risk) if one.evaluated else say_unevaluated()
 
 
-def say_route_state(one: RouteResult, risk: float = math.inf) -> str:
-    """Return the state of a route, told apart from one blocked with nothing fallen and from one not evaluated."""
+def say_route_state(one: RouteRow, risk: float = math.inf) -> str:
+    """Return the state of a route, as distinct from one blocked with nothing fallen and from one not evaluated."""
     if is_blocked_standing(one):
         return say_standing()
-    return say_outlook(one.outlook, risk) if one.is_evaluated else say_unevaluated()
+    return say_outlook(one, risk) if one.evaluated else say_unevaluated()
 
 
-def is_blocked_standing(one: RouteResult) -> bool:
+def is_blocked_standing(one: RouteRow) -> bool:
     """Tell whether a route is blocked with nothing fallen: no anchor helps it then."""
-    return not one.is_mended
+    return not one.is_fixed
 
 
 def say_chance(chance: Chance) -> str:
@@ -120,16 +113,21 @@ def say_basis(chance: Chance) -> str:
     return _("bounds: the floors' motions come from different sources")
 
 
-def say_recorded(outlook: Outlook) -> str:
+def say_recorded(one: SegmentRow | RouteRow) -> str:
     """Return the state under the recorded motion itself."""
-    state = outlook.in_record
+    state = one.under_record
     said = {RouteState.OPEN: _("open"), RouteState.REDUCED: _("reduced"), RouteState.BLOCKED: _("blocked")}
     return words.DASH if state is None else f"{state.symbol} {said[state]}"
 
 
-def say_segment(one: SegmentResult) -> str:
+def find_chance(one: SegmentRow | RouteRow) -> float:
+    """Return the chance of a blockage for putting rows in order: 0 where it is not evaluated."""
+    return one.blocked.probability if one.blocked else 0.0
+
+
+def say_segment(one: SegmentRow) -> str:
     """Return the name of a segment with its route."""
-    return f"{words.cut(one.segment.route, 40)}: {words.cut(one.segment.segment, 40)}"
+    return f"{words.cut(one.route, 40)}: {words.cut(one.segment, 40)}"
 
 
 def say_risk(risk: float) -> str:
@@ -146,14 +144,17 @@ def say_bounds(chance: Chance) -> str:
 # ---------------------------------------------------------------- sentences
 
 
-def list_cautions(routes: Routes) -> list[str]:
-    """Return what the evaluation of routes takes for granted, and what it leaves out."""
+def list_cautions(routes: RouteTables) -> list[str]:
+    """Return the assumptions of the evaluation of routes, and what it leaves out."""
     return [*_of_pieces(), *_of_states(), *_of_chances(routes)]
 
 
 def _of_pieces() -> tuple[str, ...]:
     return (
-        _("This is screening: no closed rule is published for what a fallen piece takes from a route; ours is this."),
+        _(
+            "This is screening. No published rule exists for how much of a route a fallen piece takes; the following "
+            "is used."
+        ),
         _(
             "A piece counts as falling toward the route unless the plan shows that it cannot reach it. Fallen, it "
             "covers Height × Width from its edge on, and where it stood."
@@ -172,51 +173,54 @@ def _of_pieces() -> tuple[str, ...]:
 def _of_states() -> tuple[str, ...]:
     return (
         _(
-            "A segment is blocked where the width left is under the required one, reduced where pieces take width and "
-            "it is not; a route is blocked where a room or an open end that it serves is cut off from its way out."
+            "A segment is blocked if the width left is below the required one, and reduced if narrowed but still wide "
+            "enough; a route is blocked if a room or an open end that it serves is cut off from its way out."
         ),
-        _("Either is also blocked or reduced where it is so under the recorded motion itself, whatever its chance."),
+        _(
+            "Segments and routes that are blocked or reduced under the recorded motion itself count as such whatever "
+            "their chance."
+        ),
         _("Not counted: pieces that slide or roll on castors, spilt contents, doors that jam or are shut, and people."),
     )
 
 
-def _of_chances(routes: Routes) -> tuple[str, ...]:
+def _of_chances(routes: RouteTables) -> tuple[str, ...]:
     return (
         _(
-            "Chances hold if all anchors do. Pieces whose verified chance counts fall as they did motion by motion, "
-            "others independently; what full independence and full correlation give stands beside, as equal pieces "
+            "Chances assume that all anchors hold. Simulated pieces fall as they did motion by motion, others "
+            "independently; the results for full independence and full correlation are given as well, as equal pieces "
             "fall together."
         ),
         _(
-            "Where that is not so of all pieces of a route together, the largest of the three is its chance, in "
-            "brackets their range. Where outcomes are too many to go through, {n:,} are drawn.",
+            "Where not all pieces of a route were simulated together, its chance is the largest of the three, with "
+            "their range in brackets. Where there are too many outcomes to evaluate all, {n:,} are drawn at random.",
             n=routes.draws,
         ),
     )
 
 
-def say_occupants(one: SegmentResult) -> str:
+def say_occupants(one: SegmentRow) -> str:
     """Return the width that its occupants need and the chance that less is left; a dash where none are given."""
-    if one.needed is None or one.crowded is None:
+    if one.needed_width_m is None:
         return words.DASH
-    needed = words.in_m(one.needed)
-    if one.is_short:
+    needed = words.in_m(one.needed_width_m)
+    if one.insufficient_for_occupants:
         return _("{width} m: insufficient for occupants", width=needed)
-    if one.crowded.high == 0:
+    if one.insufficient_after_falls is None or one.insufficient_after_falls.high == 0:
         return _("{width} m", width=needed)
-    return _("{width} m: less in {chance}", width=needed, chance=say_chance(one.crowded))
+    return _("{width} m: less in {chance}", width=needed, chance=say_chance(one.insufficient_after_falls))
 
 
 # ---------------------------------------------------------------- lists
 
 
-def list_unmended(routes: Routes) -> list[tuple[RouteResult, str]]:
+def list_unfixable(routes: RouteTables) -> list[tuple[RouteRow, str]]:
     """Return the routes that are blocked with nothing fallen, each with the segments where."""
     found = [one for one in routes.routes if is_blocked_standing(one)]
-    narrow = [[routes.segments[at] for at in one.segments if routes.segments[at].is_blocked_standing] for one in found]
-    return [
-        (one, name_few([segment.segment.segment for segment in own])) for one, own in zip(found, narrow, strict=True)
+    narrow = [
+        [routes.segments[at] for at in one.segment_indices if routes.segments[at].is_blocked_standing] for one in found
     ]
+    return [(one, name_few([segment.segment for segment in own])) for one, own in zip(found, narrow, strict=True)]
 
 
 def name_few(names: Sequence[str]) -> str:
@@ -224,40 +228,45 @@ def name_few(names: Sequence[str]) -> str:
     return words.name_first([words.cut(name, 40) for name in names], MOST_NAMED)
 
 
-def say_way(way: Way, routes: Routes) -> str:
+def say_way(way: WayRow, routes: RouteTables) -> str:
     """Return a way out: where it ends, by which segments, the chance of a blockage, and what the first way shares."""
-    segments = [routes.segments[at] for at in way.segments]
+    segments = [routes.segments[at] for at in way.segment_indices]
     said = _(
         "{end} by {segments}: {chance}",
         end=words.cut(way.end, 40),
-        segments=_name_segments(segments),
-        chance=say_chance(way.blocked) if any(one.is_evaluated for one in segments) else _("not evaluated"),
+        segments=_name_segments([one.segment for one in segments]),
+        chance=say_chance(way.blocked) if any(one.evaluated for one in segments) else _("not evaluated"),
     )
     if not way.shared:
         return said
-    shared = _name_segments([routes.segments[at] for at in way.shared])
+    shared = _name_segments(way.shared)
     return _("{way}; shares {segments} with the first", way=said, segments=shared)
 
 
-def _name_segments(segments: Sequence[SegmentResult]) -> str:
-    return words.name_first([words.cut(one.segment.segment, 30) for one in segments], MOST_NAMED)
+def _name_segments(names: Sequence[str]) -> str:
+    return words.name_first([words.cut(name, 30) for name in names], MOST_NAMED)
 
 
-def say_left_out(unevaluated: Sequence[int]) -> str:
+def say_left_out(unevaluated: Sequence[str]) -> str:
     """Return how many segments are not evaluated; nothing where all are."""
     if not unevaluated:
         return ""
     return ngettext("{n:,} segment not evaluated", "{n:,} segments not evaluated", len(unevaluated))
 
 
-def say_other_rooms(one: SegmentResult, results: Sequence[ItemResult]) -> str:
+def say_other_rooms(one: SegmentRow, results: Sequence[ItemResult]) -> str:
     """Return the pieces that would reach a segment, were they not in another room; nothing where there are none."""
     if not one.other_rooms:
         return ""
-    items = [results[at].item for at in one.other_rooms]
+    items = [results[other.item_index].item for other in one.other_rooms]
     named = [f"{words.cut(item.item, 20)} ({words.cut(item.room, 20)})" if item.room else words.cut(item.item, 20)
              for item in items]  # fmt: skip
     return _("not counted, in another room: {pieces}", pieces=words.name_first(named, MOST_NAMED))
+
+
+def name_rooms(one: SegmentRow) -> str:
+    """Return the rooms that a segment runs through, split by commas."""
+    return ", ".join(name for part in (one.room or "").split(";") if (name := part.strip()))
 
 
 def list_widths() -> list[tuple[str, list[str]]]:

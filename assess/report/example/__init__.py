@@ -1,1 +1,0 @@
-"""One piece worked through: every method with its numbers put in."""

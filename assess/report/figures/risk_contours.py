@@ -1,0 +1,176 @@
+"""The figure of risk over breadth and PFA for pieces of one height, with the pieces of the inventory on it."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from assess.i18n import gettext as _
+from assess.i18n import ngettext
+from assess.progress import SILENT, Progress
+from assess.report.figures.draw import draw
+from assess.report.figures.risk_map import (
+    FloatArray,
+    Place,
+    paint_chances,
+    paint_checked,
+    paint_legend,
+    paint_names,
+    paint_pieces,
+    paint_risk,
+)
+from assess.results import ItemResult, Results
+
+if TYPE_CHECKING:
+    from assess.methods import MethodInfo
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contours:
+    """What the figure shows.
+
+    Parameters
+    ----------
+    height_cm : float
+        Of the pieces that it is drawn for.
+    pieces : tuple of ItemResult
+        Those drawn: free-standing rows whose height is within 10 % of it, the worst first.
+    breadth_cm, pfa_g : (b,) and (a,) arrays
+        The grid.
+    panels : sequence of (MethodInfo, (a, b) array)
+        The methods that are drawn, and their chances on the grid [-].
+    caption : tuple of str
+        Sentences that belong below the figure.
+    alt : str
+        What it shows, for those who cannot see it.
+    """
+
+    height_cm: float
+    pieces: tuple[ItemResult, ...]
+    breadth_cm: FloatArray
+    pfa_g: FloatArray
+    panels: Sequence[tuple["MethodInfo", FloatArray]]
+    caption: tuple[str, ...]
+    alt: str
+
+
+def build_contours(results: Results) -> Contours | None:
+    """Return what the series hold for the figure; None where they hold nothing."""
+    series = results.series
+    if "contours/items" not in series:
+        return None
+    pieces = tuple(results.result(int(at)) for at in series["contours/items"])
+    height, ratio = float(series["contours/height_cm"]), float(series["contours/pfv_per_pfa_s"])
+    panels = [
+        (method, series[f"contours/{method.key}"]) for method in results.methods if f"contours/{method.key}" in series
+    ]
+    methods = [method for method, _risk in panels]
+    return Contours(
+        height_cm=height,
+        pieces=pieces,
+        breadth_cm=series["contours/breadth_cm"],
+        pfa_g=series["contours/pfa_g"],
+        panels=panels,
+        caption=(*_describe_figure(height, pieces, methods), *_describe_ratio(pieces[0], ratio, methods)),
+        alt=_describe_alt(height, pieces, methods),
+    )
+
+
+def _name(methods: Sequence["MethodInfo"]) -> str:
+    return ", ".join(_(method.title) for method in methods)
+
+
+def _describe_figure(height: float, pieces: Sequence[ItemResult], methods: Sequence["MethodInfo"]) -> Iterator[str]:
+    yield _(
+        "Chance of overturning of pieces {height:.0f} cm high by these methods: {methods}.",
+        height=height,
+        methods=_name(methods),
+    )
+    yield ngettext(
+        "The symbol is the one free-standing piece within 10 % of this height, at its breadth and the PFA of the "
+        "motion that governs it.",
+        "The symbols are the {n:,} free-standing pieces within 10 % of this height, each at its breadth and the PFA of "
+        "the motion that governs it.",
+        sum(one.item.quantity for one in pieces),
+    )
+    yield _(
+        "A symbol shows the class adopted for the piece, which may differ from the field it lies on: the fields are "
+        "those of the formulas, for this height."
+    )
+    yield _(
+        "Names are those of the worst piece at each place, with the number of further rows there; names for which "
+        "there is no room are left out."
+    )
+
+
+def _describe_ratio(worst: ItemResult, ratio: float, methods: Sequence["MethodInfo"]) -> Iterator[str]:
+    """Say which PFV goes with a PFA under the methods that use it."""
+    by_velocity = [method for method in methods if any(flag.startswith("pfv_") for flag in method.flags)]
+    if not by_velocity:
+        return
+    names = _name(by_velocity)
+    if math.isnan(ratio):
+        yield _(
+            "PFV is not known for the worst of these pieces: the panel {methods} shows the largest chance that any PFV "
+            "gives.",
+            methods=names,
+        )
+        return
+    motion = worst.governing.motion
+    yield _(
+        "In the panel {methods}, PFV grows with PFA, {ratio:.0f} cm/s for each g: the ratio of floor {floor} {axis}, "
+        "whose motion governs the worst of these pieces.",
+        methods=names, ratio=(motion.pfv_cm_s or 0.0) / motion.pfa_g, floor=motion.floor, axis=motion.axis,
+    )  # fmt: skip
+    if "pfv_estimated" in motion.flags:
+        yield _("This PFV is an estimate.")
+    yield _("Where the formula changes from PFA to PFV, it jumps, which shows as a step.")
+
+
+def _describe_alt(height: float, pieces: Sequence[ItemResult], methods: Sequence["MethodInfo"]) -> str:
+    return ngettext(
+        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
+        "{n:,} piece on them; its chance is in the table of all pieces",
+        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
+        "{n:,} pieces on them; their chances are in the table of all pieces",
+        sum(one.item.quantity for one in pieces),
+        height=height,
+        methods=_name(methods),
+    )
+
+
+def draw_contours(contours: Contours, progress: Progress = SILENT) -> bytes:
+    """Draw the figure as SVG."""
+    return draw(7, 3.6, partial(_paint, contours), progress=progress)
+
+
+def _paint(contours: Contours, figure: Any) -> None:
+    places = _find_places(contours.pieces)
+    panels = figure.subplots(1, len(contours.panels), sharex=True, sharey=True, squeeze=False)[0]
+    for axes, (method, risk) in zip(panels, contours.panels, strict=True):
+        lines = paint_risk(axes, contours.breadth_cm, contours.pfa_g, risk)
+        paint_checked(axes, method, contours.height_cm)
+        paint_pieces(axes, places)
+        _frame(axes, method, contours)
+        taken = paint_chances(axes, lines, places)
+        paint_names(axes, places, taken)
+    panels[0].set_ylabel(_("PFA [g]"), fontsize=7)
+    paint_legend(figure)
+
+
+def _find_places(pieces: Sequence[ItemResult]) -> dict[Place, list[ItemResult]]:
+    """Return the pieces at each place, the worst first."""
+    places: dict[Place, list[ItemResult]] = {}
+    for one in pieces:
+        place = round(one.item.breadth_cm, 6), round(one.governing.motion.pfa_g, 6)
+        places.setdefault(place, []).append(one)
+    return places
+
+
+def _frame(axes: Any, method: "MethodInfo", contours: Contours) -> None:
+    axes.set_xlim(*contours.breadth_cm[[0, -1]])
+    axes.set_ylim(*contours.pfa_g[[0, -1]])
+    axes.set_title(_(method.title), fontsize=8, loc="left")
+    axes.set_xlabel(_("breadth [cm]"), fontsize=7)
+    axes.tick_params(labelsize=6)

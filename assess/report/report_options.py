@@ -1,0 +1,74 @@
+"""How reports are written: their language, a firm's own templates, and whether the PDF is for screen readers."""
+
+import difflib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from assess import resources
+from assess.errors import InputError
+from assess.i18n import LANGUAGES, load_catalogue, speaking
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReportOptions:
+    """How reports are written.
+
+    Parameters
+    ----------
+    language : str
+        Code of the language of the reports, one of `assess.i18n.LANGUAGES`; "" takes the workbook's. results.json and
+        items.csv, which programs read, are the same in every language.
+    templates : Path, optional
+        A folder whose files replace those of the same name among the templates: trusted code.
+    accessible : bool
+        Whether the PDF is PDF/UA-1, for screen readers, instead of PDF/A-3u, for archives.
+
+    Raises
+    ------
+    InputError
+        If the language is unknown, or the folder of templates does not exist or holds nothing that replaces a template.
+    """
+
+    language: str = ""
+    templates: Path | None = None
+    accessible: bool = False
+
+    def __post_init__(self) -> None:
+        if self.language and self.language not in LANGUAGES:
+            raise InputError(f"language is {self.language!r}, expected one of {', '.join(LANGUAGES)}")
+        if self.templates is not None:
+            _check_templates(self.templates)
+
+    @property
+    def folders(self) -> tuple[Path, ...]:
+        """Where a template is looked for, in this order."""
+        return (*((self.templates,) if self.templates else ()), resources.templates())
+
+    def read(self, name: str) -> str:
+        """Return the text of a template or style file, the firm's own first."""
+        found = next(folder / name for folder in self.folders if (folder / name).is_file())
+        return found.read_text(encoding="utf-8")
+
+    @contextmanager
+    def spoken(self) -> Iterator[None]:
+        """Have every text be in the language of the report."""
+        with speaking(load_catalogue(self.language or LANGUAGES[0], self.templates)):
+            yield
+
+
+def _check_templates(folder: Path) -> None:
+    """Raise InputError unless every file of a firm's folder replaces a standard template: a slip in a name shows."""
+    if not folder.is_dir():
+        raise InputError(f"templates: there is no folder {folder}")
+    standard = {path.relative_to(resources.templates()).as_posix() for path in resources.templates().rglob("*.*")}
+    own = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    unknown = sorted(name for name in own - standard if not Path(name).name.startswith("."))
+    if unknown:
+        near = difflib.get_close_matches(unknown[0], standard, 1, 0.5)
+        hint = f" Did you mean {near[0]}?" if near else ""
+        raise InputError(f"templates: {folder}: {unknown[0]} replaces no standard template.{hint}")
+    if not own & standard:
+        names = ", ".join(sorted({name.split("/")[0] for name in standard}))
+        raise InputError(f"templates: {folder} holds no template: expected some of {names}, as in the standard ones")

@@ -1,0 +1,269 @@
+"""The JSON Schema of results.json, made from the fields of `assess.fields` and the rows of `assess.route_results`.
+
+``python -m assess.report.results_schema`` writes it beside this file; descriptions are the fields' help and the rows'
+docstrings.
+"""
+
+import inspect
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from enum import StrEnum
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+
+from assess import route_results as rows
+from assess.errors import Problem
+from assess.fields import AXES, MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
+from assess.risk import RiskClass
+from assess.settings import SCENARIOS, Settings
+from assess.workbook.schema import BUILDING, Column
+
+VERSION = "3.0"
+FILE = Path(__file__).with_name("results.schema.json")
+
+Schema = dict[str, Any]
+
+TEXT: Schema = {"type": "string"}
+HASH: Schema = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
+SHARE: Schema = {"type": "number", "minimum": 0, "maximum": 1}
+INSIDE: Schema = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+COUNT: Schema = {"type": "integer", "minimum": 0}
+ROW: Schema = {"type": "integer", "minimum": 1}
+
+
+def build_schema() -> Schema:
+    """Return the schema."""
+    top = {
+        "schema": {"const": VERSION},
+        "assess": _assess(),
+        "building": _object({key: value for column in BUILDING.columns for key, value in _building(column)}),
+        "floors": _list(_object({
+            "floor": TEXT, "name": TEXT, "elevation_m": _or_null({"type": "number"}),
+            "demands": _list(_ref("demand")) | {"minItems": len(AXES)},
+        })),
+        "items": _list(_ref("item")),
+        "routes": _of_row(rows.RouteTables),
+        "problems": _list(_of_row(Problem) | {"description": "Warnings and notes about the input."}),
+    }  # fmt: skip
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "assess: results.json",
+        "description": "Results of one run. Units are in the names; null is unknown. `schema` rises with each change.",
+        **_object(top),
+        "$defs": _definitions(),
+    }
+
+
+def _definitions() -> Schema:
+    verification = _of_fields(SIMULATION_FIELDS)["properties"]["verification"]
+    return {
+        "method": _method(),
+        "demand": _of_fields(MOTION_FIELDS) | {"description": "A motion that serves a floor along an axis."},
+        "item": _item(),
+        "verification": verification | {"description": "What simulation found; null: it was not simulated."},
+        **{name: _of_row(row) | _conditions(row) for row, name in _ROWS.items()},
+    }
+
+
+# ---------------------------------------------------------------- parts
+
+
+def _object(properties: Mapping[str, Schema], *, optional: Iterable[str] = ()) -> Schema:
+    required = [name for name in properties if name not in optional]
+    return {"type": "object", "properties": dict(properties), "required": required, "additionalProperties": False}
+
+
+def _list(items: Schema) -> Schema:
+    return {"type": "array", "items": items}
+
+
+def _map(values: Schema) -> Schema:
+    return {"type": "object", "additionalProperties": values}
+
+
+def _ref(name: str) -> Schema:
+    return {"$ref": f"#/$defs/{name}"}
+
+
+def _or_null(schema: Schema) -> Schema:
+    if "enum" in schema:
+        return schema | {"enum": [*schema["enum"], None]}
+    return schema | {"type": [schema["type"], "null"]} if "type" in schema else {"oneOf": [schema, {"type": "null"}]}
+
+
+# ---------------------------------------------------------------- fields
+
+
+_KINDS: Mapping[str, Schema] = {
+    "text": TEXT, "number": {"type": "number"}, "count": COUNT, "share": SHARE, "flag": {"type": "boolean"},
+    "class": {"enum": [risk.word for risk in RiskClass]}, "list": _list(TEXT),
+}  # fmt: skip
+_GROUPS_OR_NULL = {("verification",), ("verification", "record"), ("ensemble",), ("ensemble", "fit")}
+
+
+def _of_fields(chosen: Iterable[Field]) -> Schema:
+    """Return the schema of the records that `assess.fields.Shape` makes."""
+    tree: dict[str, Any] = {}
+    for one in chosen:
+        inner = tree
+        for name in one.place[:-1]:
+            inner = inner.setdefault(name, {})
+        inner[one.place[-1]] = one
+    return _of_tree(tree, ())
+
+
+def _of_tree(tree: Mapping[str, Any], place: tuple[str, ...]) -> Schema:
+    made = {name: _of_tree(one, (*place, name)) if isinstance(one, dict) else _leaf(one) for name, one in tree.items()}
+    return _or_null(_object(made)) if place in _GROUPS_OR_NULL else _object(made)
+
+
+def _leaf(one: Field) -> Schema:
+    schema = {"enum": list(one.choices)} if one.choices else _KINDS.get(one.kind, {})
+    schema = _or_null(schema) if one.is_optional else schema
+    return schema | ({"description": one.help} if one.help else {})
+
+
+def _item() -> Schema:
+    item = _of_fields(arrange_item_fields((), "Items"))
+    own = item["properties"]
+    own["axes"] = _list(_object({
+        "axis": own["axis"], "source": own["pfa_source"], "pfa_g": {"type": "number"},
+        "pfv_cm_s": _or_null({"type": "number"}), "methods": _map(_or_null(SHARE)),
+        "verification": _ref("verification"),
+    })) | {"description": own["axes"]["description"]}  # fmt: skip
+    methods = _map(_ref("method")) | {"description": "By the keys of the methods."}
+    return _object(own | {"verification": _ref("verification"), "methods": methods})
+
+
+def _method() -> Schema:
+    value = _or_null(SHARE) | {"description": "Chance of overturning, or 1 met and 0 not met; null: not evaluated."}
+    return _object({"value": value, "flags": _list(TEXT)}) | {
+        "additionalProperties": {"type": ["number", "string", "boolean", "null"]},
+        "description": "Beside the value are the method's own details, units in their names.",
+    }
+
+
+def _building(column: Column) -> Iterable[tuple[str, Schema]]:
+    kinds = {"number": _or_null({"type": "number"}), "count": _or_null({"type": "integer"}), "file": _or_null(TEXT)}
+    has_unit = column.quantity and column.quantity != "angle"
+    yield f"{column.name}_{column.unit}" if has_unit else column.name, kinds.get(column.kind, TEXT)
+
+
+def _assess() -> Schema:
+    fitted = _object({"title": TEXT, "reference": TEXT})
+    return _object(
+        {
+            "version": TEXT,
+            "seed": COUNT | {"description": "Of the generated motions."},
+            "settings": _of_row(Settings),
+            "platform": _map(TEXT),
+            "inputs": _object({"workbook": TEXT, "sha256": HASH, "records": _map(HASH), "motions": _map(HASH)}),
+            "fitted_models": _map(fitted)
+            | {"propertyNames": {"pattern": "^fitted_[a-z0-9_]+$"},
+               "description": "The user's own models among the methods, by key; absent where there are none."},
+        },
+        optional=("fitted_models",),
+    )  # fmt: skip
+
+
+# ---------------------------------------------------------------- rows
+
+
+_ROWS: Mapping[type, str] = {
+    rows.Chance: "chance", rows.PieceRef: "piece", rows.BesideRow: "beside", rows.SegmentRow: "segment",
+    rows.RouteRow: "route", rows.RouteFixRow: "route_fix", rows.WayRow: "way", rows.RoomRow: "room",
+    rows.FloorRoutesRow: "route_floor",
+}  # fmt: skip
+"""The rows that are defined once, by their names in the schema."""
+
+_SPECIAL: Mapping[tuple[type, str], Schema] = {
+    **{(row, "row"): ROW for row in (rows.PieceRef, rows.BesideRow, rows.RouteFixRow)},
+    (rows.RouteTables, "risk"): INSIDE,
+    (rows.SegmentRow, "other_rooms"): _list(TEXT),
+    (rows.BesideRow, "falls_while_blocked"): SHARE,
+    (rows.RouteFixRow, "gain"): SHARE,
+    (rows.RouteFixRow, "left"): SHARE,
+    (Settings, "scenario"): {"enum": list(SCENARIOS)},
+    (Settings, "route_risk"): INSIDE,
+    (Settings, "ductility_reduction"): {"type": "number", "minimum": 1},
+    (Problem, "severity"): {"enum": ["warning", "note"]},
+}
+"""What is not as its type says."""
+
+
+def _of_row(row: Any) -> Schema:
+    hints, texts = get_type_hints(row), _describe(row)
+    made = {}
+    for field in fields(row):
+        if field.name not in rows.NOT_IN_JSON:
+            schema = _SPECIAL.get((row, field.name)) or _of_type(hints[field.name], _number_in(row, field.name))
+            text = {"description": texts[field.name]} if field.name in texts else {}
+            made[rows.JSON_NAMES.get(field.name, field.name)] = schema | text
+    return _object(made)
+
+
+def _number_in(row: type, name: str) -> Schema:
+    """Return the schema of a number: a chance, an expected number or a width that cannot be negative, or any."""
+    if row is rows.Chance:
+        return SHARE
+    is_width = row is rows.SegmentRow and name.endswith("_m")
+    return {"type": "number", "minimum": 0} if is_width or name.endswith("_expected") else {"type": "number"}
+
+
+def _of_type(hint: Any, number: Schema) -> Schema:
+    parts = [one for one in get_args(hint) if one is not NoneType]
+    if get_origin(hint) in (Union, UnionType):
+        made = [_of_type(one, number) for one in parts]
+        schema = made[0] if len(made) == 1 else {"oneOf": made}
+        return _or_null(schema) if NoneType in get_args(hint) else schema
+    if get_origin(hint) is Literal:
+        return {"enum": parts}
+    if get_origin(hint) is tuple:
+        return _list(_of_type(parts[0], number))
+    if is_dataclass(hint):
+        return _ref(_ROWS[hint])  # type: ignore[index]
+    if issubclass(hint, StrEnum):
+        return {"enum": [str(one) for one in hint]}
+    return {bool: {"type": "boolean"}, int: COUNT, float: number, str: TEXT}[hint]
+
+
+def _conditions(row: type) -> Schema:
+    """Return what also holds of a segment or route: it has a state and chances if and only if it is evaluated."""
+    if row not in (rows.SegmentRow, rows.RouteRow):
+        return {}
+    none, states, chances = (
+        rows.RouteState.NOT_EVALUATED.value,
+        ("state", "state_upper"),
+        ("blocked", "blocked_or_reduced"),
+    )
+
+    def either(state: Schema, chance: Schema) -> Schema:
+        return {"properties": dict.fromkeys(states, state) | dict.fromkeys(chances, chance)}
+
+    return {
+        "if": {"properties": {"evaluated": {"const": True}}},
+        "then": either({"not": {"const": none}}, _ref("chance")),
+        "else": either({"const": none}, {"type": "null"}),
+    }
+
+
+def _describe(row: type) -> dict[str, str]:
+    """Return the descriptions of a row's fields in its docstring, but for those that are as in another row."""
+    *_, listed = (inspect.getdoc(row) or "").partition("Parameters\n----------\n")
+    found: dict[str, str] = {}
+    for names, text in re.findall(r"^(\w[\w, ]*)(?: : .*)?\n((?:    .*\n?)+)", listed, re.MULTILINE):
+        plain = " ".join(text.split())
+        found |= {name: plain for name in names.split(", ") if not plain.startswith("As in ")}
+    return found
+
+
+def write_schema(path: Path = FILE) -> None:
+    """Write the schema."""
+    path.write_text(json.dumps(build_schema(), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_schema()

@@ -1,0 +1,169 @@
+"""The sheets on motions: Floors, to be edited, with whether it was; Motions, all of them; Verification, their fit."""
+
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.fields import AXES, MOTION_FIELDS
+from assess.i18n import gettext as _
+from assess.report import words
+from assess.report.content import Content
+from assess.report.findings.motions import describe_origin, describe_source, describe_treatment, factors
+from assess.report.xlsx import charts
+from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion
+from assess.report.xlsx.items_sheet import HEAD
+from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, with_unit
+from assess.results import MotionRow
+
+_WIDTHS = {"floor": 12, "name": 22, "pfa": 12, "pfv": 14, "source": 44, "elevation": 12, "edited": 10}
+_CODES = {"pfa": "0.000", "pfv": "0.0"}
+
+
+def write_floors(pen: Pen, page: Any, content: Content) -> None:
+    """Write the motion that serves each floor and axis, to be edited: Items and Summary follow."""
+    run, rows = content.run, len(content.floors)
+    keys = FLOOR_KEYS if run.has_simulated else FLOOR_KEYS[: FLOOR_AT["edited_X"]]
+    widths = [_WIDTHS.get(key.split("_")[0], 20) for key in keys]
+    pen.heads(page, _heads()[: len(keys)], widths)
+    _comment(page)  # now: what is above the row being written is left out
+    for row, floor_page in enumerate(content.floors, HEAD):
+        floor = floor_page.floor
+        motions = [_largest(run.motions_of(floor.floor, axis)) for axis in AXES]
+        texts = (floor.name, *map(_source, motions))
+        lines = map(count_lines, texts, (_WIDTHS["name"], _WIDTHS["source"], _WIDTHS["source"]))
+        page.set_row(row, LINE * max(lines))
+        pen.put(page, row, FLOOR_AT["floor"], floor.floor, pen.style("text"))
+        pen.put(page, row, FLOOR_AT["name"], floor.name, pen.style("text"))
+        for motion in motions:
+            _write_motion(pen, page, row, motion)
+            if run.has_simulated:
+                _write_as_run(pen, page, row, motion, counts_pfv=run.provenance.suite is None)
+        pen.put(page, row, FLOOR_AT["elevation"], floor.elevation_m, pen.style("plain"))
+    _dress(page, rows, len(keys))
+    charts.add_motion(pen, page, (HEAD + rows + 1, 0), (HEAD, HEAD + rows - 1), {a: FLOOR_AT[f"pfa_{a}"] for a in AXES})
+
+
+def _heads() -> list[str]:
+    return [
+        _("Floor"), _("Name"), with_unit(_("PFA X"), "g"), with_unit(_("PFV X"), "cm/s"), _("Source X"),
+        with_unit(_("PFA Y"), "g"), with_unit(_("PFV Y"), "cm/s"), _("Source Y"), with_unit(_("Elevation"), "m"),
+        _("X since the run"), _("Y since the run"), with_unit(_("PFA X as run"), "g"),
+        with_unit(_("PFV X as run"), "cm/s"), with_unit(_("PFA Y as run"), "g"), with_unit(_("PFV Y as run"), "cm/s"),
+    ]  # fmt: skip
+
+
+def _comment(page: Any) -> None:
+    edit_here = _(
+        "Edit the PFA and PFV here: Items and Summary follow. Where several records serve an axis, the one with the "
+        "largest PFA stands here; the sheet Motions lists all. Interpolated floors and those of a code's profile hold "
+        "numbers as run: they do not follow when another floor is edited."
+    )
+    page.write_comment(0, FLOOR_AT["pfa_X"], edit_here, {"x_scale": 2, "y_scale": 1.5})
+
+
+def _dress(page: Any, floors: int, columns: int) -> None:
+    page.freeze_panes(1, 1)
+    page.repeat_rows(0)
+    page.autofilter(0, 0, floors, columns - 1)
+    for axis in AXES:
+        at = FLOOR_AT[f"pfa_{axis}"]
+        page.data_validation(HEAD, at, floors, at, {"validate": "decimal", "criteria": ">=", "value": 0})
+    if columns == len(FLOOR_KEYS):
+        page.set_column(FLOOR_AT["pfa_run_X"], columns - 1, 10, None, {"hidden": True})
+
+
+def _largest(motions: list[MotionRow]) -> MotionRow:
+    return max(motions, key=lambda one: round(one.pfa_g, 9))
+
+
+def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
+    axis, other = motion.axis, "Y" if motion.axis == "X" else "X"
+    for peak, value in (("pfa", motion.pfa_g), ("pfv", motion.pfv_cm_s)):
+        at, formula = FLOOR_AT[f"{peak}_{axis}"], ""
+        if motion.is_borrowed:  # what serves this axis is the other one's: it follows when that is edited
+            cell = _cell(f"{peak}_{other}", row)
+            formula = f'=IF({cell}="","",{cell})'
+        elif peak == "pfv" and value is not None and "pfv_estimated" in motion.flags and not motion.between:
+            formula = f"={_cell(f'pfa_{axis}', row)}*{value / motion.pfa_g!r}"  # the estimate is proportional to PFA
+        if formula:
+            page.write_formula(row, at, formula, pen.style("live", _CODES[peak]), "" if value is None else value)
+        else:
+            pen.put(page, row, at, value, pen.style("input", _CODES[peak]))
+    pen.put(page, row, FLOOR_AT[f"source_{axis}"], _source(motion), pen.style("text"))
+
+
+def _write_as_run(pen: Pen, page: Any, row: int, motion: MotionRow, *, counts_pfv: bool) -> None:
+    """Write the motion of an axis as run, and whether it was edited since; PFV matters where no record is known."""
+    axis, pfv = motion.axis, motion.pfv_cm_s
+    pen.put(page, row, FLOOR_AT[f"pfa_run_{axis}"], motion.pfa_g)
+    pen.put(page, row, FLOOR_AT[f"pfv_run_{axis}"], pfv)
+    cells = {name: _cell(f"{name}_{axis}", row) for name in ("pfa", "pfv", "pfa_run", "pfv_run")}
+    counts = counts_pfv and not motion.has_record
+    formula = edited_motion(pen.terms, cells, counts_pfv=counts, had_pfv=pfv is not None)
+    page.write_formula(row, FLOOR_AT[f"edited_{axis}"], formula, pen.style("warning"), "")
+
+
+def _cell(key: str, row: int) -> str:
+    return f"{xl_col_to_name(FLOOR_AT[key])}{row + 1}"
+
+
+def _source(motion: MotionRow) -> str:
+    detail = factors(motion) if motion.profile else motion.record
+    source = describe_source(motion)
+    return _("{source}: {detail}", source=source, detail=detail) if detail else source
+
+
+# ---------------------------------------------------------------- Motions, Verification
+
+
+def _of_motion(key: str, width: int = 10, **more: Any) -> Column:
+    field = next(one for one in MOTION_FIELDS if one.key == key)
+    return of_field(field, width=width, **more)
+
+
+def write_motions(pen: Pen, page: Any, content: Content) -> None:
+    """Write every motion, with what was done to it."""
+    columns = [
+        Column(_("Floor"), 9, lambda one: one.floor),
+        _of_motion("axis", 6),
+        Column(_("Source"), 30, describe_source),
+        Column(_("Record"), 30, lambda one: one.record),
+        Column(_("Computed from"), 36, lambda one: "" if one.has_record else describe_origin(one)),
+        *map(_of_motion, ("height_ratio", "amplification", "pfa_g", "pfv_cm_s", "pfa_file_g")),
+        _of_motion("station", 24),
+        _of_motion("event", 24),
+        _of_motion("azimuth_deg"),
+        Column(_("Treatment"), 60, describe_treatment),
+    ]
+    pen.listing(page, columns, [one for floor in content.floors for one in floor.motions])
+
+
+_FIT = (
+    "matched_to_s", "mean_deviation", "worst_deviation", "worst_period_s", "pfa_ratio", "pfa_scatter", "pfv_ratio",
+    "pfv_scatter", "spectrum_scatter",
+)  # fmt: skip
+
+
+def write_verification(pen: Pen, page: Any, content: Content) -> None:
+    """Write the motions of every floor and axis under which pieces were simulated, and how they meet their target."""
+    suite, seed = content.run.provenance.suite, content.run.settings.seed
+
+    def kind(one: MotionRow) -> str:
+        if suite is None:
+            return _("generic") if one.ensemble and one.ensemble.generic_spectrum else _("recorded")
+        folder = words.cut(suite.folder, 60)
+        return _("suite {folder}, scaled", folder=folder) if suite.is_scaled else _("suite {folder}", folder=folder)
+
+    columns = [
+        Column(_("Floor"), 9, lambda one: one.floor),
+        _of_motion("axis", 6),
+        Column(_("Source"), 34, describe_source),
+        Column(_("Record"), 30, lambda one: one.record),
+        Column(_("Spectrum"), 14, kind),
+        _of_motion("ensemble_motions", 9),
+        Column(_("Seed"), 8, lambda _one: None if suite else seed, "0"),
+        *(_of_motion(f"ensemble_fit_{name}") for name in _FIT),
+        Column(_("Rows"), 8, lambda one: one.ensemble.cases, COUNT),
+        Column(_("Rows that overturn under the record"), 18, lambda one: one.ensemble.fell_in_record, COUNT),
+    ]
+    pen.listing(page, columns, [one for floor in content.floors for one in floor.motions if one.ensemble])

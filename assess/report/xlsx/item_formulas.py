@@ -1,0 +1,226 @@
+"""The live formulas of Items, and those that show there and in Floors that an input was edited since the run.
+
+A simulated class holds for the inputs that were integrated. Where one of them is edited it is void, and the class of
+the formula is in force again until assess is run anew. What formulas write and compare is in the report's language.
+"""
+
+import string
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.i18n import gettext as _
+from assess.risk import RiskClass
+from assess.workbook import formulas as live
+from assess.workbook.formulas import say_class
+
+ANCHORED = "⚓ "
+"""Mark before the class of an anchored piece, which is that of the piece without its anchor; it is not coloured."""
+TOLERANCE = "1E-9"
+"""How far a number may lie from the one as run [-] before it counts as edited."""
+LIMITS = ("limit_medium", "limit_high", "limit_very_high")
+"""Names of the cells that hold the limits of the classes."""
+ROW = "\x00"
+"""Stands for the number of the row in a formula."""
+CLASS_WEIGHT, ROW_WEIGHT = 10, "1E-9"
+"""In the order of the pieces a class weighs more than any chance; of equal chances the upper row comes first."""
+FLOOR_KEYS = (
+    "floor", "name", "pfa_X", "pfv_X", "source_X", "pfa_Y", "pfv_Y", "source_Y", "elevation", "edited_X", "edited_Y",
+    "pfa_run_X", "pfv_run_X", "pfa_run_Y", "pfv_run_Y",
+)  # fmt: skip
+"""The columns of the sheet Floors, in order; those from ``edited_X`` on are there where pieces were simulated."""
+FLOOR_AT: Mapping[str, int] = {key: at for at, key in enumerate(FLOOR_KEYS)}
+
+
+# ---------------------------------------------------------------- texts in formulas
+
+
+def literal(text: str) -> str:
+    """Return a text as formulas write it."""
+    return '"' + text.replace('"', '""') + '"'
+
+
+def sentence(template: str, **expressions: str) -> str:
+    """Return the expression of a sentence in the language in use: `expressions` take the places of their names."""
+    parts = []
+    for text, name, _spec, _conversion in string.Formatter().parse(template):
+        parts += [literal(text)] if text else []
+        parts += [expressions[name]] if name else []
+    return "&".join(parts)
+
+
+@dataclass(frozen=True, slots=True)
+class Terms:
+    """What formulas write and compare."""
+
+    yes: str
+    edited: str
+    check: str
+    not_simulated: str
+    void: str
+    labels: tuple[str, ...]
+
+    def label(self, rank: str) -> str:
+        """Return the expression for the label of a class by the expression of its place, 0 for low."""
+        return f"CHOOSE({rank}+1,{','.join(map(literal, self.labels))})"
+
+
+def build_terms() -> Terms:
+    """Return the terms in the language in use."""
+    return Terms(
+        yes=_("yes"),
+        edited=_("edited"),
+        check=_("check"),
+        not_simulated=_("not verified"),
+        void=_("void: inputs changed"),
+        labels=tuple(say_class(risk) for risk in RiskClass),
+    )
+
+
+# ---------------------------------------------------------------- Floors
+
+
+def edited_motion(terms: Terms, cells: Mapping[str, str], *, counts_pfv: bool, had_pfv: bool) -> str:
+    """Return the formula that shows whether a floor's motion along an axis differs from the one as run.
+
+    `cells` holds pfa and pfv, and both as run. PFV counts where the motions were made for it; where it was blank as
+    run, any value differs.
+    """
+    tests = [_differs(cells["pfa"], cells["pfa_run"])]
+    if counts_pfv:
+        tests.append(_differs(cells["pfv"], cells["pfv_run"]) if had_pfv else f'{cells["pfv"]}<>""')
+    return f'=IF(IFERROR(OR({",".join(tests)}),TRUE),{literal(terms.edited)},"")'
+
+
+def _differs(now: str, as_run: str) -> str:
+    return f"ABS({now}-{as_run})>{TOLERANCE}*{as_run}"
+
+
+# ---------------------------------------------------------------- Items
+
+
+@dataclass(frozen=True, slots=True)
+class ItemFormulas:
+    """The formulas of a row of Items.
+
+    Parameters
+    ----------
+    cells : mapping of str to str
+        The cells of the row by the keys of their columns.
+    floors : str
+        The sheet Floors as formulas write it, `last` its last row.
+    formula : str
+        Key of the adopted formula's method.
+    """
+
+    cells: Mapping[str, str]
+    floors: str
+    last: int
+    terms: Terms
+    formula: str
+
+    def of_simulated(self) -> dict[str, str]:
+        """Return the formulas of a row that was simulated, by the keys of their columns."""
+        cells, risk, rank = self.cells, self.cells[self.formula], self.cells["rank"]
+        upper = f"IF(ISNUMBER({rank}),{cells['rank_upper']},{_rank(risk)})"
+        found = self._of_any() | {
+            "class_simulated": self._simulated_class(),
+            "class": f"IF(ISNUMBER({rank}),{self._mark()}&{self.terms.label(rank)},{cells['class_formula']})",
+            "chance": f"IF(ISNUMBER({rank}),{cells['chance_run']},{risk})",
+            "edited": self._edited(),
+            "rank": self._simulated_rank(),
+            "rank_upper": f"MAX({rank},{_rank(cells['upper_end'])})",
+            "rank_formula": f'IF(ISNUMBER({risk}),{_rank(risk)},"")',
+            "order": self._order(upper),
+        }
+        return {key: f"={one}" for key, one in found.items()}
+
+    def of_others(self) -> dict[str, str]:
+        """Return the formulas of a row that was not simulated: what is in force there is the formula's."""
+        cells, risk = self.cells, self.cells[self.formula]
+        own = {"class": cells["class_formula"], "chance": risk, "order": self._order(_rank(risk))}
+        return {key: f"={one}" for key, one in (self._of_any() | own).items()}
+
+    def _of_any(self) -> dict[str, str]:
+        cells, check = self.cells, literal(self.terms.check)
+        ratio, pfa, risk = cells["breadth_to_height"], cells["pfa_g"], cells[self.formula]
+        breadth, height = cells["breadth_cm"], cells["height_cm"]
+        classed = f"IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa, LIMITS)},{check})"
+        methods = {
+            key: f"IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},{check})"
+            for key, formula in live_formulas(cells).items()
+        }
+        return methods | {
+            "breadth_to_height": f"IFERROR(IF(OR({breadth}<=0,{height}<=0),{check},{breadth}/{height}),{check})",
+            "axis": self._axis(),
+            "pfa_g": self._on_axis("pfa"),
+            "pfv_cm_s": self._on_axis("pfv"),
+            "class_formula": f"{self._mark()}&{classed}",
+        }
+
+    def _floor(self, key: str) -> str:
+        """Return the value in a column of Floors for the row's floor."""
+        letters = (xl_col_to_name(FLOOR_AT[one]) for one in (key, "floor"))
+        area, names = (f"{self.floors}${one}$2:${one}${self.last}" for one in letters)
+        return f"INDEX({area},MATCH({self.cells['floor']},{names},0))"
+
+    def _axis(self) -> str:
+        given = self.cells["axis_given"]
+        return f'IF({given}<>"",{given},{live.worse_axis(self._floor("pfa_X"), self._floor("pfa_Y"))})'
+
+    def _on_axis(self, peak: str) -> str:
+        chosen = f'IF({self.cells["axis"]}="X",{self._floor(f"{peak}_X")},{self._floor(f"{peak}_Y")})'
+        return f'IF({chosen}="","",{chosen})'
+
+    def _mark(self) -> str:
+        return f'IF({self.cells["anchored"]}={literal(self.terms.yes)},{literal(ANCHORED)},"")'
+
+    def _edited(self) -> str:
+        """Return whether the size, the floor, the axis or the motion along it differs from the one as run."""
+        cells, edited = self.cells, literal(self.terms.edited)
+        axis = cells["axis_given"]
+        tests = [
+            *(_differs(cells[key], cells[f"{key}_run"]) for key in ("breadth_cm", "height_cm")),
+            *(f"{cells[key]}<>{cells[f'{key}_run']}" for key in ("floor", "axis_given")),
+            *(f'IF({axis}="{other}",FALSE,{self._floor(f"edited_{own}")}={edited})' for own, other in ("XY", "YX")),
+        ]
+        return f'IF(IFERROR(OR({",".join(tests)}),TRUE),{edited},"")'
+
+    def _simulated_rank(self) -> str:
+        cells = self.cells
+        at_least = f"IF({cells['fell']}=1,{int(RiskClass.HIGH)},0)"
+        edited = literal(self.terms.edited)
+        return f'IF({cells["edited"]}={edited},"",MAX({_rank(cells["behind"])},{at_least}))'
+
+    def _order(self, rank: str) -> str:
+        """Return the number by which pieces stand in order of their class and chance; nothing for anchored ones."""
+        cells = self.cells
+        free = f"AND({cells['anchored']}<>{literal(self.terms.yes)},ISNUMBER({cells['chance']}))"
+        return f'IF({free},{CLASS_WEIGHT}*{rank}+{cells["chance"]}-ROW()*{ROW_WEIGHT},"")'
+
+    def _simulated_class(self) -> str:
+        rank, upper, formula = (self.cells[key] for key in ("rank", "rank_upper", "rank_formula"))
+        label = self.terms.label
+        could_be = sentence(", " + _("could be {risk}"), risk=label(upper))
+        lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=label(formula))
+        notes = f'IF({upper}>{rank},{could_be},"")&IF({formula}>{rank},{lowered},"")'
+        return f"IF(ISNUMBER({rank}),{self._mark()}&{label(rank)}&{notes},{literal(self.terms.void)})"
+
+
+def live_formulas(cells: Mapping[str, str]) -> dict[str, str]:
+    """Return the formulas of the live methods by the keys of `assess.fields.method_fields`, a method's value last."""
+    names = ("breadth_to_height", "height_cm", "pfa_g", "pfv_cm_s")
+    references = {name: cells.get(name, "A1") for name in names}
+    found: dict[str, str] = {}
+    for method in live.LIVE_METHODS:
+        written = live.write_live(method, references, {one.setting: one.cell for one in method.parameters})
+        found |= {f"{method.key}_{name}": formula for name, formula in written.items() if name != "value"}
+        found[method.key] = written["value"]
+    return found
+
+
+def _rank(chance: str) -> str:
+    """Return the place of a chance's class, 0 for low."""
+    medium, high, very_high = LIMITS
+    return f"IF({chance}>={very_high},3,IF({chance}>={high},2,IF({chance}>={medium},1,0)))"
