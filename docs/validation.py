@@ -1,16 +1,17 @@
 """Write `validation.md` and its figures from the studies: ``python docs/validation.py``, part of ``make docs``.
 
-Every number on the page is from the run. What takes long is kept in `out/studies` and taken up by the next run. The
-page and its figures are written together at the end; `docs` is as it was until then.
+Every number on the page is from the run, and the page names the processor and the versions of the packages. The
+results of long work are kept in `out/studies` for the next run. The page and its figures are written together at the
+end; until then `docs` is unchanged.
 """
 
 import os
 import sys
 from pathlib import Path
 
-from assess.studies import Options, all_studies
-from assess.studies._run import run_all, write_files
-from assess.studies._write import PAGE, build_page
+from assess.progress import Progress, Report
+from assess.studies import PAGE, Options, all_studies, build_page, run_all, write_files
+from docs.machine import describe_machine
 
 ROOT = Path(__file__).parents[1]
 DOCS, OUT = ROOT / "docs", ROOT / "out" / "studies"
@@ -19,11 +20,17 @@ FIGURES = "figures/"
 
 def main() -> None:
     """Write the page."""
-    options = Options(out=OUT, jobs=os.cpu_count() or 1, tell=lambda what: print(what, file=sys.stderr))  # noqa: T201
-    findings = run_all(all_studies(), options)
+    options = Options(out=OUT, jobs=os.cpu_count() or 1)
+    findings = run_all(all_studies(), options, Progress(show))
     figures = {f"{FIGURES}{name}": data for one in findings.values() for name, data in one.figures.items()}
-    page = build_page(all_studies(), findings, options, FIGURES)
+    page = f"{build_page(all_studies(), findings, options, FIGURES)}\n{describe_machine()}\n"
     write_files(DOCS, figures | {PAGE: page.encode("utf-8")})
+
+
+def show(report: Report) -> None:
+    """Print how far the work is."""
+    end = "\n" if report.share == 1 else "\r"
+    print(f"{report.stage}: {100 * report.share:.0f} %", end=end, file=sys.stderr)  # noqa: T201
 
 
 if __name__ == "__main__":

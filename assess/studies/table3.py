@@ -1,74 +1,188 @@
-"""Study `table3`: the PGA at which nine blocks overturned on a shaking table, against what the formulas say.
+"""Study `table3`: the PGA at which nine blocks overturned on a shaking table, compared with the formulas.
 
-The paper's Table 3 (section 5), after Purvance et al. (2008). It prints B/H and PGA alone, so that only methods that
-need no more are held against the tests.
+The paper's Table 3 (section 5), after Purvance et al. (2008). It prints B/H and PGA alone, so only methods that need no
+more are compared with the tests.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from assess.methods._method import FloatArray
 from assess.report.figures.draw import draw
 from assess.risk import RiskClass, classify
-from assess.studies._blocks import (
-    BOUND,
-    BRANCH,
-    CASES,
-    EXPECTED,
-    HEIGHTS,
-    PRINTED,
-    STATIC,
-    TESTS,
-    USED,
-    Block,
-    Judgement,
-    check_printed,
-    find_boundaries,
-    judge_methods,
-    read_blocks,
-)
-from assess.studies._study import Finding, Options, Row, Study, Table, table_lines
+from assess.studies.agreement import correlate_ranks
+from assess.studies.pages import write_finding
+from assess.studies.studied_methods import KANEKO, METHODS, OR, STATIC, Cases, FloatArray
+from assess.studies.study import Finding, Options, Row, Study, Table, read_facts
+from assess.units import GRAVITY
 
-DRAWN = {
-    USED: ("o", "#1b4f72"),
-    BRANCH: ("s", "#db7133"),
-    STATIC: ("^", "#6b6b6b"),
-}
-"""Marks and colours of the medians in the figure; the others have one of the same medians."""
+CASES = ("min", "mean", "max")
+TESTS = 10
+"""Tests of each block; the table prints the least, the mean and the largest PGA."""
+EXPECTED = (1 / (TESTS + 1), 0.5, TESTS / (TESTS + 1))
+"""Chances of a correct fragility at the least, the mean and the largest of ten: ranks over n + 1 for the ends."""
+ANY_HEIGHT, FAST = 1.0, 1e6
+"""The sizes are not printed, and no method evaluated here depends on the height [m]; a PFV [m/s] at which F_f lies far
+below F_b, which selects Kaneko-Hayashi's branch of acceleration."""
+HEIGHTS = (0.3, 1.2)
+"""For the boundary of that branch [m]: I-beam blocks are about as high as the second; the others are not printed."""
+STRONGEST, STEP = 2.0, 0.001
+"""Medians are searched up to this PFA [g], in steps."""
+PRINTED, USED, BRANCH, BOUND, START = (
+    "OR, equation (9)", "OR as used", "Kaneko-Hayashi, PFA branch", "Kaneko-Hayashi, PFV unknown", "Static, g B/H"
+)  # fmt: skip
+DRAWN = {USED: ("o", "#1b4f72"), BRANCH: ("s", "#db7133"), START: ("^", "#6b6b6b")}
+"""Marks and colours of the medians in the figure; the other methods have the medians of one of these."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Block:
+    """One block of Table 3: B/H [-], and by case ("min", "mean", "max") overturning PGA [g] and OR as printed [-]."""
+
+    name: str
+    ratio: float
+    pga: Mapping[str, float]
+    printed: Mapping[str, float]
+
+
+def read_blocks() -> list[Block]:
+    """Return the nine blocks."""
+    rows = read_facts("table3_shaking_table")
+    found = []
+    for name in dict.fromkeys(row["sample"] for row in rows):
+        own = {row["case"]: row for row in rows if row["sample"] == name}
+        pga, printed = ({case: float(own[case][column]) for case in CASES} for column in ("pga_g", "or"))
+        found.append(Block(name, float(own["mean"]["breadth_to_height"]), pga, printed))
+    return found
+
+
+Chance = Callable[[FloatArray, FloatArray], FloatArray]
+"""Chance of overturning (n,) of B/H (n,) [-] and PFA (n,) [g]."""
+
+
+def build_chances(options: Options) -> dict[str, Chance]:
+    """Return the chance of each method that needs only B/H and PFA, by name."""
+
+    def evaluate(key: str, is_raw: bool, pfv: float, ratio: FloatArray, pfa: FloatArray) -> FloatArray:
+        cases = Cases.of(breadth=ratio * ANY_HEIGHT, height=ANY_HEIGHT, pfa=pfa * GRAVITY, pfv=pfv)
+        outcome = METHODS[key].evaluate(cases, options.settings)
+        return np.asarray(outcome.detail["raw"] if is_raw else outcome.value, dtype=np.float64)
+
+    return {
+        PRINTED: partial(evaluate, OR, True, math.nan),
+        USED: partial(evaluate, OR, False, math.nan),
+        BRANCH: partial(evaluate, KANEKO, False, FAST),
+        BOUND: partial(evaluate, KANEKO, False, math.nan),
+        START: partial(evaluate, STATIC, False, math.nan),
+    }
+
+
+def find_median(chance: Chance, ratio: float) -> float:
+    """Return the PFA [g] at which a chance first reaches one half; NaN if it does not, 0 if it does so at rest."""
+    pfa = np.arange(0, STRONGEST + STEP, STEP)
+    over = np.flatnonzero(chance(np.full(pfa.size, ratio), pfa) >= 0.5)
+    if not over.size:
+        return math.nan
+    at = int(over[0])
+    if at == 0:
+        return 0.0
+    low, high = float(pfa[at - 1]), float(pfa[at])
+    while high - low > 1e-12:
+        middle = (low + high) / 2
+        is_over = chance(np.array([ratio]), np.array([middle]))[0] >= 0.5
+        low, high = (low, middle) if is_over else (middle, high)
+    return high
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Judgement:
+    """A method compared with the tests of b blocks.
+
+    `medians` (b,) are the PFA at which its chance is one half [g]; `chances` (b, 3) those at the least, mean and
+    largest measured PGA [-]; `rank_correlation` is Spearman's, of medians and measured means [-]; `bias` and
+    `scatter` are mean and standard deviation of ln(median/measured mean) [-].
+    """
+
+    medians: FloatArray
+    chances: FloatArray
+    rank_correlation: float
+    bias: float
+    scatter: float
+
+    @property
+    def share(self) -> float:
+        """Geometric mean of median/measured mean [-]."""
+        return math.exp(self.bias)
+
+
+def judge_methods(blocks: Sequence[Block], options: Options) -> dict[str, Judgement]:
+    """Compare each method with the tests."""
+    means = np.array([one.pga["mean"] for one in blocks])
+    found = {}
+    for name, chance in build_chances(options).items():
+        medians = np.array([find_median(chance, one.ratio) for one in blocks])
+        chances = [chance(np.full(3, one.ratio), np.array([one.pga[case] for case in CASES])) for one in blocks]
+        off = np.log(medians / means)
+        ranks = correlate_ranks(medians, means)
+        found[name] = Judgement(medians, np.array(chances), ranks, float(off.mean()), float(off.std()))
+    return found
+
+
+def check_printed(blocks: Sequence[Block], options: Options) -> tuple[int, float]:
+    """Return how many values of OR the table prints, and their largest difference from equation (9) [-]."""
+    values = [(one.ratio, one.pga[case], one.printed[case]) for one in blocks for case in CASES]
+    ratios, pga, printed = np.array(values).T
+    return printed.size, float(np.abs(build_chances(options)[PRINTED](ratios, pga) - printed).max())
+
+
+def find_boundaries(blocks: Sequence[Block], options: Options) -> tuple[float, float]:
+    """Return the least and largest F_b of Kaneko-Hayashi [Hz] over the blocks at `HEIGHTS`."""
+    height, ratio = np.meshgrid(HEIGHTS, [one.ratio for one in blocks])
+    cases = Cases.of(breadth=(ratio * height).ravel(), height=height.ravel(), pfa=GRAVITY)
+    found = METHODS[KANEKO].evaluate(cases, options.settings).detail["boundary_frequency_hz"]
+    return float(found.min()), float(found.max())
 
 
 def run(options: Options) -> Finding:
-    """Hold the methods against the tests, and our OR against the printed one."""
+    """Compare the methods with the tests, and OR as evaluated here with OR as printed."""
     blocks = read_blocks()
     judged = judge_methods(blocks, options)
-    return Finding(
-        page=list(_describe(blocks, judged, options)),
-        summary=list(_summarise(blocks, judged, options)),
-        tables=_build_tables(blocks, judged, options),
+    values = {
+        "blocks": blocks, "judged": judged, "used": judged[USED], "bound": judged[BOUND], "start": judged[START],
+        "tests": TESTS, "expected": EXPECTED, "heights": HEIGHTS, "boundaries": find_boundaries(blocks, options),
+        "printed": check_printed(blocks, options), "early": [one.name for one in blocks if one.pga["min"] < one.ratio],
+        "classes": {case: count_printed_classes(blocks, case) for case in CASES},
+    }  # fmt: skip
+    return write_finding(
+        "table3",
+        values,
+        tables=_build_tables(blocks, judged),
         figures={"table3.svg": draw(7, 2.7, partial(_paint, blocks, judged))},
     )
 
 
-# ---------------------------------------------------------------- the tables
+def count_printed_classes(blocks: Sequence[Block], case: str) -> str:
+    """Return how many of the printed values of a case are in which class, in words."""
+    found = Counter(classify(one.printed[case]) for one in blocks)
+    return ", ".join(f"{found[risk]} {risk.word}" for risk in reversed(RiskClass) if found[risk])
 
 
-def _build_tables(blocks: Sequence[Block], judged: Mapping[str, Judgement], options: Options) -> dict[str, Table]:
+def _build_tables(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> dict[str, Table]:
     columns = (
         "sample", "breadth_to_height", "method", *(f"pga_{case}_g" for case in CASES), "median_pfa_g",
         "median_over_mean", *(f"chance_at_{case}" for case in CASES),
     )  # fmt: skip
     methods = ("method", "mean_ln_median_over_mean", "scatter_ln", "rank_correlation")
     printed = ("sample", "breadth_to_height", "case", "pga_g", "or_printed", "or_equation_9", "or_as_used")
+    summary = [(name, one.bias, one.scatter, one.rank_correlation) for name, one in judged.items()]
     return {
         "table3": Table(columns=columns, rows=list(_block_rows(blocks, judged))),
-        "table3-methods": Table(
-            columns=methods,
-            rows=[(name, one.bias, one.scatter, one.rank_correlation) for name, one in judged.items()],
-        ),
+        "table3-methods": Table(columns=methods, rows=summary),
         "table3-printed": Table(columns=printed, rows=list(_printed_rows(blocks, judged))),
     }
 
@@ -76,131 +190,24 @@ def _build_tables(blocks: Sequence[Block], judged: Mapping[str, Judgement], opti
 def _block_rows(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> Iterator[Row]:
     for at, block in enumerate(blocks):
         for name, one in judged.items():
-            median = float(one.medians[at])
-            peaks = [block.pga[case] for case in CASES]
-            yield block.name, block.ratio, name, *peaks, median, median / block.pga["mean"], *one.chances[at].tolist()
+            median, mean = float(one.medians[at]), block.pga["mean"]
+            yield block.name, block.ratio, name, *block.pga.values(), median, median / mean, *one.chances[at].tolist()
 
 
 def _printed_rows(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> Iterator[Row]:
     for at, block in enumerate(blocks):
         for case, name in enumerate(CASES):
-            ours = [float(judged[key].chances[at, case]) for key in (PRINTED, USED)]
-            yield block.name, block.ratio, name, block.pga[name], block.printed[name], *ours
-
-
-# ---------------------------------------------------------------- the page
-
-
-def _describe(blocks: Sequence[Block], judged: Mapping[str, Judgement], options: Options) -> Iterator[str]:
-    yield (
-        f"{len(blocks)} blocks of Purvance et al. (2008), {TESTS} tests each; Table 3 prints B/H and the least, mean "
-        "and largest PGA of overturning, which is PFA here. A method's median is the PFA at which it first says one "
-        f"half. A method that fits has it near the mean, and says about {_join(EXPECTED)} at the three."
-    )
-    yield ""
-    yield from _method_lines(judged)
-    yield ""
-    yield from _block_lines(blocks, judged)
-    yield ""
-    yield _describe_or(blocks, judged)
-    yield ""
-    yield _describe_kaneko_hayashi(blocks, judged, options)
-    yield ""
-    yield _describe_printed(blocks, options)
-    yield ""
-    yield LEFT_OUT
-
-
-def _method_lines(judged: Mapping[str, Judgement]) -> list[str]:
-    heads = ("method", "median / measured mean", "scatter of its ln", "chance at least/mean/largest")
-    rows = []
-    for name, one in judged.items():
-        least, most = ("at least ", "at most ") if name == BOUND else ("", "")
-        chances = _join(one.chances.mean(axis=0))
-        rows.append((name, f"{least}{math.exp(one.bias):.2f}", f"{one.scatter:.2f}", f"{most}{chances}"))
-    return table_lines(heads, rows)
-
-
-def _block_lines(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> list[str]:
-    medians = {"OR": judged[USED], "Kaneko-Hayashi, at least": judged[BOUND], "static": judged[STATIC]}
-    medians_of = (f"median: {name} [g]" for name in medians)
-    heads = ("block", "B/H", "PGA least/mean/largest [g]", *medians_of, "OR as printed")
-    rows = []
-    for at, block in enumerate(blocks):
-        peaks, printed = (_join([values[case] for case in CASES]) for values in (block.pga, block.printed))
-        own = (f"{one.medians[at]:.2f}" for one in medians.values())
-        rows.append((block.name, f"{block.ratio:.2f}", peaks, *own, printed))
-    return table_lines(heads, rows)
-
-
-def _join(values: Sequence[float] | FloatArray) -> str:
-    return "/".join(f"{value:.2f}" for value in values)
-
-
-def _describe_or(blocks: Sequence[Block], judged: Mapping[str, Judgement]) -> str:
-    used = judged[USED]
-    below = int(np.sum(used.medians < judged[STATIC].medians))
-    early = [one.name for one in blocks if one.pga["min"] < one.ratio]
-    least, mean, largest = (f"{value:.2f}" for value in used.chances.mean(axis=0))
-    return (
-        f"OR's median is {math.exp(used.bias):.2f} of the measured mean: OR says {mean} at the mean, and is flat, "
-        f"{least} and {largest} at the ends. For {below} of {len(blocks)} blocks its median is below g B/H, where an "
-        f"ideal block cannot rock; yet {', '.join(early)} at least once fell below that."
-    )
-
-
-def _describe_kaneko_hayashi(blocks: Sequence[Block], judged: Mapping[str, Judgement], options: Options) -> str:
-    low, high = find_boundaries(blocks, options)
-    return (
-        "Kaneko-Hayashi's PFA branch holds for floor frequencies F_f = PFA/(2 pi PFV) up to F_b, "
-        f"{low:.1f} to {high:.1f} Hz (H of {HEIGHTS[0]:g} to {HEIGHTS[1]:g} m); above, PFV decides and the median is "
-        "higher. 'PFV unknown' is the largest chance over every PFV. So the median is at least "
-        f"{math.exp(judged[BOUND].bias):.2f} of the measured mean."
-    )
-
-
-def _describe_printed(blocks: Sequence[Block], options: Options) -> str:
-    check = check_printed(blocks, options)
-    names = {"mean": "mean", "max": "largest", "min": "least"}
-    told = "; ".join(f"{_count_classes(blocks, case)} at the {name}" for case, name in names.items())
-    return (
-        f"All {check.count} printed OR are equation (9), within {check.largest:.4f}. The paper's prose (section 5) "
-        f"calls mean and largest very high; by its own classes they are: {told}."
-    )
-
-
-def _count_classes(blocks: Sequence[Block], case: str) -> str:
-    found = [classify(one.printed[case]) for one in blocks]
-    return ", ".join(f"{found.count(risk)} {risk.word}" for risk in reversed(RiskClass) if risk in found)
-
-
-LEFT_OUT = (
-    "Not evaluated, as PFV, sizes and histories are not printed: Ishiyama and FEMA P-58 (PFV, H), the "
-    "Japanese rule (H), direct integration (H, histories)."
-)
-
-
-def _summarise(blocks: Sequence[Block], judged: Mapping[str, Judgement], options: Options) -> Iterator[str]:
-    check, used, bound = check_printed(blocks, options), judged[USED], judged[BOUND]
-    yield (
-        f"Shaking table: all {check.count} printed OR of Table 3 come out within {check.largest:.4f}. OR reaches one "
-        f"half at {math.exp(used.bias):.2f} of the measured mean PGA (scatter of ln {used.scatter:.2f}); "
-        f"Kaneko-Hayashi, whatever PFV was, at least at {math.exp(bound.bias):.2f}. At the least, mean and "
-        f"largest PGA OR says {_join(used.chances.mean(axis=0))} and Kaneko-Hayashi at most "
-        f"{_join(bound.chances.mean(axis=0))}, where about {_join(EXPECTED)} would fit."
-    )
-
-
-# ---------------------------------------------------------------- the figure
+            values = [float(judged[key].chances[at, case]) for key in (PRINTED, USED)]
+            yield block.name, block.ratio, name, block.pga[name], block.printed[name], *values
 
 
 def _paint(blocks: Sequence[Block], judged: Mapping[str, Judgement], figure: Any) -> None:
     panels = figure.subplots(1, len(DRAWN), sharex=True, sharey=True)
     least, means, largest = (np.array([one.pga[case] for one in blocks]) for case in CASES)
-    bars, look = (means - least, largest - means), {"ms": 3.5, "elinewidth": 0.5, "capsize": 1.5}
+    bars, style = (means - least, largest - means), {"ms": 3.5, "elinewidth": 0.5, "capsize": 1.5}
     for axes, (name, (mark, colour)) in zip(panels, DRAWN.items(), strict=True):
         axes.plot([0, 1], [0, 1], color="#444444", linewidth=0.6, linestyle="--")
-        axes.errorbar(means, judged[name].medians, xerr=bars, fmt=mark, color=colour, **look)
+        axes.errorbar(means, judged[name].medians, xerr=bars, fmt=mark, color=colour, **style)
         _name_blocks(axes, blocks, judged[name].medians)
         axes.set_title(name, loc="left", fontsize=8)
         axes.set_xlim(0, 1.15)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from assess.studies._agreement import correlate_ranks, find_agreement
+from assess.studies.agreement import correlate_ranks, find_agreement
 
 
 def test_by_hand():

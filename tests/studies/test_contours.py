@@ -7,32 +7,31 @@ import pytest
 
 from assess.methods import Cases, all_methods
 from assess.settings import Settings
-from assess.studies._formulas import PRINTED
-from assess.studies._judged import RECORDED
-from assess.studies._study import Options
-from assess.studies._trials import LEVELS
+from assess.studies.buildings import LEVELS, RECORDED
 from assess.studies.contours import DIRECT, HEIGHT, PANELS, choose_contours
+from assess.studies.studied_methods import PRINTED
+from assess.studies.study import Options
 from assess.units import GRAVITY
-from tests.studies.judged import make_judged
+from tests.studies.made_up import make_compared
 
 OPTIONS = Options(out=Path("unused"))
 
 
 def test_the_channel_of_the_highest_risk_as_recorded_is_drawn():
     """Where the chance grows with PFV, it is the channel with the largest recorded PFV."""
-    judged = make_judged(lambda _b, _h, _a, pfv: pfv / 10, OPTIONS)
+    judged = make_compared(lambda _b, _h, _a, pfv: pfv / 10, OPTIONS)
     for one in choose_contours(judged):
-        own = [other.trials for other in judged if other.building == one.judged.building]
-        assert one.judged.trials is max(own, key=lambda other: other.pfv[RECORDED])
+        own = [other.trials for other in judged if other.building == one.compared.building]
+        assert one.compared.trials is max(own, key=lambda other: other.pfv[RECORDED])
         assert one.risk[DIRECT].shape == (len(LEVELS), one.breadth.size) == (17, 17)
         assert one.find_falls(DIRECT).size == one.find_rises(DIRECT).size == 0
 
 
 def test_where_nothing_falls_as_recorded_it_is_that_of_the_largest_pfa():
-    judged = make_judged(lambda b, _h, _a, _v: 0 * b, OPTIONS)
+    judged = make_compared(lambda b, _h, _a, _v: 0 * b, OPTIONS)
     for one in choose_contours(judged):
-        own = [other.trials for other in judged if other.building == one.judged.building]
-        assert one.judged.trials.pfa[RECORDED] == max(other.pfa[RECORDED] for other in own)
+        own = [other.trials for other in judged if other.building == one.compared.building]
+        assert one.compared.trials.pfa[RECORDED] == max(other.pfa[RECORDED] for other in own)
 
 
 def test_irregular_steps_are_measured():
@@ -41,14 +40,14 @@ def test_irregular_steps_are_measured():
     def chance(breadth, _height, pfa, _pfv):
         return np.where((pfa > 4.9) & (pfa < 5.3), 0.2, 0.5) + np.where(breadth > 0.6, 0.1, 0.0)
 
-    for one in choose_contours(make_judged(chance, OPTIONS)):
+    for one in choose_contours(make_compared(chance, OPTIONS)):
         assert one.find_falls(DIRECT) == pytest.approx(np.full(one.breadth.size, 0.3))
         assert one.find_rises(DIRECT) == pytest.approx(np.full(one.pfa.size, 0.1))
 
 
 def test_equation_9_is_irregular_where_its_coefficients_say():
     """Past PFA* = (c + f/(B/H))/(-2e) it falls, where it is below 1; what is used never does."""
-    one = choose_contours(make_judged(lambda b, _h, _a, _v: 0 * b, OPTIONS))[0]
+    one = choose_contours(make_compared(lambda b, _h, _a, _v: 0 * b, OPTIONS))[0]
     x, y = one.breadth / HEIGHT, one.pfa / GRAVITY * 980.665
     grid = (
         -0.97758451 + 0.30856415 / x + 0.0032112873 * y[:, None] - 0.018590461 / x**2
@@ -61,10 +60,10 @@ def test_equation_9_is_irregular_where_its_coefficients_say():
 
 
 def test_what_is_drawn_between_is_the_formula_itself():
-    one = choose_contours(make_judged(lambda b, _h, _a, _v: 0 * b, OPTIONS))[0]
+    one = choose_contours(make_compared(lambda b, _h, _a, _v: 0 * b, OPTIONS))[0]
     breadth, pfa, risk = one.refine("kaneko_hayashi")
     method = next(method for method in all_methods() if method.key == "kaneko_hayashi")
     at, block = 40, 90
-    cases = Cases.of(breadth=breadth[block], height=HEIGHT, pfa=pfa[at], pfv=one.judged.ratio * pfa[at])
+    cases = Cases.of(breadth=breadth[block], height=HEIGHT, pfa=pfa[at], pfv=one.compared.ratio * pfa[at])
     assert risk[at, block] == pytest.approx(method.evaluate(cases, Settings()).value[0])
     assert set(one.risk) == set(PANELS)

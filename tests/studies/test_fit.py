@@ -10,11 +10,11 @@ from assess.methods import Cases
 from assess.methods._fitted import read_model, write_model
 from assess.settings import Settings
 from assess.studies import fit
-from assess.studies._fits import find_errors, fit_all
-from assess.studies._study import Options
-from assess.studies._surfaces import EQUATION_8
+from assess.studies.fit.fits import find_errors, fit_all
+from assess.studies.fit.surfaces import EQUATION_8
+from assess.studies.study import Options
 from assess.units import ACCELERATION, GRAVITY
-from tests.studies.judged import make_judged
+from tests.studies.made_up import make_compared
 
 OPTIONS = Options(out=Path("unused"))
 POWERS = EQUATION_8.powers
@@ -35,7 +35,7 @@ def probit(breadth, height, pfa, pfv):
 
 @pytest.fixture(scope="module")
 def on_surface():
-    return fit_all(make_judged(surface, OPTIONS))
+    return fit_all(make_compared(surface, OPTIONS), OPTIONS)
 
 
 def test_a_known_surface_gives_its_coefficients_back(on_surface):
@@ -46,28 +46,32 @@ def test_a_known_surface_gives_its_coefficients_back(on_surface):
     assert on_surface.equation_8.is_level
 
 
+@pytest.mark.slow
 def test_a_known_probit_gives_its_coefficients_back_and_beats_every_surface():
-    found = fit_all(make_judged(probit, OPTIONS, runs=10**6))
+    found = fit_all(make_compared(probit, OPTIONS, runs=10**6), OPTIONS)
     formula = found.probit.probit
     assert (formula.b0, formula.b1, formula.b2) == pytest.approx((0.4, 1.5, 2.5), rel=1e-3)
     assert found.probit.left_out.error < 1e-3 < min(one.surface.left_out.error for one in found.ranked)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_noise_ranks_the_simplest_first(seed):
     rng = np.random.default_rng(seed)
     found = fit_all(
-        make_judged(lambda breadth, _h, pfa, _v: rng.uniform(0, 1, (pfa.size, breadth.size)), OPTIONS, runs=100)
+        make_compared(lambda breadth, _h, pfa, _v: rng.uniform(0, 1, (pfa.size, breadth.size)), OPTIONS, runs=100),
+        OPTIONS,
     )
     assert found.ranked[0] == found.constant
     assert len(found.constant.surface.coefficients) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_noise_of_channels_ranks_the_simplest_first(seed):
     """All blocks under a channel are alike in what no candidate knows of."""
     rng = np.random.default_rng(seed)
-    found = fit_all(make_judged(lambda *_: rng.uniform(0.2, 0.8), OPTIONS, runs=100))
+    found = fit_all(make_compared(lambda *_: rng.uniform(0.2, 0.8), OPTIONS, runs=100), OPTIONS)
     assert found.ranked[0] == found.constant
 
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from assess.studies._ode23s import E32, D, Ode23s
+from assess.studies.solver.ode23s import E32, D, Ode23s
 
 
 def swing(t, y):
@@ -129,7 +129,7 @@ def test_bad_options(options, says):
         Ode23s(swing, 0.0, np.array([1.0, 0.0]), 1.0, **options)
 
 
-def test_a_solution_that_ends_is_told():
+def test_a_solution_that_ends_is_reported():
     found = solve_ivp(lambda _t, y: y**2, (0, 2), [1.0], method=Ode23s)  # 1 / (1 - t)
     assert not found.success
     assert found.t[-1] == pytest.approx(1.0, abs=0.01)

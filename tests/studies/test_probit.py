@@ -12,7 +12,7 @@ from scipy.stats import norm
 from assess.errors import InputError
 from assess.methods import Cases
 from assess.methods._fitted_model import Probit, find_groups
-from assess.studies._probit import Counts, design, find_left_out, fit_probit, fit_without, loss
+from assess.studies.fit.probit import Counts, design, find_left_out, fit_probit, fit_without, loss
 from assess.units import GRAVITY
 
 RUNS = 100
@@ -152,10 +152,10 @@ def test_a_fit_without_a_group_is_that_to_the_others():
         ({"pfv": np.full(600, np.nan)}, "not finite"),
         ({"pfv": np.ones(3)}, "different lengths"),
         ({name: np.ones(600) for name in ("breadth", "height", "pfa", "pfv")}, "do not vary"),
-        ({"fallen": np.where(design(GIVEN)[:, 1] > 0.2, GIVEN.runs, 0)}, "parts all that fell"),
+        ({"fallen": np.where(design(GIVEN)[:, 1] > 0.2, GIVEN.runs, 0)}, "separates all that fell"),
     ],
 )
-def test_counts_that_cannot_be_fitted_are_told(change, match):
+def test_counts_that_cannot_be_fitted_are_reported(change, match):
     with pytest.raises(InputError, match=match):
         fit_probit(dataclasses.replace(GIVEN, **change))
 

@@ -2,31 +2,32 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from assess.studies import _pulses
-from assess.studies._histories import follow_near, sample, tabulate_histories
-from assess.studies._limits import (
+from assess.studies.pages import render_block
+from assess.studies.solver import STUDY, pulses
+from assess.studies.solver.histories import follow_near, sample, tabulate_histories
+from assess.studies.solver.limits import (
     EXACT,
     KERNEL,
     LOOSE,
     NEAR,
     ODE23S,
     RK45,
+    SIDE,
     TIGHT,
-    Found,
     Limit,
     find_limit,
     read_limits,
     solve_half_sine,
 )  # fmt: skip
-from assess.studies._pulses import ALPHA, ETA, Case, P, Response, Solver, follow
-from assess.studies._study import Options
-from assess.studies.solver import STUDY, describe_missing
+from assess.studies.solver.pulses import ALPHA, ETA, Case, P, Response, Solver, follow
+from assess.studies.study import Options
 from tests.rocking.reference import Block, integrate
 
 LINEAR, NONLINEAR = (Case("one_sine", equation, 5.0) for equation in ("linear", "nonlinear"))
@@ -82,6 +83,7 @@ def test_verdicts_are_not_monotone(case, solver):
     assert (seen[1].impacts, seen[3].impacts) == (1, 0)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=30)
 @given(st.floats(1.02, 9.0), st.booleans())
 def test_the_same_verdicts_as_the_reference_of_the_kernel(amplitude, is_linear):
@@ -119,7 +121,7 @@ def test_free_motion_of_the_linear_equation():
     response = follow(LINEAR, 2.5, EXACT, until=4.0)
     signs = np.sign(response.theta)
     inside = np.flatnonzero((response.times > LINEAR.end) & (signs != 0))
-    h = _pulses.POINT
+    h = pulses.POINT
     checked = 0
     for at in inside[1:-1]:
         steps = np.diff(response.times[at - 1 : at + 2])
@@ -141,7 +143,7 @@ def test_paths_agree_between_solvers():
 
 def test_histories_tell_the_pulse_and_stop_at_the_fall():
     limit = LIMITS[0]
-    table = tabulate_histories([limit], follow_near([limit]))
+    table = tabulate_histories([limit], follow_near([limit], Options(out=Path("unused"))))
     rows = list(table.rows)
     assert all(len(row) == len(table.columns) for row in rows)
     assert max(float(str(row[4])) for row in rows) == pytest.approx((limit.listed + NEAR) * ALPHA, rel=0.02)
@@ -162,25 +164,22 @@ def test_a_limit_that_is_not_there_is_not_found():
 
 
 def test_limits_that_are_not_found_are_counted():
-    def find(*values: float) -> list[Found]:
-        return [Found(one, 1, Response(), Response()) for one in values]
-
-    assert describe_missing({EXACT: find(3.0, 6.0), RK45: find(3.1, 6.1)}) == ""
-    told = describe_missing({EXACT: find(3.0, 6.0), RK45: find(3.1, math.nan), LOOSE[0]: find(math.nan, math.nan)})
-    assert told == ("Not found within 0.16 alpha g of the listed limits, and left out: 1 by RK45, 2 by RK45 loose.")
+    assert render_block("solver", "missing", missing={"DOP853": 0, "RK45": 0}, side=SIDE) == []
+    shown = render_block("solver", "missing", missing={"DOP853": 0, "RK45": 1, "RK45 loose": 2}, side=SIDE)
+    assert shown == ["Not found within 0.16 alpha g of the listed limits, and left out: 1 by RK45, 2 by RK45 loose."]
 
 
-def test_a_solver_that_fails_is_told():
+def test_a_solver_that_fails_is_reported():
     with pytest.raises(ArithmeticError, match="at 3 alpha g"):
         follow(LINEAR, 3.0, Solver("RK45", "RK45", 1e-5, math.nan))
 
 
 @pytest.mark.slow
 def test_the_study(tmp_path):
-    told: list[str] = []
-    finding = STUDY.run(Options(out=tmp_path, tell=told.append))
+    shares: list[float] = []
+    finding = STUDY.run(Options(out=tmp_path, report_share=shares.append))
     page = "\n".join(finding.page)
-    assert "The paper picked ODE23s" in page
+    assert "The paper chose ODE23s" in page
     assert "| ODE23s | 1e-05, 1e-07 | 0.0003" in page
     assert "20 of 20" in page
     assert "3.033 (+0.0007), 6.744 (+0.0010)" in page
@@ -192,4 +191,5 @@ def test_the_study(tmp_path):
     for table in finding.tables.values():
         assert {len(row) for row in table.rows} == {len(table.columns)}
     assert finding.figures["solver-histories.svg"].startswith(b"<?xml")
-    assert len(told) == 8
+    assert shares == sorted(shares)
+    assert shares[0] == 0 < shares[-1] < 1

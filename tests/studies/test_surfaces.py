@@ -1,4 +1,4 @@
-"""Surfaces that are fitted and ranked: known ones come back, and noise is told from a surface."""
+"""Surfaces that are fitted and ranked: known ones come back, and noise is shown from a surface."""
 
 import dataclasses
 
@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from assess.errors import InputError
 from assess.methods import Cases, proposed_or
 from assess.methods._fitted_model import expand
-from assess.studies._surfaces import (
+from assess.studies.fit.surfaces import (
     CANDIDATES,
     CONSTANT,
     EQUATION_8,
@@ -127,7 +127,7 @@ class TestFit:
         assert not found.is_ill_conditioned
         assert 1 < found.condition < 10
 
-    def test_too_few_values_are_told(self):
+    def test_too_few_values_are_reported(self):
         two = RATIOS[[0, -1]]
         x, y = (np.tile(one.ravel(), 3) for one in np.meshgrid(two, PEAKS))
         group = np.repeat([0, 1, 2], two.size * PEAKS.size)
@@ -139,11 +139,11 @@ class TestFit:
         [
             ({"z": np.zeros(3)}, "different lengths"),
             ({"z": np.full(X.size, np.nan)}, "not finite"),
-            ({"x": np.zeros(X.size)}, "x not above 0"),
+            ({"x": np.zeros(X.size)}, "x is not above 0"),
             ({"group": np.zeros(X.size)}, "at least two"),
         ],
     )
-    def test_bad_points_are_told(self, change, match):
+    def test_bad_points_are_reported(self, change, match):
         with pytest.raises(InputError, match=match):
             Points(**{"x": X, "y": Y, "z": eq9(X, Y), "group": GROUP} | change)
 

@@ -16,12 +16,12 @@ from assess.methods import Cases
 from assess.motion.formats import read_records
 from assess.motion.record import treat
 from assess.rocking.response import follow_block
-from assess.studies._folder import quote, read_folder, tell_folder
-from assess.studies._formulas import evaluate_formulas
-from assess.studies._run import run_study
-from assess.studies._study import Options
-from assess.studies._tower import SHORT_TITLES, climb, climb_all, read_stations
+from assess.studies.run_studies import run_study
+from assess.studies.studied_methods import SHORT_TITLES, evaluate_formulas
+from assess.studies.study import Options
 from assess.studies.table1 import STUDY, climb_buildings, count_classes
+from assess.studies.table1.records_folder import evaluate_folder, quote, read_folder
+from assess.studies.table1.tower import climb, climb_all, read_stations
 from assess.units import GRAVITY
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -118,14 +118,14 @@ def count_words(page):
 
 
 def test_the_files(tmp_path):
-    told = run_study(STUDY, Options(out=tmp_path))
-    page = "\n".join(told.page)
+    shown = run_study(STUDY, Options(out=tmp_path))
+    page = "\n".join(shown.page)
     assert "for 014 Table 1 prints no PGA. **The floors are a scenario, not records:**" in page
     assert "001 and 002 rank with them" in page
     assert "in places 2/4/5 by OR, 3/4/5 by Kaneko-Hayashi, 3/4/5 by FEMA P-58" in page
-    assert count_words(told.page) <= 230
+    assert count_words(shown.page) <= 240
     assert "A free-standing piece of 45 x 160 cm (B/H 0.28) on every floor" in page
-    assert "49 of the paper's 50 buildings" in told.summary[0]
+    assert "49 of the paper's 50 buildings" in shown.summary[0]
     with (tmp_path / "table1.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(climbs().usual.levels)
@@ -137,15 +137,15 @@ def test_the_files(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("breadth", "told"),
+    ("breadth", "shown"),
     [
         (1.0, "(B/H 1.00, outside the range in which OR is checked, 0.14 to 0.39)"),
         (0.10, "(B/H 0.10, outside the range in which OR is checked, 0.14 to 0.39)"),
         (0.39, "(B/H 0.39) on"),
     ],
 )
-def test_a_piece_outside_the_checked_range_is_told(breadth, told):
-    assert told in STUDY.run(options(breadth=breadth, height=1.0)).page[0]
+def test_a_piece_outside_the_checked_range_is_reported(breadth, shown):
+    assert shown in STUDY.run(options(breadth=breadth, height=1.0)).page[0]
 
 
 # ---------------------------------------------------------------- a folder of records
@@ -159,13 +159,13 @@ def test_every_file_is_read_or_told():
     assert reasons["made-up-sweep.csv#up"].startswith("vertical")
     assert reasons["1103.HNZ.NP.BE_a.smc"].startswith("vertical")
     assert "velocity" in reasons["1103.HN2.NP.RE_v.smc"]
-    assert "no known format" in reasons["README.md"]
+    assert "the file format is not supported" in reasons["README.md"]
 
 
 def test_the_verdict_is_that_of_the_record_itself():
     given = options(breadth=0.15, height=1.5)
     folder = read_folder(SAMPLES / "records", Path("unused"))
-    table = tell_folder(folder, given).tables["table1-records"]
+    table = evaluate_folder(folder, given).tables["table1-records"]
     rows = {str(row[0]): dict(zip(table.columns, row, strict=True)) for row in table.rows}
     assert set(rows) == {one.name for one in folder.channels}
     for name, row in rows.items():
@@ -183,18 +183,17 @@ def test_the_verdict_is_that_of_the_record_itself():
 
 
 def test_the_records_of_a_tower(tmp_path):
-    told = run_study(STUDY, Options(out=tmp_path, records=MARKET))
+    shown = run_study(STUDY, Options(out=tmp_path, records=MARKET))
     with (tmp_path / "table1-records.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert f"horizontal channels: {len(rows)};" in "\n".join(told.page)
+    assert f"horizontal channels: {len(rows)};" in "\n".join(shown.page)
     assert all(row["overturned"] in ("True", "False") for row in rows)
 
 
 def test_a_stocky_piece_is_not_integrated():
-    told = tell_folder(read_folder(SAMPLES / "records", Path("unused")), options(breadth=1.5, height=1.0))
-    table = told.tables["table1-records"]
-    assert {row[-3:] for row in table.rows} == {("", "", "")}
-    assert "the piece does not rock" in "\n".join(told.page)
+    found = evaluate_folder(read_folder(SAMPLES / "records", Path("unused")), options(breadth=1.5, height=1.0))
+    assert {row[-3:] for row in found.tables["table1-records"].rows} == {("", "", "")}
+    assert "the piece does not rock" in "\n".join(found.page)
 
 
 def test_folders_that_cannot_serve(tmp_path):
@@ -208,7 +207,7 @@ def test_folders_that_cannot_serve(tmp_path):
         STUDY.run(options(records=tmp_path))
 
 
-def test_a_folder_of_many_files_that_cannot_be_read_is_told_in_short(tmp_path):
+def test_a_folder_of_many_files_that_cannot_be_read_is_reported_in_short(tmp_path):
     for at in range(40):
         (tmp_path / f"{at}.txt").write_text("no record", encoding="utf-8")
     with pytest.raises(InputError, match="; and 32 more") as caught:
@@ -217,17 +216,17 @@ def test_a_folder_of_many_files_that_cannot_be_read_is_told_in_short(tmp_path):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no pipes in folders")
-def test_links_to_nothing_and_pipes_are_told_and_not_opened(tmp_path):
+def test_links_to_nothing_and_pipes_are_reported_and_not_opened(tmp_path):
     folder = copy_record(tmp_path, "a.smc")
     os.mkfifo(folder / "pipe.smc")
     (folder / "gone.smc").symlink_to("nowhere.smc")
     (folder / "round.smc").symlink_to("round.smc")
     (folder / "within").mkdir()
     reasons = dict(read_folder(folder, Path("unused")).left_out)
-    assert {name for name, reason in reasons.items() if reason == "no regular file"} == {
+    assert {name for name, reason in reasons.items() if reason == "not a regular file"} == {
         "pipe.smc", "gone.smc", "round.smc"
     }  # fmt: skip
-    assert reasons["within"] == "a folder: folders within are not looked into"
+    assert reasons["within"] == "a folder: subfolders are not searched"
 
 
 def copy_record(parent, name):
@@ -243,11 +242,11 @@ def test_names_stand_on_the_page_as_they_are(tmp_path):
     folder = copy_record(tmp_path, "a`b|c.smc")
     (folder / os.fsdecode(b"\xff|`d.txt")).write_text("no record", encoding="utf-8")
     renamed = folder.rename(tmp_path / "my `own` records")
-    told = run_study(STUDY, Options(out=tmp_path / "out", records=renamed))
-    page = "\n".join(told.page)
+    shown = run_study(STUDY, Options(out=tmp_path / "out", records=renamed))
+    page = "\n".join(shown.page)
     assert "(folder ``my `own` records``," in page
     assert "\n| ``a`b\\|c.smc`` | " in page
-    assert "Left out, with the whole reasons in `table1-records-left-out.csv`: ``\\udcff|`d.txt`` (" in page
+    assert "Left out, with the full reasons in `table1-records-left-out.csv`: ``\\udcff|`d.txt`` (" in page
     with (tmp_path / "out" / "table1-records.csv").open(encoding="utf-8", newline="") as file:
         assert [row["record"] for row in csv.DictReader(file)] == ["a`b|c.smc"]
 

@@ -7,16 +7,15 @@ import pytest
 
 from assess.methods import Cases, proposed_or
 from assess.settings import Settings
-from assess.studies._agreement import find_agreement
-from assess.studies._compared import ALL, NOTHING, SUBSETS, compare
-from assess.studies._facts import read_facts
-from assess.studies._formulas import FORMULAS, INTEGRATION, PRINTED
-from assess.studies._judged import FIRST_TOGETHER, RECORDED, TOGETHER, by_building, pool
-from assess.studies._study import Options
-from assess.studies._table2_page import describe, explain_overview, give_overview, say_failures
-from assess.studies._trials import LEVELS
+from assess.studies.agreement import by_building, find_agreement, pool
+from assess.studies.buildings import FIRST_TOGETHER, LEVELS, RECORDED, TOGETHER
+from assess.studies.pages import render_block
+from assess.studies.studied_methods import FORMULAS, INTEGRATION, PRINTED
+from assess.studies.study import Options, read_facts
+from assess.studies.table2 import collect
+from assess.studies.table2.comparison import ALL, NOTHING, SUBSETS, compare
 from assess.units import GRAVITY
-from tests.studies.judged import make_judged
+from tests.studies.made_up import make_compared
 
 OPTIONS = Options(out=Path("unused"))
 NAMES = ["575 Market Street", "Great Western Savings", "LACPW headquarters"]
@@ -29,7 +28,7 @@ def half(breadth, _height, pfa, _pfv):
 
 @pytest.fixture(scope="module")
 def judged():
-    return make_judged(half, OPTIONS, runs=100)
+    return make_compared(half, OPTIONS, runs=100)
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +125,7 @@ def test_channels_of_a_floor_are_scaled_by_one_factor(judged):
 
 def test_channels_of_a_pair_are_as_far_apart_as_their_chances():
     """Where a chance is a tenth of PFA [m/s2], they are a tenth of the difference of their PFA apart."""
-    judged = make_judged(lambda b, _h, pfa, _v: pfa / 10 + 0 * b, OPTIONS)
+    judged = make_compared(lambda b, _h, pfa, _v: pfa / 10 + 0 * b, OPTIONS)
     own = {(one.building.name, one.trials.channel.name): one.trials.pfa[FIRST_TOGETHER:] for one in judged}
     for one in compare(judged).pairs:
         first, second = (own[one.building, name][TOGETHER.index(one.pfa)] for name in one.names)
@@ -134,20 +133,22 @@ def test_channels_of_a_pair_are_as_far_apart_as_their_chances():
 
 
 def test_the_page_states_bias_rank_and_classes_for_every_building_and_formula(judged, compared):
-    rows = [line.split(" | ") for line in give_overview(compared) if line.startswith("| ")]
+    values = collect(judged, compared, OPTIONS)
+    head, *others = (render_block("table2", block, **values) for block in ("overview", "page", "failures"))
+    rows = [line.split(" | ") for line in head if line.startswith("| ")]
     assert len(rows) == 1 + len(NAMES) * (len(FORMULAS) + 1)
     for row in rows[1:]:
         name, title = row[0].removeprefix("| "), row[1].strip('"')
-        key = next((key for key, told in FORMULAS.items() if told == title), title)
+        key = next((key for key, shown in FORMULAS.items() if shown == title), title)
         one = compared.agreements[name, ALL, key]
         assert float(row[2]) == pytest.approx(100 * one.bias, abs=0.05)
         assert float(row[3]) == pytest.approx(100 * one.rms, abs=0.05)
         assert key == NOTHING or float(row[4]) == pytest.approx(one.rank_correlation, abs=0.005)
         assert float(row[7].split(" %")[0]) == pytest.approx(100 * one.class_too_low, abs=0.05)
         assert float(row[8].split(" %")[0]) == pytest.approx(100 * one.class_too_high, abs=0.05)
-    told = "\n".join([*explain_overview(judged), *describe(judged, compared, OPTIONS), *say_failures(judged, compared)])
-    for name in NAMES:
-        assert name in told
+    for lines in (head, *others):
+        for name in NAMES:
+            assert name in "\n".join(lines)
 
 
 def test_the_print_of_the_paper():
@@ -156,3 +157,17 @@ def test_the_print_of_the_paper():
     assert len(rows) == 27
     apart = [float(row["housner_direct"]) - float(row["proposed_or"]) for row in rows]
     assert (sum(one > 0 for one in apart), sum(one == 0 for one in apart)) == (20, 1)
+
+
+@pytest.mark.parametrize(
+    ("correlation", "conclusion"),
+    [
+        (-0.9, "-0.90 with PFV/PFA: the higher the frequency, the larger the bias."),
+        (0.9, "0.90 with PFV/PFA: the lower the frequency, the larger the bias."),
+        (-0.2, "-0.20 with PFV/PFA: no clear dependence."),
+        (float("nan"), "its bias is constant."),
+    ],
+)
+def test_the_conclusion_follows_from_the_correlation(judged, compared, correlation, conclusion):
+    values = collect(judged, compared, OPTIONS) | {"correlation": correlation}
+    assert render_block("table2", "failures", **values)[0].endswith(conclusion)

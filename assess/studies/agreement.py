@@ -1,0 +1,161 @@
+"""How formulas agree with direct integration: bias, rank correlation, and the classes missed in either direction."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.risk import classify_all, wilson_interval
+from assess.studies.buildings import LEVELS, RECORDED, Building, Trials, all_buildings, find_levels, rock_building
+from assess.studies.studied_methods import BoolArray, FloatArray, evaluate_formulas
+from assess.studies.study import Options
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Agreement:
+    """How n chances by a formula agree with those by direct integration.
+
+    Parameters
+    ----------
+    cases : int
+        n.
+    bias, scatter : float
+        Mean and standard deviation of formula less integration [-].
+    rank_correlation : float
+        Spearman's [-]; NaN where either is constant.
+    same_class, within_one_class, class_too_low, class_too_high : float
+        Shares of the cases [-]: in the class of the integration; at most one apart; in a lower class; in a higher.
+    beyond_too_low, beyond_too_high : float
+        The same for the class of the nearer end of the 95 % interval of each case, so that differences within the
+        sampling error of the motions are not counted.
+    """
+
+    cases: int
+    bias: float
+    scatter: float
+    rank_correlation: float
+    same_class: float
+    within_one_class: float
+    class_too_low: float
+    class_too_high: float
+    beyond_too_low: float
+    beyond_too_high: float
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of formula less integration [-]."""
+        return math.hypot(self.bias, self.scatter)
+
+
+NAMES = tuple(field.name for field in fields(Agreement))
+
+
+def find_agreement(formula: FloatArray, fallen: NDArray[np.int64], runs: int) -> Agreement:
+    """Compare chances (n,) by a formula with counts of overturned motions of `runs`; cases of NaN are left out."""
+    known = ~np.isnan(formula)
+    chances, counts = formula[known], fallen[known]
+    reference, (low, high) = counts / runs, wilson_interval(counts, np.full(counts.size, runs))
+    classes = classify_all(chances)
+    steps = classes - classify_all(reference)
+    return Agreement(
+        cases=int(chances.size),
+        bias=float(np.mean(chances - reference)),
+        scatter=float(np.std(chances - reference)),
+        rank_correlation=correlate_ranks(chances, reference),
+        same_class=float(np.mean(steps == 0)),
+        within_one_class=float(np.mean(np.abs(steps) <= 1)),
+        class_too_low=float(np.mean(steps < 0)),
+        class_too_high=float(np.mean(steps > 0)),
+        beyond_too_low=float(np.mean(classes < classify_all(low))),
+        beyond_too_high=float(np.mean(classes > classify_all(high))),
+    )
+
+
+def correlate_ranks(one: Sequence[float] | FloatArray, other: Sequence[float] | FloatArray) -> float:
+    """Return Spearman's rank correlation [-]; NaN where either is constant."""
+    from scipy.stats import spearmanr
+
+    if np.ptp(one) == 0 or np.ptp(other) == 0:
+        return math.nan
+    return float(spearmanr(one, other).statistic)
+
+
+# ---------------------------------------------------------------- the channels of all buildings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Compared:
+    """The trials of a channel with the values of the formulas, by key: (a, b) each."""
+
+    building: Building
+    trials: Trials
+    formulas: Mapping[str, FloatArray]
+
+    @property
+    def factors(self) -> FloatArray:
+        """Factors by which the record is scaled [-], (a,)."""
+        return np.asarray(self.trials.pfa / self.trials.channel.read().pfa)
+
+    @property
+    def ratio(self) -> float:
+        """PFV/PFA of the record [s]: the lower the frequency of the motion, the larger."""
+        return float(self.trials.pfv[0] / self.trials.pfa[0])
+
+
+Chosen = Callable[[Compared], BoolArray]
+"""Chooses cases of a channel: (a, b)."""
+
+
+def every_case(one: Compared) -> BoolArray:
+    """Choose all cases at the common values of PFA."""
+    return _choose_rows(one, slice(0, len(LEVELS)))
+
+
+def as_recorded(one: Compared) -> BoolArray:
+    """Choose the cases under the unscaled record."""
+    return _choose_rows(one, RECORDED)
+
+
+def _choose_rows(one: Compared, rows: int | slice) -> BoolArray:
+    chosen = np.zeros(one.trials.fallen.shape, dtype=np.bool_)
+    chosen[rows] = True
+    return chosen
+
+
+def evaluate_trials(building: Building, trials: Trials, options: Options) -> Compared:
+    """Return trials with the values of the formulas."""
+    values = evaluate_formulas(trials.cases, options.settings)
+    return Compared(building, trials, {key: value.reshape(trials.fallen.shape) for key, value in values.items()})
+
+
+def rock_all(options: Options) -> list[Compared]:
+    """Rock the blocks in all buildings, or load the results of an earlier run."""
+    buildings = all_buildings()
+    found: list[Compared] = []
+    total = sum(len(one.channels) for one in buildings)
+    for building in buildings:
+        part = options.narrow(len(found) / total, (len(found) + len(building.channels)) / total)
+        trials = rock_building(building, find_levels(building), part)
+        found += [evaluate_trials(building, one, options) for one in trials]
+    return found
+
+
+def pool(compared: Sequence[Compared], key: str, chosen: Chosen = every_case) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Return chances by a formula, and numbers of motions that overturned the block, of the chosen cases, (n,) each."""
+    values = [one.formulas[key][chosen(one)] for one in compared]
+    return np.concatenate(values), np.concatenate([one.trials.fallen[chosen(one)] for one in compared])
+
+
+def agree(compared: Sequence[Compared], key: str, chosen: Chosen = every_case) -> Agreement:
+    """Return how a formula agrees with integration on some channels."""
+    return find_agreement(*pool(compared, key, chosen), compared[0].trials.runs)
+
+
+def by_building(compared: Sequence[Compared]) -> dict[str, list[Compared]]:
+    """Return the channels of each building, by its name."""
+    found: dict[str, list[Compared]] = {}
+    for one in compared:
+        found.setdefault(one.building.name, []).append(one)
+    return found

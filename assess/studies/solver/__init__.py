@@ -1,0 +1,166 @@
+"""Study `solver`: overturning limits of a block under pulses by the paper's two solvers, by the kernel, and exactly.
+
+The paper's section 2.1 and Fig. 2 compare ODE45 and ODE23s with Zhang and Makris (2001) and choose ODE23s.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from itertools import product
+
+import numpy as np
+
+from assess.studies.pages import write_finding
+from assess.studies.solver.histories import draw_histories, follow_near, tabulate_histories
+from assess.studies.solver.limits import (
+    EXACT,
+    KERNEL,
+    NEAR,
+    ODE23S,
+    RK45,
+    SHOWN,
+    SIDE,
+    SOLVERS,
+    TIGHT,
+    Found,
+    Limit,
+    find_limit,
+    read_limits,
+    solve_half_sine,
+)
+from assess.studies.solver.pulses import ALPHA, ETA, Case, P, Solver, follow
+from assess.studies.study import Finding, Options, Row, Study, Table
+from assess.units import GRAVITY
+
+BANDS = tuple(round(1.25 + 0.25 * at, 2) for at in range(32))
+"""Amplitudes of the scan for bands of overturning [alpha g]."""
+BAND_COLUMNS = "equation", "amplitude_alpha_g", "solver", "overturned", "impacts"
+LIMIT_COLUMNS = (
+    "pulse", "equation", "frequency_ratio", "listed_alpha_g", "solver", "rtol", "atol", "limit_alpha_g",
+    "less_listed_alpha_g", "less_exact_alpha_g", "changes", "overturned_below", "overturned_above",
+    "impacts_below", "impacts_above", "evaluations_below", "evaluations_above",
+)  # fmt: skip
+Results = Mapping[Solver, Sequence[Found]]
+"""The limits in the order of the table, by solver."""
+
+
+def run(options: Options) -> Finding:
+    """Find all limits by all solvers."""
+    limits = read_limits()
+    found = find_all(limits, options.narrow(0.0, 0.85))
+    bands = find_bands(options.narrow(0.85, 0.95))
+    drawn = [limit for limit in limits if limit.case.pulse == "one_sine"]
+    paths = follow_near(drawn, options.narrow(0.95, 1.0))
+    return write_finding(
+        "solver",
+        collect(limits, found, bands),
+        tables={
+            "solver-limits": Table(columns=LIMIT_COLUMNS, rows=list(_limit_rows(limits, found))),
+            "solver-bands": Table(columns=BAND_COLUMNS, rows=bands),
+            "solver-histories": tabulate_histories(drawn, paths),
+        },
+        figures={"solver-histories.svg": draw_histories(drawn, paths)},
+    )
+
+
+def collect(limits: Sequence[Limit], found: Results, bands: Sequence[Row]) -> dict[str, object]:
+    """Return what the page shows."""
+    exact, strongest = found[EXACT], max(one.limit for one in found[EXACT]) * ALPHA
+    halves = [(limit, one) for limit, one in zip(limits, exact, strict=True) if limit.case.pulse == "half_sine"]
+    return {
+        "limits": limits, "found": found, "exact": exact, "shown": SHOWN,
+        "EXACT": EXACT, "KERNEL": KERNEL, "RK45": RK45, "ODE23S": ODE23S, "TIGHT": TIGHT,
+        "p": P, "alpha": ALPHA, "eta": ETA, "height": 3 * GRAVITY / (2 * P**2) * math.cos(ALPHA),
+        "errors": {solver: _find_errors(found, solver) for solver in found},
+        "worst": {solver: _find_worst(found, solver) for solver in found},
+        "cost": {solver: _count_evaluations(own) for solver, own in found.items()},
+        "right": {solver: _count_right(limits, own) for solver, own in found.items()},
+        "near": NEAR, "side": SIDE,
+        "missing": {solver.name: sum(math.isnan(one.limit) for one in own) for solver, own in found.items()},
+        "closed": max((abs(one.limit - solve_half_sine(limit.case.ratio)) for limit, one in halves), default=0.0),
+        "off": [
+            (limit.printed, limit.listed - one.limit)
+            for limit, one in zip(limits, exact, strict=True)
+            if abs(limit.listed - one.limit) > 0.5 * 10.0 ** -len(limit.printed.partition(".")[2])
+        ],
+        "bands": BANDS, "other": _find_other_bands(bands),
+        "closer": {"ode23s": _count_closer(found, ODE23S, RK45), "tight": _count_closer(found, TIGHT, ODE23S)},
+        "fastest": P * (1 + strongest**2) ** 0.25,
+    }  # fmt: skip
+
+
+def find_all(limits: Sequence[Limit], options: Options) -> Results:
+    """Find all limits by each solver."""
+    return {
+        solver: [find_limit(limit, solver, partial(one.report_share, 0.0)) for limit, one in part.each(limits)]
+        for solver, part in options.each(SOLVERS)
+    }
+
+
+def find_bands(options: Options) -> list[Row]:
+    """Return equation, amplitude [alpha g], solver, verdict and impacts under one-sine pulses from weak to strong."""
+    rows: list[Row] = []
+    for (equation, amplitude, solver), _ in options.each(list(product(("linear", "nonlinear"), BANDS, SOLVERS))):
+        one = follow(Case("one_sine", equation, 5.0), amplitude, solver)
+        rows.append((equation, amplitude, solver.name, one.overturned, one.impacts if one.overturned else None))
+    return rows
+
+
+def _limit_rows(limits: Sequence[Limit], found: Results) -> Iterator[Row]:
+    for solver, own in found.items():
+        for limit, one, exact in zip(limits, own, found[EXACT], strict=True):
+            yield (
+                limit.case.pulse, limit.case.equation, limit.case.ratio, limit.listed,
+                solver.name, *((solver.rtol, solver.atol) if solver.method else (None, None)),
+                one.limit, one.limit - limit.listed, one.limit - exact.limit, one.changes,
+                one.below.overturned, one.above.overturned, one.below.impacts, one.above.impacts,
+                *((one.below.evaluations, one.above.evaluations) if solver.method else (None, None)),
+            )  # fmt: skip
+
+
+def _find_errors(found: Results, solver: Solver) -> list[float]:
+    """Return the differences of a solver's limits from the exact ones [alpha g]."""
+    return [one.limit - exact.limit for one, exact in zip(found[solver], found[EXACT], strict=True)]
+
+
+def _find_worst(found: Results, solver: Solver) -> float:
+    """Return a solver's largest error [alpha g]; limits that it does not find are left out."""
+    return max((abs(one) for one in _find_errors(found, solver) if not math.isnan(one)), default=math.nan)
+
+
+def _count_evaluations(found: Sequence[Found]) -> float:
+    """Return the mean number of evaluations of a run."""
+    return float(np.mean([side.evaluations for one in found for side in (one.below, one.above)]))
+
+
+def _count_right(limits: Sequence[Limit], own: Sequence[Found]) -> int:
+    """Return how many verdicts at the distance `NEAR` from the limits are right."""
+    return sum(
+        (one.below.overturned == limit.over_below) + (one.above.overturned != limit.over_below)
+        for limit, one in zip(limits, own, strict=True)
+    )
+
+
+def _count_closer(found: Results, one: Solver, other: Solver) -> int:
+    """Return at how many limits one solver is closer to the exact one than another."""
+    pairs = zip(_find_errors(found, one), _find_errors(found, other), strict=True)
+    return sum(abs(a) < abs(b) for a, b in pairs)
+
+
+def _find_other_bands(bands: Sequence[Row]) -> list[str]:
+    """Return where the scan over amplitudes has another verdict than that of DOP853."""
+    seen = {tuple(row[:3]): tuple(row[3:]) for row in bands}
+    return [
+        f"{name} at {amplitude} ({equation})"
+        for equation, amplitude, name in seen
+        if seen[equation, amplitude, name] != seen[equation, amplitude, EXACT.name]
+    ]
+
+
+STUDY = Study(
+    name="solver",
+    order=20,
+    title="Solvers: the overturning limits under a pulse",
+    of="section 2.1 and Fig. 2",
+    run=run,
+)
