@@ -1,9 +1,10 @@
-"""Which furniture falls in an earthquake, and what to fix first.
+"""Which furniture overturns in an earthquake, and what to fix first.
 
 >>> import assess
->>> inventory = assess.read_inventory("inventories/market-street.xlsx")
->>> assessment = assess.run(inventory, assess.Settings())
->>> assess.write_reports(assessment, "out", formats=("pdf", "xlsx"))
+>>> results = assess.run("inventories/market-street.xlsx", verify="none")
+>>> results["42-01"].adopted.risk.word
+'medium'
+>>> files = assess.write_reports(results, "out", formats=("json", "csv"))
 
 Names are loaded when first used, so that ``import assess`` costs next to nothing.
 """
@@ -14,39 +15,55 @@ from typing import TYPE_CHECKING
 from assess.version import __version__
 
 if TYPE_CHECKING:
-    from assess.assessment import run
-    from assess.errors import AssessError, InputError, OutputError, Problem, RecordError, WorkbookError
-    from assess.inventory.model import Inventory
-    from assess.inventory.workbook import read_inventory
+    from assess.errors import (
+        AssessError,
+        CancelledError,
+        InputError,
+        OutputError,
+        Problem,
+        RecordError,
+        WorkbookError,
+    )
     from assess.methods._fitted import read_model
+    from assess.model import Inventory
+    from assess.pipeline.run import run
+    from assess.progress import Progress
     from assess.report import write_reports
-    from assess.results import Assessment
+    from assess.report.report_options import ReportOptions
+    from assess.results import Results
     from assess.settings import Settings
+    from assess.workbook.read import read_inventory
 
 _HOME = {
-    "Assessment": "assess.results",
-    "run": "assess.assessment",
     "AssessError": "assess.errors",
+    "CancelledError": "assess.errors",
     "InputError": "assess.errors",
+    "Inventory": "assess.model",
     "OutputError": "assess.errors",
     "Problem": "assess.errors",
+    "Progress": "assess.progress",
     "RecordError": "assess.errors",
-    "WorkbookError": "assess.errors",
-    "Inventory": "assess.inventory.model",
-    "read_inventory": "assess.inventory.workbook",
-    "read_model": "assess.methods._fitted",
-    "write_reports": "assess.report",
+    "ReportOptions": "assess.report.report_options",
+    "Results": "assess.results",
     "Settings": "assess.settings",
+    "WorkbookError": "assess.errors",
+    "read_inventory": "assess.workbook.read",
+    "read_model": "assess.methods._fitted",
+    "run": "assess.pipeline.run",
+    "write_reports": "assess.report",
 }
 
 __all__ = [
     "AssessError",
-    "Assessment",
+    "CancelledError",
     "InputError",
     "Inventory",
     "OutputError",
     "Problem",
+    "Progress",
     "RecordError",
+    "ReportOptions",
+    "Results",
     "Settings",
     "WorkbookError",
     "__version__",

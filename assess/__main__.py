@@ -1,6 +1,6 @@
 """``python -m assess``."""
 
-from assess.cli import main
+from assess.cli.app import main
 
 if __name__ == "__main__":
     main()

@@ -1,0 +1,75 @@
+"""The command line: a file ``command_NAME.py`` of this folder is the command ``assess NAME``.
+
+Such a file defines ``command``, whose docstring and options are its help, ``EXAMPLES`` (lines that can be typed) and
+``ORDER`` (its place in the list of commands). Each command imports what it needs when it runs, so that ``--help``
+answers at once. Exit status: see `assess.cli.console`.
+"""
+
+import importlib
+import pkgutil
+import sys
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Annotated
+
+import typer
+
+import assess.cli
+from assess.cli.console import guard
+from assess.version import __version__
+
+PREFIX = "command_"
+
+
+def main() -> None:
+    """Run the command line: only the module of the command that is named is imported, where one is."""
+    named = sys.argv[1] if len(sys.argv) > 1 else ""
+    build_app([named] if named in list_names() else ())()
+
+
+def list_names() -> list[str]:
+    """Return the names of the commands, from the names of their files."""
+    names = (one.name for one in pkgutil.iter_modules(assess.cli.__path__))
+    return [name.removeprefix(PREFIX) for name in names if name.startswith(PREFIX)]
+
+
+def find_commands(names: Sequence[str] = ()) -> list[tuple[str, ModuleType]]:
+    """Return name and module of commands, by default of all, in the order of the help."""
+    found = [(name, importlib.import_module(f"assess.cli.{PREFIX}{name}")) for name in names or list_names()]
+    return sorted(found, key=lambda one: (one[1].ORDER, one[0]))
+
+
+def build_app(names: Sequence[str] = ()) -> typer.Typer:
+    """Return the command line with some commands, by default with all."""
+    app = typer.Typer(
+        help="Which furniture overturns in an earthquake, and what to fix first.",
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    app.callback()(_options)
+    for name, module in find_commands(names):
+        examples = "\n".join(f"  {line}" for line in module.EXAMPLES)
+        app.command(name, epilog=f"\b\nExamples:\n{examples}")(guard(module.command))
+    return app
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"assess {__version__}")
+        raise typer.Exit
+
+
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Which furniture overturns in an earthquake, and what to fix first."""
+
+
+def __getattr__(name: str) -> typer.Typer:
+    """Return the command line with all commands as ``app``."""
+    if name == "app":
+        return build_app()
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

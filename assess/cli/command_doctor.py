@@ -1,0 +1,124 @@
+"""``assess doctor``: what works on this machine, what does not, and how to fix it."""
+
+import platform
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+
+import typer
+
+from assess import resources
+from assess.errors import PdfUnavailableError
+from assess.version import __version__
+
+ORDER = 9
+EXAMPLES = ("assess doctor",)
+
+DEVELOPMENT = "dev"
+"""The extra that only developers need; it is not examined."""
+FONTS = 5
+"""Fonts of the reports."""
+_REQUIREMENT = re.compile(
+    r"(?P<name>[A-Za-z0-9._-]+)[^;>]*(>=\s*(?P<least>[0-9.]+))?[^;]*(;.*extra\s*==\s*['\"](?P<extra>[^'\"]+))?"
+)
+
+
+def command() -> None:
+    """Show what works on this machine, and how to fix the rest.
+
+    Versions of the dependencies, native libraries of the PDF, fonts and templates.
+    """
+    findings = list(examine())
+    for finding in findings:
+        typer.echo(f"{'ok     ' if finding.works else 'missing'}  {finding.what}: {finding.detail}")
+    if not all(finding.works for finding in findings):
+        raise typer.Exit(1)
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing that was examined; `detail` is its version or place, or how to fix it."""
+
+    what: str
+    works: bool
+    detail: str
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A package that the project declares: its lowest version, "" for any, and its extra, "" where it is required."""
+
+    name: str
+    least: str
+    extra: str
+
+
+def examine() -> Iterator[Finding]:
+    """Yield versions, templates, fonts and the libraries of the PDF."""
+    yield Finding("assess", True, f"{__version__}, Python {platform.python_version()}, {platform.platform()}")
+    yield from map(examine_package, list_requirements())
+    templates = resources.templates() / "report.html.j2"
+    yield Finding("templates", templates.is_file(), str(templates.parent))
+    fonts = [path.name for path in resources.fonts().values()]
+    fix = "pip install --force-reinstall matplotlib"
+    yield Finding("fonts", len(fonts) == FONTS, ", ".join(fonts) if len(fonts) == FONTS else fix)
+    yield _examine_pdf()
+
+
+def list_requirements() -> list[Requirement]:
+    """Return the declared dependencies: those of the installed distribution, in a checkout those of pyproject.toml."""
+    try:
+        lines = metadata.requires("assess") or []
+    except metadata.PackageNotFoundError:
+        lines = _read_pyproject()
+    found = []
+    for line in lines:
+        parts = _REQUIREMENT.match(line)
+        if parts and parts["extra"] != DEVELOPMENT:
+            found.append(Requirement(parts["name"], parts["least"] or "", parts["extra"] or ""))
+    return found
+
+
+def _read_pyproject() -> list[str]:
+    file = Path(__file__).parents[2] / "pyproject.toml"
+    project = tomllib.loads(file.read_text(encoding="utf-8"))["project"] if file.is_file() else {}
+    extras = project.get("optional-dependencies", {})
+    return [
+        *project.get("dependencies", []),
+        *(f'{line}; extra == "{extra}"' for extra, lines in extras.items() for line in lines),
+    ]
+
+
+def examine_package(one: Requirement) -> Finding:
+    """Return whether a package is there in a version that serves; an optional one may be missing."""
+    wanted = f"{one.name}>={one.least}" if one.least else one.name
+    try:
+        found = metadata.version(one.name)
+    except metadata.PackageNotFoundError:
+        if one.extra:
+            return Finding(one.name, True, f'optional, not installed: pip install "assess[{one.extra}]"')
+        return Finding(one.name, False, f'not installed: pip install "{wanted}"')
+    if _numbers(found) < _numbers(one.least):
+        return Finding(one.name, False, f'{found} is too old: pip install "{wanted}"')
+    return Finding(one.name, True, f"{found} (optional: {one.extra})" if one.extra else found)
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    """Return the leading numbers of a version, without zeros at the end: (2, 10) for "2.10.0rc1"."""
+    numbers = [int(part) for part in re.findall(r"\d+", re.sub(r"[^0-9.].*", "", version))]
+    while numbers and numbers[-1] == 0:
+        numbers.pop()
+    return tuple(numbers)
+
+
+def _examine_pdf() -> Finding:
+    from assess.report.pages.pdf import find_weasyprint
+
+    try:
+        version = find_weasyprint()
+    except PdfUnavailableError as error:
+        return Finding("PDF", False, str(error))
+    return Finding("PDF", True, f"WeasyPrint {version} with its native libraries")

@@ -1,0 +1,246 @@
+"""``assess run``: the main job, a workbook in, reports out."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from assess.cli.console import print_error, print_warnings, show_progress
+from assess.cli.options import Jobs, Runs, Scenario, Seed, Workbook, read_settings
+from assess.errors import InputError
+from assess.progress import Progress
+from assess.settings import ROUTE_RISK, Settings
+
+if TYPE_CHECKING:
+    from assess.methods import Method
+    from assess.report.report_options import ReportOptions
+    from assess.results import Results
+    from assess.route_results import RouteTables
+
+ORDER = 3
+EXAMPLES = (
+    "assess run building.xlsx",
+    "assess run building.xlsx --verify all --runs auto --out report --open",
+    'assess run building.xlsx --verify none --scenario "ASCE 7-22" --formats xlsx,csv',
+    "assess run building.xlsx --motions my-records --scale-motions",
+)
+
+MOST_METHODS = 4
+"""Fitted models that a report shows next to the published methods: a column each."""
+PLAIN = frozenset(("json", "csv", "xlsx"))
+"""Formats that need no series of figures."""
+OPENED = ("pdf", "html", "xlsx")
+"""Reports that --open opens: the first of these that was written."""
+
+
+def command(
+    path: Workbook,
+    out: Annotated[Path | None, typer.Option(help="Folder of the reports.", show_default="NAME-report")] = None,
+    verify: Annotated[
+        str,
+        typer.Option(help="Pieces to simulate by integration: none, high (high risk, doubtful, on routes), all."),
+    ] = "high",
+    runs: Runs = None,
+    seed: Seed = None,
+    motions: Annotated[
+        Path | None,
+        typer.Option(help="Folder of your own floor records, in place of generated motions.", show_default=False),
+    ] = None,
+    scale_motions: Annotated[
+        bool, typer.Option("--scale-motions", help="Scale these records to each floor's PFA.")
+    ] = False,
+    scenario: Scenario = None,
+    methods: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--method", help="A fitted model (.toml) to show next to the methods; may be repeated.", show_default=False
+        ),
+    ] = None,
+    route_risk: Annotated[
+        float,
+        typer.Option(
+            help="Limit on the chance that an evacuation route is blocked, above 0 and below 1: fixes are listed until "
+            "every route is below it."
+        ),
+    ] = ROUTE_RISK,
+    formats: Annotated[
+        str, typer.Option(help="Files to write, separated by commas; also npz, the result of every motion.")
+    ] = "pdf,xlsx,html,json,csv",
+    jobs: Jobs = None,
+    language: Annotated[
+        str | None, typer.Option(help="Language of the reports: en, it.", show_default="the workbook's")
+    ] = None,
+    templates: Annotated[
+        Path | None,
+        typer.Option(
+            "--template",
+            help="Folder of your own templates, styles and texts. They run as code: use only your own.",
+            show_default=False,
+        ),
+    ] = None,
+    accessible: Annotated[
+        bool, typer.Option("--accessible", help="PDF/UA-1 for screen readers, instead of PDF/A-3u for archives.")
+    ] = False,
+    open_report: Annotated[bool, typer.Option("--open", help="Open the report when it is written.")] = False,
+) -> None:
+    """Assess a workbook and write the reports."""
+    folder = out or Path(f"{path.stem}-report")
+    wanted = _read_formats(formats, verify, open_report)
+    _check_motions(verify, runs, seed, motions, scale_motions)
+    settings = read_settings(
+        verify=verify, runs=runs, seed=seed, scenario=scenario, scale_motions=scale_motions, route_risk=route_risk
+    )
+    _check_folder(folder)
+    options = _read_options(language, templates, accessible)
+    with show_progress() as progress:
+        results = _assess(path, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
+        written = _write(results, folder, wanted, options, progress)
+    for line in describe_result(results):
+        typer.echo(line)
+    for file in written.values():
+        typer.echo(f"wrote {file}", err=True)
+    if open_report:
+        _open(written)
+
+
+def _assess(
+    path: Path,
+    settings: Settings,
+    motions: Path | None,
+    models: Sequence[Path],
+    jobs: int | None,
+    figures: bool,
+    progress: Progress,
+) -> "Results":
+    from assess.pipeline.run import run
+    from assess.workbook.read import read_inventory
+
+    methods, inventory, suite = _read_methods(models), read_inventory(path, progress=progress), None
+    if motions is not None:
+        from assess.motion.suite import read_suite
+
+        suite = read_suite(motions, progress=progress)
+    return run(inventory, settings, suite=suite, methods=methods, jobs=jobs, figures=figures, progress=progress)
+
+
+def _write(
+    results: "Results", folder: Path, formats: Sequence[str], options: "ReportOptions", progress: Progress
+) -> dict[str, Path]:
+    from assess.report import write_reports
+
+    print_warnings(results.problem_rows)
+    if "pdf" in formats:
+        from assess.report.pages.pdf import list_problems
+
+        print_warnings(list_problems(results))
+    return write_reports(results, folder, formats, options, progress=progress)
+
+
+# ---------------------------------------------------------------- what was given
+
+
+def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
+    from assess.report import FILES
+
+    wanted = [name.strip().lower() for name in formats.split(",") if name.strip()]
+    unknown = [name for name in wanted if name not in FILES]
+    if unknown or not wanted:
+        named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
+        raise InputError(f"--formats: {named}; expected some of: {', '.join(FILES)}")
+    if "npz" in wanted and verify == "none":
+        raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none")
+    if open_report and not set(wanted) & set(OPENED):
+        raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats")
+    return wanted
+
+
+def _check_folder(folder: Path) -> None:
+    from assess.report import check_folder
+
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--out: {folder} is a file; name a folder")
+    check_folder(folder)
+
+
+def _check_motions(verify: str, runs: str | None, seed: int | None, motions: Path | None, scale: bool) -> None:
+    """Raise InputError where options contradict the use of the user's own motions."""
+    if motions is not None and (verify == "none" or runs is not None or seed is not None):
+        raise InputError(
+            "--motions: the simulation uses each of your own motions once; leave out --verify none, --runs and --seed"
+        )
+    if scale and motions is None:
+        raise InputError("--scale-motions: there are no motions to scale; name their folder with --motions")
+
+
+def _read_options(language: str | None, templates: Path | None, accessible: bool) -> "ReportOptions":
+    """Return how the reports are written; errors in these options are found before the work."""
+    from assess.i18n import find_language
+    from assess.report.report_options import ReportOptions
+
+    options = ReportOptions(
+        language=find_language(language) if language else "", templates=templates, accessible=accessible
+    )
+    if templates is not None:
+        from assess.report.pages.html import check_templates
+
+        check_templates(options)
+    return options
+
+
+def _read_methods(files: Sequence[Path]) -> "list[Method]":
+    """Return the fitted models of files as methods, as many as a report has room for."""
+    if len(files) > MOST_METHODS:
+        raise InputError(f"--method names {len(files)} files; a report has room for {MOST_METHODS}. Leave some out.")
+    if not files:
+        return []
+    from assess.methods._fitted import read_model
+
+    return [read_model(file) for file in files]
+
+
+# ---------------------------------------------------------------- what is printed at the end
+
+
+def describe_result(results: "Results") -> Iterator[str]:
+    """Yield the pieces of each class, how many routes are at risk, and how much was simulated."""
+    from assess.report.counts import count_pieces
+    from assess.report.findings.verified import describe_verification
+    from assess.risk import RiskClass
+
+    counts, anchored = count_pieces(results)
+    for risk in reversed(RiskClass):
+        yield f"{risk.label:<13} {counts[risk]:>6,} {'piece' if counts[risk] == 1 else 'pieces'}"
+    if anchored:
+        depends = "it depends on its anchors" if anchored == 1 else "they depend on their anchors"
+        yield f"{'  anchored':<13} {anchored:>6,}, not classified: {depends}"
+    if results.has_routes:
+        yield _describe_routes(results.route_tables)
+    verified = describe_verification(results) if results.has_simulated else "Not simulated."
+    yield f"Chance of overturning in this scenario, not per year. {verified}"
+
+
+def _describe_routes(routes: "RouteTables") -> str:
+    from assess.report.findings.route_words import is_held
+    from assess.route_results import RouteState
+
+    known = [one for one in routes.routes if one.evaluated]
+    states = [one.state for one in known]
+    doubtful = sum(one.state.severity == 0 < one.state_upper.severity for one in known)
+    held = sum(is_held(one, routes.risk) for one in known)
+    unknown = len(routes.routes) - len(known)
+    return (
+        f"Evacuation routes: of {len(states):,}, {states.count(RouteState.BLOCKED):,} could be blocked and "
+        f"{states.count(RouteState.REDUCED):,} reduced at a risk limit of {100 * routes.risk:g} %"
+        + (f"; {doubtful:,} more cannot be excluded" if doubtful else "")
+        + (f"; {held:,} could be blocked if anchors fail" if held else "")
+        + (f"; {unknown:,} more could not be evaluated" if unknown else "")
+        + f". On average {routes.blocked_routes_expected:.2f} would be blocked."
+    )
+
+
+def _open(written: Mapping[str, Path]) -> None:
+    """Open the first report with the system's viewer."""
+    file = next(written[name] for name in OPENED if name in written)
+    if typer.launch(str(file)) != 0:
+        print_error(f"{file} could not be opened: no viewer was found. Open it by hand.")

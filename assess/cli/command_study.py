@@ -1,0 +1,136 @@
+"""``assess study``: a part of the paper done again, on open data that comes along."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from assess.cli.console import InterruptedWorkError, show_progress
+from assess.cli.options import Jobs, check_size
+from assess.errors import CancelledError, InputError
+from assess.progress import Progress
+from assess.settings import count_processors
+from assess.units import LENGTH
+
+if TYPE_CHECKING:
+    from assess.studies import Finding, Options, Study
+
+ORDER = 7
+EXAMPLES = (
+    "assess study table3",
+    "assess study table1 --records my-records --breadth 40 --height 180",
+    "assess study all --out studies --jobs 4",
+)
+
+ALL = "all"
+_FOLDER = Path(__file__).parents[1] / "studies"
+_FILES = {(one.parent.name if one.stem == "__init__" else one.stem): one for one in _FOLDER.rglob("*.py")}
+NAMES = ", ".join(sorted(name for name, file in _FILES.items() if "\nSTUDY = " in file.read_text(encoding="utf-8")))
+"""Names of the studies, which are those of their modules: importing them for ``--help`` would take seconds."""
+FEWEST, MOST = 20, 1000
+"""Fewest and most motions: a share of fewer is too uncertain."""
+
+
+def command(
+    name: Annotated[str, typer.Argument(help=f"{NAMES}; or {ALL}, one after the other.", show_default=False)],
+    out: Annotated[
+        str, typer.Option(metavar="DIR", help="Folder of the files; its folder parts keeps long integrations.")
+    ] = "studies",
+    runs: Annotated[
+        int, typer.Option(min=FEWEST, max=MOST, help="Motions generated for each channel; table2, contours, fit.")
+    ] = 100,
+    seed: Annotated[int, typer.Option(min=0, help="Random seed of the generated motions.")] = 1,
+    records: Annotated[
+        str | None, typer.Option(metavar="DIR", help="Folder of your own records, for table1.", show_default=False)
+    ] = None,
+    breadth: Annotated[
+        float | None, typer.Option(help="Breadth of the piece in table1 and table2 [cm].", show_default="45")
+    ] = None,
+    height: Annotated[
+        float | None, typer.Option(help="Height of the piece in table1 and table2 [cm].", show_default="160")
+    ] = None,
+    jobs: Jobs = None,
+) -> None:
+    """Do a part of the paper again: a page, tables and figures.
+
+    The studies repeat results of the paper on open data, or compare its formulas with direct integration.
+
+    table1, table3 and solver take seconds to a minute. table2, contours and fit share one long integration, whose
+    finished parts are kept in the folder parts of --out: after an interruption, the same command continues from there.
+    """
+    for option, folder in (("out", out), ("records", records)):
+        if folder is not None and not folder.strip():
+            raise InputError(f"--{option} is empty: name a folder, or leave out --{option}")
+    given = {"records": None if records is None else Path(records), "breadth": breadth, "height": height}
+    try:
+        with show_progress() as progress:
+            _run(name, Path(out), runs, seed, jobs or count_processors(), given, progress)
+    except (KeyboardInterrupt, CancelledError):
+        raise InterruptedWorkError(_describe_parts(Path(out))) from None
+
+
+def _run(
+    name: str,
+    out: Path,
+    runs: int,
+    seed: int,
+    jobs: int,
+    given: "Mapping[str, Path | float | None]",
+    progress: "Progress",
+) -> None:
+    from assess.studies import PAGE, Options, all_studies, build_page, check_folder, run_all, write_files
+
+    every = all_studies()
+    chosen = [one for one in every if name.lower() in (one.name, ALL)]
+    if not chosen:
+        raise InputError(f"{name!r} is an unknown study; expected one of: {NAMES}, {ALL}")
+    options = Options(out=out, runs=runs, seed=seed, jobs=jobs)
+    options = _add_own(given, options, chosen, every)
+    check_folder(out)
+    findings = run_all(chosen, options, progress)
+    if name.lower() == ALL:
+        write_files(out, {PAGE: build_page(chosen, findings, options).encode("utf-8")})
+    _print_findings(chosen, findings, out)
+
+
+def _add_own(
+    given: "Mapping[str, Path | float | None]", options: "Options", chosen: "Sequence[Study]", every: "Sequence[Study]"
+) -> "Options":
+    """Return the options with those that the user gave; InputError if no chosen study uses one of them."""
+    own: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    for name, value in own.items():
+        if not any(name in one.takes for one in chosen):
+            takers = ", ".join(one.name for one in every if name in one.takes)
+            raise InputError(f"--{name} does not apply to {chosen[0].name}, only to {takers} and {ALL}: leave it out")
+        if isinstance(value, float):
+            check_size(name, value)
+            own[name] = value * LENGTH["cm"]
+    found = replace(options, **own)
+    if found.breadth > found.height:
+        breadth, height = (size / LENGTH["cm"] for size in (found.breadth, found.height))
+        raise InputError(f"--breadth is {breadth:g} cm, expected at most the height, {height:g} cm")
+    if found.records is not None and found.records.resolve() == found.out.resolve():
+        raise InputError("--records and --out are the same folder: name another one for the files with --out")
+    return found
+
+
+def _print_findings(chosen: "Sequence[Study]", findings: "Mapping[str, Finding]", out: Path) -> None:
+    from assess.studies import PAGE, PARTS
+
+    for one in chosen:
+        for sentence in findings[one.name].summary:
+            typer.echo(sentence)
+    page = out / (f"{chosen[0].name}.md" if len(chosen) == 1 else PAGE)
+    kept = f"; {out / PARTS} keeps the long integrations for the next run" if (out / PARTS).is_dir() else ""
+    typer.echo(f"wrote {page}{kept}", err=True)
+
+
+def _describe_parts(out: Path) -> str:
+    """Return what remains of a run that was interrupted."""
+    from assess.studies import PARTS
+
+    if not (out / PARTS).is_dir():
+        return "nothing was written"
+    return f"finished parts are kept in {out / PARTS}; the same command continues from there"

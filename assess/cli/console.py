@@ -1,0 +1,235 @@
+"""What the command line prints besides results: problems, progress, and the exit status.
+
+Exit status: 0 done; 1 done, but something could not be assessed or written (named); 2 bad input or usage, nothing
+written; 130 interrupted. Messages go to standard error, what was asked for to standard output.
+"""
+
+import _thread
+import os
+import re
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any, Never, TextIO, get_type_hints
+
+import typer
+from typer.models import OptionInfo
+
+from assess.errors import AssessError, CancelledError, InputError, Problem, RecordError, WorkbookError
+from assess.progress import Progress, Report
+
+MOST_PRINTED = 200
+"""Problems printed in one run; the rest are counted."""
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as in shells."""
+PATIENCE = 0.4
+"""Time that the work has to stop by itself after Ctrl-C before it is interrupted [s]."""
+REDRAW = 0.2
+"""Shortest time between two states of the line on a terminal [s]."""
+QUIET, REPEAT = 2.0, 5.0
+"""Away from a terminal, nothing is printed for so long at first, then a line so often [s]."""
+STAGES = {
+    "reading": "Reading",
+    "motions": "Preparing motions",
+    "verification": "Simulating",
+    "rocking": "Rocking",
+    "routes": "Evaluating routes",
+    "rendering": "Writing",
+}
+"""How stages are called; others by their own name."""
+
+
+# ---------------------------------------------------------------- messages and exit status
+
+
+class InterruptedWorkError(AssessError):
+    """The user stopped the work; the message says what was kept of it."""
+
+
+def guard(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command that turns each error of the library into a message and an exit status.
+
+    A message of the library that begins with a keyword argument is printed with the option of that name in its place:
+    "runs is 0, expected ..." becomes "--runs is 0, expected ...".
+    """
+
+    @wraps(command)
+    def run(*arguments: Any, **options: Any) -> None:
+        try:
+            command(*arguments, **options)
+        except (KeyboardInterrupt, CancelledError):
+            _end("nothing was written")
+        except InterruptedWorkError as error:
+            _end(str(error))
+        except WorkbookError as error:
+            print_problems(error.problems)
+            errors = count(sum(problem.severity == "error" for problem in error.problems), "error")
+            typer.echo(f"{errors}; nothing was written.", err=True)
+            raise typer.Exit(2) from None
+        except InputError as error:
+            text = str(error) if isinstance(error, RecordError) else _name_option(str(error), command)
+            print_error(text)
+            raise typer.Exit(2) from None
+        except AssessError as error:
+            print_error(str(error))
+            raise typer.Exit(1) from None
+
+    return run
+
+
+def _end(remains: str) -> Never:
+    """End the process at once; threads that are still integrating are not waited for."""
+    typer.echo(f"\nInterrupted; {remains}.", err=True)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(INTERRUPTED)
+
+
+def _name_option(message: str, command: Callable[..., None]) -> str:
+    """Return a message with the option in place of the keyword argument that it begins with, if it does."""
+    options = _list_options(command)
+    return re.sub(r"^\w+(?=:| )", lambda found: options.get(found[0], found[0]), message)
+
+
+def _list_options(command: Callable[..., None]) -> Mapping[str, str]:
+    """Return the options of a command by their keyword arguments."""
+    found: dict[str, str] = {}
+    for name, hint in get_type_hints(command, include_extras=True).items():
+        for info in getattr(hint, "__metadata__", ()):
+            if isinstance(info, OptionInfo):
+                spelt = (str(one) for one in (info.default, *(info.param_decls or ())))
+                found[name] = next((one for one in spelt if one.startswith("--")), f"--{name.replace('_', '-')}")
+    return found
+
+
+def print_error(message: str) -> None:
+    """Print one error to standard error."""
+    typer.echo(f"error  {message}", err=True)
+
+
+def print_problems(problems: Sequence[Problem]) -> None:
+    """Print problems to standard error, the first `MOST_PRINTED` of them."""
+    for problem in problems[:MOST_PRINTED]:
+        typer.echo(f"{problem.severity:<7}  {problem}", err=True)
+    if len(problems) > MOST_PRINTED:
+        typer.echo(f"... and {len(problems) - MOST_PRINTED:,} more.", err=True)
+
+
+def print_warnings(problems: Sequence[Problem]) -> None:
+    """Print the warnings among problems to standard error."""
+    print_problems([problem for problem in problems if problem.severity == "warning"])
+
+
+def count(number: int, noun: str) -> str:
+    """Return a number with its noun, whose plural takes an s: "1 error", "2,000 errors"."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
+# ---------------------------------------------------------------- progress and Ctrl-C
+
+
+@contextmanager
+def show_progress() -> Iterator[Progress]:
+    """Show how far the work is on standard error, and have Ctrl-C or SIGTERM cancel it.
+
+    On a terminal one line keeps changing. Elsewhere nothing is printed in the first `QUIET` seconds; then each stage
+    gets a line when it begins, and one every `REPEAT` seconds.
+
+    Yields
+    ------
+    Progress
+        For the library. Work that does not stop `PATIENCE` after it is cancelled gets a KeyboardInterrupt.
+    """
+    cancel, line = threading.Event(), _Line(sys.stderr)
+    with _cancel_by_signal(cancel):
+        try:
+            yield Progress(line, cancel)
+        finally:
+            line.clear()
+
+
+class _Line:
+    """Prints reports of progress: one changing line on a terminal, a line now and then elsewhere."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream, self._is_terminal = stream, stream.isatty()
+        self._start = self._written = time.monotonic()
+        self._is_shown, self._stage = False, ("", "")
+
+    def __call__(self, report: Report) -> None:
+        now, stage = time.monotonic(), (report.stage, report.detail)
+        is_new, self._stage = stage != self._stage, stage
+        if report.share >= 1.0:
+            self.clear()
+        elif self._is_terminal and (is_new or now - self._written >= REDRAW):
+            self._print(f"\r\x1b[K{describe_progress(report)}", now)
+            self._is_shown = True
+        elif not self._is_terminal and now - self._start >= QUIET and (is_new or now - self._written >= REPEAT):
+            self._print(f"{describe_progress(report)}\n", now)
+
+    def clear(self) -> None:
+        """Remove the line from the terminal."""
+        if self._is_shown:
+            self._print("\r\x1b[K", time.monotonic())
+            self._is_shown = False
+
+    def _print(self, text: str, now: float) -> None:
+        self._stream.write(text)
+        self._stream.flush()
+        self._written = now
+
+
+def describe_progress(report: Report) -> str:
+    """Return stage, share and time left: "Simulating 240 pieces on 4 floors: 43 %, about 2 min left"."""
+    stage = STAGES.get(report.stage, report.stage.capitalize())
+    left = "" if report.seconds_left is None else f", about {_round_time(report.seconds_left)} left"
+    return f"{' '.join((stage, report.detail)).strip()}: {int(100 * report.share)} %{left}"
+
+
+def _round_time(seconds: float) -> str:
+    """Return a time with no more digits than can be known."""
+    return f"{max(1, round(seconds))} s" if seconds < 90 else f"{round(seconds / 60)} min"
+
+
+@contextmanager
+def _cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
+    """Have the first Ctrl-C or SIGTERM set `cancel`, and the next one raise KeyboardInterrupt in the main thread."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    signalled, done = threading.Event(), threading.Event()
+
+    def stop(*_: object) -> None:
+        if cancel.is_set():
+            raise KeyboardInterrupt
+        cancel.set()
+        signalled.set()
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    taken = [number for number, handler in before.items() if handler not in (signal.SIG_IGN, None)]
+    for number in taken:
+        signal.signal(number, stop)
+    threading.Thread(target=_insist, args=(signalled, done), daemon=True).start()
+    try:
+        yield
+    finally:
+        for number in taken:
+            signal.signal(number, before[number])
+        done.set()
+        signalled.set()
+
+
+def _insist(signalled: threading.Event, done: threading.Event) -> None:
+    """Send Ctrl-C again until the work has ended: what a compiled library swallows is lost."""
+    signalled.wait()
+    wait = PATIENCE
+    while not done.wait(wait):
+        wait = 5 * PATIENCE  # time to clean up
+        if hasattr(signal, "pthread_kill"):
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+        else:
+            _thread.interrupt_main()

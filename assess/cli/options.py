@@ -1,0 +1,76 @@
+"""Options that several commands have: their help, and what turns them into arguments of the library."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from assess.errors import InputError, OutputError
+from assess.settings import AUTO, RUNS, SCENARIOS, SEED, Settings, change_settings
+
+Workbook = Annotated[Path, typer.Argument(help="The inventory, an .xlsx workbook.", show_default=False)]
+Runs = Annotated[
+    str | None,
+    typer.Option(
+        help=f"Motions of each floor and axis; {AUTO}: until every class is statistically resolved.",
+        show_default=str(RUNS),
+    ),
+]
+Seed = Annotated[int | None, typer.Option(help="Random seed of the generated motions.", show_default=str(SEED))]
+Scenario = Annotated[
+    str | None,
+    typer.Option(help=f"Source of the floor motion: {', '.join(SCENARIOS)}.", show_default="the workbook's"),
+]
+Jobs = Annotated[
+    int | None, typer.Option(min=1, help="Threads; they do not change a result.", show_default="one per CPU")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document instead of text.")]
+
+FIGURES = (".png", ".svg", ".pdf")
+"""Kinds of figures that can be written."""
+
+
+def read_settings(**given: Any) -> Settings:
+    """Return the settings with the options that were given; None is one that was not."""
+    return change_settings(None, {name: value for name, value in given.items() if value is not None})
+
+
+def check_file(path: Path | None, what: str, endings: tuple[str, ...] = FIGURES) -> None:
+    """Raise InputError unless a file of one of these kinds can be written, as far as is known before the work."""
+    if path is None:
+        return
+    if path.suffix.lower() not in endings:
+        expected = " or ".join(filter(None, (", ".join(endings[:-1]), endings[-1])))
+        raise InputError(f"the {what} {path.name} has an unsupported file type: end its name in {expected}")
+    try:
+        can_be = path.parent.is_dir() and not path.is_dir()
+    except OSError:  # a name that is too long
+        can_be = False
+    if not can_be:
+        raise InputError(f"the {what} {path} cannot be written there: name a file in a folder that exists")
+
+
+def save_file(data: bytes, path: Path) -> None:
+    """Write a file whole or not at all; OutputError if it cannot be written."""
+    stage = path.with_name(f".{path.stem[:40]}.writing")
+    try:
+        stage.write_bytes(data)
+        stage.replace(path)
+    except OSError as error:
+        stage.unlink(missing_ok=True)
+        raise OutputError(f"{path} could not be written: {error.strerror}. Name another file.") from None
+
+
+def figure_kind(path: Path) -> str:
+    """Return the kind of a figure by the ending of its name: png, svg or pdf."""
+    return path.suffix.lower().removeprefix(".")
+
+
+def check_size(option: str, value_cm: float) -> None:
+    """Raise InputError unless a size [cm] lies within the limits of the workbook's column of the same name."""
+    from assess.workbook.schema import ITEMS
+
+    column = ITEMS.column(option)
+    low, high = column.low or 0.0, column.high or float("inf")
+    if not low <= value_cm <= high:
+        raise InputError(f"--{option} is {value_cm:g} cm, expected {low:g} to {high:g} cm")

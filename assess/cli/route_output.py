@@ -1,0 +1,245 @@
+"""Results of `assess routes`, the chance of blockage against PFA: as JSON, CSV and text."""
+
+import csv
+import io
+import json
+import math
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple, dataclass
+from typing import Any
+
+from assess.cli.console import count
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.route_sweep import JUMP, Fragility, RouteFragility, find_passing
+from assess.pipeline.versions import versions
+from assess.report import words
+from assess.report.data import disarm
+from assess.report.findings.route_words import say_basis
+from assess.route_results import Chance
+from assess.units import GRAVITY
+from assess.version import __version__
+
+LEVELS = (0.03, 0.3, 0.5)
+"""Chances of blockage whose PFA is given [-]."""
+A_LINE = 12
+"""Values side by side in the text."""
+WIDE = 110
+"""Characters of a line of its sentences."""
+HEADS = (
+    "route", "floors", "pfa_g", "blocked", "low", "high", "independent", "correlated", "if_anchors_fail", "pieces",
+    "unverified", "runs",
+)  # fmt: skip
+MEANING = (
+    "Chance that an evacuation route is blocked if every floor of it shakes with the PFA along both axes; not a chance "
+    "per year.",
+    "Motions: the floor's own, each scaled by value / the floor's PFA, and the same at every value. The spectrum keeps "
+    "its shape, PFV scales along; the mean of their peaks is close to the value.",
+    "Rocking is not monotone: a piece may stand in a stronger motion and overturn in a weaker one. Sliding, castors "
+    "and spilt contents are not modelled.",
+    "Range: the 95 % interval for the number of motions. Where not all pieces were rocked together, the chance is the "
+    "largest under three assumptions on their correlation, and the range covers all three.",
+    "The PFA at which a chance reaches a level is interpolated linearly. Where the chance jumps by more than "
+    f"{100 * JUMP:g} percentage points between two values, only these two are given (between_g, without pfa_g).",
+)
+FINER = "For a level between two values, take smaller steps: --pfa LOW:HIGH:STEP"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sweep:
+    """What `assess routes` found."""
+
+    assessment: Assessment
+    fragility: Fragility
+
+    @property
+    def pfa_g(self) -> list[float]:
+        """The values of PFA [g], as they were typed."""
+        return [_in_g(value) for value in self.fragility.values]
+
+    def cautions(self) -> Iterator[str]:
+        """Yield what in this building makes the chances less certain."""
+        if floors := self.fragility.generic:
+            named = words.name_first([repr(words.cut(floor, 20)) for floor in floors], 8)
+            yield (
+                f"Only peaks are known for {'floor' if len(floors) == 1 else 'floors'} {named}: the motions follow a "
+                "generic spectrum. Where the formula gives a piece a higher class, assess run keeps that class, and "
+                "its chances may be larger than these."
+            )
+        if stocky := self.fragility.stocky:
+            yield (
+                f"{count(stocky, 'piece')} next to routes too stocky to rock (B/H of 1.41 or more): the formula's "
+                "chance at each PFA is used, with bounds on the correlation."
+            )
+
+    def describe(self) -> dict[str, Any]:
+        """Return the document of `assess routes --json`."""
+        inventory, fragility = self.assessment.inventory, self.fragility
+        return {
+            "workbook": {"file": inventory.source.name, "sha256": inventory.sha256},
+            "assess": {"version": __version__, "platform": dict(versions(has_rocked=True, has_routes=True))},
+            "meaning": " ".join(MEANING),
+            "cautions": list(self.cautions()),
+            "scenario": self.assessment.scenario,
+            "runs": fragility.runs,
+            "seed": fragility.seed,
+            "pfa_g": self.pfa_g,
+            "routes": [self._describe(route) for route in fragility.routes],
+        }
+
+    def _describe(self, one: RouteFragility) -> dict[str, Any]:
+        anchored = one.if_anchors_fail or (None,) * len(one.blocked)
+        pairs = zip(self.pfa_g, one.blocked, anchored, strict=True)
+        peaks = one.scenario_pfa
+        return {
+            "route": one.route,
+            "floors": list(one.floors),
+            "scenario_pfa_g": None if peaks is None else [_in_g(peak) for peak in peaks],
+            "evaluated": one.is_evaluated,
+            "chances": [{"pfa_g": pfa, **_chance(chance, fails)} for pfa, chance, fails in pairs if one.is_evaluated],
+            "passes": [self._pass(one.blocked, level) for level in LEVELS if one.is_evaluated],
+            "passes_if_anchors_fail": one.if_anchors_fail
+            and [self._pass(one.if_anchors_fail, level) for level in LEVELS],
+        }
+
+    def _pass(self, chances: Sequence[Chance], level: float) -> dict[str, Any]:
+        found = self._passing(chances, level)
+        sides = {-math.inf: "below", math.inf: "above"}
+        return {
+            "chance": level,
+            "where": sides.get(found.low, "between"),
+            "pfa_g": None if found.is_jump else _finite(found.low),
+            "between_g": [found.low, found.high] if found.is_jump else None,
+            "earliest_g": _finite(found.earliest),
+            "latest_g": _finite(found.latest),
+        }
+
+    def _passing(self, chances: Sequence[Chance], level: float) -> "_Passing":
+        ways = [[getattr(chance, end) for chance in chances] for end in ("probability", "high", "low")]
+        (low, high), first, last = (find_passing(self.pfa_g, way, level) for way in ways)
+        return _Passing(low, high, min(low, first[0]), max(high, last[1]))
+
+    def to_json(self) -> str:
+        """Return the document as text."""
+        return json.dumps(self.describe(), ensure_ascii=False, indent=1)
+
+    def to_csv(self) -> str:
+        """Return a line a route and value, for other programs."""
+        file = io.StringIO()
+        writer = csv.writer(file, lineterminator="\r\n")
+        writer.writerow(HEADS)
+        for one in self.describe()["routes"]:
+            if not one["evaluated"]:
+                writer.writerow([disarm(one["route"]), disarm(one["floors"]), *[None] * (len(HEADS) - 2)])
+            for at in one["chances"]:
+                fails = at["if_anchors_fail"]
+                row = at | {"route": disarm(one["route"]), "floors": disarm(one["floors"])}
+                row["if_anchors_fail"] = fails and fails["blocked"]
+                writer.writerow([row[name] for name in HEADS])
+        return file.getvalue()
+
+    def to_text(self) -> str:
+        """Return what a person reads."""
+        return "\n".join(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        fragility = self.fragility
+        yield (
+            f"{self.assessment.inventory.source.name}: scenario {self.assessment.scenario}, "
+            f"{count(fragility.runs, 'motion')} of each floor and axis, seed {fragility.seed}"
+        )
+        for one in fragility.routes:
+            yield ""
+            yield from self._route_lines(one)
+        every = [way for one in fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
+        if any(self._passing(way, level).is_jump for way in every for level in LEVELS):
+            yield from ("", FINER)
+        for paragraph in (*self.cautions(), *MEANING):
+            yield ""
+            yield from textwrap.wrap(paragraph, WIDE)
+
+    def _route_lines(self, one: RouteFragility) -> Iterator[str]:
+        first, floors = one.blocked[0], ", ".join(one.floors)
+        where = f" (floor{'' if len(one.floors) == 1 else 's'} {words.cut(floors, 60)})" if floors else ""
+        rows = {"PFA [g]": [f"{pfa:g}" for pfa in self.pfa_g]}
+        if first.pieces:
+            rows |= {
+                "chance [%]": [words.in_percent(chance.probability) for chance in one.blocked],
+                "  from": [words.in_percent(chance.low) for chance in one.blocked],
+                "  to": [words.in_percent(chance.high) for chance in one.blocked],
+            }
+        if one.if_anchors_fail:
+            rows["if anchors fail"] = [words.in_percent(chance.probability) for chance in one.if_anchors_fail]
+        yield f"{words.cut(one.route, 60)}{where}: {_describe_pieces(one)}"
+        yield from _grid(rows) if len(rows) > 1 else ()
+        if first.pieces:
+            yield f"  reaches {self._describe_levels(one.blocked)}"
+        if one.if_anchors_fail:
+            yield f"  if anchors fail, {self._describe_levels(one.if_anchors_fail)}"
+
+    def _describe_levels(self, chances: Sequence[Chance]) -> str:
+        return "; ".join(self._describe_level(chances, level) for level in LEVELS)
+
+    def _describe_level(self, chances: Sequence[Chance], level: float) -> str:
+        found = self._passing(chances, level)
+        low, high, first, last = (_format_pfa(one, self.pfa_g) for one in astuple(found))
+        spread = "" if first == last or (first, last) == (low, high) else f" ({first} to {last})"
+        at = f"between {low} and {high}" if found.is_jump else f"at {low}" if math.isfinite(found.low) else low
+        return f"{100 * level:g} % {at} g{spread}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Passing:
+    """Between which PFA a chance reaches a level, and the earliest and latest by the ends of its range [g]."""
+
+    low: float
+    high: float
+    earliest: float
+    latest: float
+
+    @property
+    def is_jump(self) -> bool:
+        return self.low < self.high
+
+
+def _describe_pieces(one: RouteFragility) -> str:
+    first = one.blocked[0]
+    if not one.is_evaluated:
+        return "not evaluated: the workbook places no furniture there"
+    if first.pieces:
+        return f"{count(first.pieces, 'piece')}; {say_basis(first)}"
+    if first.probability > 0:
+        return "blocked before any shaking"
+    return (
+        "0 %: no piece can obstruct it"
+        if one.if_anchors_fail is None
+        else "0 % if the anchors hold: no other piece can obstruct it"
+    )
+
+
+def _format_pfa(value: float, values: Sequence[float]) -> str:
+    """Return a PFA [g], or on which side of the values it lies; one of the values as it was typed."""
+    if math.isfinite(value):
+        return f"{value:g}" if value in values else f"{value:.2f}"
+    return f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}"
+
+
+def _grid(rows: dict[str, list[str]]) -> Iterator[str]:
+    wide = 1 + max(len(text) for row in rows.values() for text in row)
+    for start in range(0, len(rows["PFA [g]"]), A_LINE):
+        for label, row in rows.items():
+            yield f"  {label:<16}" + "".join(f"{text:>{wide}}" for text in row[start : start + A_LINE])
+
+
+def _chance(chance: Chance, fails: Chance | None) -> dict[str, Any]:
+    own = ("low", "high", "joint", "independent", "correlated", "is_joint", "pieces", "unverified", "runs")
+    found = {"blocked": chance.probability, **{name: getattr(chance, name) for name in own}}
+    return found | {"if_anchors_fail": None if fails is None else _chance(fails, None)}
+
+
+def _in_g(value: float) -> float:
+    return round(value / GRAVITY, 12)
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
