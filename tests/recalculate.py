@@ -16,6 +16,10 @@ import formualizer
 import openpyxl
 import pytest
 
+from assess.report.content import build_content
+from assess.report.xlsx import write_xlsx
+from assess.results import Results
+
 _SOFFICE = shutil.which("soffice") or shutil.which("libreoffice")
 
 needs_libreoffice = pytest.mark.skipif(_SOFFICE is None, reason="LibreOffice is not installed")
@@ -26,6 +30,11 @@ _PROFILE = """<?xml version="1.0" encoding="UTF-8"?>
 <value>0</value></prop></item>
 </oor:items>
 """
+
+
+def write_report(results: Results, path: Path) -> None:
+    """Write the Excel report."""
+    write_xlsx(build_content(results), path)
 
 
 def libreoffice(path: Path, out: Path) -> Path:

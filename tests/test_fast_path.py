@@ -33,10 +33,10 @@ def test_the_formula_path_imports_nothing_heavy(tmp_path):
     command = ["assess", "run", str(path), "--verify", "none", "--formats", "json,csv", "--out", str(tmp_path / "out")]
     loaded = _child(
         f"import sys\nsys.argv = {command!r}\n"
-        "from assess.cli import main\n"
+        "from assess.cli.app import main\n"
         "try:\n    main()\nexcept SystemExit as stop:\n    assert not stop.code\n"
         f"print([name for name in {HEAVY!r} if name in sys.modules])\n"
-        "print([name for name in sys.modules if name in ('assess.routes.evaluate', 'assess.routes.reach')])"
+        "print([name for name in sys.modules if name in ('assess.routes.evaluate', 'assess.routes.obstructions')])"
     )
     assert loaded.splitlines()[-2:] == ["[]", "[]"]  # nor what evaluates routes, where there are none
 

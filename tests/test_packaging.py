@@ -33,10 +33,11 @@ def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
     assert {
         "assess/templates/report.html.j2",
         "assess/templates/style/print.css",
-        "assess/inventory/catalogue.csv",
+        "assess/workbook/catalogue.csv",
         "assess/report/results.schema.json",
         "assess/py.typed",
         "assess/studies/facts/table1_buildings.csv",
+        "assess/templates/studies/table3.md.j2",
     } <= names
     assert {name.split("/")[2] for name in names if name.startswith("assess/records/")} == {
         "575-market", "berkeley-1103", "others"
@@ -81,7 +82,7 @@ def test_the_installed_wheel_renders_a_report_elsewhere(installed, tmp_path):
 
 
 READ_ALL = """
-from assess.studies._buildings import all_buildings
+from assess.studies.buildings import all_buildings
 channels = [one for building in all_buildings() for one in building.channels]
 print(len(channels), all(one.read().pfa > 0 and "site-packages" in str(one.file) for one in channels))
 """

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pypdfium2
 
-from assess.inventory.blank import Content, write_workbook
+from assess.workbook.template import Content, write_workbook
 
 ROOT = Path(__file__).parents[2]
 MOST = 2
@@ -29,15 +29,15 @@ import matplotlib.figure, weasyprint
 import assess
 from assess.report.pages import context, html
 from assess.report.content import build_content
-from assess.report.look import Look
-from assess.settings import Settings
-found = assess.run(assess.read_inventory(sys.argv[1]), Settings(verify="none"))
-look, content = Look(), build_content(found)
-with look.spoken():
+from assess.progress import SILENT
+from assess.report.report_options import ReportOptions
+found = assess.run(sys.argv[1], verify="none")
+options, content = ReportOptions(), build_content(found)
+with options.spoken():
     start = time.perf_counter()
-    context._of_figures(content)
+    context._of_figures(content, SILENT)
     figures = time.perf_counter() - start
-    page = html.render(found, look, for_print=True)
+    page = html.render(content, options, for_print=True)
 start = time.perf_counter()
 weasyprint.HTML(string=page).write_pdf(pdf_variant="pdf/a-3u", pdf_tags=True)
 print(json.dumps([figures, time.perf_counter() - start]))

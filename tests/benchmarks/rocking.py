@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from scipy.integrate import solve_ivp
 
-from assess.motion.compatible import build_generator
+from assess.motion.generate import build_generator
 from assess.motion.target import Grid, recorded_target
 from assess.rocking import block, ensemble, kernel
 from assess.rocking.ensemble import rock_blocks

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from assess.inventory.blank import Content, write_workbook
+from assess.workbook.template import Content, write_workbook
 
 FLOORS, ITEMS, AIM = 60, 2000, 5
 """Floors, pieces, and the share of the run that routes may take [%]."""
@@ -17,8 +17,8 @@ FLOORS, ITEMS, AIM = 60, 2000, 5
 TIMED = """
 import json, sys, time
 import assess
-from assess import assessment
-from assess.routes import evaluate, reach, remarks
+from assess.pipeline import run as assessment
+from assess.routes import evaluate, obstructions
 spent = []
 def timed(module, name):
     real = getattr(module, name)
@@ -28,10 +28,10 @@ def timed(module, name):
         spent.append(time.perf_counter() - start)
         return found
     setattr(module, name, work)
-timed(reach, "find_reached")
+timed(obstructions, "find_obstructions")
 timed(assessment, "build_falls")
 timed(evaluate, "evaluate_routes")
-timed(remarks, "remark_routes")
+timed(obstructions, "find_route_problems")
 start = time.perf_counter()
 found = assess.run(assess.read_inventory(sys.argv[1]))
 times = [time.perf_counter() - start]
@@ -39,7 +39,7 @@ for formats in ("json,csv", "pdf,html,xlsx"):
     start = time.perf_counter()
     assess.write_reports(found, sys.argv[2], formats=formats.split(","))
     times.append(time.perf_counter() - start)
-beside = sum(len(one.beside) for one in found.routes.segments)
+beside = sum(len(one.pieces) for one in found.route_tables.segments)
 print(json.dumps([sum(spent), beside, *times]))
 """
 

@@ -29,7 +29,7 @@ def timed(*given, **named):
 ensemble.rock_blocks = timed
 start = time.perf_counter()
 from typer.testing import CliRunner
-from assess.cli import app
+from assess.cli.app import app
 result = CliRunner().invoke(app, sys.argv[1:])
 assert result.exit_code == 0, result.output
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

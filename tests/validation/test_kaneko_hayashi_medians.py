@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from assess.methods import Cases
-from assess.methods.kaneko_hayashi import METHOD, G
+from assess.methods._expression import G
+from assess.methods.kaneko_hayashi import METHOD
 from assess.settings import Settings
 
 FACTS = Path(__file__).parents[2] / "assess" / "studies" / "facts" / "kaneko_hayashi_median_pfa.csv"

@@ -8,11 +8,10 @@ import math
 import pytest
 
 from assess.risk import RiskClass
-from assess.routes.falls import Falls
-from assess.routes.model import RouteState
-from tests.routes.buildings import CORRIDOR, corridor, evaluated, one_segment, piece, place, stretch
+from assess.route_results import RouteState
+from tests.routes.buildings import CORRIDOR, corridor, evaluated, make_falls, one_segment, piece, place, stretch
 
-THREE_OF_20 = Falls.of([0.15], fell={0: [True] * 3 + [False] * 17})
+THREE_OF_20 = make_falls([0.15], fell={0: [True] * 3 + [False] * 17})
 
 
 @pytest.mark.parametrize(("height", "left", "state"), [
@@ -30,18 +29,18 @@ def test_one_piece_by_its_edge_distance(height, left, state):
     1.96 sqrt(0.15 x 0.85/20 + 3.8415/1600) / 1.1921 = 0.1540: from 0.0524 to 0.3604.
     """
     found = one_segment(THREE_OF_20, [piece(height, 0.3)])
-    assert found.beside[0].left == pytest.approx(left)
-    assert found.beside[0].reach == pytest.approx(1.8 - left)
-    assert found.least == pytest.approx(left)
-    assert found.standing == 1.8
-    assert found.outlook.state is state
-    hit = found.outlook.blocked if state is RouteState.BLOCKED else found.outlook.taken
+    assert found.pieces[0].left_m == pytest.approx(left)
+    assert found.pieces[0].reach_m == pytest.approx(1.8 - left)
+    assert found.least_width_m == pytest.approx(left)
+    assert found.standing_width_m == 1.8
+    assert found.state is state
+    hit = found.blocked if state is RouteState.BLOCKED else found.blocked_or_reduced
     assert hit.probability == pytest.approx(0.15)
     assert (hit.low, hit.high) == pytest.approx((0.0524, 0.3604), abs=1e-4)
     assert (hit.runs, hit.pieces, hit.unverified, hit.is_joint) == (20, 1, 0, True)
-    assert found.outlook.taken.probability == pytest.approx(0.15)
+    assert found.blocked_or_reduced.probability == pytest.approx(0.15)
     if state is RouteState.REDUCED:
-        blocked = found.outlook.blocked
+        blocked = found.blocked
         assert (blocked.probability, blocked.low, blocked.high) == (0, 0, 0)
 
 
@@ -52,22 +51,29 @@ def test_what_leaves_just_the_required_width_never_blocks(clear, edge):
     height = clear + edge - 0.9
     items = ([piece(one, edge)] for one in (height, height + 1e-3))
     just, more = (one_segment(THREE_OF_20, one, stretch(clear_width=clear)) for one in items)
-    assert just.outlook.state is RouteState.REDUCED
-    assert not just.beside[0].blocks_alone
-    assert more.outlook.state is RouteState.BLOCKED
-    assert more.beside[0].blocks_alone
+    assert just.state is RouteState.REDUCED
+    assert not just.pieces[0].blocks_alone
+    assert more.state is RouteState.BLOCKED
+    assert more.pieces[0].blocks_alone
 
 
 @pytest.mark.parametrize("height", [0.5, 1.2, 1.8])
 def test_a_piece_that_cannot_reach_has_no_effect(height):
-    """1.8 m from the edge, 1.8 m high or less: it lies at most at the edge. Chances are 0 and need no interval."""
-    found = one_segment(Falls.of([1.0], fell={0: [True] * 20}), [piece(height, 1.8)])
-    assert found.beside == ()
-    for chance in (found.outlook.blocked, found.outlook.taken):
+    """1.8 m from the edge, 1.8 m high or less: it lies at most at the edge. On the plan, chances are 0.
+
+    They need no interval. Without a plan nothing else is known of the segment, and it has no chances.
+    """
+    falls = make_falls([1.0], fell={0: [True] * 20})
+    found = one_segment(falls, [piece(height, 1.8)], corridor())
+    for chance in (found.blocked, found.blocked_or_reduced):
         assert (chance.probability, chance.low, chance.high, chance.pieces) == (0, 0, 0, 0)
-    assert found.outlook.state is found.outlook.upper is RouteState.OPEN
-    assert found.outlook.blocker is None
-    assert found.least == 1.8
+    assert found.state is found.state_upper is RouteState.OPEN
+    assert found.least_width_m == 1.8
+    unknown = one_segment(falls, [piece(height, 1.8)])
+    assert (unknown.blocked, unknown.blocked_or_reduced, unknown.least_width_m) == (None, None, None)
+    assert unknown.state is unknown.state_upper is RouteState.NOT_EVALUATED
+    for one in (found, unknown):
+        assert (one.pieces, one.most_likely_piece) == ((), None)
 
 
 @pytest.mark.parametrize("turned", [{"axis": "Y"}, {"angle_deg": 90.0}, {"angle_deg": -90.0}])
@@ -79,38 +85,38 @@ def test_one_piece_by_the_plan(turned, height, left):
     0.9 - Height: 1.8 - Height is left to the other wall (0.8 -> 1.0, 0.9 -> 0.9, 1.0 -> 0.8, 2.0 -> 0).
     """
     found = one_segment(THREE_OF_20, [piece(height, x=5.0, y=1.1, width=0.8, **turned)], corridor())
-    (beside,) = found.beside
+    (beside,) = found.pieces
     assert beside.by_plan
-    assert beside.distance == pytest.approx(0, abs=1e-9)
-    assert beside.left == pytest.approx(left, abs=1e-9)
+    assert beside.distance_m == pytest.approx(0, abs=1e-9)
+    assert beside.left_m == pytest.approx(left, abs=1e-9)
     assert beside.flags == ()
-    assert found.outlook.state is (RouteState.BLOCKED if left < 0.9 - 1e-6 else RouteState.REDUCED)
-    assert found.outlook.blocked.probability == pytest.approx(0.15 if left < 0.9 - 1e-6 else 0)
-    assert found.length == 10
+    assert found.state is (RouteState.BLOCKED if left < 0.9 - 1e-6 else RouteState.REDUCED)
+    assert found.blocked.probability == pytest.approx(0.15 if left < 0.9 - 1e-6 else 0)
+    assert found.length_m == 10
 
 
 @pytest.mark.parametrize(("height", "reaches"), [(1.2, False), (1.25, True)])
 def test_reach_by_the_plan(height, reaches):
     """At (5, 2.3) it stands from y = 2.1, 1.2 m from the edge at 0.9: 1.2 m high it touches that, 1.25 m is 0.05 in."""
     found = one_segment(THREE_OF_20, [piece(height, x=5.0, y=2.3, width=0.8, axis="Y")], corridor())
-    assert [round(one.distance, 9) for one in found.beside] == ([1.2] if reaches else [])
-    assert found.least == pytest.approx(1.75 if reaches else 1.8)
-    assert found.outlook.taken.probability == pytest.approx(0.15 if reaches else 0)
+    assert [round(one.distance_m, 9) for one in found.pieces] == ([1.2] if reaches else [])
+    assert found.least_width_m == pytest.approx(1.75 if reaches else 1.8)
+    assert found.blocked_or_reduced.probability == pytest.approx(0.15 if reaches else 0)
 
 
 def test_a_piece_that_falls_along_the_corridor_stays_out_of_it():
     """Beside the edge with Breadth along X: fallen it covers y = 0.9 to 1.3, all of it beside the corridor."""
     found = one_segment(THREE_OF_20, [piece(2.0, x=5.0, y=1.1, width=0.4, axis="X")], corridor())
-    assert found.beside == ()
-    assert found.outlook.taken.high == 0
+    assert found.pieces == ()
+    assert found.blocked_or_reduced.high == 0
 
 
 def test_a_piece_of_unknown_direction_falls_any_way():
     """Neither Axis nor Angle: 0.4 m square, it may fall along Y, 1.0 m in: 0.8 m are left."""
     found = one_segment(THREE_OF_20, [piece(1.0, x=5.0, y=1.1)], corridor())
-    assert found.beside[0].flags == ("direction_unknown", "width_assumed")
-    assert found.beside[0].left == pytest.approx(0.8)
-    assert found.outlook.blocked.probability == pytest.approx(0.15)
+    assert found.pieces[0].flags == ("direction_unknown", "width_assumed")
+    assert found.pieces[0].left_m == pytest.approx(0.8)
+    assert found.blocked.probability == pytest.approx(0.15)
 
 
 def test_a_piece_between_two_corridors_counts_in_both():
@@ -128,9 +134,9 @@ def test_a_piece_between_two_corridors_counts_in_both():
         *(stretch(f"to {name}", "Room", f"{name}0", clear_width=1.2) for name in "NS"),
     ]
     found = evaluated(THREE_OF_20, [piece(1.5, x=5.0, y=0.0, width=0.8, axis="Y")], segments, places)
-    assert [one.beside[0].left for one in found.segments[:2]] == pytest.approx([0.4, 0.4])
-    assert [one.outlook.blocked.probability for one in found.segments] == pytest.approx([0.15, 0.15, 0, 0])
-    assert found.rooms[0].loses.probability == pytest.approx(0.15)
+    assert [one.pieces[0].left_m for one in found.segments[:2]] == pytest.approx([0.4, 0.4])
+    assert [one.blocked.probability for one in found.segments] == pytest.approx([0.15, 0.15, 0, 0])
+    assert found.rooms[0].loses_every_exit.probability == pytest.approx(0.15)
 
 
 @pytest.mark.parametrize(("aside", "left"), [(0.0, 0.25), (0.1, 0.35), (-0.1, 0.35), (0.4, 0.65), (0.25, 0.5)])
@@ -144,25 +150,27 @@ def test_a_door_with_a_piece_on_its_axis(aside, left):
     door = stretch("door", "In", "Out", clear_width=1.0, required_width=0.6)
     places = [place("In", "room", (0, 0)), place("Out", "exit", (0.3, 0))]
     found = evaluated(THREE_OF_20, [piece(1.0, x=-0.5, y=aside, width=0.5, axis="X")], [door], places).segments[0]
-    assert found.beside[0].left == pytest.approx(left)
-    assert found.outlook.state is (RouteState.BLOCKED if left < 0.6 else RouteState.REDUCED)
-    assert found.standing == 1.0
+    assert found.pieces[0].left_m == pytest.approx(left)
+    assert found.state is (RouteState.BLOCKED if left < 0.6 else RouteState.REDUCED)
+    assert found.standing_width_m == 1.0
 
 
 def test_a_blank_edge_distance_is_the_edge():
     """With no Edge distance the piece lies its whole Height in: 1.8 - 1.0 = 0.8 m left."""
     found = one_segment(THREE_OF_20, [piece(1.0)])
-    assert found.beside[0].flags == ("edge_assumed", "side_unknown")
-    assert (found.beside[0].distance, found.beside[0].left) == pytest.approx((0, 0.8))
-    assert found.outlook.blocked.probability == pytest.approx(0.15)
+    assert found.pieces[0].flags == ("edge_assumed", "side_unknown")
+    assert (found.pieces[0].distance_m, found.pieces[0].left_m) == pytest.approx((0, 0.8))
+    assert found.blocked.probability == pytest.approx(0.15)
 
 
 def test_widths_that_are_not_given():
     """Required width 0.9 m where it is blank, and the clear width as required: 5 cm into it is enough to block it."""
     found = one_segment(THREE_OF_20, [piece(0.55, 0.5)], stretch(clear_width=None, required_width=None))
-    assert (found.clear, found.required, found.least) == pytest.approx((0.9, 0.9, 0.85))
+    assert (found.clear_width_used_m, found.required_width_used_m, found.least_width_m) == pytest.approx(
+        (0.9, 0.9, 0.85)
+    )
     assert found.flags == ("clear_assumed", "required_assumed", "no_plan")
-    assert found.outlook.blocked.probability == pytest.approx(0.15)
+    assert found.blocked.probability == pytest.approx(0.15)
 
 
 @pytest.mark.parametrize("positions", [False, True])
@@ -174,30 +182,30 @@ def test_a_piece_that_stands_inside(positions):
     item = piece(0.5, x=5.0, y=0.4, width=0.8, axis="Y") if positions else piece(0.5, -0.4)
     found = evaluated(THREE_OF_20, [item], [corridor(1.2)], CORRIDOR)
     segment, (route,), (room,) = found.segments[0], found.routes, found.rooms
-    assert segment.standing == pytest.approx(0.8)
+    assert segment.standing_width_m == pytest.approx(0.8)
     assert segment.is_blocked_standing
-    assert "standing_inside" in segment.beside[0].flags
-    assert segment.beside[0].distance == pytest.approx(-0.4)
-    for chance in (segment.outlook.blocked, route.outlook.blocked, room.loses, room.ways[0].blocked):
+    assert "standing_inside" in segment.pieces[0].flags
+    assert segment.pieces[0].distance_m == pytest.approx(-0.4)
+    for chance in (segment.blocked, route.blocked, room.loses_every_exit, room.ways[0].blocked):
         assert (chance.probability, chance.low, chance.high) == pytest.approx((1, 1, 1))
-    assert segment.outlook.state is RouteState.BLOCKED
-    assert (route.fixes, route.is_mended) == ((), False)
+    assert segment.state is RouteState.BLOCKED
+    assert (route.fixes, route.is_fixed) == ((), False)
 
 
 def test_standing_inside_with_just_enough_left():
     """1.2 m clear, 0.3 m inside: 0.9 m are left standing, as required. 0.5 m high, fallen it lies 0.8 m in: 0.4 m."""
     found = one_segment(THREE_OF_20, [piece(0.5, -0.3)], stretch(clear_width=1.2))
-    assert found.standing == pytest.approx(0.9)
-    assert found.outlook.blocked.probability == pytest.approx(0.15)
-    assert found.outlook.taken.probability == pytest.approx(0.15)
+    assert found.standing_width_m == pytest.approx(0.9)
+    assert found.blocked.probability == pytest.approx(0.15)
+    assert found.blocked_or_reduced.probability == pytest.approx(0.15)
     assert not found.is_blocked_standing
 
 
 @pytest.mark.parametrize("runs", [1, 3, 49, 98, 103, 200, 1000])
 def test_what_is_certain_is_exactly_one(runs):
     """A segment that is blocked as it stands is so in every motion, however many of them there are."""
-    falls = Falls.of([0.0], fell={0: [False] * runs})
-    blocked = one_segment(falls, [piece(0.5, -0.4)], stretch(clear_width=1.2)).outlook.blocked
+    falls = make_falls([0.0], fell={0: [False] * runs})
+    blocked = one_segment(falls, [piece(0.5, -0.4)], stretch(clear_width=1.2)).blocked
     assert (blocked.probability, blocked.low, blocked.high) == (1, 1, 1)
 
 
@@ -205,11 +213,11 @@ def test_what_is_certain_is_exactly_one(runs):
 def test_the_chosen_risk_itself_counts_as_blocked(runs):
     """3 of 100 motions are 0.03, where the class medium begins: blocked from there on, and to be mended below it."""
     fell = [at < 3 * runs // 100 for at in range(runs)]
-    found = evaluated(Falls.of([0.03], fell={0: fell}), [piece(1.5, 0.0)], risk=0.03)
+    found = evaluated(make_falls([0.03], fell={0: fell}), [piece(1.5, 0.0)], risk=0.03)
     (route,) = found.routes
-    assert found.segments[0].outlook.blocked.risk is RiskClass.MEDIUM
-    assert found.segments[0].outlook.state is route.outlook.state is RouteState.BLOCKED
-    assert [one.item for one in route.fixes] == [0]
+    assert found.segments[0].blocked.risk is RiskClass.MEDIUM
+    assert found.segments[0].state is route.state is RouteState.BLOCKED
+    assert [one.item_index for one in route.fixes] == [0]
 
 
 def test_too_narrow_for_those_who_leave_by_it():
@@ -218,13 +226,14 @@ def test_too_narrow_for_those_who_leave_by_it():
     1.2 m clear with a piece that lies 0.3 m in: 0.9 m as required, so never blocked, but under 1.016 m once it falls.
     """
     short, just = (one_segment(THREE_OF_20, [], stretch(clear_width=one, occupants=200)) for one in (1.0, 1.016))
-    assert short.needed == pytest.approx(1.016)
-    assert (short.is_short, just.is_short) == (True, False)
-    assert (short.crowded.probability, just.crowded.probability) == (1, 0)
+    assert short.needed_width_m == pytest.approx(1.016)
+    assert (short.insufficient_for_occupants, just.insufficient_for_occupants) == (True, False)
+    assert short.insufficient_after_falls.probability == 1
+    assert just.insufficient_after_falls is None, "not evaluated: neither a plan nor a piece"
     found = one_segment(THREE_OF_20, [piece(0.4, 0.1)], stretch(clear_width=1.2, occupants=200))
-    assert [found.outlook.blocked.probability, found.crowded.probability] == pytest.approx([0, 0.15])
-    assert not found.is_short
-    assert one_segment(THREE_OF_20, [], stretch()).needed is None
+    assert [found.blocked.probability, found.insufficient_after_falls.probability] == pytest.approx([0, 0.15])
+    assert not found.insufficient_for_occupants
+    assert one_segment(THREE_OF_20, [], stretch()).needed_width_m is None
 
 
 def test_stairs_need_more():
@@ -232,9 +241,9 @@ def test_stairs_need_more():
     places = [place("Upper", "stair", floor="2"), place("Lower", "stair"), place("Door", "exit")]
     segments = [stretch("flight", "Upper", "Lower", floor="", clear_width=1.5, occupants=200),
                 stretch("hall", "Lower", "Door", clear_width=1.5, occupants=200)]  # fmt: skip
-    flight, hall = evaluated(Falls.of([]), [], segments, places).segments
-    assert [flight.needed, hall.needed] == pytest.approx([1.524, 1.016])
-    assert (flight.is_short, hall.is_short) == (True, False)
+    flight, hall = evaluated(make_falls([]), [], segments, places).segments
+    assert [flight.needed_width_m, hall.needed_width_m] == pytest.approx([1.524, 1.016])
+    assert (flight.insufficient_for_occupants, hall.insufficient_for_occupants) == (True, False)
 
 
 def test_turned_pieces_are_measured_where_they_lie():
@@ -244,4 +253,4 @@ def test_turned_pieces_are_measured_where_they_lie():
     (1.8 + 0.2) / sqrt 2 = 1.4142 m down from y = 1.9, so 0.9 - 0.4858 = 0.4142 m in, and 1.3858 m are left.
     """
     found = one_segment(THREE_OF_20, [piece(1.6, x=5.0, y=1.9, width=0.4, angle_deg=45.0)], corridor())
-    assert found.beside[0].left == pytest.approx(1.8 - (0.9 - 1.9 + 2.0 / math.sqrt(2)))
+    assert found.pieces[0].left_m == pytest.approx(1.8 - (0.9 - 1.9 + 2.0 / math.sqrt(2)))

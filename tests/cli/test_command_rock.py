@@ -1,16 +1,24 @@
 """`assess rock`: the document, the text and the figure of one block under one record, and what it says of bad input."""
 
 import json
+import math
 import re
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
-from assess.cli import app
+from assess.cli import command_rock
+from assess.cli.app import app
+from assess.cli.command_rock import describe, describe_outcome, list_lines, read_case, write_figure
+from assess.report.figures import draw as figures
 from tests.motion.writers import THREE, csmip_v2, zipped
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 SAMPLES = ROOT / "samples" / "records"
 MARKET = ROOT / "inventories" / "records" / "575-market"
 FLOOR, ROOF, SWEEP = SAMPLES / "0165a_u.smc", MARKET / "891018_1.cra-1.0210a.smc", SAMPLES / "made-up-sweep.csv"
@@ -135,12 +143,12 @@ def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
         ({"restitution": "nan"}, "--restitution is nan, expected 0 to 1"),
         ({"baseline": "strict"}, "--baseline is 'strict', expected one of: standard, none"),
         ({"breadth": "40cm"}, "Invalid value for '--breadth'"),
-        ({"record": f"{SWEEP}#up"}, "made-up-sweep.csv#up is a vertical channel, which topples no furniture. Name"),
-        ({"record": SAMPLES / "1103.HNZ.NP.BE_a.smc"}, "1103.HNZ.NP.BE_a.smc is a vertical channel, which topples no"),
-        ({"record": SWEEP}, "made-up-sweep.csv holds 3 channels: north, east, up. Write which, as made-up-sweep.csv#n"),
+        ({"record": f"{SWEEP}#up"}, "made-up-sweep.csv#up is a vertical channel: choose a"),
+        ({"record": SAMPLES / "1103.HNZ.NP.BE_a.smc"}, "1103.HNZ.NP.BE_a.smc is a vertical channel"),
+        ({"record": SWEEP}, "made-up-sweep.csv holds 3 channels: north, east, up. Name one of them, such as made"),
         ({"record": f"{SWEEP}#west"}, "made-up-sweep.csv has no channel 'west'. It holds: north, east, up"),
         ({"record": "none.smc"}, "none.smc: there is no such file"),
-        ({"record": SAMPLES / "README.md"}, "README.md: the content is of no known format"),
+        ({"record": SAMPLES / "README.md"}, "README.md: the file format is not supported"),
         ({"record": SAMPLES / "1103.HN2.NP.RE_v.smc"}, "1103.HN2.NP.RE_v.smc: it holds velocity"),
         ({"record": SAMPLES}, "records: this is a folder"),
         ({"record": "n" * 300}, "the file cannot be read"),
@@ -158,8 +166,9 @@ def test_what_is_missing_is_named(left_out):
     assert f"Missing option '--{left_out}'" in error(CliRunner().invoke(app, ["rock", *arguments]))
 
 
-@pytest.mark.parametrize("pfa", [0.1, 0.3, 0.5])
-@pytest.mark.parametrize(("kind", "magic"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")])
+@pytest.mark.parametrize(
+    ("kind", "magic", "pfa"), [("png", b"\x89PNG", 0.1), ("svg", b"<?xml", 0.3), ("pdf", b"%PDF", 0.5)]
+)
 def test_the_figure_is_the_same_twice(tmp_path, kind, magic, pfa):
     first, second = tmp_path / f"a.{kind}", tmp_path / f"b.{kind}"
     for path in (first, second):
@@ -174,7 +183,7 @@ def test_the_figure_is_the_same_twice(tmp_path, kind, magic, pfa):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("x.gif", "the figure x.gif is of no known kind: end its name in .png, .svg or .pdf"),
+        ("x.gif", "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
         ("none/x.png", "cannot be written there: name a file in a folder that exists"),
     ],
 )
@@ -200,8 +209,154 @@ def test_help_names_the_units():
         assert words in text
 
 
-def test_the_example_of_the_readme_is_what_is_printed(monkeypatch):
+def test_the_example_of_the_documentation_is_what_is_printed(monkeypatch):
     monkeypatch.chdir(ROOT)
-    found = re.search(r"^assess (rock .*)\n\n((?:.+\n)+?)```", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE)
+    text = (ROOT / "docs" / "commands.md").read_text("utf-8")
+    found = re.search(r"^assess (rock .*)\n\n((?:.+\n)+?)```", text, re.MULTILINE)
     assert found
     assert CliRunner().invoke(app, found[1].split()).stdout == found[2]
+
+
+# ---------------------------------------------------------------- made-up responses: words and figure
+
+
+@dataclass
+class Found:
+    """What a block did, made up."""
+
+    critical_angle: float = 0.2
+    frequency_parameter: float = 2.8
+    restitution: float = 0.93
+    overturned: bool = False
+    rotation: float = 0.0
+    fall_time: float = math.nan
+    impacts: int = 0
+    times: np.ndarray = field(default_factory=lambda: np.array([0.0, 30.0]))
+    theta: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    impact_times: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+
+def fallen(side=1, at=5.39):
+    return Found(
+        overturned=True, rotation=7.9, fall_time=at, impacts=3, times=np.array([0, 2, 3, 4, at]),
+        theta=side * np.array([0, 0, -0.05, 0, math.pi / 2]), impact_times=np.array([2.5, 2.8, 4.0]),
+    )  # fmt: skip
+
+
+def case(pfa=0.5, record=FLOOR, restitution=None):
+    return read_case(40, 180, str(record), pfa, restitution, "standard")
+
+
+@pytest.mark.parametrize(
+    ("pfa", "found", "words"),
+    [
+        (0.5, fallen(), "overturns at 5.39 s, after 3 impacts"),
+        (0.5, Found(overturned=True, fall_time=2.0, impacts=1), "overturns at 2.00 s, after 1 impact"),
+        (0.5, Found(rotation=0.333, impacts=135), "does not overturn: rotates to 0.33 of the critical angle, 135 imp"),
+        (0.5, Found(rotation=1.05, impacts=1), "does not overturn: rotates to 1.05 of the critical angle, 1 impact"),
+        (0.5, Found(rotation=0.0123), "does not overturn: rotates to 0.012 of the critical angle, 0 impacts"),
+        (
+            0.5,
+            Found(rotation=1e-7, impacts=1),
+            "does not overturn: rotates to less than 0.001 of the critical angle, 1 impact",
+        ),
+        (0.1, Found(), "does not start to rock: the peak 0.1000 g does not exceed its threshold 0.2222 g"),
+        (0.23, Found(), "does not start to rock: the peak 0.2300 g does not stay above its threshold 0.2222 g"),
+    ],
+)
+def test_outcomes_in_words(pfa, found, words):
+    assert describe_outcome(case(pfa), found).startswith(words)
+
+
+def test_the_document_says_null_where_nothing_falls():
+    assert describe(case(), Found(rotation=0.3, impacts=4)) == {
+        "overturned": False,
+        "max_rotation_ratio": 0.3,
+        "impacts": 4,
+        "overturn_time_s": None,
+        "pfa_g": 0.5,
+        "critical_angle_rad": 0.2,
+        "frequency_parameter_rad_s": 2.8,
+        "restitution": 0.93,
+    }
+    assert describe(case(), fallen())["overturn_time_s"] == 5.39
+
+
+def test_the_lines_fit_a_screen_and_say_what_was_done():
+    lines = list(list_lines(case(), fallen()))
+    assert [line[:9].strip() for line in lines] == ["Block", "Record", "", "Motion", "Rocks", "Outcome", "Limits"]
+    assert lines[0].endswith("restitution 0.9300 (Housner's)")
+    assert next(list_lines(case(restitution=0.93), fallen())).endswith("(given)")
+
+
+def test_a_motion_is_scaled_as_a_whole():
+    own, scaled = case(None), case(0.5)
+    assert (own.factor, own.motion.pfa) == (1, own.channel.motion.pfa)
+    assert scaled.factor == pytest.approx(0.5 * 9.80665 / own.motion.pfa)
+    for name in ("acceleration", "velocity", "displacement"):
+        np.testing.assert_allclose(getattr(scaled.motion, name), scaled.factor * getattr(own.motion, name), rtol=1e-15)
+    assert scaled.motion.pfa == pytest.approx(0.5 * 9.80665, rel=1e-15)
+    np.testing.assert_array_equal(scaled.channel.motion.acceleration, own.motion.acceleration)
+
+
+def paint(one, found):
+    figure = Figure(figsize=(8, 4.6), layout="constrained")
+    command_rock._paint(one, found, figure)
+    return figure
+
+
+def test_the_figure_shows_motion_threshold_path_and_impacts():
+    one, found = case(), fallen()
+    top, bottom = paint(one, found).axes
+    assert top.get_title(loc="left") == "The block overturns at 5.39 s, after 3 impacts"
+    before, after, *limits = (line for line in top.lines if line.get_linestyle() != "")
+    assert before.get_xdata().max() <= 5.39 < after.get_xdata().min()
+    drawn = np.concatenate([before.get_ydata(), after.get_ydata()])
+    assert np.abs(drawn).max() == pytest.approx(0.5)
+    assert [line.get_ydata()[0] for line in limits[:2]] == pytest.approx([40 / 180, -40 / 180])
+    path, *limits = bottom.lines
+    np.testing.assert_array_equal(path.get_xdata(), found.times)
+    assert path.get_ydata()[-1] == pytest.approx(math.pi / 2 / 0.2)
+    assert [line.get_ydata()[0] for line in limits[:2]] == [1, -1]
+    assert limits[2].get_xdata()[0] == 5.39
+    ticks = [segment[0][0] for segment in bottom.collections[0].get_segments()]
+    np.testing.assert_array_equal(ticks, found.impact_times)
+    assert bottom.get_xlim() == (0, pytest.approx(30.055))
+    low, high = bottom.get_ylim()
+    assert (low, high) == pytest.approx((-1.5, 2.3))
+
+
+def test_the_figure_is_turned_towards_the_fall_and_reaches_it():
+    _, bottom = paint(case(), fallen(side=-1, at=33.0)).axes
+    assert bottom.get_ylim() == pytest.approx((-2.3, 1.5))
+    assert bottom.get_xlim()[1] == 33
+
+
+def test_a_long_path_is_thinned_out_and_keeps_its_peak_and_its_end():
+    times = np.linspace(0, 30, 200_001)
+    theta = 0.1 * np.sin(times)
+    theta[77_777], theta[-1] = 0.19, 0.05
+    found = Found(rotation=0.95, times=times, theta=theta)
+    _, bottom = paint(case(), found).axes
+    drawn = bottom.lines[0]
+    assert drawn.get_xdata().size <= command_rock.MOST_POINTS + 1
+    assert drawn.get_ydata().max() == pytest.approx(0.95)
+    assert (drawn.get_xdata()[-1], drawn.get_ydata()[-1]) == (30, pytest.approx(0.25))
+
+
+def test_thinning_out_keeps_a_peak_among_the_last_points():
+    values = np.zeros(9_001)
+    values[-2] = 1
+    times, kept = figures.thin_out(np.arange(9_001.0), values)
+    assert kept.max() == 1
+    assert times[-1] == 9_000
+    assert kept.size <= figures.MOST_POINTS + 2
+
+
+def test_names_that_look_like_mathematics_are_drawn_as_they_are(tmp_path):
+    path = tmp_path / "$x$_{.csv"
+    path.write_bytes(SWEEP.read_bytes())
+    write_figure(case(record=f"{path}#north"), fallen(), tmp_path / "x.svg")
+    text = (tmp_path / "x.svg").read_text(encoding="utf-8")
+    assert ET.fromstring(text).tag.endswith("svg")
+    assert re.search(r"\$x\$_\{", text)

@@ -1,4 +1,4 @@
-"""`assess study`: its files, what it prints, how it ends, and bad input, which names the mend and writes nothing."""
+"""`assess study`: its files, what it prints, how it ends, and bad input, which names the fix and writes nothing."""
 
 import csv
 import os
@@ -10,14 +10,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from assess import cli_study
-from assess.cli import app
+from assess.cli import command_study
+from assess.cli.app import app
 from assess.errors import OutputError
 from assess.resources import record
-from assess.studies import Finding, Options, Study, all_studies
-from assess.studies._parts import PARTS, take_up
-from assess.studies._run import check_folder, run_study, write_files
-from assess.studies._write import PAGE
+from assess.studies import PAGE, PARTS, Finding, Options, Study, all_studies, check_folder, run_study, write_files
+from assess.studies.study_files import load_or_compute
 
 NAMES = ["table1", "solver", "table2", "contours", "table3", "fit"]
 
@@ -59,13 +57,13 @@ def test_what_studies_take_is_what_they_say():
 
 
 def test_the_help_names_every_study_and_the_sizes_that_are_used():
-    assert cli_study.NAMES.split(", ") == NAMES
+    assert sorted(command_study.NAMES.split(", ")) == sorted(NAMES)
     told = " ".join(study("--help").stdout.split())
-    assert "table1, solver, table2, contours, table3, fit; or all" in told
+    assert f"{command_study.NAMES}; or all" in told
     given = Options(out=Path("unused"))
     assert all(f"[default: ({100 * size:g})]" in told for size in (given.breadth, given.height))
-    assert f"Fewer than 20 tell nothing. [default: {given.runs};" in told
-    assert "the same command goes on from there" in told
+    assert f"table2, contours, fit. [default: {given.runs}; 20<=x<=1000]" in told
+    assert "the same command continues from there" in told
 
 
 # ---------------------------------------------------------------- files
@@ -94,13 +92,12 @@ def test_the_same_again_gives_the_same_bytes(tmp_path):
 
 
 @pytest.mark.usefixtures("two")
-def test_all_of_them_are_told_and_have_one_page(tmp_path):
+def test_all_of_them_have_one_page(tmp_path):
     found = study("all", "--out", tmp_path, "--breadth", "30")
     assert found.exit_code == 0
     assert found.stdout.splitlines() == ["first came out", "first twice", "second came out", "second twice"]
     assert {file.name for file in tmp_path.iterdir()} == {"first.md", "second.md", PAGE}
-    assert "first: Of first\nsecond: Of second\n" in found.stderr
-    assert found.stderr.endswith(f"wrote {tmp_path / PAGE}\n")
+    assert found.stderr == f"wrote {tmp_path / PAGE}\n"
     assert "0.3" in (tmp_path / "first.md").read_text(encoding="utf-8").split()
 
 
@@ -114,7 +111,7 @@ def test_names_are_taken_in_any_case(tmp_path):
 def test_what_is_kept_is_told(tmp_path):
     (tmp_path / PARTS).mkdir()
     found = study("second", "--out", tmp_path)
-    assert f"second.md; {tmp_path / PARTS} keeps what took long, for the next run" in found.stderr
+    assert f"second.md; {tmp_path / PARTS} keeps the long integrations for the next run" in found.stderr
 
 
 def test_files_appear_whole_or_not_at_all(tmp_path):
@@ -159,16 +156,16 @@ def test_two_commands_at_once_in_a_new_folder(tmp_path):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("table1", "--records", ""), "--records is empty: name a folder, or leave --records away"),
+        (("table1", "--records", ""), "--records is empty: name a folder, or leave out --records"),
         (("table2", "--runs", "19"), "'--runs'"),
-        (("table9",), "'table9' is no study; expected one of table1, solver, table2, contours, table3, fit, all"),
-        (("table1", "--breadth", "90", "--height", "80"), "--breadth and --height: expected sizes of 5 to 600 cm"),
-        (("table1", "--breadth", "170"), "the breadth at most the height; these are 170 and 160 cm"),
-        (("table1", "--breadth", "nan"), "--breadth and --height: expected sizes of 5 to 600 cm"),
+        (("table9",), "'table9' is an unknown study; expected one of: contours, fit,"),
+        (("table1", "--breadth", "90", "--height", "80"), "--breadth is 90 cm, expected at most the height, 80 cm"),
+        (("table1", "--breadth", "170"), "--breadth is 170 cm, expected at most the height, 160 cm"),
+        (("table1", "--breadth", "nan"), "--breadth is nan cm, expected 5 to 600 cm"),
         (("table1", "--records", "nowhere"), "nowhere: there is no such folder. Name a folder of floor records"),
-        (("table3", "--records", "."), "--records is nothing to table3, only to table1 and all: leave it out"),
-        (("solver", "--height", "200"), "--height is nothing to solver, only to table1, table2 and all: leave it out"),
-        (("fit", "--breadth", "20"), "--breadth is nothing to fit, only to table1, table2 and all: leave it out"),
+        (("table3", "--records", "."), "--records does not apply to table3, only to table1 and all: leave it out"),
+        (("solver", "--height", "200"), "--height does not apply to solver, only to table1, table2 and all: leave"),
+        (("fit", "--breadth", "20"), "--breadth does not apply to fit, only to table1, table2 and all: leave it out"),
     ],
 )  # fmt: skip
 def test_bad_input_writes_nothing(tmp_path, words, told):
@@ -182,14 +179,14 @@ def test_an_empty_name_is_not_the_folder_in_which_one_stands(tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     found = study("table3", "--out", "")
     assert found.exit_code == 2
-    assert "--out is empty: name a folder, or leave --out away" in found.stderr
+    assert "--out is empty: name a folder, or leave out --out" in found.stderr
     assert not list(tmp_path.iterdir())
 
 
 def test_the_folder_of_records_is_not_that_of_the_files(tmp_path):
     found = study("table1", "--records", tmp_path, "--out", tmp_path / "x" / "..")
     assert found.exit_code == 2
-    assert "--records and --out are one folder: name another for the files with --out" in found.stderr
+    assert "--records and --out are the same folder: name another one for the files with --out" in found.stderr
 
 
 @pytest.mark.parametrize("below", ["", "further/down"])
@@ -201,7 +198,7 @@ def test_a_file_in_place_of_the_folder_is_told_before_the_work(tmp_path, monkeyp
     found = study("long", "--out", tmp_path / "out" / below)
     assert found.exit_code == 1
     assert "could not be written" in found.stderr
-    assert "Name another folder with --out." in found.stderr
+    assert "Make room, or name another folder" in found.stderr
     assert (tmp_path / "out").read_text(encoding="utf-8") == "mine"
     assert len(list(tmp_path.iterdir())) == 1
 
@@ -211,7 +208,7 @@ def test_a_folder_that_one_may_not_write_to_is_told(tmp_path, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("tempfile.mkdtemp", refuse)
-    with pytest.raises(OutputError, match=r"new could not be written: Permission denied\. Name another folder"):
+    with pytest.raises(OutputError, match=r"new could not be written: Permission denied\."):
         check_folder(tmp_path / "new")
 
 
@@ -245,12 +242,12 @@ SLOW = """
 import sys, time
 import assess.studies as studies
 import numpy as np
-from assess.studies._parts import PARTS, take_up
-from assess.cli import app
+from assess.studies.study_files import PARTS, load_or_compute
+from assess.cli.app import app
 
 def work(options):
     if {keeps}:
-        take_up(options.out / PARTS, "one", lambda: {{"one": np.ones(2)}})
+        load_or_compute(options.out / PARTS, "one", lambda: {{"one": np.ones(2)}})
     print("begun", flush=True)
     time.sleep(60)
 
@@ -277,10 +274,10 @@ def test_a_run_that_is_interrupted_says_where_it_goes_on(tmp_path, number, keeps
     assert "Traceback" not in told
     parts = tmp_path / "out" / PARTS
     if keeps:
-        assert f"Interrupted; what is done is kept in {parts}, and the same command goes on from there." in told
+        assert f"Interrupted; finished parts are kept in {parts}; the same command continues from there." in told
         assert [file.suffix for file in parts.iterdir()] == [".npz"]
     else:
-        assert "Interrupted; nothing is half written." in told
+        assert "Interrupted; nothing was written." in told
         assert not (tmp_path / "out").exists()
 
 
@@ -295,6 +292,6 @@ def test_a_full_disk_is_told(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("numpy.savez", fail)
-    with pytest.raises(OutputError, match=r"No space left on device\. Make room, or name another folder with --out"):
-        take_up(tmp_path / PARTS, "one", dict)
+    with pytest.raises(OutputError, match=r"No space left on device\. Make room, or name another folder"):
+        load_or_compute(tmp_path / PARTS, "one", dict)
     assert not list((tmp_path / PARTS).iterdir())

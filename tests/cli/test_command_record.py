@@ -1,0 +1,150 @@
+"""`assess record`: what it prints, as text and as JSON, what it draws, and what it says of files it cannot read."""
+
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from assess.cli.app import app
+from assess.cli.command_record import write_figure
+from assess.errors import OutputError
+from assess.motion.formats import read_channels, read_records
+from assess.motion.record import treat
+from tests.motion.writers import THREE, csmip_v2, zipped
+
+RECORDS = Path(__file__).parents[2] / "samples" / "records"
+ROOF, SWEEP, VELOCITY = (
+    RECORDS / name for name in ("1103.HN2.NP.RE_a.smc", "made-up-sweep.csv", "1103.HN2.NP.RE_v.smc")
+)
+
+
+def run(*arguments: object):
+    return CliRunner().invoke(app, ["record", *map(str, arguments)])
+
+
+def test_the_document_is_the_one_of_the_contract():
+    done = run(ROOF, "--json")
+    assert (done.exit_code, done.stderr) == (0, "")
+    document = json.loads(done.stdout)
+    (channel,) = document["channels"]
+    assert (document["file"], document["format"]) == (ROOF.name, "USGS SMC")
+    assert (channel["channel"], channel["location"], channel["azimuth_deg"]) == ("171", "Roof, east core", 171.0)
+    assert (channel["time_step_s"], channel["samples"], channel["corrected"]) == (0.005, 8200, True)
+    assert channel["pfa_file_g"] == pytest.approx(0.51404 / 9.80665)
+    assert channel["pfa_header_g"] == pytest.approx(0.514 / 9.80665)
+    assert channel["pfa_g"] == channel["pfa_file_g"]
+    assert channel["pfv_cm_s"] == pytest.approx(2.2956, rel=0.002)
+    spectrum = channel["spectrum"]
+    assert spectrum["pseudo_acceleration_g"][0] > channel["pfa_g"]
+    assert len(spectrum["periods_s"]) == len(spectrum["pseudo_acceleration_g"])
+
+
+def test_several_files_are_a_list_in_one_document():
+    documents = json.loads(run(ROOF, SWEEP, "--json").stdout)
+    assert [len(document["channels"]) for document in documents] == [1, 3]
+
+
+def test_the_text_tells_a_person_the_same():
+    text = run(SWEEP).stdout
+    assert "made-up-sweep.csv: plain CSV, 3 channels" in text
+    assert "made-up-sweep.csv#north (channel north, 3rd floor, 0 deg)" in text
+    assert "made-up-sweep.csv#up (channel up, 3rd floor, vertical)" in text
+    assert "1,201 samples, one every 0.01 s: 12.00 s" in text
+    assert "PFA 0.3000 g, PFV 57.76 cm/s" in text
+    assert "5 % spectrum  T [s]     0.05" in text
+
+
+def test_one_channel_of_a_file():
+    (channel,) = json.loads(run(f"{SWEEP}#east", "--json").stdout)["channels"]
+    assert (channel["channel"], channel["name"]) == ("east", "made-up-sweep.csv#east")
+
+
+def test_a_set_in_a_zip_archive(tmp_path):
+    (tmp_path / "set.zip").write_bytes(zipped({"CHAN.V2": csmip_v2(*THREE), "README.txt": b"hello"}))
+    done = run(tmp_path / "set.zip")
+    assert "set.zip: CSMIP V2, 3 channels" in done.stdout
+    assert "set.zip#11 (channel 11, " in done.stdout
+    assert "note: left out of the archive: README.txt" in done.stdout
+
+
+def test_a_file_that_cannot_be_read_is_named_and_the_others_are_told(tmp_path):
+    done = run(VELOCITY, ROOF)
+    assert done.exit_code == 1
+    assert "error  1103.HN2.NP.RE_v.smc: it holds velocity" in done.stderr
+    assert ROOF.name in done.stdout
+    done = run(VELOCITY, tmp_path / "none.v2", "--json")
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "none.v2: there is no such file" in done.stderr
+    assert run(f"{SWEEP}#west").exit_code == 2
+
+
+@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+def test_the_figure(tmp_path, kind):
+    path = tmp_path / f"figure.{kind}"
+    done = run(SWEEP, "--plot", path)
+    assert (done.exit_code, done.stderr) == (0, f"wrote {path}\n")
+    assert path.read_bytes().startswith({"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[kind])
+    assert [one.name for one in tmp_path.iterdir()] == [path.name]
+    if kind == "svg":
+        assert sum(1 for one in ET.parse(path).iter() if str(one.get("id", "")).startswith("axes_")) == 9
+
+
+def test_only_the_first_channels_are_drawn_and_the_rest_is_said(tmp_path):
+    done = run(*[SWEEP] * 5, "--plot", tmp_path / "many.png")
+    assert "3 more channels not drawn" in done.stderr
+
+
+def test_figures_that_cannot_be_written(tmp_path):
+    (tmp_path / "file.txt").write_bytes(b"")
+    for name, message in (
+        ("x.gif", "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
+        ("none/x.png", "cannot be written there: name a file in a folder that exists"),
+        ("file.txt/x.png", "cannot be written there: name a file in a folder that exists"),
+        (f"{'n' * 300}.png", "cannot be written there: name a file in a folder that exists"),
+    ):
+        done = run(SWEEP, "--plot", tmp_path / name)
+        assert (done.exit_code, done.stdout) == (2, "")
+        assert message in done.stderr
+
+
+def test_a_figure_that_is_open_elsewhere(tmp_path, monkeypatch):
+    def forbid(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "replace", forbid)
+    with pytest.raises(OutputError, match=r"x\.png could not be written: Permission denied\. Name another file"):
+        write_figure(read_channels(str(SWEEP)), tmp_path / "x.png")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["n" * 300, f"{'n' * 300}#1"])
+def test_names_that_no_file_can_have(name):
+    done = run(name)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert "error  " in done.stderr
+
+
+def test_a_name_with_a_hash_is_a_file_first(tmp_path):
+    path = tmp_path / "set#1.csv"
+    path.write_bytes(SWEEP.read_bytes())
+    assert len(read_channels(str(path))) == 3
+
+
+def test_channels_come_as_they_are_and_as_treated():
+    ((name, record, motion),) = read_channels(str(ROOF))
+    assert name == ROOF.name
+    np.testing.assert_array_equal(motion.acceleration, treat(record).acceleration)
+    np.testing.assert_array_equal(record.acceleration, read_records(ROOF)[0].acceleration)
+
+
+def test_the_names_are_what_finds_the_channels_again(tmp_path):
+    both = {"a/CHAN.V2": csmip_v2(*THREE), "b/CHAN.V2": csmip_v2(*THREE)}
+    (tmp_path / "set.zip").write_bytes(zipped(both))
+    channels = read_channels(str(tmp_path / "set.zip"))
+    assert len({one.name for one in channels}) == 6
+    for one in channels:
+        (again,) = read_channels(str(tmp_path / one.name))
+        assert (again.record.file, again.record.channel) == (one.record.file, one.record.channel)

@@ -1,0 +1,273 @@
+import json
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import assess
+import assess.cli
+from assess.cli import command_doctor
+from assess.cli.app import app, find_commands
+from assess.cli.command_doctor import Requirement
+from assess.cli.console import _list_options
+from assess.methods import all_methods
+from tests.workbooks import write
+
+run = CliRunner().invoke
+RUN = ("run", "--verify", "none")
+ROOT = Path(__file__).parents[2]
+
+
+COMMANDS = ["new", "check", "run", "routes", "rock", "record", "study", "methods", "doctor"]
+
+
+def test_every_file_of_a_command_is_one_and_is_in_the_help_in_order():
+    files = Path(assess.cli.__file__).parent.glob("command_*.py")
+    assert sorted(f"command_{name}" for name in COMMANDS) == sorted(file.stem for file in files)
+    text = run(app, ["--help"]).output
+    assert re.findall(r"^  (\w+)\s", text.partition("Commands:")[2], re.MULTILINE) == COMMANDS
+    assert "--install-completion" in text
+
+
+@pytest.mark.parametrize(("name", "module"), find_commands())
+def test_the_help_of_each_command_has_examples_with_its_own_options(name, module):
+    text = run(app, [name, "--help"]).output
+    assert module.EXAMPLES
+    for example in module.EXAMPLES:
+        assert f"  {example}\n" in text
+        words = shlex.split(example)
+        assert words[:2] == ["assess", name]
+        for option in words[2:]:
+            assert not option.startswith("--") or re.search(rf"^  {option}\b", text, re.MULTILINE)
+
+
+@pytest.mark.parametrize(("name", "module"), find_commands())
+def test_the_options_of_each_command_are_found_by_its_arguments(name, module):
+    """By these, a message of the library that begins with an argument names the option instead."""
+    text, options = run(app, [name, "--help"]).output, _list_options(module.command)
+    assert set(re.findall(r"^  (--[a-z-]+)", text, re.MULTILINE)) - {"--help"} == set(options.values())
+
+
+def test_help_loads_nothing_heavy():
+    """Nor does any file of a command, when it is found."""
+    heavy = ("numpy", "scipy", "numba", "openpyxl", "jinja2", "matplotlib", "babel", "assess.studies", "assess.report")
+    code = (
+        "import sys\nsys.argv = ['assess', '--help']\nfrom assess.cli.app import main\n"
+        f"try:\n    main()\nexcept SystemExit:\n    print([name for name in {heavy!r} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert done.stdout.splitlines()[-1] == "[]", done.stderr
+
+
+def test_version():
+    assert run(app, ["--version"]).output == f"assess {assess.__version__}\n"
+
+
+def test_new_then_check_says_what_is_missing(tmp_path):
+    path = tmp_path / "w.xlsx"
+    assert run(app, ["new", str(path)]).exit_code == 0
+    checked = run(app, ["check", str(path)])
+    assert checked.exit_code == 2
+    assert "Items!A2: the table has no rows: nothing is assessed. Fill in at least one." in checked.stderr
+    assert "1 error; nothing was written." in checked.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "wrote w.xlsx. Fill in its sheets Floors and Items, then run: assess check w.xlsx\n"),
+        (["--example"], "wrote w.xlsx. Assess it with: assess run w.xlsx\n"),
+    ],
+)
+def test_new_says_what_to_do_next(tmp_path, monkeypatch, words, message):
+    monkeypatch.chdir(tmp_path)
+    done = run(app, ["new", "w.xlsx", *words])
+    assert (done.exit_code, done.stderr) == (0, message)
+
+
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_the_example_runs(tmp_path, units):
+    path = tmp_path / "w.xlsx"
+    assert run(app, ["new", str(path), "--example", "--units", units]).exit_code == 0
+    checked = run(app, ["check", str(path)])
+    assert checked.exit_code == 0
+    assert re.fullmatch(
+        r"w\.xlsx: no errors\. \d+ rows of furniture on \d+ floors, \d+ route segments?\.\n", checked.stdout
+    )
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--formats", "json"])
+    assert done.exit_code == 0
+    assert "not per year. Not simulated." in done.stdout
+    assert json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["items"]
+
+
+def test_new_leaves_a_file_alone_unless_forced(tmp_path):
+    path = tmp_path / "w.xlsx"
+    path.write_text("mine")
+    done = run(app, ["new", str(path)])
+    assert done.exit_code == 1
+    assert "already exists: add --force" in done.stderr
+    assert path.read_text() == "mine"
+    assert run(app, ["new", str(path), "--force"]).exit_code == 0
+    assert path.read_bytes().startswith(b"PK")
+
+
+def test_new_wants_xlsx_and_a_folder_that_is_there(tmp_path):
+    done = run(app, ["new", str(tmp_path / "w.xls")])
+    assert (done.exit_code, "does not end in .xlsx" in done.stderr) == (2, True)
+    done = run(app, ["new", str(tmp_path / "none" / "w.xlsx")])
+    assert (done.exit_code, "could not be written" in done.stderr) == (1, True)
+
+
+def test_bad_input_writes_nothing(tmp_path):
+    path = write(tmp_path / "w.xlsx", [{"item": "a", "floor": "9", "breadth": 30, "height": 180}])
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 2
+    assert "Items!B2: Floor '9' is not in the Floors sheet." in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--verify", "maybe"], "--verify is 'maybe', expected one of: none, high, all"),
+        (["--runs", "0"], "--runs is '0', expected 1 to 100,000, or auto"),
+        (["--runs", "9" * 5000], "--runs is '999"),
+        (["--seed", "-1"], "--seed is -1, expected a whole number, 0 or above"),
+        (["--jobs", "0"], "Invalid value for '--jobs': "),
+        (
+            ["--motions", ".", "--runs", "50"],
+            "--motions: the simulation uses each of your own motions once; leave out --verify none, --runs and",
+        ),
+        (["--motions", ".", "--seed", "2"], "--motions: the simulation uses each of your own motions once"),
+        (
+            ["--motions", ".", "--verify", "none"],
+            "--motions: the simulation uses each of your own motions once",
+        ),
+        (["--scale-motions"], "--scale-motions: there are no motions to scale; name their folder with --motions"),
+        (
+            ["--formats", "npz", "--verify", "none"],
+            "--formats: npz holds results of the simulation: leave out npz or --verify none",
+        ),
+        (
+            ["--scenario", "ASCE 7-10"],
+            "--scenario is 'ASCE 7-10', expected one of: as filled, recorded, given",
+        ),
+        (
+            ["--formats", "json,docx"],
+            "--formats: 'docx' is an unknown format; expected some of: pdf, xlsx",
+        ),
+        (["--formats", ""], "--formats: no format is named"),
+        (["--open", "--formats", "json,csv"], "--open opens a report: write one of pdf, html, xlsx with --formats"),
+        (["--language", "fr"], "--language 'fr' is unknown: expected one of en, it"),
+    ],
+)
+def test_wrong_usage_exits_with_2(tmp_path, arguments, message):
+    done = run(app, ["run", str(write(tmp_path / "w.xlsx")), "--out", str(tmp_path / "out"), *arguments])
+    assert done.exit_code == 2
+    assert message in " ".join(re.sub(r"[│\n]", " ", done.stderr).split())
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_scenario_that_a_floor_cannot_serve_names_the_floor(tmp_path):
+    path = write(tmp_path / "w.xlsx")
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--scenario", "recorded"])
+    assert done.exit_code == 2
+    assert "Floors!H2: floor '1' has no record, which the scenario 'recorded' needs" in done.stderr
+    assert "Floors!H3" in done.stderr
+
+
+def test_a_scenario_is_accepted_in_any_spelling(tmp_path):
+    path = write(tmp_path / "w.xlsx", floors=[{"floor": at, "elevation": at} for at in (1, 2)], ground_pga=0.2)
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--formats", "json", "--scenario", "asce7-22"])
+    assert done.exit_code == 0, done.stderr
+    found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    assert found["assess"]["settings"]["scenario"] == "ASCE 7-22"
+
+
+def test_a_profile_without_ground_motion_names_the_cell_and_every_floor_without_elevation(tmp_path):
+    done = run(app, [*RUN, str(write(tmp_path / "w.xlsx")), "--out", str(tmp_path / "out"), "--scenario", "NTC 2018"])
+    assert done.exit_code == 2
+    assert "Building!B18: Ground PGA and SDS are blank; the scenario 'NTC 2018' needs one" in done.stderr
+    for cell in ("C2", "C3"):
+        assert re.search(rf"Floors!{cell}: floor '\d' has no Elevation, which the scenario 'NTC 2018'", done.stderr)
+
+
+def test_the_default_folder_is_named_after_the_workbook(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path / "tower.xlsx")
+    assert run(app, [*RUN, "tower.xlsx", "--formats", "csv"]).exit_code == 0
+    assert (tmp_path / "tower-report" / "items.csv").is_file()
+
+
+def test_methods_lists_every_method():
+    text = run(app, ["methods"]).output
+    for method in all_methods():
+        assert f"{method.key}: {method.title}" in text
+        assert str(method.reference) in text
+
+
+def test_doctor_finds_all_that_is_installed_here():
+    done = run(app, ["doctor"])
+    assert f"assess: {assess.__version__}" in done.output
+    assert done.exit_code == (1 if "missing" in done.output else 0)
+    declared = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
+    names = [re.split(r"[^\w-]", line)[0] for line in declared]
+    assert {"numpy", "babel"} <= set(names)
+    for name in (*names, "templates", "fonts", "PDF"):
+        assert re.search(rf"^(ok|missing)\s+{name}: ", done.output, re.MULTILINE | re.IGNORECASE), name
+    assert "pytest" not in done.output
+
+
+@pytest.mark.parametrize(
+    ("one", "works", "detail"),
+    [
+        (Requirement("typer", "0.1", ""), True, version("typer")),
+        (Requirement("typer", "999.1", ""), False, f'{version("typer")} is too old: pip install "typer>=999.1"'),
+        (Requirement("no-such", "2.0", ""), False, 'not installed: pip install "no-such>=2.0"'),
+        (Requirement("no-such", "", "maps"), True, 'optional, not installed: pip install "assess[maps]"'),
+        (Requirement("typer", "", "maps"), True, f"{version('typer')} (optional: maps)"),
+    ],
+)
+def test_doctor_says_how_to_fix_it(one, works, detail):
+    found = command_doctor.examine_package(one)
+    assert (found.works, found.detail) == (works, detail)
+
+
+def test_doctor_reads_the_project_file_where_assess_is_not_installed(monkeypatch):
+    def fail(name):
+        raise PackageNotFoundError(name)
+
+    installed = {(one.name.lower(), one.least, one.extra) for one in command_doctor.list_requirements()}
+    monkeypatch.setattr("importlib.metadata.requires", fail)
+    read = {(one.name.lower(), one.least, one.extra) for one in command_doctor.list_requirements()}
+    assert ("weasyprint", "") in {(name, extra) for name, _, extra in read}
+    assert {name for name, _, _ in read} == {name for name, _, _ in installed}
+
+
+@pytest.mark.parametrize(("text", "numbers"), [("2.10.0rc1", (2, 10)), ("70.0", (70,)), ("10", (10,)), ("", ())])
+def test_versions_are_compared_by_their_numbers(text, numbers):
+    assert command_doctor._numbers(text) == numbers
+
+
+@pytest.mark.parametrize(("status", "message"), [(0, ""), (1, "could not be opened: no viewer was found.")])
+def test_open_shows_the_report_that_was_written(tmp_path, monkeypatch, status, message):
+    opened: list[str] = []
+
+    def launch(file):
+        opened.append(file)
+        return status
+
+    monkeypatch.setattr("typer.launch", launch)
+    files = {"json": tmp_path / "results.json", "html": tmp_path / "report.html"}
+    monkeypatch.setattr("assess.report.write_reports", lambda *_, **__: files)
+    path = write(tmp_path / "w.xlsx")
+    done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--formats", "json,html", "--open"])
+    assert done.exit_code == 0
+    assert opened == [str(files["html"])]
+    assert message in done.stderr

@@ -1,0 +1,59 @@
+"""The documentation: generated parts are current, links lead somewhere, examples run, the README keeps its promises."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from docs.reference import build_pages
+
+ROOT = Path(__file__).parents[1]
+DOCS = ROOT / "docs"
+PAGES = (ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted(DOCS.glob("*.md")))
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+LINK = re.compile(r"\]\(([^)#]+?)(?:#[^)]*)?\)")
+PLACE = re.compile(r"`((?:assess|templates|docs|samples|inventories|tests)/[\w./-]*)`")
+PYTHON = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("name", ["workbook.md", "methods.md", "commands.md"])
+def test_the_references_are_those_of_the_code(name):
+    text = (DOCS / name).read_text(encoding="utf-8")
+    assert build_pages()[name] == text, "run: python docs/reference.py"
+
+
+def test_the_reference_of_the_workbook_holds_units_limits_and_italian_names():
+    text = (DOCS / "workbook.md").read_text(encoding="utf-8")
+    assert (
+        "| Height [cm] | Altezza | number; 5 to 600 cm; warning outside 20 to 300 | From the floor to the top." in text
+    )
+
+
+def test_the_readme_is_short_and_has_two_commands():
+    lines = README.splitlines()
+    assert len(lines) <= 150
+    assert [line for line in lines if line.lstrip().startswith("$ ")] == ["$ make example", "$ make test"]
+
+
+def test_links_and_places_exist():
+    missing = []
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        links = [(page.parent / link, link) for link in LINK.findall(text) if "://" not in link]
+        places = [(ROOT / name, name) for name in PLACE.findall(text) if not name.startswith("assess/cli/command_NAME")]
+        if page.name == "CHANGELOG.md":  # it tells of places that are gone
+            places = []
+        missing += [f"{page.name}: {name}" for path, name in (*links, *places) if not path.exists()]
+    assert missing == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", [ROOT / "README.md", DOCS / "python.md"], ids=lambda page: page.name)
+def test_examples_in_python_run(page, tmp_path, monkeypatch):
+    for name in ("inventories", "samples"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    monkeypatch.chdir(tmp_path)  # what they write stays out of the checkout
+    space: dict[str, object] = {}
+    for code in PYTHON.findall(page.read_text(encoding="utf-8")):
+        exec(compile(code, page.name, "exec"), space)
+    assert "results" in space
