@@ -1,7 +1,7 @@
 """Collect every text of the reports and the workbook into the catalogues: ``make texts``.
 
-Texts are what stands in `_`, `gettext`, `ngettext`, `fill` and `nfill` in the code and in the templates, and what
-the methods, profiles, flags and columns say of themselves. Translations are kept; a text that is gone leaves.
+Texts are the arguments of `_`, `gettext`, `ngettext`, `fill` and `nfill` in the code and in the templates, and the
+texts of methods, profiles, flags and columns. Translations are kept; texts that are no longer used are removed.
 """
 
 import sys
@@ -14,7 +14,7 @@ from babel.messages.extract import extract_from_dir
 from babel.messages.pofile import read_po, write_po
 
 from assess import resources
-from assess.language import LANGUAGES
+from assess.i18n import LANGUAGES
 
 ROOT = Path(__file__).parents[1]
 KEYWORDS = {"_": None, "gettext": None, "fill": None, "ngettext": (1, 2), "nfill": (1, 2)}
@@ -58,62 +58,64 @@ def _of_themselves() -> Iterator[tuple[str, str]]:
 
 
 def _of_methods() -> Iterator[tuple[str, str]]:
-    from assess.cases import FLAGS as ITEM_FLAGS
-    from assess.demand import FLAGS as DEMAND_FLAGS
     from assess.methods import all_methods
+    from assess.methods._fitted_model import REASONS
     from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
+    from assess.results import MOTION_FLAGS, PIECE_FLAGS
     from assess.risk import RiskClass
-    from assess.routes.flags import FLAGS as ROUTE_FLAGS
+    from assess.route_results import FLAGS as ROUTE_FLAGS
+    from assess.route_results import RouteState
     from assess.routes.widths import RULES
 
     for method in all_methods():
-        texts = (method.title, method.predicts, *method.assumptions, *method.departures, *method.flags.values())
-        marks = (flag.replace("_", " ") for flag in method.flags)
-        for text in (*texts, *marks, *method.equations, *method.words, method.reference.remark):
-            if any(character.isalpha() for character in text):
-                yield text, f"assess/methods/{method.key}.py"
+        yield from ((text, f"assess/methods/{method.key}.py") for text in method.texts)
+    yield from ((text, "assess/methods/_fitted_model.py") for text in REASONS)
     for rule in RULES:
         yield rule.holds, "assess/routes/widths.py"
         yield rule.reference.remark, "assess/routes/widths.py"
-    for flags, name in ((ITEM_FLAGS, "cases"), (DEMAND_FLAGS, "demand"), (ROUTE_FLAGS, "routes/model")):
-        for flag, text in flags.items():
-            yield flag.replace("_", " "), f"assess/{name}.py"
-            yield text, f"assess/{name}.py"
+    for flag in (*PIECE_FLAGS, *MOTION_FLAGS):
+        yield flag.replace("_", " "), "assess/results.py"
+    for flag, text in ROUTE_FLAGS.items():
+        yield flag.replace("_", " "), "assess/route_results.py"
+        yield text, "assess/route_results.py"
     for profile in PROFILES.values():
         yield from ((text, "assess/motion/scenario.py") for text in (profile.remark, profile.equation) if text)
     yield from ((text, "assess/motion/scenario.py") for text in (VERIFIED, UNVERIFIED))
     yield from ((risk.word, "assess/risk.py") for risk in RiskClass)
+    yield from ((str(state), "assess/route_results.py") for state in RouteState)
     yield from ((severity, "assess/errors.py") for severity in ("warning", "note"))
 
 
 def _of_columns() -> Iterator[tuple[str, str]]:
-    from assess.inventory.columns import LIVE, SHEETS, WORKINGS
+    from assess.workbook.schema import LIVE, SHEETS, WORKINGS
 
     for sheet in SHEETS:
-        yield sheet.name, "assess/inventory/columns.py"
+        yield sheet.name, "assess/workbook/schema.py"
         for column in sheet.columns:
             for text in (column.label, column.help, column.default, *column.choices):
                 if any(character.isalpha() for character in text):
-                    yield text, "assess/inventory/columns.py"
+                    yield text, "assess/workbook/schema.py"
     for label in (*LIVE, *WORKINGS):
-        yield label.split(" [")[0], "assess/inventory/columns.py"
+        yield label.split(" [")[0], "assess/workbook/schema.py"
 
 
 def _of_the_workbook() -> Iterator[tuple[str, str]]:
     """Yield what the empty workbook and the example hold beside the names of the columns."""
-    from assess.inventory import helptext, lists, live_row
-    from assess.inventory.blank import read_catalogue
-    from assess.inventory.columns import HELP, LISTS
-    from assess.inventory.example import example_texts
+    from assess.workbook import lists, live_row, template
+    from assess.workbook.example import example_texts
+    from assess.workbook.schema import HELP, LISTS
 
-    texts = (helptext.TITLE, *helptext.HEADS, *helptext.FIRST_LINES, helptext.CLASS_NOTE, helptext.LISTS_NOTE)
-    yield from ((text, "assess/inventory/helptext.py") for text in (*texts, helptext.FOOTER))
-    yield from ((text, "assess/inventory/columns.py") for text in (HELP, LISTS))
-    yield from ((text, "assess/inventory/lists.py") for text in (lists.RUN_ASSESS, lists.NO_UNIT, *lists.LISTED))
+    texts = (template.TITLE, *template.HEADS, *template.FIRST_LINES, template.CLASS_NOTE, template.FOOTER)
+    yield from ((text, "assess/workbook/template.py") for text in texts)
+    yield from ((text, "assess/workbook/schema.py") for text in (HELP, LISTS))
+    yield from (
+        (text, "assess/workbook/lists.py")
+        for text in (lists.LISTS_NOTE, lists.RUN_ASSESS, lists.NO_UNIT, *lists.LISTED)
+    )
     hints = (live_row.NO_FLOOR, live_row.NO_AXIS, live_row.WRONG)
-    yield from ((text, "assess/inventory/live_row.py") for text in hints)
-    yield from ((text, "assess/inventory/example.py") for text in example_texts())
-    yield from ((row["type"], "assess/inventory/catalogue.csv") for row in read_catalogue())
+    yield from ((text, "assess/workbook/live_row.py") for text in hints)
+    yield from ((text, "assess/workbook/example.py") for text in example_texts())
+    yield from ((row["type"], "assess/workbook/catalogue.csv") for row in template.read_catalogue())
 
 
 def _head(catalogue: Catalog, code: str) -> str:
