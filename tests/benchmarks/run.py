@@ -1,7 +1,7 @@
 """Benchmarks: whole processes, motions made and blocks rocked, as ratios against a rival in the same run.
 
-Run: ``make benchmark``. Times on a shared machine vary; each pair runs in turn, and the median of the ratios is what
-counts.
+Run: ``make benchmark``, or in half a minute ``python tests/benchmarks/run.py start``. Times on a shared machine vary;
+each pair runs in turn, and the median of the ratios is what counts.
 """
 
 import statistics
@@ -24,6 +24,8 @@ from tests.motion.motions import cut
 from tests.workbooks import write
 
 ROUNDS = 7
+START = "start"
+"""Argument with which only the start-up and a small run are measured, in half a minute."""
 
 
 def main() -> None:
@@ -47,6 +49,8 @@ def main() -> None:
         print("| command | median [s] | rival | median [s] | ratio (median) | aim |\n|---|---|---|---|---|---|")
         for row in rows:
             print(row)
+        if sys.argv[1:] == [START]:
+            return
         print("\n| one run | seconds | peak memory [MB] |\n|---|---|---|")
         out += ["--verify", "none"]
         print(
