@@ -5,6 +5,7 @@ Such a file defines ``command``, whose docstring and options are its help, ``EXA
 answers at once. Exit status: see `assess.cli.console`.
 """
 
+import gc
 import importlib
 import pkgutil
 import sys
@@ -19,10 +20,13 @@ from assess.cli.console import guard
 from assess.version import __version__
 
 PREFIX = "command_"
+GARBAGE = 50_000
+"""New objects after which Python looks for cycles: a short process makes many rows and no cycles worth looking for."""
 
 
 def main() -> None:
     """Run the command line: only the module of the command that is named is imported, where one is."""
+    gc.set_threshold(GARBAGE)
     named = sys.argv[1] if len(sys.argv) > 1 else ""
     build_app([named] if named in list_names() else ())()
 
