@@ -17,10 +17,12 @@ from assess.risk import RiskClass
 
 Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "records"]
 """What a field holds: a share lies in [0, 1]; a class is one of `RiskClass`; records are rows within the row."""
-Where = Literal["json", "csv", "excel"]
-ANYWHERE: frozenset[Where] = frozenset(("json", "csv", "excel"))
+Where = Literal["json", "csv", "excel", "pieces", "risky", "methods"]
+"""The last three are lists of the pages (HTML, PDF and its lines): all pieces, those at high risk, every method."""
 DATA: frozenset[Where] = frozenset(("json", "csv"))
 """Of fields that the sheet Items of the Excel report leaves out, or shows in live columns of its own."""
+FILES: frozenset[Where] = DATA | {"excel"}
+EVERYWHERE: frozenset[Where] = FILES | {"pieces"}
 
 AXES, ANCHORED = ("X", "Y"), ("no", "yes", "partly", "unknown")
 IMPORTANCE = ("life safety", "function", "property")
@@ -38,8 +40,8 @@ class Field:
         From the row to its value: None for what is unknown.
     path : tuple of str
         Its place in a record of results.json; by default ``(key,)``.
-    label, unit, format : str
-        Heading in reports without the unit, the unit, and how Excel shows it.
+    label, short, unit, format : str
+        Heading in reports without the unit, a shorter one for the lists of pages, the unit, and how Excel shows it.
     width : int
         Width of its column in Excel, in characters.
     kind, is_optional, choices
@@ -56,13 +58,14 @@ class Field:
     read: Callable[[Any], Any]
     path: tuple[str, ...] = ()
     label: str = ""
+    short: str = ""
     unit: str = ""
     format: str = ""
     width: int = 9
     kind: Kind = "text"
     is_optional: bool = False
     choices: tuple[str, ...] = ()
-    shows: frozenset[Where] = ANYWHERE
+    shows: frozenset[Where] = FILES
     help: str = ""
     flat: Callable[[Any], Any] | None = None
 
@@ -73,12 +76,20 @@ class Field:
 
     def heading(self) -> str:
         """Return its label with the unit in brackets, in the language in use."""
-        return f"{_(self.label)} [{self.unit}]" if self.unit else _(self.label)
+        return _head(self.label, self.unit)
+
+    def short_heading(self) -> str:
+        """Return its heading in the lists of pages, in the language in use."""
+        return _head(self.short or self.label, self.unit)
 
     def flatten(self, row: Any) -> Any:
         """Return its value in items.csv."""
         value = self.read(row)
         return value if self.flat is None else self.flat(value)
+
+
+def _head(label: str, unit: str) -> str:
+    return f"{_(label)} [{unit}]" if unit else _(label)
 
 
 def _of_item(key: str, label: str, **more: Any) -> Field:
@@ -103,11 +114,11 @@ def _simulated(name: str) -> Callable[[Any], Any]:
     return read
 
 
-def _simulation_field(name: str, kind: Kind, label: str, path: tuple[str, ...] = (), help: str = "") -> Field:  # noqa: A002
+def _simulation_field(name: str, kind: Kind, label: str, path: tuple[str, ...] = (), **more: Any) -> Field:
     key = "_".join(("verification", *(path or (name,))))
     return Field(
         key=key, read=_simulated(name), path=("verification", *(path or (name,))), label=label, kind=kind,
-        shows=DATA, help=help,
+        **{"shows": DATA, **more},
     )  # fmt: skip
 
 
@@ -119,6 +130,7 @@ SIMULATION_FIELDS = (
     _simulation_field("high", "share", fill("High"), help="Upper end of it."),
     _simulation_field(
         "record_overturned", "flag", fill("Overturns under the record"), ("record", "overturned"),
+        short=fill("Under the record"), shows=DATA | {"pieces"},
         help="Whether it overturns under the recorded motion itself.",
     ),
     _simulation_field(
@@ -151,9 +163,11 @@ def method_fields(method: MethodInfo) -> Iterator[Field]:
         return result(row).detail[name]
 
     path = ("methods", method.key)
+    listed: frozenset[Where] = frozenset(("methods", "pieces") if method.is_live else ("methods",))
     yield Field(
         key=method.key, read=lambda row: result(row).value, path=(*path, "value"), label=method.title, kind="share",
-        is_optional=True, format="0.0%" if method.kind == "probability" else "0", width=10, shows=DATA,
+        short=method.short_title, is_optional=True, format="0.0%" if method.kind == "probability" else "0", width=10,
+        shows=DATA | listed,
     )  # fmt: skip
     for column in method.columns if method.role != "simulation" else ():  # that has fields of its own
         yield Field(
@@ -170,41 +184,54 @@ def method_fields(method: MethodInfo) -> Iterator[Field]:
 def _adopted(name: str, read: Callable[[Any], Any], label: str, kind: Kind, **more: Any) -> Field:
     return Field(
         key=f"adopted_{name}", read=lambda row: read(row.adopted), path=("adopted", name), label=label, kind=kind,
-        shows=DATA, **more,
+        **{"shows": DATA, **more},
     )  # fmt: skip
 
 
 ADOPTED_FIELDS = (
     _adopted("method", lambda one: one.method, fill("Method"), "text", help="Key of the method whose value it is."),
-    _adopted("probability", lambda one: one.probability, fill("Chance of overturning"), "share", format="0.0%"),
+    _adopted(
+        "probability", lambda one: one.probability, fill("Chance of overturning"), "share", format="0.0%",
+        short=fill("Chance"), shows=DATA | {"pieces", "risky"},
+    ),
     _adopted(
         "low", lambda one: one.low, fill("Low"), "share", is_optional=True, format="0.0%",
         help="Lower end of the sampling interval; null where the formula's value is adopted.",
     ),
     _adopted("high", lambda one: one.high, fill("High"), "share", is_optional=True, format="0.0%"),
-    _adopted("class", lambda one: one.risk.word, fill("Class"), "class"),
+    _adopted("class", lambda one: one.risk.word, fill("Class"), "class", shows=DATA | {"pieces", "risky"}),
     _adopted("class_upper", lambda one: one.upper.word, fill("Class, upper estimate"), "class"),
     _adopted(
         "lowered_from", lambda one: _word(one.lowered_from), fill("Lowered from"), "class", is_optional=True,
         help="Class by formula where simulation lowered it.",
     ),
-    _adopted("flags", lambda one: list(one.flags), fill("Flags"), "list"),
+    _adopted(
+        "flags", lambda one: list(one.flags), fill("Flags"), "list", short=fill("Marks"), shows=DATA | {"pieces"},
+    ),
 )  # fmt: skip
 
+_IN_ALL_LISTS: frozenset[Where] = EVERYWHERE | {"risky", "methods"}
+
 PIECE_FIELDS = (
-    _of_item("item", fill("Item"), width=12),
-    _of_item("floor", fill("Floor"), width=8),
-    _of_item("room", fill("Room"), width=16),
-    _of_item("description", fill("Description"), width=32),
+    _of_item("item", fill("Item"), width=12, shows=_IN_ALL_LISTS),
+    _of_item("floor", fill("Floor"), width=8, shows=_IN_ALL_LISTS),
+    _of_item("room", fill("Room"), width=16, shows=EVERYWHERE | {"risky"}),
+    _of_item("description", fill("Description"), width=32, shows=EVERYWHERE | {"risky"}),
     _of_item("type", fill("Type"), width=22),
-    _of_item("quantity", fill("Quantity"), kind="count", format="#,##0"),
-    _of_item("breadth_cm", fill("Breadth"), kind="number", unit="cm"),
+    _of_item(
+        "quantity", fill("Quantity"), short=fill("No."), kind="count", format="#,##0", shows=EVERYWHERE | {"risky"},
+    ),
+    _of_item(
+        "breadth_cm", fill("Breadth"), short=fill("B × W × H"), kind="number", unit="cm", shows=EVERYWHERE | {"risky"},
+    ),
     _of_item("width_cm", fill("Width"), kind="number", unit="cm", is_optional=True),
     _of_item("height_cm", fill("Height"), kind="number", unit="cm"),
-    _of_item("breadth_to_height", fill("B/H"), kind="number", format="0.000", width=8),
+    _of_item(
+        "breadth_to_height", fill("B/H"), kind="number", format="0.000", width=8, shows=EVERYWHERE | {"methods"},
+    ),
     Field(
         key="axis", read=lambda one: one.governing.motion.axis, label=fill("Axis"), choices=AXES, width=6,
-        help="The axis that governs.",
+        shows=EVERYWHERE, help="The axis that governs.",
     ),
     _of_item(
         "axis_given", fill("Axis given"), is_optional=True, choices=AXES, width=7,
@@ -222,12 +249,12 @@ PIECE_FIELDS = (
         choices=IMPORTANCE, width=13,
     ),
     Field(
-        key="pfa_g", read=lambda one: one.governing.motion.pfa_g, label=fill("PFA used"), unit="g", kind="number",
-        format="0.000", help="Of the motion that governs.",
+        key="pfa_g", read=lambda one: one.governing.motion.pfa_g, label=fill("PFA used"), short=fill("PFA"), unit="g",
+        kind="number", format="0.000", shows=EVERYWHERE | {"methods"}, help="Of the motion that governs.",
     ),
     Field(
-        key="pfv_cm_s", read=lambda one: one.governing.motion.pfv_cm_s, label=fill("PFV used"), unit="cm/s",
-        kind="number", format="0.0", is_optional=True,
+        key="pfv_cm_s", read=lambda one: one.governing.motion.pfv_cm_s, label=fill("PFV used"), short=fill("PFV"),
+        unit="cm/s", kind="number", format="0.0", is_optional=True, shows=FILES | {"methods"},
     ),
     Field(
         key="pfa_source", read=lambda one: one.governing.motion.label, shows=DATA,

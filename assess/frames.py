@@ -1,17 +1,15 @@
 """Results in a notebook: pandas tables, and short views in HTML."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
-from functools import partial
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from html import escape
-from types import NoneType
-from typing import TYPE_CHECKING, Any, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any
 
 from assess.errors import Problem
 from assess.fields import ADOPTED_FIELDS, PIECE_FIELDS, Field, Kind, Shape, case_fields, floor_fields, item_fields
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
-from assess.route_results import PieceRef, RoomRow, RouteRow, SegmentRow
+from assess.route_fields import row_fields
+from assess.route_results import RoomRow, RouteRow, SegmentRow
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,46 +29,16 @@ def build_frame(results: Results, name: str) -> "pd.DataFrame":
         "items": lambda: (results, item_fields(results)),
         "cases": lambda: ((case for one in results for case in one.cases), case_fields(results)),
         "floors": lambda: (results.motions, floor_fields(results)),
-        "segments": lambda: (routes.segments, _row_fields(SegmentRow)),
-        "routes": lambda: (routes.routes, _row_fields(RouteRow)),
-        "rooms": lambda: (routes.rooms, _row_fields(RoomRow)),
-        "problems": lambda: (results.problem_rows, _row_fields(Problem)),
+        "segments": lambda: (routes.segments, row_fields(SegmentRow)),
+        "routes": lambda: (routes.routes, row_fields(RouteRow)),
+        "rooms": lambda: (routes.rooms, row_fields(RoomRow)),
+        "problems": lambda: (results.problem_rows, row_fields(Problem)),
     }
     rows, chosen = tables[name]()
     shape = Shape(chosen)
     flat = [shape.flatten(row) for row in rows]
     types = {one.key: _DTYPES.get(one.kind, "object") for one in shape.fields}
     return pd.DataFrame({key: pd.Series([row[key] for row in flat], dtype=one) for key, one in types.items()})
-
-
-_KINDS_OF_TYPES: Mapping[Any, Kind] = {float: "number", int: "count", bool: "flag"}
-
-
-def _row_fields(row: Any, path: tuple[str, ...] = ()) -> Iterator[Field]:
-    """Yield the fields of the rows of a dataclass: chances as columns, pieces and ways by their names."""
-    hints = get_type_hints(row)
-    for one in fields(row):
-        hint, names = hints[one.name], (*path, one.name)
-        hint = next((part for part in get_args(hint) if NoneType in get_args(hint)), hint)
-        key, read = "_".join(names), partial(_read_path, names)
-        if hint is PieceRef:
-            yield Field(key=key, read=partial(_read_path, (*names, "item")))
-        elif is_dataclass(hint):
-            yield from _row_fields(hint, names)
-        elif get_origin(hint) is tuple:
-            yield Field(key=key, read=read, kind="list", flat=_name_each)
-        else:
-            yield Field(key=key, read=read, kind=_KINDS_OF_TYPES.get(hint, "text"))
-
-
-def _read_path(names: Sequence[str], row: Any) -> Any:
-    for name in names:
-        row = None if row is None else getattr(row, name)
-    return row
-
-
-def _name_each(values: Sequence[Any]) -> list[Any]:
-    return [getattr(one, "item", getattr(one, "end", one)) for one in values]
 
 
 # ---------------------------------------------------------------- for a notebook

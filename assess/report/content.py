@@ -257,9 +257,3 @@ def _work(results: Results, worked: WorkedMethod) -> WorkedExample:
             percent=words.percent(worked.value), risk=words.risk_word(risk),
         )  # fmt: skip
     return WorkedExample(method, tuple(map(_, worked.steps)), result)
-
-
-def has_worse_motion(one: ItemResult, key: str) -> bool:
-    """Tell whether a method gives more under another motion of the item than under the governing one."""
-    governing, worst = one.governing.methods[key].value, one.worst(key)
-    return worst is not None and (governing is None or worst > governing + 0.0005)

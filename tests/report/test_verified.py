@@ -135,7 +135,7 @@ class TestExtent:
         assert one.adopted.probability == 0.25
         assert words.chance(one).replace(words.NO_BREAK, " ") == "25.0 % (14.2 to 40.2 %)"
         assert f"{100 * one.formula.value:.1f} % ({one.formula.detail['raw']:.3f})" in text
-        assert "– ◇ medium, could be high, lowered by simulation (formula: high)" in text
+        assert "– 25.0 % (14.2 to 40.2 %) ◇ medium, could be high, lowered by simulation (formula: high)" in text
         assert "All rows were chosen." in text
 
     @pytest.mark.slow

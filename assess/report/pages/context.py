@@ -9,7 +9,7 @@ from assess.i18n import fill, markup, nmarkup, number
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import summary, words
-from assess.report.content import Content, has_worse_motion
+from assess.report.content import Content
 from assess.report.counts import build_bars
 from assess.report.figures.motion_figures import choose_traced, draw_motion, draw_traced, get_acceleration
 from assess.report.figures.plan import build_plan
@@ -17,6 +17,14 @@ from assess.report.figures.risk_contours import build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
 from assess.report.findings import motions, route_rows, route_words, trials
 from assess.report.pages import compact
+from assess.report.pages.page_columns import (
+    PageColumn,
+    list_columns,
+    list_flags,
+    motion_columns,
+    route_columns,
+    short_columns,
+)
 from assess.report.provenance import say_reference
 from assess.report.report_options import ReportOptions
 from assess.results import MotionRow
@@ -48,6 +56,7 @@ def build_context(
         "is_long": is_long,
         "is_compact": is_compact,
         "parts": _list_parts(content, is_compact),
+        "tables": _list_tables(content),
         "listings": _listings(content) if is_compact else {},
         "logo": _logo(content),
         "floor_bars": build_bars(content.worst_floors),
@@ -81,11 +90,25 @@ def _list_parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
     return [(name, heading) for name, heading in parts.items() if not left_out.get(name)]
 
 
-def _listings(content: Content) -> dict[str, Sequence[compact.Block]]:
-    has_simulated = bool(content.verified.done)
+def _list_tables(content: Content) -> dict[str, Sequence[PageColumn]]:
+    """Return the columns of the tables of pieces and of motions, by the names of the tables."""
+    run = content.run
     return {
-        "pieces": compact.list_pieces(content.results, content.methods, has_simulated=has_simulated),
-        "methods": compact.list_methods(content.results, content.methods),
+        "pieces": list_columns(run, "pieces"),
+        "risky": list_columns(run, "risky"),
+        "methods": list_columns(run, "methods"),
+        "changed": short_columns(
+            run, "item", "floor", "description", "quantity", "formula", "adopted_probability", "adopted_class"
+        ),
+        "short": short_columns(run, "piece", "room_short", "size", "quantity", "chance", "class"),
+        "worst": short_columns(run, "piece", "place", "chance", "class"),
+        "demand": motion_columns("axis", "source", "pfa_g", "pfv_cm_s", "origin"),
+    }
+
+
+def _listings(content: Content) -> dict[str, Sequence[compact.Block]]:
+    return {
+        name: compact.list_lines(content.results, list_columns(content.run, name)) for name in ("pieces", "methods")
     }
 
 
@@ -106,6 +129,7 @@ def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
     segments = route_rows.list_segments(found, LIMITS["most_segments"], is_short=for_print)
     return {
         "routes": found,
+        "route_tables": route_columns(has_anchors=any(one.blocked_if_anchors_fail for one in found.routes)),
         "shown_routes": route_rows.choose_rows(found.routes, LIMITS["most_routes"], route_words.find_chance),
         "shown_segments": segments,
         "left_out": sum(map(route_rows.is_untouched, found.segments)) if for_print else 0,
@@ -130,7 +154,6 @@ def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
 def _of_methods(content: Content) -> dict[str, Any]:
     types = {item.type for item in content.run.item_rows}
     return {
-        "more": has_worse_motion,
         "quantities": {"breadth_to_height": "B/H", "pfa": "PFA", "height": "H", "pfv": "PFV"},
         "name_ranges": words.name_ranges,
         "used_profiles": motions.used_profiles(content.run),
@@ -225,6 +248,7 @@ FILTERS: Mapping[str, Any] = {
     "in_g": words.in_g,
     "in_m": words.in_m,
     "in_whole": lambda value: number(value, ",d"),
+    "list_flags": list_flags,
     "is_blocked_standing": route_words.is_blocked_standing,
     "percent": words.percent,
     "plural": words.plural,

@@ -13,30 +13,28 @@ from assess.report.content import Content
 from assess.report.findings import route_words as say
 from assess.report.ranking import list_steps
 from assess.report.xlsx.item_formulas import ANCHORED
-from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, with_unit
+from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, of_field
 from assess.results import ItemResult
-from assess.route_results import FLAGS, BesideRow, Chance, RoomRow, RouteTables, SegmentRow, WayRow
+from assess.route_fields import route_fields
+from assess.route_results import FLAGS, BesideRow, FloorRoutesRow, RoomRow, RouteRow, RouteTables, SegmentRow, WayRow
 from assess.workbook.formulas import say_class
 
 Read = Callable[[Any], Any]
 
 
-def _metres(label: str, width: int, read: Read) -> Column:
-    return Column(with_unit(label, "m"), width, read, "0.00")
+def _of(row: type, *keys: str, **more: Any) -> list[Column]:
+    """Return the columns of fields of a row by their keys; `more` are parameters of `Column` that differ."""
+    return [of_field(route_fields(row)[key], **more) for key in keys]
 
 
-def _chance(label: str, width: int, read: Callable[[Any], Chance | None], name: str = "probability") -> Column:
-    """Return the column of one number of a chance; blank where there is no chance."""
-
-    def value(row: Any) -> float | None:
-        found = read(row)
-        return None if found is None else getattr(found, name)
-
-    return Column(label, width, value, CHANCE)
+def _said(row: type, key: str, width: int, read: Read) -> Column:
+    """Return the column of a field that the sheet puts in words."""
+    return of_field(route_fields(row)[key], width=width, read=read, format="")
 
 
-def _interval(read: Callable[[Any], Chance | None], width: int = 9) -> list[Column]:
-    return [_chance(_("Interval low"), width, read, "low"), _chance(_("Interval high"), width, read, "high")]
+def _chances(row: type, name: str, width: int) -> list[Column]:
+    """Return a chance with the ends of its interval, each a column; blank where there is no chance."""
+    return _of(row, *(f"{name}_{part}" for part in ("probability", "low", "high")), width=width)
 
 
 def _yes_or_no(holds: bool) -> str:
@@ -80,25 +78,23 @@ def write_routes(pen: Pen, page: Any, content: Content) -> None:
 
 def _segment_columns(routes: RouteTables) -> list[Column]:
     return [
-        Column(_("Route"), 16, lambda one: one.route),
-        Column(_("Segment"), 18, lambda one: one.segment),
-        Column(_("Floor"), 10, lambda one: one.floor),
-        Column(_("From"), 18, lambda one: one.from_place),
-        Column(_("To"), 18, lambda one: one.to_place),
-        Column(_("State"), 26, lambda one: say.say_segment_state(one, routes.risk)),
-        *_outlook(),
-        _metres(_("Clear width"), 10, lambda one: one.clear_width_used_m),
-        _metres(_("Required width"), 10, lambda one: one.required_width_used_m),
-        _metres(_("Width now"), 11, lambda one: one.standing_width_m),
-        _metres(_("Width if all fall"), 10, lambda one: one.least_width_m),
-        Column(_("Occupants"), 11, lambda one: one.occupants, COUNT),
-        _metres(_("Width that they need"), 10, lambda one: one.needed_width_m),
-        Column(_("Insufficient for occupants"), 13, _say_insufficient),
-        _chance(_("Chance too narrow for occupants"), 11, lambda one: one.insufficient_after_falls),
-        Column(_("Room"), 18, lambda one: one.room),
-        Column(_("Not counted, in another room"), 24, lambda one: ", ".join(other.item for other in one.other_rooms)),
-        Column(_("Remarks"), 60, lambda one: _say_flags(one.flags)),
-        Column(_("Notes"), 40, lambda one: one.notes),
+        *_of(SegmentRow, "route", width=16),
+        *_of(SegmentRow, "segment", width=18),
+        *_of(SegmentRow, "floor", width=10),
+        *_of(SegmentRow, "from_place", "to_place", width=18),
+        _said(SegmentRow, "state", 26, lambda one: say.say_segment_state(one, routes.risk)),
+        *_outlook(SegmentRow),
+        *_of(SegmentRow, "clear_width_used_m", "required_width_used_m", width=10),
+        *_of(SegmentRow, "standing_width_m", width=11),
+        *_of(SegmentRow, "least_width_m", width=10),
+        *_of(SegmentRow, "occupants", width=11),
+        *_of(SegmentRow, "needed_width_m", width=10),
+        _said(SegmentRow, "insufficient_for_occupants", 13, _say_insufficient),
+        *_of(SegmentRow, "insufficient_after_falls_probability", width=11),
+        *_of(SegmentRow, "room", width=18),
+        _said(SegmentRow, "other_rooms", 24, lambda one: ", ".join(other.item for other in one.other_rooms)),
+        _said(SegmentRow, "flags", 60, lambda one: _say_flags(one.flags)),
+        *_of(SegmentRow, "notes", width=40),
     ]
 
 
@@ -106,54 +102,43 @@ def _say_insufficient(one: SegmentRow) -> str:
     return "" if one.needed_width_m is None else _yes_or_no(one.insufficient_for_occupants)
 
 
-def _outlook() -> list[Column]:
+def _outlook(row: type) -> list[Column]:
     """Return the chances of a segment or a route; blank where it is not evaluated: a 0 would say more than is known."""
 
     def of(read: Read) -> Read:
         return lambda one: None if one.blocked is None else read(one)
 
     return [
-        _chance(_("Chance blocked"), 11, lambda one: one.blocked),
-        *_interval(lambda one: one.blocked, 11),
-        _chance(_("Chance blocked or reduced"), 11, lambda one: one.blocked_or_reduced),
-        _chance(_("Blocked, all independent"), 11, lambda one: one.blocked, "independent"),
-        _chance(_("Blocked, fully correlated"), 11, lambda one: one.blocked, "correlated"),
-        _chance(_("Blocked if anchors fail"), 11, lambda one: one.blocked_if_anchors_fail),
-        Column(
-            _("Under the record"), 13, of(lambda one: say.say_recorded(one) if one.under_record is not None else "")
-        ),
-        Column(_("Most likely piece"), 14, of(_name_piece)),
-        Column(_("Pieces"), 8, of(lambda one: one.blocked.pieces), COUNT),
-        Column(_("By the formula alone"), 9, of(lambda one: one.blocked.unverified), COUNT),
-        Column(_("Basis"), 30, of(lambda one: say.say_basis(one.blocked))),
+        *_chances(row, "blocked", 11),
+        *_of(row, "blocked_or_reduced_probability", "blocked_independent", "blocked_correlated", width=11),
+        *_of(row, "blocked_if_anchors_fail_probability", width=11),
+        _said(row, "under_record", 13, of(lambda one: say.say_recorded(one) if one.under_record is not None else "")),
+        _said(row, "most_likely_piece", 14, of(_name_piece)),
+        *_of(row, "blocked_pieces", width=8),
+        *_of(row, "blocked_unverified", width=9),
+        _said(row, "blocked_is_joint", 30, of(lambda one: say.say_basis(one.blocked))),
     ]
 
 
 def _route_columns(routes: RouteTables) -> list[Column]:
     return [
-        Column(_("Route"), 0, lambda one: one.route),
-        Column(_("Floors"), 0, lambda one: ", ".join(one.floors)),
-        Column(_("Segments"), 0, lambda one: len(one.segment_indices), COUNT),
+        *_of(RouteRow, "route"),
+        _said(RouteRow, "floors", 0, lambda one: ", ".join(one.floors)),
+        of_field(route_fields(RouteRow)["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
         Column(_("Pieces to anchor or move"), 0, lambda one: ", ".join(fix.item for fix in one.fixes)),
-        Column(_("Segments not evaluated"), 0, lambda one: ", ".join(one.unevaluated_segments)),
-        Column(_("State"), 0, lambda one: say.say_route_state(one, routes.risk)),
-        *_outlook(),
+        _said(RouteRow, "unevaluated_segments", 0, lambda one: ", ".join(one.unevaluated_segments)),
+        _said(RouteRow, "state", 0, lambda one: say.say_route_state(one, routes.risk)),
+        *_outlook(RouteRow),
         Column(_("Chance left then"), 0, lambda one: one.fixes[-1].left if one.fixes else None, CHANCE),
     ]
 
 
 def _floor_columns() -> list[Column]:
     return [
-        Column(_("Floor"), 0, lambda one: one.floor),
-        Column(_("Segments"), 0, lambda one: one.segments, COUNT),
-        Column(_("Blocked segments expected"), 0, lambda one: one.blocked_segments_expected, "0.00"),
-        Column(_("Routes"), 0, lambda one: one.routes, COUNT),
-        Column(_("Blocked routes expected"), 0, lambda one: one.blocked_routes_expected, "0.00"),
-        Column(_("Rooms"), 0, lambda one: one.rooms, COUNT),
-        Column(_("Rooms expected to lose every exit"), 0, lambda one: one.cut_off_rooms_expected, "0.00"),
-        _chance(_("Chance that any room does"), 0, lambda one: one.any_room_cut_off),
-        *_interval(lambda one: one.any_room_cut_off, 0),
-        Column(_("Pieces not counted"), 0, lambda one: one.uncounted_pieces, COUNT),
+        *_of(FloorRoutesRow, "floor", "segments", "blocked_segments_expected", "routes", "blocked_routes_expected"),
+        *_of(FloorRoutesRow, "rooms", "cut_off_rooms_expected"),
+        *_chances(FloorRoutesRow, "any_room_cut_off", 0),
+        *_of(FloorRoutesRow, "uncounted_pieces"),
     ]
 
 
@@ -205,7 +190,7 @@ def _piece_columns() -> list[Column]:
         return lambda row: None if row.result is None else read(row.result)
 
     return [
-        Column(_("Item"), 14, of(lambda one: one.item.item)),
+        _said(BesideRow, "item", 14, of(lambda one: one.item.item)),
         Column(_("Description"), 30, _describe),
         Column(_("Pieces"), 8, of(lambda one: one.item.quantity), COUNT),
         Column(_("Class (as run)"), 34, of(_say_class)),
@@ -225,19 +210,23 @@ def _say_class(one: ItemResult) -> str:
 
 
 def _beside_columns() -> list[Column]:
+    def near(key: str, width: int, **more: Any) -> Column:
+        field = route_fields(BesideRow)[key]
+        return of_field(field, **{"width": width, "read": lambda row: field.read(row.near), **more})
+
     return [
-        Column(_("Route"), 16, lambda row: row.segment.route),
-        Column(_("Segment"), 18, lambda row: row.segment.segment),
-        Column(_("Floor"), 9, lambda row: row.result.item.floor),
+        _said(SegmentRow, "route", 16, lambda row: row.segment.route),
+        _said(SegmentRow, "segment", 18, lambda row: row.segment.segment),
+        _said(SegmentRow, "floor", 9, lambda row: row.result.item.floor),
         *_piece_columns(),
         Column(_("Chance of overturning"), 11, lambda row: row.result.adopted.probability, CHANCE),
-        Column(_("Falls and blocked"), 14, lambda row: row.near.falls_while_blocked, CHANCE),
-        _metres(_("From the edge of the route"), 11, lambda row: row.near.distance_m),
-        _metres(_("Reaches into it"), 10, lambda row: row.near.reach_m),
-        _metres(_("Width left beside it alone"), 11, lambda row: row.near.left_m),
-        Column(_("Blocks alone"), 9, lambda row: _yes_or_no(row.near.blocks_alone)),
-        Column(_("Known by"), 14, lambda row: _("plan") if row.near.by_plan else _("Edge distance")),
-        Column(_("Remarks"), 60, _say_remarks),
+        near("falls_while_blocked", 14),
+        near("distance_m", 11),
+        near("reach_m", 10),
+        near("left_m", 11),
+        near("blocks_alone", 9, read=lambda row: _yes_or_no(row.near.blocks_alone)),
+        near("by_plan", 14, read=lambda row: _("plan") if row.near.by_plan else _("Edge distance")),
+        near("flags", 60, read=_say_remarks),
     ]
 
 
@@ -248,9 +237,9 @@ def _say_remarks(row: _Beside) -> str:
 
 def _step_columns() -> list[Column]:
     return [
-        Column(_("Route"), 0, lambda row: row.route),
+        _said(SegmentRow, "route", 0, lambda row: row.route),
         Column(_("Step"), 0, lambda row: row.text if row.result else ""),
-        Column(_("Floor"), 0, lambda row: row.floor),
+        _said(SegmentRow, "floor", 0, lambda row: row.floor),
         *_piece_columns(),
         Column(_("Chance blocked before"), 0, lambda row: row.before, CHANCE),
         Column(_("Chance blocked after"), 0, lambda row: row.after, CHANCE),
@@ -282,21 +271,21 @@ def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
 
 def _room_columns(routes: RouteTables) -> list[Column]:
     return [
-        Column(_("Room"), 22, lambda one: one.room),
-        Column(_("Floor"), 8, lambda one: one.floor),
-        Column(_("Exits that can be reached"), 26, _say_exits),
-        _chance(_("Chance of losing every exit"), 11, lambda one: one.loses_every_exit),
-        *_interval(lambda one: one.loses_every_exit),
-        _chance(_("All independent"), 12, lambda one: one.loses_every_exit, "independent"),
-        _chance(_("Fully correlated"), 10, lambda one: one.loses_every_exit, "correlated"),
-        _chance(_("If anchors fail"), 9, lambda one: one.loses_if_anchors_fail),
-        Column(_("Most likely piece"), 14, _name_piece),
-        Column(_("Basis"), 30, lambda one: say.say_basis(one.loses_every_exit)),
-        Column(_("Ways out"), 8, lambda one: len(one.ways), COUNT),
+        *_of(RoomRow, "room", width=22),
+        *_of(RoomRow, "floor", width=8),
+        _said(RoomRow, "exits", 26, _say_exits),
+        *_of(RoomRow, "loses_every_exit_probability", width=11),
+        *_of(RoomRow, "loses_every_exit_low", "loses_every_exit_high", width=9),
+        *_of(RoomRow, "loses_every_exit_independent", width=12),
+        *_of(RoomRow, "loses_every_exit_correlated", width=10),
+        *_of(RoomRow, "loses_if_anchors_fail_probability", width=9),
+        _said(RoomRow, "most_likely_piece", 14, _name_piece),
+        _said(RoomRow, "loses_every_exit_is_joint", 30, lambda one: say.say_basis(one.loses_every_exit)),
+        of_field(route_fields(RoomRow)["ways"], width=8, read=lambda one: len(one.ways), format=COUNT),
         *_way_columns(routes, 0, (_("Safest way: to"), _("Safest way: by"), _("Safest way: chance of a blockage"))),
         *_way_columns(routes, 1, (_("Alternative: to"), _("Alternative: by"), _("Alternative: chance of a blockage"))),
         Column(_("Alternative: shared with the safest way"), 40, lambda one: _name(routes, _shared(one))),
-        Column(_("Segments not evaluated, taken as open"), 40, lambda one: _name(routes, one.unevaluated_indices)),
+        _said(RoomRow, "unevaluated_indices", 40, lambda one: _name(routes, one.unevaluated_indices)),
     ]
 
 
