@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from assess.motion.fit import measure_fit, velocities
 from assess.motion.formats import read_records
 from assess.motion.generate import Generator, build_generator
 from assess.motion.record import Motion, treat
@@ -20,6 +19,7 @@ from assess.motion.target import (
     generic_target,
     recorded_target,
 )
+from assess.motion.target_fit import measure_fit, velocities
 from docs.machine import describe_machine
 
 ROOT = Path(__file__).parents[1]

@@ -39,7 +39,6 @@ LONG_FILES = {"assess/results.py", "assess/fields.py"}  # the rows of every tabl
 LONG_FUNCTIONS = {("assess/rocking/kernel.py", "_step")}  # the hot loop
 LATE_IMPORTS = {("assess.results", "assess.frames")}
 """Allowed inside a function: the tables of a notebook are built from the fields, when they are asked for."""
-REPEATED_NAMES = {"__init__.py"}
 PHYSICS = ("assess.methods", "assess.motion", "assess.rocking")
 DESCRIPTIONS = {"MethodInfo", "Reason", "Reference"}
 """Types in which a method describes itself: results hold them, and reports may import them from `assess.methods`."""
@@ -175,10 +174,10 @@ def test_only_the_command_line_names_options():
 
 
 def test_names_of_files_are_unique():
-    """But for those of a kind of report, which are called as what they show: `findings/routes.py`, `xlsx/routes.py`."""
-    report = PACKAGE / "report"
-    counts = Counter(path.name for path in MODULES if path.parent == report or not path.is_relative_to(report))
-    assert [name for name, count in counts.items() if count > 1 and name not in REPEATED_NAMES] == []
+    """A folder of modules counts by its own name."""
+    for files in (MODULES, (ROOT / "tests").rglob("*.py")):
+        names = Counter((file.parent if file.name == "__init__.py" else file).stem for file in files)
+        assert [name for name, count in names.items() if count > 1] == []
 
 
 def test_files_and_functions_are_short():

@@ -19,7 +19,7 @@ __all__ = [
 ]  # fmt: skip
 
 if TYPE_CHECKING:
-    from assess.motion.fit import Fit, Spectra
+    from assess.motion.target_fit import Fit, Spectra
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

@@ -10,9 +10,9 @@ import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.fit import Spectra
 from assess.motion.formats import read_records
 from assess.motion.record import FloatArray, Motion, Record, treat
+from assess.motion.target_fit import Spectra
 from assess.progress import SILENT, Progress
 
 MOST_SPECTRA, SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT = 100, 0.05, 10.0, 120

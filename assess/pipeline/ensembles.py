@@ -11,9 +11,9 @@ from assess.pipeline.demand import Demand, Demands
 from assess.progress import SILENT, Progress
 
 if TYPE_CHECKING:
-    from assess.motion.fit import Fit, Spectra
     from assess.motion.suite import Suite
     from assess.motion.target import Grid, Target
+    from assess.motion.target_fit import Fit, Spectra
 
 WEAK_PFA, WEAK_PFV = 0.9, 0.85
 """Shares of the floor's PFA and PFV [-] below which the user's own motions may not lower a class."""

@@ -30,8 +30,8 @@ from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
 from assess.version import __version__
 
 if TYPE_CHECKING:
-    from assess.motion.fit import Fit
     from assess.motion.suite import Suite
+    from assess.motion.target_fit import Fit
     from assess.route_results import RouteTables
 
 _FACTORS: Mapping[str, float] = {**LENGTH, **ACCELERATION, **VELOCITY}

@@ -15,7 +15,6 @@ from assess.report.figures.risk_map import paint_checked, paint_legend, paint_ri
 from assess.settings import Settings
 from assess.studies.agreement import Compared, by_building, rock_all
 from assess.studies.buildings import LEVELS, RECORDED
-from assess.studies.pages import write_finding
 from assess.studies.studied_methods import (
     FORMULAS,
     INTEGRATION,
@@ -28,6 +27,7 @@ from assess.studies.studied_methods import (
     evaluate_formulas,
 )
 from assess.studies.study import Finding, Options, Row, Study, Table
+from assess.studies.study_pages import write_finding
 from assess.units import GRAVITY, LENGTH
 
 HEIGHT = 1.8

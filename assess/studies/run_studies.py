@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from assess.progress import SILENT, Progress
 from assess.risk import LIMITS, RiskClass
-from assess.studies.pages import render_page
 from assess.studies.study import Finding, Options, Study, Table
 from assess.studies.study_files import write_files
+from assess.studies.study_pages import render_page
 from assess.version import __version__
 
 PAGE = "validation.md"

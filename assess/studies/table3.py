@@ -16,9 +16,9 @@ import numpy as np
 from assess.report.figures.draw import draw
 from assess.risk import RiskClass, classify
 from assess.studies.agreement import correlate_ranks
-from assess.studies.pages import write_finding
 from assess.studies.studied_methods import KANEKO, METHODS, OR, STATIC, Cases, FloatArray
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts
+from assess.studies.study_pages import write_finding
 from assess.units import GRAVITY
 
 CASES = ("min", "mean", "max")

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from assess.methods._method import FloatArray
-from assess.motion.fit import Fit, Spectra
+from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress
 
 STEP = 0.01

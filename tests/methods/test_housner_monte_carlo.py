@@ -13,7 +13,7 @@ from assess.errors import CancelledError
 from assess.methods import LOOKS, LOOKS_Z, Cases, Outcome, interval_width
 from assess.methods._method import FloatArray
 from assess.methods.housner_monte_carlo import BATCH, METHOD, evaluate
-from assess.motion.fit import Fit, Spectra
+from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress, Report
 from assess.risk import classify_all, wilson_interval
 from assess.rocking.ensemble import rock_blocks

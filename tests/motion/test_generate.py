@@ -11,11 +11,11 @@ import pytest
 
 from assess.errors import CancelledError
 from assess.motion import generate
-from assess.motion.fit import Fit
 from assess.motion.generate import CALIBRATED, Generator, build_generator
 from assess.motion.record import FloatArray, Motion
 from assess.motion.spectrum import response_spectrum
 from assess.motion.target import Grid, Target, build_grid, generic_target, matched_to, recorded_target
+from assess.motion.target_fit import Fit
 from assess.progress import Progress
 from assess.units import GRAVITY
 from tests.motion.motions import GROUND, ROOF, TWELFTH, cut, make_motion, read_motion

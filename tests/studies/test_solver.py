@@ -9,7 +9,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from assess.studies.pages import render_block
 from assess.studies.solver import STUDY, pulses
 from assess.studies.solver.histories import follow_near, sample, tabulate_histories
 from assess.studies.solver.limits import (
@@ -28,6 +27,7 @@ from assess.studies.solver.limits import (
 )  # fmt: skip
 from assess.studies.solver.pulses import ALPHA, ETA, Case, P, Response, Solver, follow
 from assess.studies.study import Options
+from assess.studies.study_pages import render_block
 from tests.rocking.reference import Block, integrate
 
 LINEAR, NONLINEAR = (Case("one_sine", equation, 5.0) for equation in ("linear", "nonlinear"))

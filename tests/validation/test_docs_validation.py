@@ -7,9 +7,9 @@ import pytest
 
 from assess.studies import Options, all_studies
 from assess.studies.buildings import all_buildings
-from assess.studies.pages import render_block
 from assess.studies.run_studies import build_page, describe, run_all
 from assess.studies.studied_methods import FORMULAS
+from assess.studies.study_pages import render_block
 from assess.studies.table2 import collect_published
 from assess.version import __version__
 from docs.machine import START

@@ -16,7 +16,6 @@ from assess.studies.agreement import rock_all
 from assess.studies.buildings import LEVELS, RATIOS
 from assess.studies.fit.fits import Alternative, Fits, fit_all
 from assess.studies.fit.surfaces import CONSTANT, EQUATION_8, NEGLIGIBLE, LeftOut, Ranked
-from assess.studies.pages import write_finding
 from assess.studies.studied_methods import (
     COEFFICIENTS,
     INTEGRATION,
@@ -29,6 +28,7 @@ from assess.studies.studied_methods import (
     write_model,
 )  # fmt: skip
 from assess.studies.study import Finding, Options, Row, Study, Table
+from assess.studies.study_pages import write_finding
 from assess.units import GRAVITY
 
 COLUMNS = (

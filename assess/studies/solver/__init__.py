@@ -10,7 +10,6 @@ from itertools import product
 
 import numpy as np
 
-from assess.studies.pages import write_finding
 from assess.studies.solver.histories import draw_histories, follow_near, tabulate_histories
 from assess.studies.solver.limits import (
     EXACT,
@@ -30,6 +29,7 @@ from assess.studies.solver.limits import (
 )
 from assess.studies.solver.pulses import ALPHA, ETA, Case, P, Solver, follow
 from assess.studies.study import Finding, Options, Row, Study, Table
+from assess.studies.study_pages import write_finding
 from assess.units import GRAVITY
 
 BANDS = tuple(round(1.25 + 0.25 * at, 2) for at in range(32))

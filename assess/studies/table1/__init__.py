@@ -13,9 +13,9 @@ from assess.motion.scenario import DEFAULT, HIGHEST_FLOOR_FREQUENCY
 from assess.motion.target import CODE_FACTOR, CODE_POWER, LONGER
 from assess.report.figures.draw import draw
 from assess.risk import RiskClass, classify
-from assess.studies.pages import write_finding
 from assess.studies.studied_methods import KANEKO, METHODS, OR, SHORT_TITLES, STATIC
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts
+from assess.studies.study_pages import write_finding
 from assess.studies.table1.records_folder import evaluate_folder, read_folder
 from assess.studies.table1.tower import (
     METHOD_COLUMNS,

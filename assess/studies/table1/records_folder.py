@@ -10,9 +10,9 @@ from assess.motion.formats import Channel, read_channels
 from assess.report.words import cut
 from assess.risk import RiskClass, classify
 from assess.rocking.block import STOCKY
-from assess.studies.pages import write_finding
 from assess.studies.studied_methods import SHORT_TITLES, Cases, evaluate_formulas
 from assess.studies.study import Finding, Options, Row, Table
+from assess.studies.study_pages import write_finding
 from assess.studies.table1.tower import METHOD_COLUMNS, method_cells
 from assess.units import GRAVITY, VELOCITY
 

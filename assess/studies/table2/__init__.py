@@ -14,9 +14,9 @@ from assess.report.figures.draw import draw
 from assess.risk import classify_all
 from assess.studies.agreement import NAMES, Compared, by_building, correlate_ranks, rock_all
 from assess.studies.buildings import HEIGHTS, LEVELS, RATIOS, RECORDED, TOGETHER
-from assess.studies.pages import write_finding
 from assess.studies.studied_methods import CRITERIA, FEMA, FORMULAS, INTEGRATION, JAPAN, KANEKO, OR, STATIC, FloatArray
 from assess.studies.study import Finding, Options, Row, Study, Table, read_facts
+from assess.studies.study_pages import write_finding
 from assess.studies.table2.comparison import ALL, NOTHING, Comparison, compare
 from assess.units import GRAVITY, LENGTH
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from assess.motion.envelope import Envelopes
-from assess.motion.fit import measure_fit, measure_match, velocities
 from assess.motion.spectrum import pseudo_acceleration, response_spectrum
 from assess.motion.target import Target
+from assess.motion.target_fit import measure_fit, measure_match, velocities
 
 STEP = 0.005
 MOTIONS = np.array([[0.0, 2.0, 0.0, -1.0, 0.0, 0.0], [0.0, -1.0, 4.0, 0.0, -3.0, 0.0]])
