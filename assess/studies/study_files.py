@@ -1,13 +1,13 @@
 """The files of studies, each written whole or not at all, and the results of long work, kept for the next run."""
 
 import hashlib
+import io
 import os
 import tempfile
-import uuid
 from collections.abc import Callable, Mapping
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +49,7 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=folder) as stage:
             for name, data in files.items():
-                _write_through(Path(stage) / name, lambda stream, data=data: stream.write(data))  # type: ignore[misc]
+                _write_through(Path(stage) / name, data)
             taken = next((name for name in files if (folder / name).is_dir()), None)
             if taken is not None:
                 raise OutputError(f"{folder / taken} could not be written: it is a folder. Move it away.")
@@ -85,15 +85,9 @@ def load_or_compute(folder: Path, inputs: object, compute: Callable[[], Arrays])
     kept = _load(file, name)
     if kept is not None:
         return kept
-    found = compute()
-    part = file.with_name(f"{name}-{uuid.uuid4().hex}.part")
-    try:
-        _write_through(part, lambda stream: np.savez(stream, **found, **{MARK: np.array(name)}))  # type: ignore[arg-type]
-        part.replace(file)
-    except OSError as error:
-        raise _fault(folder, error) from None
-    finally:
-        part.unlink(missing_ok=True)
+    found, stream = compute(), io.BytesIO()
+    np.savez(stream, **found, **{MARK: np.array(name)})  # type: ignore[arg-type]
+    write_files(folder, {file.name: stream.getvalue()})
     return found
 
 
@@ -107,11 +101,11 @@ def _load(file: Path, name: str) -> Arrays | None:
         return None
 
 
-def _write_through(file: Path, write: Callable[[BinaryIO], object]) -> None:
+def _write_through(file: Path, data: bytes) -> None:
     """Write a file down to the disk, so that a full disk shows here; its folder is made if missing."""
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("wb") as stream:
-        write(stream)
+        stream.write(data)
         stream.flush()
         os.fsync(stream.fileno())
 
@@ -122,12 +116,9 @@ def _fault(folder: Path, error: OSError) -> OutputError:
 
 @cache
 def _state() -> tuple[str, ...]:
-    import numba
-    import scipy
-
     root, code = Path(__file__).parents[1], hashlib.sha256()
     for source in SOURCES:
         own = root / source
         for file in sorted(own.rglob("*.py")) if own.is_dir() else [own]:
             code.update(file.read_bytes())
-    return __version__, np.__version__, scipy.__version__, numba.__version__, code.hexdigest()
+    return __version__, np.__version__, version("scipy"), version("numba"), code.hexdigest()

@@ -291,7 +291,7 @@ def test_a_full_disk_is_told(tmp_path, monkeypatch):
     def fail(*_args, **_more):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("numpy.savez", fail)
+    monkeypatch.setattr("os.fsync", fail)
     with pytest.raises(OutputError, match=r"No space left on device\. Make room, or name another folder"):
         load_or_compute(tmp_path / PARTS, "one", dict)
     assert not list((tmp_path / PARTS).iterdir())
