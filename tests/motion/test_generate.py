@@ -19,6 +19,7 @@ from assess.motion.target_fit import Fit
 from assess.progress import Progress
 from assess.units import GRAVITY
 from tests.motion.motions import GROUND, ROOF, TWELFTH, cut, make_motion, read_motion
+from tests.stopping import StopsAt
 
 STEP = 0.005
 CREST, PFA = 4.905, 2.18
@@ -359,19 +360,6 @@ def test_no_pfv_is_bent_where_none_is_known() -> None:
     assert generator.bend.velocity == 0.0
     assert generator.fit is not None
     assert math.isnan(generator.fit.pfv_ratio)
-
-
-class StopsAt(Progress):
-    """Cancels at the n-th check, and counts them."""
-
-    def __init__(self, last: int) -> None:
-        super().__init__()
-        self.last, self.checks = last, 0
-
-    def check(self) -> None:
-        self.checks += 1
-        if self.checks >= self.last:
-            raise CancelledError
 
 
 @pytest.mark.parametrize("threads", [1, 2])

@@ -12,13 +12,13 @@ from scipy.integrate import quad, solve_ivp
 
 from assess.errors import CancelledError
 from assess.motion.formats import read_records
-from assess.progress import Progress
 from assess.rocking import block, ensemble, kernel
 from assess.rocking.ensemble import Rocking, rock_blocks
 from assess.units import GRAVITY
 from tests.motion.test_external_records import FOLDER
 from tests.rocking.reference import Found, integrate, of_sizes
 from tests.rocking.variants import kernel_with
+from tests.stopping import StopsAt
 
 Array = np.ndarray
 NO_TRACE = np.zeros((0, 3))
@@ -575,19 +575,6 @@ def test_restitution_is_housners_unless_given(found: Rocking) -> None:
     odd = np.flatnonzero(np.arange(40) % 2)
     assert alike(pick(found, odd, EVERY[1]), pick(other, odd, EVERY[1]))
     assert not np.array_equal(found.rotation[::2], other.rotation[::2])
-
-
-class StopsAt(Progress):
-    """Cancels at the n-th check; counts them."""
-
-    def __init__(self, last: int) -> None:
-        super().__init__()
-        self.last, self.checks = last, 0
-
-    def check(self) -> None:
-        self.checks += 1
-        if self.checks >= self.last:
-            raise CancelledError
 
 
 @pytest.mark.parametrize("threads", [1, 2])
