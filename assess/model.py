@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Axis = Literal["X", "Y"]
+AXES: tuple[Axis, Axis] = ("X", "Y")
+ANCHORED = ("no", "yes", "partly", "unknown")
+IMPORTANCE = ("life safety", "function", "property")
 
 NEAR_AXIS = 15.0
 """Up to this angle [deg] from an axis a piece, or a record, counts as lying along it."""

@@ -13,7 +13,7 @@ from typing import Literal
 
 from assess.errors import Problem, WorkbookError
 from assess.i18n import fill
-from assess.model import Axis, Floor, FloorRecord, Inventory
+from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
 from assess.motion.record import Motion, Record, treat
 from assess.motion.scenario import DEFAULT, PGA_OF_SDS, PROFILES, Profile, estimate_pfv
 from assess.progress import SILENT, Progress
@@ -21,8 +21,6 @@ from assess.results import MOTION_FLAGS
 from assess.workbook.check import describe_unserved
 
 Source = Literal["record", "given", "interpolated", "profile"]
-
-AXES: tuple[Axis, Axis] = ("X", "Y")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

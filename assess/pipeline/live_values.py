@@ -13,8 +13,8 @@ import numpy as np
 from assess.i18n import gettext
 from assess.methods import Cases, adopted_formula
 from assess.methods._method import ALIKE
-from assess.model import Inventory, Item
-from assess.pipeline.demand import AXES, Demand, Demands, build_demands
+from assess.model import AXES, Inventory, Item
+from assess.pipeline.demand import Demand, Demands, build_demands
 from assess.risk import classify
 from assess.settings import SCENARIOS, Settings
 from assess.units import GRAVITY

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 
 from assess.errors import Problem, Severity
 from assess.i18n import Text, fill, join
-from assess.model import Axis, Floor, Inventory
+from assess.model import AXES, Axis, Floor, Inventory
 from assess.motion.record import treat
 from assess.motion.scenario import PGA_OF_SDS, Profile
 from assess.motion.target import estimate_period
-from assess.pipeline.demand import AXES, Demands, find_ground, serve_by_profile
+from assess.pipeline.demand import Demands, find_ground, serve_by_profile
 from assess.units import GRAVITY, ROUNDING, VELOCITY
 
 LOSS_TO_NOTE = 0.02

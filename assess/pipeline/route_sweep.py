@@ -30,9 +30,9 @@ from assess.methods import (
     simulation,
 )  # fmt: skip
 from assess.methods._method import BoolArray, FloatArray
+from assess.model import AXES
 from assess.pipeline.adopt import adopt, build_falls, find_governing
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import AXES
 from assess.pipeline.ensembles import GeneratedEnsemble
 from assess.pipeline.verify import check_pairs, choose_motions, describe_work
 from assess.progress import SILENT, Progress, Stage

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError, OutputError
 from assess.methods import Cases, Method, all_methods, simulation
-from assess.model import Inventory
+from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import AXES, Demand, Demands, build_demands
+from assess.pipeline.demand import Demand, Demands, build_demands
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.series import write_series
 from assess.pipeline.tables import (

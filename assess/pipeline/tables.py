@@ -9,11 +9,11 @@ import numpy as np
 
 from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
-from assess.model import Floor, Inventory, Item
+from assess.model import AXES, Floor, Inventory, Item
 from assess.motion.record import Record, treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import AXES, Demand
+from assess.pipeline.demand import Demand
 from assess.pipeline.versions import versions
 from assess.results import (
     CaseTable,

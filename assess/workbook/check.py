@@ -8,10 +8,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
+from assess.model import AXES
 from assess.units import ROUNDING
 from assess.workbook.names import find_near, key
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import AXES, build_catalogue, defined, filled_sizes, turned_axis
+from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turned_axis
 
 Check = Callable[[Tables], Iterable[Problem]]
 

@@ -12,12 +12,11 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from assess.errors import Problem, RecordError
 from assess.i18n import fill
-from assess.model import NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
+from assess.model import AXES, NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
 from assess.motion.formats import parse_records, read_bytes, select
 from assess.motion.record import Record
 from assess.progress import Progress
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import AXES
 from assess.workbook.values import CellError, shorten
 
 MAX_PICTURE = 10 * 2**20

@@ -11,13 +11,12 @@ from typing import Any, TypeVar
 
 from assess.errors import Problem
 from assess.i18n import fill
-from assess.model import Axis, Building, CatalogueType, Floor, FloorRecord, Item, Place, Segment, axis_of
+from assess.model import AXES, Axis, Building, CatalogueType, Floor, FloorRecord, Item, Place, Segment, axis_of
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.schema import SHEETS
 from assess.workbook.values import shorten
 
-AXES: tuple[Axis, Axis] = ("X", "Y")
 _ITEM_FIELDS = frozenset(field.name for field in fields(Item))
 _DEFINED_BY = {sheet.name: sheet.columns[0].name for sheet in SHEETS if sheet.layout == "table"}
 """The column of each table that defines its names: the first."""

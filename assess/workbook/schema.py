@@ -8,14 +8,12 @@ A header is the label with its unit in brackets, ``Height [cm]``; the bracket is
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from assess.model import ANCHORED, AXES, IMPORTANCE
 from assess.settings import SCENARIOS
 from assess.units import QUANTITIES
 
 Kind = Literal["text", "number", "count", "choice", "language", "date", "file", "records"]
 
-AXES = ("X", "Y")
-ANCHORED = ("no", "yes", "partly", "unknown")
-IMPORTANCE = ("life safety", "function", "property")
 PLACES = ("room", "corridor", "door", "stair", "exit")
 LANGUAGES = ("English", "Italiano")
 """Of reports: names that `assess.i18n.find_language` knows."""
