@@ -46,6 +46,11 @@ class Problem:
 class AssessError(Exception):
     """Whatever `assess` raises on purpose."""
 
+    @property
+    def message(self) -> str:
+        """The English text that `str` returns; as the `assess.i18n.Text` that it is, it can be translated."""
+        return self.args[0] if self.args else ""
+
 
 class InputError(AssessError):
     """What the user gave cannot be used."""

@@ -1,6 +1,7 @@
 """Texts in another language: catalogues that are complete, sentences made of parts, numbers."""
 
 import ast
+import pickle
 import re
 from pathlib import Path
 
@@ -9,12 +10,13 @@ from babel.messages.pofile import read_po
 
 import assess
 from assess import resources
-from assess.errors import InputError
+from assess.errors import CancelledError, InputError, RecordError
 from assess.i18n import (
     LANGUAGES,
     fill,
     find_language,
     gettext,
+    join,
     load_catalogue,
     markup,
     nfill,
@@ -84,6 +86,16 @@ def test_a_sentence_of_parts_is_english_and_can_be_said_otherwise(tmp_path):
     with speaking(catalogue):
         assert gettext(text) == "1,2 m: una scrivania"
     assert gettext(text) == "a desk is 1.2 m"
+
+
+def test_an_error_is_english_and_its_message_can_be_said_otherwise():
+    inner = RecordError(fill("{text!r} is not a number", text="x"))
+    error = pickle.loads(pickle.dumps(RecordError(join(": ", ("a.csv", inner.message)))))
+    assert (str(error), type(str(error))) == ("a.csv: 'x' is not a number", str)
+    with speaking(load_catalogue("it")):
+        assert gettext(error.message) == "a.csv: 'x' non è un numero"
+        assert str(error) == "a.csv: 'x' is not a number"
+    assert (InputError().message, CancelledError().message) == ("", "the work was cancelled; nothing was written.")
 
 
 def test_one_and_many(tmp_path):

@@ -235,7 +235,8 @@ def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> 
     median = float(np.median(np.diff(times)))
     check_time_step(median)
     if times[-1] - times[0] > MOST_SAMPLES * RESAMPLED_STEP:
-        raise RecordError(f"the times span {times[-1] - times[0]:.6g} s: cut the record to the shaking")
+        span = float(times[-1] - times[0])
+        raise RecordError(fill("the times span {span:.6g} s: cut the record to the shaking", span=span))
     resampled = resample(times, values, RESAMPLED_STEP)
     note = fill(
         "unevenly sampled (median step {median:.3g} s): resampled linearly to {step:g} s, which changes the peak by "
@@ -250,8 +251,14 @@ def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> 
 def _note_left_out(left_out: int, count: int) -> tuple[str, ...]:
     if left_out > MOST_LEFT_OUT * count:
         raise RecordError(
-            f"{left_out} of {count} samples are no later than one before them: times must increase down the file, "
-            "and have enough digits for that"
+            nfill(
+                "{n} of {count} samples is no later than one before it: times must increase down the file, and be "
+                "printed with enough digits",
+                "{n} of {count} samples are no later than one before them: times must increase down the file, and be "
+                "printed with enough digits",
+                left_out,
+                count=count,
+            )
         )
     note = nfill(
         "{n} sample that is no later than one before it was left out",
@@ -280,21 +287,35 @@ def _note_gaps(times: FloatArray, median: float) -> tuple[str, ...]:
 def check_samples(values: FloatArray) -> None:
     """Raise RecordError unless `values` (n,) [m/s2] can be a recorded acceleration."""
     if values.size < FEWEST_SAMPLES:
-        raise RecordError(f"the number of samples is {values.size}, expected at least {FEWEST_SAMPLES}")
+        raise RecordError(
+            fill("the number of samples is {count}, expected at least {least}", count=values.size, least=FEWEST_SAMPLES)
+        )
     if not np.isfinite(values).all():
-        raise RecordError(f"sample {int(np.isfinite(values).argmin()) + 1} is not a number: correct or remove it")
+        number = int(np.isfinite(values).argmin()) + 1
+        raise RecordError(fill("sample {number} is not a number: correct or remove it", number=number))
     if peak(values) > MOST_ACCELERATION:
-        raise RecordError(f"the peak is {peak(values) / GRAVITY:.3g} g, expected at most 50 g: is the unit right?")
+        raise RecordError(
+            fill(
+                "the peak is {peak:.3g} g, expected at most {most:g} g: is the unit right?",
+                peak=peak(values) / GRAVITY,
+                most=MOST_ACCELERATION / GRAVITY,
+            )
+        )
     if values.min() == values.max():
-        raise RecordError(f"every sample is {values[0]:g} m/s2: the channel holds no motion")
+        first = float(values[0])
+        raise RecordError(fill("every sample is {value:g} m/s2: the channel holds no motion", value=first))
 
 
 def check_time_step(time_step: float) -> None:
     """Raise RecordError unless `time_step` [s] can be that of a record."""
     if not SHORTEST_STEP <= time_step <= LONGEST_STEP:
         raise RecordError(
-            f"the time step is {time_step:.4g} s, expected {SHORTEST_STEP:g} to {LONGEST_STEP:g} s: "
-            "is the time in seconds?"
+            fill(
+                "the time step is {step:.4g} s, expected {shortest:g} to {longest:g} s: is the time in seconds?",
+                step=time_step,
+                shortest=SHORTEST_STEP,
+                longest=LONGEST_STEP,
+            )
         )
 
 
@@ -302,4 +323,5 @@ def _check_times(times: FloatArray) -> None:
     wrong = ~(np.abs(times) <= LATEST_TIME)
     if wrong.any():
         place = int(wrong.argmax())
-        raise RecordError(f"the time of sample {place + 1} is {times[place]:g} s: correct it")
+        time = float(times[place])
+        raise RecordError(fill("the time of sample {number} is {time:g} s: correct it", number=place + 1, time=time))

@@ -100,13 +100,15 @@ def read_suite(folder: Path, *, progress: Progress = SILENT) -> Suite:
         it. Texts (.md, .html, .pdf, .rst), .ini and .db, and hidden files are passed over.
     """
     if not folder.is_dir():
-        raise RecordError(f"{folder}: there is no such folder. Name a folder of floor records")
+        raise RecordError(fill("{folder}: there is no such folder. Name a folder of floor records", folder=folder))
     paths = [path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")]
     paths = [path for path in paths if path.suffix.lower() not in TEXTS]
     found = {path: _read(path, progress) for path in paths}
     motions = [one for path, records in found.items() for one in _horizontal(path, records, progress)]
     if not motions:
-        raise RecordError(f"{folder}: it holds no horizontal channel. Put floor records into it")
+        raise RecordError(
+            fill("{folder}: the folder holds no horizontal channel. Put floor records into it", folder=folder)
+        )
     vertical = [f"{path.name}#{one.channel}" for path, records in found.items() for one in records if one.vertical]
     return Suite(
         folder=folder.name,
@@ -127,7 +129,7 @@ def _read(path: Path, progress: Progress) -> tuple[Record, ...]:
     try:
         return read_records(path, progress=progress)
     except RecordError as error:
-        raise RecordError(f"{error}. Correct it, or take it out of the folder") from None
+        raise RecordError(fill("{why}. Correct it, or move it out of the folder", why=error.message)) from None
 
 
 def _horizontal(path: Path, records: tuple[Record, ...], progress: Progress) -> Iterator[tuple[str, Motion]]:

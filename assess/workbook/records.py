@@ -120,7 +120,7 @@ class FileReader:
         try:
             record = select(known, channel or None)
         except RecordError as error:
-            raise CellError(fill("{why}.", why=error)) from None
+            raise CellError(fill("{why}.", why=error.message)) from None
         if record.vertical:
             message = fill("{text} is a vertical channel.", text=shorten(text))
             raise CellError(message, fill("Choose a horizontal one."))
@@ -154,7 +154,7 @@ def _parse(data: bytes | Path, address: str) -> tuple[tuple[Record, ...] | CellE
         read = data if isinstance(data, bytes) else read_bytes(data)
         return parse_records(read, PurePosixPath(_posix(address)).name), hashlib.sha256(read).hexdigest()
     except RecordError as error:
-        return CellError(fill("the record cannot be read: {why}.", why=error)), ""
+        return CellError(fill("the record cannot be read: {why}.", why=error.message)), ""
 
 
 def _check_direction(

@@ -73,7 +73,7 @@ def test_a_set_in_a_zip_archive(tmp_path):
 def test_a_file_that_cannot_be_read_is_named_and_the_others_are_told(tmp_path):
     done = run(VELOCITY, ROOF)
     assert done.exit_code == 1
-    assert "error  1103.HN2.NP.RE_v.smc: it holds velocity" in done.stderr
+    assert "error  1103.HN2.NP.RE_v.smc: the file holds velocities" in done.stderr
     assert ROOF.name in done.stdout
     done = run(VELOCITY, tmp_path / "none.v2", "--json")
     assert (done.exit_code, done.stdout) == (2, "")

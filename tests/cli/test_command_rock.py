@@ -149,7 +149,7 @@ def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
         ({"record": f"{SWEEP}#west"}, "made-up-sweep.csv has no channel 'west'. It holds: north, east, up"),
         ({"record": "none.smc"}, "none.smc: there is no such file"),
         ({"record": SAMPLES / "README.md"}, "README.md: the file format is not supported"),
-        ({"record": SAMPLES / "1103.HN2.NP.RE_v.smc"}, "1103.HN2.NP.RE_v.smc: it holds velocity"),
+        ({"record": SAMPLES / "1103.HN2.NP.RE_v.smc"}, "1103.HN2.NP.RE_v.smc: the file holds velocities"),
         ({"record": SAMPLES}, "records: this is a folder"),
         ({"record": "n" * 300}, "the file cannot be read"),
     ],

@@ -43,7 +43,7 @@ def test_archives_in_archives(tmp_path: Path, method: int) -> None:
         data = zipped({f"in{depth}.zip": data}, method)
     (record,) = read_set(tmp_path, data)
     assert record.file == "set.zip/in2.zip/in1.zip/r.V2"
-    with pytest.raises(RecordError, match=r"in1\.zip: archives lie more than 3 deep in one another: unpack it"):
+    with pytest.raises(RecordError, match=r"in1\.zip: the zip archives are nested more than 3 deep: unpack them"):
         read_set(tmp_path, zipped({"in3.zip": data}, method))
 
 
@@ -69,7 +69,7 @@ def test_windows_paths(tmp_path: Path) -> None:
 def test_nothing_to_read(tmp_path: Path) -> None:
     message = (
         r"^set\.zip: nothing in the zip archive can be read as a record: README\.txt: unsupported file format; "
-        r"v\.smc: it holds velocity"
+        r"v\.smc: the file holds velocities"
     )
     with pytest.raises(RecordError, match=message):
         read_set(tmp_path, zipped({**README, "v.smc": (RECORDS / "1103.HN2.NP.RE_v.smc").read_bytes()}))
@@ -82,7 +82,7 @@ def test_nothing_to_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["[Content_Types].xml", "META-INF/manifest.xml"])
 def test_workbooks(tmp_path: Path, name: str) -> None:
     with pytest.raises(
-        RecordError, match=r"set\.xlsx: it is a workbook or another office file, .*: save the sheet as CSV"
+        RecordError, match=r"set\.xlsx: the file is a workbook or another office file, .*: save the sheet as CSV"
     ):
         read_set(tmp_path, zipped({name: b"<Types/>", "xl/workbook.xml": b"<workbook/>"}), "set.xlsx")
 
@@ -99,9 +99,11 @@ def test_damaged(tmp_path: Path) -> None:
     data = zipped({"a.V2": csmip_v2(EAST)})
     with pytest.raises(RecordError, match=r"the zip archive is damaged \(.*\)\. Get it again"):
         read_set(tmp_path, data[:-40])
-    with pytest.raises(RecordError, match=r"a\.V2: it is damaged \(.*\)\. Get it again"):
+    with pytest.raises(RecordError, match=r"a\.V2: the file is damaged \(.*\)\. Get it again"):
         read_set(tmp_path, data[:100] + b"????" + data[104:])
-    with pytest.raises(RecordError, match=r"a\.V2: it is packed in a way that is not read \(method 14\): unpack it"):
+    with pytest.raises(
+        RecordError, match=r"a\.V2: the file is compressed by a method that is not supported \(14\): unpack the archive"
+    ):
         read_set(tmp_path, zipped({"a.V2": csmip_v2(EAST)}, zipfile.ZIP_LZMA))
 
 
@@ -120,7 +122,7 @@ def peak_memory(data: bytes, message: str) -> int:
 
 def test_a_member_that_unpacks_to_too_much() -> None:
     data = zipped({"zeros": bytes(50_000_000)})
-    message = r"zeros unpacks to more than 200 times its size, as no record does\. Get it again"
+    message = r"zeros unpacks to more than 200 times its size, which no record does\. Get the archive again"
     assert peak_memory(data, message) < 5_000_000
 
 
@@ -133,7 +135,7 @@ def test_a_member_that_lies_about_its_size() -> None:
     data, size = zipped({"zeros": bytes(50_000_000)}), (50_000_000).to_bytes(4, "little")
     assert data.count(size) == 2
     lie = data.replace(size, (1000).to_bytes(4, "little"))
-    assert peak_memory(lie, r"zeros: it is damaged") < 5_000_000
+    assert peak_memory(lie, r"zeros: the file is damaged") < 5_000_000
 
 
 def test_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

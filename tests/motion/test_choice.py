@@ -72,7 +72,7 @@ def test_select_from_an_archive(tmp_path: Path) -> None:
     assert select(records, "Free field.zip/CHAN01.V2/11") is select(records, "Free Field.zip/CHAN01.V2") is records[0]
     assert select(records, "RAW.V1/11") is records[3]
     with pytest.raises(
-        RecordError, match=r"made has 3 channels '11'\. Name one of them: Free Field\.zip/CHAN01\.V2/11, "
+        RecordError, match=r"made has 3 channels named '11'\. Name one of them: Free Field\.zip/CHAN01\.V2/11, "
     ):
         select(records, "11")
 

@@ -113,7 +113,7 @@ def test_a_channel_that_is_cut_off_does_not_lose_the_others() -> None:
     whole = write_v2(*THREE)
     records = csmip.VOLUME_2.read(whole[: whole.rindex(b"POINTS OF ACCEL") + 1000], "made")
     assert [record.channel for record in records] == ["11", "12"]
-    assert re.search(r"channel 3 .* 400 numbers of data, there are \d+: cut short", records[0].notes[0])
+    assert re.search(r"channel 3 .*cut short: it has \d+ of the 400 data values", records[0].notes[0])
 
 
 def test_nothing_is_left() -> None:
@@ -126,7 +126,9 @@ def test_nothing_is_left() -> None:
 def test_spectra_are_refused() -> None:
     data = b"RESPONSE AND FOURIER AMPLITUDE SPECTRA (79 PERIODS,  .04 -  6.5 SEC)   FOR\r\n" + V2
     assert csmip.VOLUME_2.recognises(data)
-    with pytest.raises(RecordError, match=r"it holds response spectra \(volume 3\), not accel.*\. Give volume 2 or 1"):
+    with pytest.raises(
+        RecordError, match=r"the file holds response spectra \(volume 3\), not accel.*\. Give volume 2 or 1"
+    ):
         csmip.VOLUME_2.read(data, "made")
 
 
@@ -135,19 +137,19 @@ def test_spectra_are_refused() -> None:
     [
         (b"hello", r'no line says "Uncorrected accelerogram data"\. Get the file again'),
         (V1[:1000], r"the header does not give the number of points, or their unit|cut short"),
-        (V1[:4000], r"announces 400 numbers of data, there are \d+: cut short\. Get the file again"),
-        (changed(V1, b"  400 Accel", b"99999999 Accel"), r"announces 99999999 numbers of data, expected 1 to 8000000"),
-        (changed(V1, b"at 100 pts/sec", b"at 0 pts/sec"), r"line 28: the rate or the unit cannot be read"),
-        (changed(V1, b"  400 Accel", b" 7000000 Accel"), r"announces 7000000 numbers of data, there are 4\d\d: cut"),
+        (V1[:4000], r"cut short: it has \d+ of the 400 data values that its header announces\. Get the file again"),
+        (changed(V1, b"  400 Accel", b"99999999 Accel"), r"announces 99999999 data values, expected 1 to 8,000,000"),
+        (changed(V1, b"at 100 pts/sec", b"at 0 pts/sec"), r"line 28: the sampling rate or the unit cannot be read"),
+        (changed(V1, b"  400 Accel", b" 7000000 Accel"), r"cut short: it has 4\d\d of the 7000000 data values"),
         (with_number(V1, 29, 9, b"   1.E308"), r"sample 2 is not a number"),
-        (changed(V1, b"in units of g", b"in units of q"), r"line 28: the rate or the unit cannot be read"),
+        (changed(V1, b"in units of g", b"in units of q"), r"line 28: the sampling rate or the unit cannot be read"),
         (changed(V1, b"at 100 pts/sec", b"at 1 pts/sec"), r"the time step is 1 s"),
         (with_number(V1, 29, 9, b"  0.14x54"), r"line 29: '0\.14x54' is not a number\. Get the file again"),
         (with_number(V1, 29, 9, b"         "), r"line 29: a number is missing"),
         (with_number(V1, 29, 9, b"      NaN"), r"sample 2 is not a number"),
         (changed(PAIRS, b"SEC AND G/10", b"SEC AND CM/S"), r"does not give the number of points, or their unit"),
-        (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS =      0"), r"announces 0 numbers of data"),
-        (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS = 999999"), r"announces 1999998 numbers"),
+        (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS =      0"), r"announces 0 data values"),
+        (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS = 999999"), r"1999998 data values"),
     ],
 )  # fmt: skip
 def test_v1_damage(data: bytes, message: str) -> None:
@@ -160,8 +162,8 @@ def test_v1_damage(data: bytes, message: str) -> None:
     [
         (b"hello", r'no line says "Corrected accelerogram"\. Get the file again'),
         (V2[:1500], r'no line says "points of accel data equally spaced at"\. Get the file again'),
-        (V2[:5000], r"announces 400 numbers of data, there are \d+: cut short\. Get the file again"),
-        (changed(V2, b"  400 POINTS OF ACCEL", b"  999999999 POINTS OF ACCEL"), r"announces 999999999 numbers of data"),
+        (V2[:5000], r"cut short: it has \d+ of the 400 data values that its header announces\. Get the file again"),
+        (changed(V2, b"  400 POINTS OF ACCEL", b"  999999999 POINTS OF ACCEL"), r"announces 999999999 data values"),
         (changed(V2, b"AT 0.010 SEC.", b"AT 0.000 SEC."), r"the time step is 0 s, expected"),
         (changed(V2, b"AT 0.010 SEC.", b"AT 0.0.0 SEC."), r"line 46: the time step or the unit cannot be read"),
         (changed(V2, b"UNITS: CM/SEC/SEC", b"UNITS: FURLONGS!!"), r"line 46: the time step or the unit cannot be read"),

@@ -43,12 +43,15 @@ def test_headers_that_say_little() -> None:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (write(DATA_TYPE="VELOCITY"), r"it holds velocity, not accelerations\. Give the \.ACC\. file of the same"),
-        (write(DATA_TYPE="ACCELERATION RESPONSE SPECTRUM"), r"it holds acceleration response spectrum, not"),
-        (write(UNITS="furlong"), r"'furlong' is no known unit of acceleration\. Get the file again"),
+        (
+            write(DATA_TYPE="VELOCITY"),
+            r"the file holds velocities, not accelerations\. Give the \.ACC\. file of the same",
+        ),
+        (write(DATA_TYPE="ACCELERATION RESPONSE SPECTRUM"), r"the file holds acceleration response spectrum, not"),
+        (write(UNITS="furlong"), r"'furlong' is not a known unit of acceleration\. Get the file again"),
         (write(NDATA=""), r"the header does not give NDATA and SAMPLING_INTERVAL_S\. Get the file again"),
-        (write(NDATA="2000000000"), r"announces 2000000000 numbers of data, expected 1 to 8000000"),
-        (write(NDATA="1e300"), r"announces 1e\+300 numbers of data"),
+        (write(NDATA="2000000000"), r"announces 2000000000 data values, expected 1 to 8,000,000"),
+        (write(NDATA="1e300"), r"announces 1e\+300 data values"),
         (write(SAMPLING_INTERVAL_S="0"), r"the time step is 0 s"),
         (b"EVENT_NAME: A\n" * 300, r"there are no data below the header\. Get the file again"),
         (write()[:1500], r"cut short"),

@@ -39,12 +39,12 @@ pytestmark = pytest.mark.skipif(not FILES, reason="no folder of real records: na
 
 UNKNOWN = r"file format"
 REFUSED = {
-    r".*_v\.smc": r"it holds velocity",
-    r".*_d\.smc": r"it holds displacement",
-    r".*\.V3": r"it holds response spectra \(volume 3\), not accelerations",
-    r".*\.V0c": r"it holds raw counts \(volume 0\)",
+    r".*_v\.smc": r"the file holds velocities",
+    r".*_d\.smc": r"the file holds displacements",
+    r".*\.V3": r"the file holds response spectra \(volume 3\), not accelerations",
+    r".*\.V0c": r"the file holds raw data in counts \(volume 0\)",
     r".*\.sac": r"which means nm/s2, but that makes the peak .* Write the unit into",
-    r".*\.mseed": r"it holds raw counts, not accelerations\. Remove the instrument's response",
+    r".*\.mseed": r"the channel holds raw counts, not accelerations\. Remove the instrument's response",
     r".*\.(hdf5|mat|dat|txt|s0a|e0a)": UNKNOWN,
     r"575market_.*\.csv": UNKNOWN,
 }

@@ -70,7 +70,7 @@ def test_each_format_has_a_sample_it_reads(candidate: Format) -> None:
     own = [data for data in ALL_DATA if candidate.recognises(data[:HEAD])]
     assert own
     for data in own:
-        for record in read_or(candidate, data, r"velocity|raw counts"):
+        for record in read_or(candidate, data, r"velocities|raw (counts|data)"):
             values = record.acceleration
             assert (record.file, record.format) == ("sample", candidate.title)
             assert np.isfinite(treat(record).pfv)

@@ -55,18 +55,18 @@ def test_headers_that_say_little() -> None:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"hello", r"the header has no number for Sampling Freq\(Hz\), but ''\. Get the file again"),
-        (write(**{"Sampling_Freq(Hz)": "0Hz"}), r"no number for Sampling Freq\(Hz\), but '0Hz'"),
-        (write(**{"Duration_Time(s)": "long"}), r"no number for Duration Time\(s\), but 'long'"),
+        (b"hello", r"Sampling Freq\(Hz\) is '' in the header, expected a number above 0\. Get the file again"),
+        (write(**{"Sampling_Freq(Hz)": "0Hz"}), r"Sampling Freq\(Hz\) is '0Hz' in the header"),
+        (write(**{"Duration_Time(s)": "long"}), r"Duration Time\(s\) is 'long' in the header"),
         (
             write(**{"Duration_Time(s)": "99999999"}),
-            r"announces 9999999900 numbers of data, expected 1 to 8000000",
+            r"announces 9999999900 data values, expected 1 to 8,000,000",
         ),
-        (write(**{"Sampling_Freq(Hz)": "99999999Hz"}), r"announces \d+ numbers of data"),
-        (write(**{"Sampling_Freq(Hz)": "9" * 155, "Duration_Time(s)": "9" * 155}), r"announces inf numbers of data"),
-        (write(Scale_Factor="3920/6182761"), r"the scale factor is '3920/6182761', expected such as"),
+        (write(**{"Sampling_Freq(Hz)": "99999999Hz"}), r"announces \d+ data values"),
+        (write(**{"Sampling_Freq(Hz)": "9" * 155, "Duration_Time(s)": "9" * 155}), r"announces inf data values"),
+        (write(Scale_Factor="3920/6182761"), r"the scale factor is '3920/6182761', expected a ratio such as"),
         (write(Scale_Factor="3920(gal)/0"), r"the scale factor is '3920\(gal\)/0'"),
-        (write()[:2000], r"cut short\. Get the file again"),
+        (write()[:2000], r"the file is cut short: .* its header announces\. Get the file again"),
         (write().replace(b"-12085", b"-12x85", 1), r"number 1 of the data: '-12x85' is not a number"),
     ],
 )

@@ -46,18 +46,18 @@ def test_a_few_numbers_beyond_are_left_out() -> None:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (at2(kind="VELOCITY", unit="CM/S"), r"it holds velocity, not accelerations\. Give the \.AT2 file of the same"),
-        (at2(kind="DISPLACEMENT", unit="CM"), r"it holds displacement, not accelerations"),
-        (at2(unit="FURLONGS"), r"'FURLONGS' is no known unit of acceleration\. Get the file again"),
+        (at2(kind="VELOCITY", unit="CM/S"), r"the file holds velocities, not accelerations\. Give the \.AT2 file"),
+        (at2(kind="DISPLACEMENT", unit="CM"), r"the file holds displacements, not accelerations"),
+        (at2(unit="FURLONGS"), r"'FURLONGS' is not a known unit of acceleration\. Get the file again"),
         (b"hello", r"the header does not name what the file holds\. Get the file again"),
-        (DATA.replace(b"NPTS=", b"NUTS="), r"line 4 does not give the number of points and their step"),
-        (DATA.replace(b"0.0100", b"0.0.00"), r"line 4 does not give the number of points and their step"),
+        (DATA.replace(b"NPTS=", b"NUTS="), r"line 4 does not give the number of points and their time step"),
+        (DATA.replace(b"0.0100", b"0.0.00"), r"line 4 does not give the number of points and their time step"),
         (DATA.replace(b"0.0100", b"0.0000"), r"the time step is 0 s"),
-        (DATA.replace(b"NPTS=   400", b"NPTS=   0"), r"announces 0 numbers of data"),
-        (DATA.replace(b"NPTS=   400", b"NPTS= 999999999"), r"announces 999999999 numbers of data, expected 1 to 80"),
-        (DATA.replace(b"NPTS=   400", b"NPTS=   300"), r"announces 300 numbers of data, there are more\. Get the file"),
+        (DATA.replace(b"NPTS=   400", b"NPTS=   0"), r"announces 0 data values"),
+        (DATA.replace(b"NPTS=   400", b"NPTS= 999999999"), r"announces 999999999 data values, expected 1 to 8,0"),
+        (DATA.replace(b"NPTS=   400", b"NPTS=   300"), r"more data values than the 300 that its header announces"),
         (DATA[:-10] + b"x.x", r"number 400 of the data: '\S+x\.x' is not a number\. Get the file again"),
-        (DATA[:3000], r"announces 400 numbers of data, there are \d+: cut short"),
+        (DATA[:3000], r"cut short: it has \d+ of the 400 data values that its header announces"),
     ],
 )  # fmt: skip
 def test_damage(data: bytes, message: str) -> None:

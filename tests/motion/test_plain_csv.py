@@ -108,11 +108,11 @@ UNKNOWN_UNIT = (
         (csv_text(last="1.0,nan"), r"line 22: 'nan' is not a number"),
         (csv_text(last="1.0,1_0"), r"line 22: '1_0' is not a number"),
         (csv_text(last="1.0;1,2x").replace(",", ";").replace("1;2x", "1,2x"), r"line 22: '1,2x' is not a number"),
-        (csv_text(last="1.0"), r"line 22: the number of cells is 1, that of headings 2"),
-        (csv_text(last="1.0,2,3"), r"line 22: the number of cells is 3, that of headings 2"),
+        (csv_text(last="1.0"), r"line 22: the number of cells is 1, but there are 2 headings"),
+        (csv_text(last="1.0,2,3"), r"line 22: the number of cells is 3, but there are 2 headings"),
         (csv_text(last="1.0,1e300"), r"channel 'north': the peak is 1e\+300 g, expected at most 50 g"),
         (csv_text(last="1.0,1e308"), r"channel 'north': sample 21 is not a number"),
-        (csv_text(comments="# azimuth: west=270\n"), r"the azimuth is given of 'west', but the channels are: north"),
+        (csv_text(comments="# azimuth: west=270\n"), r"an azimuth is given for 'west', but the channels are: north"),
         (
             csv_text(comments="# azimuth: 400\n"),
             r"the azimuth is '400', expected 0 to 360 degrees clockwise from north, or up",
@@ -123,7 +123,7 @@ UNKNOWN_UNIT = (
         ),
         (csv_text(comments="# corrected: maybe\n"), r"corrected is 'maybe', expected yes or no"),
         ("time [s],north [g]\n\n", r"there are no rows below the headings"),
-        ("# only: comments\n", r"there is no row of headings, such as: time \[s\], north \[cm/s2\]"),
+        ("# only: comments\n", r"there is no row of headings\. Add one, such as: time \[s\], north \[cm/s2\]"),
         ("time [s],north [g]\n0,1\n0.01,2\n", r"channel 'north': the number of samples is 2, expected at least 10"),
     ],
 )

@@ -63,10 +63,10 @@ def test_smc_older_wording_of_the_peak() -> None:
 
 def test_smc_velocity_is_refused() -> None:
     with pytest.raises(
-        RecordError, match=r"RE_v\.smc: it holds velocity \(3 VELOCITY\), not accelerations\. Give the acc"
+        RecordError, match=r"RE_v\.smc: the file holds velocities \(3 VELOCITY\), not accelerations\. Give the acc"
     ):
         read_records(RECORDS / "1103.HN2.NP.RE_v.smc")
-    with pytest.raises(RecordError, match=r"it holds displacement \(4 DISPLACEMENT\)"):
+    with pytest.raises(RecordError, match=r"the file holds displacements \(4 DISPLACEMENT\)"):
         read_smc(with_line(ROOF, 1, b"4 DISPLACEMENT"))
 
 
@@ -74,27 +74,39 @@ def test_smc_velocity_is_refused() -> None:
     ("data", "message"),
     [
         (b"hello", r"the first line names no type of SMC file"),
-        (ROOF[:500], r"the header has 27 lines, but the file has \d+: it is cut short\. Get it again"),
-        (ROOF[:50_000], r"announces 8200 numbers of data, there are \d{4}: cut short\. Get the file again"),
-        (ROOF + b"\r\n 1.0000E+0" * 100, r"announces 8200 numbers of data, there are 8300\. Get"),
+        (ROOF[:500], r"the file is cut short: its header takes 27 lines, the file has \d+\. Get the file again"),
+        (
+            ROOF[:50_000],
+            r"cut short: it has \d{4} of the 8200 data values that its header announces\. Get the file again",
+        ),
+        (
+            ROOF + b"\r\n 1.0000E+0" * 100,
+            r"the file has more data values than the 8200 that its header announces\. Get",
+        ),
         (with_line(ROOF, 40, b" 1.0x00E+0" * 8), r"line 40: '1\.0x00E\+0' is not a number"),
         (with_line(ROOF, 40, b" 1.0000E+0" * 7) + b"\r\n 1.0000E+0", r"line 40: a number is missing"),
         (with_line(ROOF, 40, b"       nan" * 8), r"sample 25 is not a number"),
         (with_line(ROOF, 40, b" 1.0000E+9" * 8), r"the peak is 1\.02e\+06 g, expected at most 50 g"),
-        (with_line(ROOF, 40, b" 1.0000E+0" * 9), r"line 40 is longer than 80 columns"),
+        (with_line(ROOF, 40, b" 1.0000E+0" * 9), r"line 40 is longer than 80 characters"),
         (with_line(ROOF, 12, b"    -32768      20x8"), r"line 12: '20x8' is not a whole number"),
-        (header_line(ROOF, 13, 7, "8", 10), r"announces 8 lines of comment, there are 9"),
-        (b"\n".join(ROOF.splitlines()[:30]), r"announces 9 lines of comment, there are no data"),
-        (header_line(ROOF, 14, 0, "9999999999", 10), r"announces 9999999999 numbers of data, there are 8200"),
-        (header_line(ROOF, 14, 0, "0", 10), r"announces 0 numbers of data\."),
-        (header_line(ROOF, 14, 0, "-32768", 10), r"announces 0 numbers of data\."),
-        (header_line(ROOF, 18, 1, "0.0", 15), r"line 18: the sampling rate is 0 per second"),
-        (header_line(ROOF, 18, 1, "-200.0", 15), r"line 18: the sampling rate is -200 per second"),
-        (header_line(ROOF, 18, 1, "NaN", 15), r"line 18: the sampling rate is nan per second"),
+        (header_line(ROOF, 13, 7, "8", 10), r"the number of comment lines is 9, but 8 in the header"),
+        (b"\n".join(ROOF.splitlines()[:30]), r"there are no data below the header"),
+        (
+            header_line(ROOF, 14, 0, "9999999999", 10),
+            r"cut short: it has 8200 of the 9999999999 data values that its header announces",
+        ),
+        (header_line(ROOF, 14, 0, "0", 10), r"the number of data values is 0 in the header\."),
+        (header_line(ROOF, 14, 0, "-32768", 10), r"the number of data values is 0 in the header\."),
+        (header_line(ROOF, 18, 1, "0.0", 15), r"line 18: the sampling rate is 0 Hz, expected above 0"),
+        (header_line(ROOF, 18, 1, "-200.0", 15), r"line 18: the sampling rate is -200 Hz, expected above 0"),
+        (header_line(ROOF, 18, 1, "NaN", 15), r"line 18: the sampling rate is nan Hz, expected above 0"),
         (header_line(ROOF, 18, 1, "fast", 15), r"line 18: 'fast' is not a number"),
         (header_line(ROOF, 18, 1, "1.0E+09", 15), r"the time step is 1e-09 s"),
         (header_line(ROOF, 18, 1, "1.7000000E+38", 15), r"samples are no later than one before them"),
-        (header_line(header_line(ROOF, 18, 1, "1.7E+38", 15), 14, 0, "8199", 10), r"8199 numbers cannot be pairs"),
+        (
+            header_line(header_line(ROOF, 18, 1, "1.7E+38", 15), 14, 0, "8199", 10),
+            r"the number of data values is 8199, which is odd: they cannot be pairs",
+        ),
     ],
 )
 def test_smc_damage(data: bytes, message: str) -> None:

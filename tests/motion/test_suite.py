@@ -71,7 +71,7 @@ def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
 
 def test_a_folder_without_horizontal_channels(tmp_path: Path) -> None:
     (tmp_path / "README.md").write_text("empty", encoding="utf-8")
-    with pytest.raises(RecordError, match=r"it holds no horizontal channel\. Put floor records into it"):
+    with pytest.raises(RecordError, match=r"the folder holds no horizontal channel\. Put floor records into it"):
         read_suite(tmp_path)
 
 

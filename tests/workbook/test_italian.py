@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import zipfile
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -297,6 +298,75 @@ def test_rows_that_do_not_fit_together_are_told_by_their_own_labels(tmp_path: Pa
         "Arredi!I2: a Tratto is named without its Percorso. Fill in Percorso.",
         "Arredi!E3: Altezza is blank and no Tipo gives it. Fill it in, or choose a Tipo that has one.",
     }
+
+
+SAMPLE = Path(__file__).parents[2] / "samples" / "records" / "1103.HN2.NP.RE_v.smc"
+ROWS = b"".join(f"{0.01 * at:.2f},{at % 2}\n".encode() for at in range(20))
+FAULTY_RECORDS = {
+    "due.csv": (
+        b"time [s],NS [g],EW [g]\n" + ROWS.replace(b"\n", b",1\n"),
+        "canale 'EW': tutti i campioni valgono 9,80665 m/s2: il canale non contiene alcun moto",
+    ),
+    "passo.csv": (
+        b"time [s],NS [g]\n" + ROWS.replace(b"0.0", b"0").replace(b"0.1", b"1"),
+        "canale 'NS': l'intervallo di campionamento è 1 s, atteso da 1e-05 a 0,1 s: il tempo è in secondi?",
+    ),
+    "cella.csv": (b"time [s],NS [g]\n0,0.5\n0.01,abc\n", "riga 3: 'abc' non è un numero"),
+    "unità.csv": (
+        b"time [s],NS [g]\n" + ROWS.replace(b",1\n", b",60.5\n"),
+        "canale 'NS': il picco è 60,5 g, atteso al massimo 50 g: l'unità è giusta?",
+    ),
+    "vuoto.csv": (b"", "il file è vuoto. Procurarsene una nuova copia"),
+    "rumore.zip": (
+        b"PK\x03\x04....",
+        "l'archivio zip è danneggiato (File is not a zip file). Procurarsene una nuova copia",
+    ),
+    "velocità.smc": (
+        SAMPLE.read_bytes(),
+        "il file contiene velocità (3 VELOCITY), non accelerazioni. Fornire il file delle accelerazioni dello stesso "
+        "canale (tipo 1 o 2)",
+    ),
+    "corto.smc": (
+        SAMPLE.with_name("1103.HN2.NP.RE_a.smc").read_bytes()[:500],
+        "il file è troncato: l'intestazione occupa 27 righe, il file ne ha 14. Procurarsi una nuova copia del file",
+    ),
+}
+"""Bytes of records that cannot be read, and why not, in Italian."""
+
+
+def test_what_is_wrong_with_a_record_is_said_in_italian(tmp_path: Path) -> None:
+    for name, (data, why) in FAULTY_RECORDS.items():
+        (tmp_path / name).write_bytes(data)
+        (problem,) = problems_of(write(tmp_path, floors=[["Piano", "Registrazione X"], ["1", name]]))
+        assert problem.place == "Piani!B2"
+        assert problem.message.startswith(f"the record cannot be read: {name}: ")
+        with speaking(load_catalogue("it")):
+            assert gettext(problem.message) == f"la registrazione non può essere letta: {name}: {why}."
+
+
+def test_members_of_an_archive_are_refused_in_italian(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "serie.zip", "w") as archive:
+        archive.writestr("LEGGIMI.txt", "testo")
+        archive.write(SAMPLE, "v.smc")
+    (problem,) = problems_of(write(tmp_path, floors=[["Piano", "Registrazione X"], ["1", "serie.zip"]]))
+    with speaking(load_catalogue("it")):
+        assert gettext(problem.message) == (
+            "la registrazione non può essere letta: serie.zip: nell'archivio zip nulla può essere letto come "
+            "registrazione: LEGGIMI.txt: formato di file non supportato; v.smc: il file contiene velocità (3 VELOCITY), "
+            "non accelerazioni. Fornire il file delle accelerazioni dello stesso canale (tipo 1 o 2)."
+        )
+
+
+def test_channels_are_asked_for_in_italian(tmp_path: Path) -> None:
+    rows = "".join(f"{0.01 * at:.2f},{at % 2},{at % 3}\n" for at in range(20))
+    (tmp_path / "due.csv").write_text(f"time [s],NS [g],EW [g]\n{rows}", encoding="utf-8")
+    for name, message in {
+        "due.csv": "due.csv contiene 2 canali: NS, EW. Indicarne uno, per esempio due.csv#NS.",
+        "due.csv#Z": "due.csv non ha un canale 'Z'. Contiene: NS, EW.",
+    }.items():
+        (problem,) = problems_of(write(tmp_path, floors=[["Piano", "Registrazione X"], ["1", name]]))
+        with speaking(load_catalogue("it")):
+            assert gettext(problem.message) == message
 
 
 def test_what_the_scenario_lacks_is_told_of_the_workbooks_own_sheet(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from assess.errors import RecordError
+from assess.i18n import fill, join
 from assess.motion.formats._archive import is_archive, read_archive
 from assess.motion.formats._choice import list_addresses, rename_duplicates, select
 from assess.motion.formats._format import Format
@@ -32,20 +33,21 @@ HEAD = 65_536
 """Bytes by which a format is recognised."""
 
 _NO_FILE = {
-    FileNotFoundError: "there is no such file. Check the name and the folder",
-    IsADirectoryError: "this is a folder. Name one of the files in it",
+    FileNotFoundError: fill("there is no such file. Check the name and the folder"),
+    IsADirectoryError: fill("this is a folder. Name one of the files in it"),
     # Windows reports folders like this, too.
-    PermissionError: "it is a folder, is open in another program, or you have no right to read it",
+    PermissionError: fill("it is a folder, is open in another program, or you have no right to read it"),
 }
+_UTF_16 = fill("It is saved as UTF-16: save it as CSV UTF-8")
 _FOREIGN = {
-    b"\xff\xfe": "It is saved as UTF-16: save it as CSV UTF-8.",
-    b"\xfe\xff": "It is saved as UTF-16: save it as CSV UTF-8.",
-    b"%PDF": "It is a PDF.",
-    b"\x1f\x8b": "It is a gzip archive: unpack it.",
-    b"7z\xbc\xaf": "It is a 7z archive: unpack it.",
-    b"Rar!": "It is a RAR archive: unpack it.",
+    b"\xff\xfe": _UTF_16,
+    b"\xfe\xff": _UTF_16,
+    b"%PDF": fill("It is a PDF: give the record itself"),
+    b"\x1f\x8b": fill("It is a gzip archive: unpack it"),
+    b"7z\xbc\xaf": fill("It is a 7z archive: unpack it"),
+    b"Rar!": fill("It is a RAR archive: unpack it"),
 }
-_PLAIN_CSV = (
+_PLAIN_CSV = fill(
     "Other records can be given as plain CSV, whose first row names time and each channel with its unit: "
     "time [s], north [cm/s2], east [cm/s2]"
 )
@@ -79,7 +81,8 @@ def read_bytes(path: Path) -> bytes:
             return file.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = next((text for kind, text in _NO_FILE.items() if isinstance(error, kind)), None)
-        raise RecordError(f"{path.name or path}: {why or f'the file cannot be read ({error})'}") from None
+        why = why or fill("the file cannot be read ({why})", why=str(error))
+        raise RecordError(join(": ", (path.name or path, why))) from None
 
 
 def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tuple[Record, ...]:
@@ -92,10 +95,13 @@ def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tup
     """
     try:
         if not data:
-            raise RecordError("the file is empty. Get it again")
+            raise RecordError(fill("the file is empty. Get it again"))
         if len(data) > LARGEST_FILE:
-            most = f"{LARGEST_FILE / 1e6:.0f} MB"
-            raise RecordError(f"the file is larger than {most}. Cut it to the shaking, or split its channels")
+            text = fill(
+                "the file is larger than {most:.0f} MB. Cut it to the shaking, or split its channels",
+                most=LARGEST_FILE / 1e6,
+            )
+            raise RecordError(text)
         if is_archive(data):
             return rename_duplicates(read_archive(data, name, _read_member, progress))
         found = _find_format(data[:HEAD])
@@ -103,20 +109,22 @@ def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tup
             raise _unsupported(data)
         return rename_duplicates(found.read(data, name))
     except RecordError as error:
-        raise RecordError(f"{name}: {error}") from error
+        raise RecordError(join(": ", (name, error.message))) from error
 
 
 def _unsupported(data: bytes) -> RecordError:
     why = next((reason for start, reason in _FOREIGN.items() if data.startswith(start)), _PLAIN_CSV)
     known = ", ".join(candidate.title for candidate in all_formats())
-    return RecordError(f"the file format is not supported (supported: {known}; also in zip archives). {why}")
+    return RecordError(
+        fill("the file format is not supported (supported: {known}; also in zip archives). {why}", known=known, why=why)
+    )
 
 
 def _read_member(data: bytes, file: str) -> tuple[Record, ...]:
     """Read a file of an archive: there may be many of no known format, and they are left out."""
     found = _find_format(data[:HEAD])
     if found is None:
-        raise RecordError("unsupported file format")
+        raise RecordError(fill("unsupported file format"))
     return found.read(data, file)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from assess.errors import RecordError
-from assess.i18n import fill
+from assess.i18n import Text, fill, join
 from assess.motion.record import Record
 from assess.progress import SILENT, Progress
 
@@ -20,8 +20,8 @@ DEEPEST = 3
 """Archives within archives: the CSMIP sets have two levels."""
 MOST_RATIO, RATIO_FROM = 200, 1_000_000
 """Unpacked over packed size [-] that is believed, of members with more than so many bytes; text packs to a tenth."""
-LISTED, LONGEST_REASON = 8, 160
-"""Members that an error lists, and the characters of each reason."""
+LISTED = 8
+"""Members that an error lists."""
 
 _STARTS = (b"PK\x03\x04", b"PK\x05\x06")
 _ENTRY = b"PK\x01\x02"
@@ -37,7 +37,7 @@ class _Found:
     """What has been found so far, and how much was unpacked for that [bytes]."""
 
     records: list[Record] = field(default_factory=list)
-    reasons: list[str] = field(default_factory=list)
+    reasons: list[Text] = field(default_factory=list)
     unpacked: int = 0
     members: int = 0
 
@@ -68,20 +68,18 @@ def read_archive(data: bytes, file: str, read: ReadMember, progress: Progress = 
     """
     found = _Found()
     _read_members(data, file, read, found, progress, depth=1)
-    listed, more = "; ".join(found.reasons[:LISTED]), len(found.reasons) - LISTED
+    listed, more = join("; ", found.reasons[:LISTED]), len(found.reasons) - LISTED
     if found.records and not found.reasons:
         return tuple(found.records)
     if found.records:
         note = fill("left out of the archive: {members}", members=listed)
-        if more > 0:
-            note = fill("left out of the archive: {members}; and {more} more", members=listed, more=more)
         # Once in a set, or each of its channels would repeat it in a report.
         first, *others = found.records
         return (replace(first, notes=(*first.notes, note)), *others)
     if not found.reasons:
-        raise RecordError("the zip archive is empty. Get it again")
-    others_too = f"; and {more} more" if more > 0 else ""
-    raise RecordError(f"nothing in the zip archive can be read as a record: {listed}{others_too}")
+        raise RecordError(fill("the zip archive is empty. Get it again"))
+    listed = fill("{members}; and {more} more", members=listed, more=more) if more > 0 else listed
+    raise RecordError(fill("nothing in the zip archive can be read as a record: {members}", members=listed))
 
 
 class _BombError(RecordError):
@@ -90,7 +88,7 @@ class _BombError(RecordError):
 
 def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, progress: Progress, depth: int) -> None:
     if depth > DEEPEST:
-        raise RecordError(f"archives lie more than {DEEPEST} deep in one another: unpack it")
+        raise RecordError(fill("the zip archives are nested more than {most} deep: unpack them", most=DEEPEST))
     with _open(data) as archive:
         for member in _list_members(archive, found):
             progress.check()
@@ -104,55 +102,83 @@ def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, progr
             except _BombError:
                 raise
             except RecordError as error:
-                found.reasons.append(f"{name}: {f'{error}'[:LONGEST_REASON]}")
+                found.reasons.append(fill("{member}: {why:.160}", member=name, why=error.message))
 
 
 def _open(data: bytes) -> zipfile.ZipFile:
     # Counted before the directory is read: each of its entries takes a hundred times its bytes in memory.
     if data.count(_ENTRY) > MOST_MEMBERS:
-        raise _BombError(f"the zip archive has more than {MOST_MEMBERS} members: unpack it")
+        raise _too_many()
     try:
         return zipfile.ZipFile(io.BytesIO(data))
     except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
-        raise _damaged("the zip archive", error) from error
+        raise _damaged(fill("the zip archive"), error) from error
 
 
-def _damaged(what: str, error: Exception) -> RecordError:
-    return RecordError(f"{what} is damaged ({f'{error}'[:LONGEST_REASON] or type(error).__name__}). Get it again")
+def _too_many() -> _BombError:
+    return _BombError(fill("the zip archive has more than {most:,} members: unpack it", most=MOST_MEMBERS))
+
+
+def _damaged(what: Text, error: Exception) -> RecordError:
+    why = str(error) or type(error).__name__
+    return RecordError(fill("{what} is damaged ({why:.160}). Get it again", what=what, why=why))
 
 
 def _list_members(archive: zipfile.ZipFile, found: _Found) -> list[zipfile.ZipInfo]:
     members = [member for member in archive.infolist() if not member.is_dir()]
     found.members += len(members)
     if found.members > MOST_MEMBERS:
-        raise _BombError(f"the zip archive has more than {MOST_MEMBERS} members: unpack it")
+        raise _too_many()
     if any(member.filename in _OFFICE for member in members):
-        raise RecordError("it is a workbook or another office file, not a record: save the sheet as CSV")
+        raise RecordError(fill("the file is a workbook or another office file, not a record: save the sheet as CSV"))
     locked = next((member.filename for member in members if member.flag_bits & _LOCKED), None)
     if locked is not None:
-        raise _BombError(f"{locked} is locked with a password: unpack the archive, and name the file of the channel")
+        raise _BombError(
+            fill(
+                "{member} is locked with a password: unpack the archive, and name the file of the channel",
+                member=locked,
+            )
+        )
     return members
 
 
 def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) -> bytes:
     """Unpack one member, whatever size the archive gives it, no further than the limits."""
-    if member.compress_type not in _METHODS:
-        raise RecordError(f"it is packed in a way that is not read (method {member.compress_type}): unpack it")
-    if member.file_size > max(RATIO_FROM, MOST_RATIO * member.compress_size):
-        raise _BombError(
-            f"{member.filename} unpacks to more than {MOST_RATIO} times its size, as no record does. Get it again"
-        )
+    _check_member(member)
     room = min(LARGEST_MEMBER, MOST_UNPACKED - found.unpacked)
     try:
         with archive.open(member) as file:
             # Of a member that is larger than its directory entry, no more than that is unpacked.
             content = file.read(min(room, member.file_size) + 1)
     except Exception as error:  # see above
-        raise _damaged("it", error) from error
+        raise _damaged(fill("the file"), error) from error
     found.unpacked += len(content)
     if len(content) > room:
         raise _BombError(
-            f"the zip archive holds more than {MOST_UNPACKED / 1e6:.0f} MB, or {LARGEST_MEMBER / 1e6:.0f} MB in one "
-            "member: unpack it, and name the file of the channel"
+            fill(
+                "the zip archive holds more than {most:.0f} MB, or {largest:.0f} MB in one member: unpack it, and name "
+                "the file of the channel",
+                most=MOST_UNPACKED / 1e6,
+                largest=LARGEST_MEMBER / 1e6,
+            )
         )
     return content
+
+
+def _check_member(member: zipfile.ZipInfo) -> None:
+    """Raise RecordError for a member that is not to be unpacked, going by its directory entry."""
+    if member.compress_type not in _METHODS:
+        raise RecordError(
+            fill(
+                "the file is compressed by a method that is not supported ({method}): unpack the archive",
+                method=member.compress_type,
+            )
+        )
+    if member.file_size > max(RATIO_FROM, MOST_RATIO * member.compress_size):
+        raise _BombError(
+            fill(
+                "{member} unpacks to more than {most} times its size, which no record does. Get the archive again",
+                member=member.filename,
+                most=MOST_RATIO,
+            )
+        )

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from assess.errors import RecordError
+from assess.i18n import fill
 from assess.motion.record import Record
 
 LISTED = 12
@@ -31,21 +32,16 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     RecordError
         If no channel, or more than one, is meant; the message lists them.
     """
-    file = records[0].file.split("/")[0]
     if channel is None or not channel.strip():
         if len(records) == 1:
             return records[0]
-        names = list_addresses(records)
-        raise RecordError(
-            f"{file} holds {len(records)} channels: {_list(names)}. Name one of them, such as {file}#{names[0]}"
-        )
+        raise _unnamed(records)
     wanted = channel.strip().casefold()
     # The whole path of a member comes first: the same file may lie in a folder, too.
     whole = [record for record in records if wanted in _whole(record)]
     named = whole or [record for record in records if wanted in _spellings(record)]
     if len(named) > 1:
-        meant = _list([name for name, record in zip(list_addresses(records), records, strict=True) if record in named])
-        raise RecordError(f"{file} has {len(named)} channels {channel.strip()!r}. Name one of them: {meant}")
+        raise _ambiguous(records, channel, named)
     if named:
         return named[0]
     # Names come first: a channel may be called by its azimuth, "45". Where some are numbers, a number is a name.
@@ -53,7 +49,45 @@ def select(records: Sequence[Record], channel: str | None = None) -> Record:
     is_archive = any("/" in record.file for record in records)  # where a damaged member would shift the numbers
     if numbered and (len(records) == 1 or not (is_archive or any(one.channel.isdecimal() for one in records))):
         return numbered[0]
-    raise RecordError(f"{file} has no channel {channel.strip()!r}. It holds: {_list(list_addresses(records))}")
+    names = _list(list_addresses(records))
+    raise RecordError(
+        fill(
+            "{file} has no channel {channel!r}. It holds: {names}",
+            file=_name_file(records),
+            channel=channel.strip(),
+            names=names,
+        )
+    )
+
+
+def _unnamed(records: Sequence[Record]) -> RecordError:
+    names = list_addresses(records)
+    return RecordError(
+        fill(
+            "{file} holds {count} channels: {names}. Name one of them, such as {file}#{first}",
+            file=_name_file(records),
+            count=len(records),
+            names=_list(names),
+            first=names[0],
+        )
+    )
+
+
+def _ambiguous(records: Sequence[Record], channel: str, named: Sequence[Record]) -> RecordError:
+    addresses = zip(list_addresses(records), records, strict=True)
+    return RecordError(
+        fill(
+            "{file} has {count} channels named {channel!r}. Name one of them: {names}",
+            file=_name_file(records),
+            count=len(named),
+            channel=channel.strip(),
+            names=_list([address for address, record in addresses if record in named]),
+        )
+    )
+
+
+def _name_file(records: Sequence[Record]) -> str:
+    return records[0].file.split("/")[0]
 
 
 def rename_duplicates(records: Sequence[Record]) -> tuple[Record, ...]:
@@ -100,5 +134,5 @@ def list_addresses(records: Sequence[Record]) -> list[str]:
 
 
 def _list(names: Sequence[str]) -> str:
-    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
-    return ", ".join(names[:LISTED]) + more
+    listed, more = ", ".join(names[:LISTED]), len(names) - LISTED
+    return fill("{names} and {more} more", names=listed, more=more) if more > 0 else listed

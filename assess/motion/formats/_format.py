@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from assess.errors import RecordError
-from assess.i18n import Text, fill
+from assess.i18n import Text, fill, join, nfill
 from assess.motion.record import FloatArray, Record, Series, check_samples, check_time_step, peak
 
 T = TypeVar("T")
@@ -129,16 +129,21 @@ def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -
         try:
             records.append(read(part))
         except RecordError as error:
-            reasons.append((name, str(error)))
+            reasons.append((name, error.message))
     if not records and len(reasons) == 1:
         raise RecordError(reasons[0][1])
     if not records:
-        listed = "; ".join(f"{name}: {reason}" for name, reason in reasons[:MOST_NOTES])
-        raise RecordError(f"none of its {len(reasons)} channels can be read: {listed}")
+        listed = join("; ", (join(": ", reason) for reason in reasons[:MOST_NOTES]))
+        raise RecordError(
+            fill("none of its {count} channels can be read: {reasons}", count=len(reasons), reasons=listed)
+        )
     notes = [
         fill("{part} of the file is left out: {reason}", part=name, reason=reason)
         for name, reason in reasons[:MOST_NOTES]
     ]
-    if len(reasons) > MOST_NOTES:
-        notes.append(fill("{count} more channels of the file are left out", count=len(reasons) - MOST_NOTES))
+    more = len(reasons) - MOST_NOTES
+    if more > 0:
+        notes.append(
+            nfill("{n} more channel of the file is left out", "{n} more channels of the file are left out", more)
+        )
     return tuple(replace(record, notes=(*record.notes, *notes)) for record in records)

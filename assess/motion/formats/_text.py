@@ -62,7 +62,7 @@ def split_lines(data: bytes) -> list[str]:
         If there are more than any record has.
     """
     if data.count(b"\n") + data.count(b"\r") > MOST_LINES:
-        raise RecordError(f"the file has more than {MOST_LINES} lines: cut it to the shaking")
+        raise RecordError(fill("the file has more than {most:,} lines: cut it to the shaking", most=MOST_LINES))
     lines = split_text(data.decode("latin-1"))
     return lines if lines[-1] or len(lines) == 1 else lines[:-1]
 
@@ -114,7 +114,7 @@ def text_format(
             return (read_channel(Section(lines), file),)
         places = [place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT])]
         if not places:
-            raise RecordError(f"{missing}. Get the file again")
+            raise RecordError(fill("{what}. Get the file again", what=missing))
         sections = choose([Section(lines[place:end], place) for place, end in pairwise([*places, len(lines)])])
         numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(sections, start=1))
         return keep_readable(numbered, lambda section: read_channel(section, file))
@@ -168,7 +168,7 @@ def read_columns(section: Section, start: int, count: int, columns: Columns, fac
     while cells and not cells[-1].strip():
         cells.pop()
     if len(cells) < count:
-        raise _cut_short(count, len(cells))
+        raise cut_short(count, len(cells))
     return _scale(convert(cells, section, start, columns.per_line), factor)
 
 
@@ -181,9 +181,9 @@ def read_words(section: Section, start: int, count: float, factor: float) -> tup
     found = (word[0] for line in islice(section.lines, start, None) for word in _WORD.finditer(line))
     words = list(islice(found, most + 1))
     if len(words) < count:
-        raise _cut_short(count, len(words))
+        raise cut_short(count, len(words))
     if len(words) > most:
-        raise RecordError(f"the header announces {count} numbers of data, there are more. Get the file again")
+        raise too_long(count)
     values = _scale(convert(words[:count], section, start, None), factor)
     return values, note_beyond(len(words) - count, count)
 
@@ -207,13 +207,33 @@ def _scale(values: FloatArray, factor: float) -> FloatArray:
 def _check_count(count: float) -> None:
     if not 1 <= count <= 2 * MOST_SAMPLES:  # twice: pairs of time and acceleration
         raise RecordError(
-            f"the header announces {count:.10g} numbers of data, expected 1 to {2 * MOST_SAMPLES}. Get the file again"
+            fill(
+                "the header announces {count:.10g} data values, expected 1 to {most:,}. Get the file again",
+                count=count,
+                most=2 * MOST_SAMPLES,
+            )
         )
 
 
-def _cut_short(announced: int, there: int) -> RecordError:
+def cut_short(announced: int, there: int) -> RecordError:
+    """Return the error for a file with fewer numbers than its header announces."""
     return RecordError(
-        f"the header announces {announced} numbers of data, there are {there}: cut short. Get the file again"
+        fill(
+            "the file is cut short: it has {there} of the {announced} data values that its header announces. Get "
+            "the file again",
+            there=there,
+            announced=announced,
+        )
+    )
+
+
+def too_long(announced: int) -> RecordError:
+    """Return the error for a file with more numbers than its header announces."""
+    return RecordError(
+        fill(
+            "the file has more data values than the {announced} that its header announces. Get the file again",
+            announced=announced,
+        )
     )
 
 
@@ -230,7 +250,8 @@ def convert(cells: Sequence[str], section: Section, start: int, per_line: int | 
     except ValueError:
         place = next((place for place, text in enumerate(cells) if read_real(text) is None), 0)
         text = cells[place].strip()
-        what = f"{text[:40]!r} is not a number" if text else "a number is missing"
-        where = f"number {place + 1} of the data" if per_line is None else ""
-        where = where or f"line {section.number(start + place // (per_line or 1))}"
-        raise RecordError(f"{where}: {what}. Get the file again") from None
+        what = fill("{text!r} is not a number", text=text[:40]) if text else fill("a number is missing")
+        where = fill("number {number} of the data", number=place + 1)
+        if per_line is not None:
+            where = fill("line {line}", line=section.number(start + place // per_line))
+        raise RecordError(fill("{where}: {what}. Get the file again", where=where, what=what)) from None

@@ -4,6 +4,7 @@ import math
 import re
 
 from assess.errors import RecordError
+from assess.i18n import fill
 from assess.motion.formats._format import Direction
 from assess.units import ACCELERATION, GRAVITY, read_unit
 
@@ -13,6 +14,8 @@ _DEGREES = re.compile(r"(\d{1,3}(?:\.\d*)?)\s*(?:deg\w*\.?|°)?", re.IGNORECASE 
 _QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*(?:deg\w*\.?|°)?\s*([EW])", re.IGNORECASE | re.ASCII)
 _POINTS = {"n": 0.0, "north": 0.0, "ns": 0.0, "n-s": 0.0, "s": 180.0, "south": 180.0,
            "e": 90.0, "east": 90.0, "ew": 90.0, "e-w": 90.0, "w": 270.0, "west": 270.0}  # fmt: skip
+
+_QUANTITIES = {"velocity": fill("velocities"), "displacement": fill("displacements")}
 
 
 def read_real(text: str) -> float | None:
@@ -39,8 +42,13 @@ def require_unit(text: str) -> float:
     """Return the factor from the unit that `text` names to m/s2; RecordError where it is no unit of acceleration."""
     factor = read_acceleration_unit(text)
     if factor is None:
-        raise RecordError(f"{text[:20]!r} is no known unit of acceleration. Get the file again")
+        raise RecordError(fill("{unit!r} is not a known unit of acceleration. Get the file again", unit=text[:20]))
     return factor
+
+
+def name_quantity(text: str) -> str:
+    """Return what a file holds instead of accelerations, as messages call it; as in its header if it is not known."""
+    return _QUANTITIES.get(text.lower(), text.lower())
 
 
 def read_peak(number: str, unit: float | None) -> float | None:

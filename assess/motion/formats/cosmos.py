@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from assess.errors import RecordError
+from assess.i18n import fill
 from assess.motion.formats._format import Direction, build_record, even_series
 from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
 from assess.motion.formats._values import read_acceleration_unit, read_direction, read_peak
@@ -64,8 +65,10 @@ def _choose(sections: list[Section]) -> list[Section]:
     wanted = [section for section, kind in zip(sections, kinds, strict=True) if _WANTED.search(kind)]
     if not wanted:
         raise RecordError(
-            f"it holds no accelerations, but: {kinds[0][:40] or 'nothing named'}. "
-            "Give the acceleration file of the same channel"
+            fill(
+                "the file holds {kind}, not accelerations. Give the acceleration file of the same channel",
+                kind=kinds[0][:40].lower() or fill("unnamed data"),
+            )
         )
     return wanted
 
@@ -88,7 +91,7 @@ def _read_data(section: Section, header: _Numbers) -> Series:
     title = section.text(header.data or 0)
     found = _DATA.match(title)
     if header.data is None or found is None or len(header.integers) <= AZIMUTH or len(header.reals) <= STEP:
-        raise RecordError("the header is incomplete. Get the file again")
+        raise RecordError(fill("the header is incomplete. Get the file again"))
     factor = _factor(found["unit"].strip(), int(found["code"]))
     columns = read_format(title, Columns(8, 10))
     values = read_columns(section, header.data + 1, int(found["count"]), columns, factor)
@@ -120,13 +123,22 @@ def _read_channel(section: Section, file: str) -> Record:
 def _factor(unit: str, code: int) -> float:
     if unit.lower() in {"counts", "count", "volts", "volt", "mvolts"}:
         raise RecordError(
-            f"it holds raw {unit} (volume 0), not accelerations. "
-            "Give volume 1 or 2 of the same channel, or convert it to m/s2 and save it as plain CSV"
+            fill(
+                "the file holds raw data in {unit} (volume 0), not accelerations. Give volume 1 or 2 of the same "
+                "channel, or convert it to m/s2 and save it as plain CSV",
+                unit=unit,
+            )
         )
     factor = UNITS.get(code)
     named = read_acceleration_unit(unit)
     if factor is None or (named is not None and abs(named / factor - 1) > 1e-9):
-        raise RecordError(f"the unit {unit[:20]!r} with the code {code} is no known unit of acceleration")
+        raise RecordError(
+            fill(
+                "the unit {unit!r} with the code {code} is not a known unit of acceleration. Get the file again",
+                unit=unit[:20],
+                code=code,
+            )
+        )
     return factor
 
 
@@ -142,7 +154,7 @@ FORMAT = text_format(
     TITLE,
     recognised=_START,
     starts=_START,
-    missing="no line names a version of the COSMOS format",
+    missing=fill("no line names a version of the COSMOS format"),
     choose=_choose,
     read_channel=_read_channel,
 )

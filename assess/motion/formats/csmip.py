@@ -20,6 +20,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from assess.errors import RecordError
+from assess.i18n import fill
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
 from assess.motion.formats._values import read_acceleration_unit, read_direction, read_finite, read_peak
@@ -82,8 +83,10 @@ def _read_data_v1(section: Section) -> tuple[FloatArray, Series]:
         return _read_pairs(section)
     rate, factor = read_finite(title["rate"]), read_acceleration_unit(title["unit"])
     if not rate or factor is None:
-        place = section.number(DATA_V1)
-        raise RecordError(f"line {place}: the rate or the unit cannot be read. Get the file again")
+        line = section.number(DATA_V1)
+        raise RecordError(
+            fill("line {line}: the sampling rate or the unit cannot be read. Get the file again", line=line)
+        )
     columns = read_format(section.text(DATA_V1), EVEN)
     own = read_columns(section, DATA_V1 + 1, int(title["count"]), columns, factor)
     return own, even_series(own, 1 / rate)
@@ -93,7 +96,7 @@ def _read_pairs(section: Section) -> tuple[FloatArray, Series]:
     header = "\n".join(section.lines[:TEXT_V1])
     points, unit = _COUNT.search(header), _UNIT.search(header)
     if not points or not unit:
-        raise RecordError("the header does not give the number of points, or their unit. Get the file again")
+        raise RecordError(fill("the header does not give the number of points, or their unit. Get the file again"))
     numbers = read_columns(section, DATA_V1, 2 * int(points[1]), PAIRS)
     with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
         own = numbers[1::2] * (read_acceleration_unit(unit[1]) or np.nan)
@@ -104,11 +107,15 @@ def _read_v2(section: Section, file: str) -> Record:
     places = range(TEXT_V2, len(section.lines))
     place = next((place for place in places if _DATA_V2.match(section.lines[place])), None)
     if place is None:
-        raise RecordError('no line says "points of accel data equally spaced at". Get the file again')
+        raise RecordError(fill('no line says "points of accel data equally spaced at". Get the file again'))
     title = read_fields(section, TITLE_V2, place)
     factor, step = read_acceleration_unit(title["unit"]), read_finite(title["step"])
     if step is None or factor is None:
-        raise RecordError(f"line {section.number(place)}: the time step or the unit cannot be read. Get the file again")
+        raise RecordError(
+            fill(
+                "line {line}: the time step or the unit cannot be read. Get the file again", line=section.number(place)
+            )
+        )
     columns = read_format(section.text(place), CORRECTED)
     own = read_columns(section, place + 1, int(title["count"]), columns, factor)
     header_pfa = read_peak(read_fields(section, PEAK_V2)["peak"], ACCELERATION["cm/s2"])
@@ -143,7 +150,9 @@ def _build(
 def _refuse_spectra(sections: list[Section]) -> list[Section]:
     if _SPECTRA.match(sections[0].lines[0]):
         raise RecordError(
-            "it holds response spectra (volume 3), not accelerations. Give volume 2 or 1 of the same channels"
+            fill(
+                "the file holds response spectra (volume 3), not accelerations. Give volume 2 or 1 of the same channels"
+            )
         )
     return [section for section in sections if not _SPECTRA.match(section.lines[0])]
 
@@ -153,7 +162,7 @@ VOLUME_1 = text_format(
     V1,
     recognised=_START_V1,
     starts=_START_V1,
-    missing='no line says "Uncorrected accelerogram data"',
+    missing=fill('no line says "Uncorrected accelerogram data"'),
     read_channel=_read_v1,
 )
 VOLUME_2 = text_format(
@@ -163,7 +172,7 @@ VOLUME_2 = text_format(
         rf"\s*corrected accelerogram\b[^\n]*\n\s*uncorrected accelerogram data\b|{_SPECTRA.pattern}", re.IGNORECASE
     ),
     starts=re.compile(rf"\s*corrected accelerogram\b|{_SPECTRA.pattern}", re.IGNORECASE),
-    missing='no line says "Corrected accelerogram"',
+    missing=fill('no line says "Corrected accelerogram"'),
     choose=_refuse_spectra,
     read_channel=_read_v2,
 )

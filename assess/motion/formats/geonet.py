@@ -9,6 +9,7 @@ Source: GNS Science, New Zealand, GeoNet strong-motion data, formats V1A and V2A
 import re
 
 from assess.errors import RecordError
+from assess.i18n import fill
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, text_format
 from assess.motion.formats._values import read_acceleration_unit, read_direction, read_finite, read_peak
@@ -58,7 +59,13 @@ def _read_number(section: Section, line: int, column: int) -> float:
     words = section.text(TEXT + line).split()
     number = read_finite(words[column]) if column < len(words) else None
     if number is None:
-        raise RecordError(f"line {section.number(TEXT + line)}: number {column + 1} is missing. Get the file again")
+        raise RecordError(
+            fill(
+                "line {line}: number {number} is missing. Get the file again",
+                line=section.number(TEXT + line),
+                number=column + 1,
+            )
+        )
     return number
 
 
@@ -67,12 +74,14 @@ def _read_units(section: Section, header: dict[str, str]) -> tuple[float, float]
     factor = read_acceleration_unit(header["unit"])
     header_pfa = read_peak(header["peak"], factor)
     if factor is None or header_pfa is None:
-        raise RecordError(f"line {section.number(13)}: the peak and its unit cannot be read. Get the file again")
+        line = section.number(13)
+        raise RecordError(fill("line {line}: the peak and its unit cannot be read. Get the file again", line=line))
     if not header["raw"]:
         return factor, header_pfa
     multiple, unit = read_finite(header["multiple"]), read_acceleration_unit(header["raw_unit"])
     if not multiple or unit is None:
-        raise RecordError(f"line {section.number(10)}: the unit cannot be read. Get the file again")
+        line = section.number(10)
+        raise RecordError(fill("line {line}: the unit cannot be read. Get the file again", line=line))
     return multiple * unit, header_pfa
 
 
@@ -81,6 +90,6 @@ FORMAT = text_format(
     TITLE,
     recognised=re.compile(r"(?:un)?corrected accelerogram [^\n]*\n+site [^\n]*\n", re.IGNORECASE),
     starts=re.compile(r"(un)?corrected accelerogram ", re.IGNORECASE),
-    missing='no line says "accelerogram"',
+    missing=fill('no line says "accelerogram"'),
     read_channel=_read_channel,
 )

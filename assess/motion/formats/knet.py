@@ -14,6 +14,7 @@ import re
 from datetime import datetime, timedelta
 
 from assess.errors import RecordError
+from assess.i18n import fill
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, read_words, text_format
 from assess.motion.formats._values import read_finite, read_peak
@@ -62,7 +63,13 @@ def _number(header: dict[str, str], key: str) -> float:
     found = _NUMBER.match(header.get(key, ""))
     number = read_finite(found[0]) if found else None
     if not number:
-        raise RecordError(f"the header has no number for {key}, but {header.get(key, '')[:40]!r}. Get the file again")
+        raise RecordError(
+            fill(
+                "{key} is {text!r} in the header, expected a number above 0. Get the file again",
+                key=key,
+                text=header.get(key, "")[:40],
+            )
+        )
     return number
 
 
@@ -72,7 +79,12 @@ def _read_scale(header: dict[str, str]) -> float:
     found = _SCALE.match(text)
     above, below = (read_finite(found[1]), read_finite(found[2])) if found else (None, None)
     if not above or not below:
-        raise RecordError(f"the scale factor is {text[:40]!r}, expected such as 3920(gal)/6182761. Get the file again")
+        raise RecordError(
+            fill(
+                "the scale factor is {text!r}, expected a ratio such as 3920(gal)/6182761. Get the file again",
+                text=text[:40],
+            )
+        )
     return above / below * GAL
 
 

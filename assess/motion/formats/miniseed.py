@@ -83,7 +83,7 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
         else:
             channels.setdefault(part.id, []).append(part)
     if not channels:
-        raise RecordError("it has no whole record of miniSEED. Get the file again")
+        raise RecordError(fill("the file has no complete miniSEED record. Get the file again"))
     codes = [parts[0].code for parts in channels.values()]
     notes = _note_skipped(skipped)
     return keep_readable(
@@ -211,15 +211,21 @@ def _check_samples_type(code: str, parts: Sequence[_Part]) -> None:
     encodings = {part.encoding for part in parts}
     if encodings - {TEXT, *REALS}:
         raise RecordError(
-            "it holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
-            '(stream.remove_response(inventory, output="ACC")) and save that as miniSEED, or as plain CSV in m/s2'
+            fill(
+                "the channel holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
+                '(stream.remove_response(inventory, output="ACC")) and save the result as miniSEED, or as plain CSV in '
+                "m/s2"
+            )
         )
     if TEXT in encodings:
-        raise RecordError("it holds no numbers. Give a channel of an accelerometer")
+        raise RecordError(fill("the channel holds no numbers. Give a channel of an accelerometer"))
     if code[1:2] != "N":
         raise RecordError(
-            f"the channel's code {code!r} is not that of an accelerometer (such as HNE). "
-            "Save the accelerations as plain CSV in m/s2"
+            fill(
+                "the channel's code {code!r} is not that of an accelerometer (such as HNE). Save the accelerations as "
+                "plain CSV in m/s2",
+                code=code,
+            )
         )
 
 

@@ -9,9 +9,10 @@ Source: Pacific Earthquake Engineering Research Center, NGA ground motion databa
 import re
 
 from assess.errors import RecordError
+from assess.i18n import fill
 from assess.motion.formats._format import build_record, even_series
 from assess.motion.formats._text import Section, fields, read_fields, read_words, text_format
-from assess.motion.formats._values import read_direction, read_finite, require_unit
+from assess.motion.formats._values import name_quantity, read_direction, read_finite, require_unit
 from assess.motion.record import Record
 
 TITLE = "PEER AT2"
@@ -33,7 +34,9 @@ def _read_channel(section: Section, file: str) -> Record:
     factor = _read_factor(header)
     count, step = header["count"] or header["old_count"], read_finite(header["step"] or header["old_step"])
     if not count or step is None:
-        raise RecordError(f"line {DATA} does not give the number of points and their step. Get the file again")
+        raise RecordError(
+            fill("line {line} does not give the number of points and their time step. Get the file again", line=DATA)
+        )
     values, notes = read_words(section, DATA, int(count), factor)
     event, station, component = _read_title(header["title"])
     component = component.split("(")[0].strip()
@@ -53,9 +56,14 @@ def _read_factor(header: dict[str, str]) -> float:
     """Return the factor from the file's unit to m/s2; raise RecordError unless it holds accelerations."""
     kind = header["kind"].lower()
     if not kind:
-        raise RecordError("the header does not name what the file holds. Get the file again")
+        raise RecordError(fill("the header does not name what the file holds. Get the file again"))
     if kind != "acceleration":
-        raise RecordError(f"it holds {kind}, not accelerations. Give the .AT2 file of the same channel")
+        raise RecordError(
+            fill(
+                "the file holds {kind}, not accelerations. Give the .AT2 file of the same channel",
+                kind=name_quantity(kind),
+            )
+        )
     return require_unit(header["unit"])
 
 

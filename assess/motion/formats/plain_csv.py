@@ -106,7 +106,7 @@ def _take_apart(text: str) -> _Table:
     lines = split_text(text)
     place, heading = _heading_line(lines)
     if place < 0:
-        raise RecordError("there is no row of headings, such as: time [s], north [cm/s2]")
+        raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
     separator = next((mark for mark in "\t;" if mark in heading), ",")
     columns = _read_columns(_cells(heading, separator), place + 1)
     comments = dict(filter(None, (_read_comment(line) for line in lines[:place])))
@@ -128,14 +128,21 @@ def _read_comment(line: str) -> tuple[str, str] | None:
 
 def _read_columns(headings: Sequence[str], line: int) -> tuple[_Column, ...]:
     if _take_unit(headings[0])[1] not in TIME:
-        raise RecordError(f"line {line}: {headings[0][:80]!r} needs its unit, seconds: time [s]")
+        heading = headings[0][:80]
+        raise RecordError(
+            fill("line {line}: {heading!r} needs its unit, seconds: time [s]", line=line, heading=heading)
+        )
     columns = tuple(_read_column(heading, line) for heading in headings[1:])
     names = [column.name.casefold() for column in columns]
     if not columns:
-        raise RecordError(f"line {line}: there is no channel next to time. Add one, such as: north [cm/s2]")
+        raise RecordError(
+            fill("line {line}: there is no channel next to time. Add one, such as: north [cm/s2]", line=line)
+        )
     twice = next((column.name for column in columns if names.count(column.name.casefold()) > 1), None)
     if twice is not None:
-        raise RecordError(f"line {line}: two channels are called {twice!r}. Give each its own name")
+        raise RecordError(
+            fill("line {line}: two channels are called {name!r}. Give each its own name", line=line, name=twice[:80])
+        )
     return columns
 
 
@@ -143,8 +150,14 @@ def _read_column(heading: str, line: int) -> _Column:
     name, unit = _take_unit(heading)
     if unit not in ACCELERATION:
         raise RecordError(
-            f"line {line}: {heading[:80]!r} has no known unit of acceleration (known: {UNITS}). "
-            f"Write it in brackets: {name[:60]} [cm/s2]"
+            fill(
+                "line {line}: {heading!r} has no known unit of acceleration (known: {units}). Write it in brackets: "
+                "{name} [cm/s2]",
+                line=line,
+                heading=heading[:80],
+                units=UNITS,
+                name=name[:60],
+            )
         )
     return _Column(name or "acceleration", ACCELERATION[unit])
 
@@ -165,21 +178,28 @@ def _read_numbers(table: _Table) -> FloatArray:
         if not _is_blank(row)
     ]
     if not numbers:
-        raise RecordError("there are no rows below the headings")
+        raise RecordError(fill("there are no rows below the headings. Add the samples"))
     return np.array(numbers, dtype=np.float64)
 
 
 def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:
     width = 1 + len(table.columns)
     if len(cells) != width:
-        raise RecordError(f"line {line}: the number of cells is {len(cells)}, that of headings {width}")
+        raise RecordError(
+            fill(
+                "line {line}: the number of cells is {cells}, but there are {headings} headings",
+                line=line,
+                cells=len(cells),
+                headings=width,
+            )
+        )
     return [_read_number(cell, table.separator, line) for cell in cells]
 
 
 def _read_number(cell: str, separator: str, line: int) -> float:
     text = cell if separator == "," else cell.replace(",", ".")
     if not _NUMBER.fullmatch(text):
-        raise RecordError(f"line {line}: {cell[:40]!r} is not a number")
+        raise RecordError(fill("line {line}: {text!r} is not a number", line=line, text=cell[:40]))
     return float(text)
 
 
@@ -191,9 +211,17 @@ def _read_azimuths(table: _Table) -> dict[str, float | None]:
     for part in parts:
         name, equals, value = part.rpartition("=")
         if len(parts) > 1 and not equals:
-            raise RecordError("several azimuths need the names of their channels, such as: # azimuth: north=0, east=90")
+            raise RecordError(
+                fill("several azimuths need the names of their channels, such as: # azimuth: north=0, east=90")
+            )
         if equals and name.strip().casefold() not in given:
-            raise RecordError(f"the azimuth is given of {name.strip()!r}, but the channels are: {', '.join(azimuths)}")
+            raise RecordError(
+                fill(
+                    "an azimuth is given for {name!r}, but the channels are: {names}",
+                    name=name.strip()[:80],
+                    names=", ".join(azimuths),
+                )
+            )
         for own in [given[name.strip().casefold()]] if equals else list(azimuths):
             azimuths[own] = _read_azimuth(value.strip())
     return azimuths
@@ -204,7 +232,12 @@ def _read_azimuth(text: str) -> float:
         return np.inf
     number = text.lower().removesuffix("deg").removesuffix("°").strip()
     if not _NUMBER.fullmatch(number) or not 0 <= float(number) <= 360:
-        raise RecordError(f"the azimuth is {text[:40]!r}, expected 0 to 360 degrees clockwise from north, or up")
+        raise RecordError(
+            fill(
+                "the azimuth is {text!r}, expected 0 to 360 degrees clockwise from north, or up",
+                text=text[:40],
+            )
+        )
     return float(number)
 
 
@@ -219,7 +252,7 @@ def _azimuth_of_name(name: str) -> float | None:
 def _read_corrected(comments: Mapping[str, str]) -> bool:
     answer = comments.get("corrected", "").lower()
     if answer not in _ANSWERS:
-        raise RecordError(f"corrected is {answer[:40]!r}, expected yes or no")
+        raise RecordError(fill("corrected is {text!r}, expected yes or no", text=answer[:40]))
     return _ANSWERS[answer]
 
 
@@ -229,7 +262,7 @@ def _build_record(
     try:
         series = build_series(times, own)
     except RecordError as error:
-        raise RecordError(f"channel {column.name!r}: {error}") from None
+        raise RecordError(fill("channel {name!r}: {why}", name=column.name, why=error.message)) from None
     vertical, comments = azimuth == np.inf, table.comments
     return build_record(
         TITLE,

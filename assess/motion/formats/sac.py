@@ -41,13 +41,13 @@ UNKNOWN = -12345
 VERSIONS, TIME_SERIES = {6, 7}, 1
 KINDS = {1, 2, 3, 4, 51}
 """Time series, two kinds of spectra, pairs, and a grid."""
-OTHER_MEANINGS = {6: "displacement", 7: "velocity", 50: "volts"}
+OTHER_MEANINGS = {6: fill("displacements"), 7: fill("velocities"), 50: fill("volts")}
 ACCELERATION = 8
 NM_S2 = 1e-9
 LEAST = 0.001
 """Peak [m/s2] below which nanometres per second squared are not believed."""
 
-_FIX = (
+_FIX = fill(
     "Write the unit into the header's field KUSER0 (g, m/s2, cm/s2; in ObsPy: trace.stats.sac.kuser0 = 'g'), "
     "or save the record as plain CSV"
 )
@@ -78,7 +78,7 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     """
     header = _read_header(data)
     if header is None:
-        raise RecordError("the header is none of a SAC file. Get the file again")
+        raise RecordError(fill("the header is not that of a SAC file. Get the file again"))
     _check_header(header, len(data))
     with np.errstate(all="ignore"):  # what becomes infinite is refused further on
         samples = np.frombuffer(data, f"{header.order}f4", header.integers["count"], HEADER).astype(np.float64)
@@ -101,7 +101,7 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
 
 
 def _read_header(data: bytes) -> _Header | None:
-    """Return the header, None where it is none of SAC's."""
+    """Return the header, None where it is not that of a SAC file."""
     for order in "<>" if len(data) >= HEADER else "":
         numbers = {name: int(struct.unpack_from(f"{order}i", data, 4 * place)[0]) for name, place in INTEGERS.items()}
         if numbers["version"] in VERSIONS and numbers["kind"] in KINDS and numbers["even"] in {0, 1}:
@@ -119,13 +119,24 @@ def _read_text(data: bytes, start: int, length: int) -> str:
 def _check_header(header: _Header, size: int) -> None:
     numbers = header.integers
     if numbers["kind"] != TIME_SERIES or numbers["even"] != 1:
-        raise RecordError("it holds no evenly sampled time series. Give the record itself")
+        raise RecordError(fill("the file holds no evenly sampled time series. Give the record itself"))
     count, there = numbers["count"], (size - HEADER - FOOTER * (numbers["version"] == max(VERSIONS))) / 4
     if count <= 0 or count != there:
-        raise RecordError(f"the header announces {count} numbers of data, there are {there:.10g}. Get the file again")
+        raise RecordError(
+            fill(
+                "the number of data values is {there:.10g}, but {announced} in the header. Get the file again",
+                announced=count,
+                there=there,
+            )
+        )
     meaning = OTHER_MEANINGS.get(numbers["meaning"])
     if meaning:
-        raise RecordError(f"it holds {meaning}, not accelerations. Give the acceleration of the same channel")
+        raise RecordError(
+            fill(
+                "the file holds {kind}, not accelerations. Give the acceleration file of the same channel",
+                kind=meaning,
+            )
+        )
 
 
 def _read_unit(header: _Header, values: FloatArray) -> tuple[float, str]:
@@ -137,12 +148,16 @@ def _read_unit(header: _Header, values: FloatArray) -> tuple[float, str]:
             note = fill("the unit is that of the header's field {field}: {unit}", field=key.upper(), unit=text)
             return factor, note
     if header.integers["meaning"] != ACCELERATION:
-        raise RecordError(f"the file does not give its unit. {_FIX}")
+        raise RecordError(fill("the file does not give its unit. {fix}", fix=_FIX))
     in_nm = NM_S2 * peak(values - values.mean())
     if not in_nm >= LEAST:
         raise RecordError(
-            "the header says acceleration (IDEP), which means nm/s2, but that makes the peak "
-            f"{100 * in_nm:.2g} cm/s2: the unit is another. {_FIX}"
+            fill(
+                "the header gives the type acceleration (IDEP), whose unit is nm/s2, but the peak would then be "
+                "{peak:.2g} cm/s2: the unit must be a different one. {fix}",
+                peak=100 * in_nm,
+                fix=_FIX,
+            )
         )
     return NM_S2, fill("the unit is nm/s2, what the type of the samples (IDEP) means")
 

@@ -20,10 +20,12 @@ from assess.motion.formats._text import (
     Columns,
     Section,
     convert,
+    cut_short,
     fields,
     note_beyond,
     read_fields,
     text_format,
+    too_long,
 )
 from assess.motion.formats._values import read_peak
 from assess.motion.record import FloatArray, Record, Series, build_series
@@ -50,7 +52,9 @@ HEADER = fields(
     (6, r"\bpk\b[^=]*=\s*(?P<peak>[-+.\dE]+)"),
 )
 _KIND = re.compile(r"[ \t]*([1-6])[ \t]+(?:UNCORRECTED|CORRECTED|VELOCITY|DISPLACEMENT|FOURIER|RESPONSE)")
-_REFUSED = {"3": "velocity", "4": "displacement", "5": "a spectrum", "6": "a spectrum"}
+_REFUSED = {
+    "3": fill("velocities"), "4": fill("displacements"), "5": fill("a spectrum"), "6": fill("a spectrum"),
+}  # fmt: skip
 _LOCATION = re.compile(r"<loclbl=>(.*?)<end>")
 
 
@@ -66,7 +70,7 @@ class _Numbers:
 def _read_channel(section: Section, file: str) -> Record:
     kind = _KIND.match(section.lines[0])
     if not kind:
-        raise RecordError("the first line names no type of SMC file. Get the file again")
+        raise RecordError(fill("the first line names no type of SMC file. Get the file again"))
     header = read_fields(section, HEADER)
     numbers = _read_numbers(section, kind[1], header["title"])
     own, series = _read_series(section, numbers)
@@ -94,12 +98,20 @@ def _read_channel(section: Section, file: str) -> Record:
 def _read_numbers(section: Section, kind: str, title: str) -> _Numbers:
     if len(section.lines) <= COMMENTS:
         raise RecordError(
-            f"the header has {COMMENTS} lines, but the file has {len(section.lines)}: it is cut short. Get it again"
+            fill(
+                "the file is cut short: its header takes {header} lines, the file has {lines}. Get the file again",
+                header=COMMENTS,
+                lines=len(section.lines),
+            )
         )
     if kind in _REFUSED:
         raise RecordError(
-            f"it holds {_REFUSED[kind]} ({title[:40]}), not accelerations. "
-            "Give the acceleration file of the same channel (type 1 or 2)"
+            fill(
+                "the file holds {kind} ({title}), not accelerations. Give the acceleration file of the same channel "
+                "(type 1 or 2)",
+                kind=_REFUSED[kind],
+                title=title[:40],
+            )
         )
     integers = _read_integers(section)
     comments = _read_comments(section.lines, integers[COMMENT_LINES])
@@ -118,16 +130,27 @@ def _read_integers(section: Section) -> list[int | None]:
         try:
             numbers.append(int(text))
         except ValueError:
-            line = section.number(INTEGERS + place // INTEGER.per_line)
-            raise RecordError(f"line {line}: {text.strip()!r} is not a whole number. Get the file again") from None
+            message = fill(
+                "line {line}: {text!r} is not a whole number. Get the file again",
+                line=section.number(INTEGERS + place // INTEGER.per_line),
+                text=text.strip(),
+            )
+            raise RecordError(message) from None
     return [None if number == numbers[0] else number for number in numbers]
 
 
 def _read_comments(lines: Sequence[str], count: int | None) -> Sequence[str]:
     found = next((place for place, line in enumerate(lines[COMMENTS:]) if not line.startswith("|")), None)
-    if found is None or found != (count or 0):
-        there = "no data" if found is None else f"{found}"
-        raise RecordError(f"the header announces {count or 0} lines of comment, there are {there}. Get the file again")
+    if found is None:
+        raise RecordError(fill("there are no data below the header. Get the file again"))
+    if found != (count or 0):
+        raise RecordError(
+            fill(
+                "the number of comment lines is {there}, but {announced} in the header. Get the file again",
+                announced=count or 0,
+                there=found,
+            )
+        )
     return [line[: 2 * LINE] for line in lines[COMMENTS : COMMENTS + found]]
 
 
@@ -138,7 +161,13 @@ def _read_sampling_rate(section: Section) -> float | None:
     if rate == unknown:
         return None
     if not (math.isfinite(rate) and rate > 0):
-        raise RecordError(f"line {section.number(REALS)}: the sampling rate is {rate:g} per second. Get the file again")
+        raise RecordError(
+            fill(
+                "line {line}: the sampling rate is {rate:g} Hz, expected above 0. Get the file again",
+                line=section.number(REALS),
+                rate=rate,
+            )
+        )
     return rate
 
 
@@ -149,7 +178,13 @@ def _read_series(section: Section, header: _Numbers) -> tuple[FloatArray, Series
         own = numbers * CM_S2
         return own, even_series(own, 1 / header.sampling_rate, notes)
     if numbers.size % 2:
-        raise RecordError(f"{numbers.size} numbers cannot be pairs of time and acceleration. Get the file again")
+        raise RecordError(
+            fill(
+                "the number of data values is {count}, which is odd: they cannot be pairs of time and acceleration. "
+                "Get the file again",
+                count=numbers.size,
+            )
+        )
     own = numbers[1::2] * CM_S2
     series = build_series(numbers[0::2], own)
     return own, replace(series, notes=(*notes, *series.notes))
@@ -159,18 +194,23 @@ def _read_data(section: Section, header: _Numbers) -> tuple[FloatArray, tuple[st
     """Return as many numbers as the header announces, and a note on those beyond."""
     announced, first = header.integers[DATA_COUNT] or 0, COMMENTS + len(header.comments)
     if announced <= 0:
-        raise RecordError(f"the header announces {announced} numbers of data. Get the file again")
+        raise RecordError(
+            fill("the number of data values is {announced} in the header. Get the file again", announced=announced)
+        )
     lines = section.lines[first:]
     wide = next((place for place, line in enumerate(lines) if line[LINE:].strip()), None)
     if wide is not None:
-        raise RecordError(f"line {section.number(first + wide)} is longer than {LINE} columns. Get the file again")
+        raise RecordError(
+            fill(
+                "line {line} is longer than {most} characters. Get the file again",
+                line=section.number(first + wide),
+                most=LINE,
+            )
+        )
     cells = _cells(lines, DATA)
     there = sum(1 for text in cells if text.strip())
     if not 0 <= there - announced <= MOST_BEYOND * announced:
-        cut = ": cut short" if there < announced else ""
-        raise RecordError(
-            f"the header announces {announced} numbers of data, there are {there}{cut}. Get the file again"
-        )
+        raise cut_short(announced, there) if there < announced else too_long(announced)
     return convert(cells[:announced], section, first, DATA.per_line), note_beyond(there - announced, announced)
 
 
