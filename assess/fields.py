@@ -12,6 +12,7 @@ from typing import Any, Literal
 from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.methods import MethodInfo
+from assess.model import ANCHORED, AXES, IMPORTANCE
 from assess.results import CaseRow, ItemResult, ItemRow, MotionRow, Results, Simulation
 from assess.risk import RiskClass
 
@@ -24,8 +25,6 @@ DATA: frozenset[Where] = frozenset(("json", "csv"))
 FILES: frozenset[Where] = DATA | {"excel"}
 EVERYWHERE: frozenset[Where] = FILES | {"pieces"}
 
-AXES, ANCHORED = ("X", "Y"), ("no", "yes", "partly", "unknown")
-IMPORTANCE = ("life safety", "function", "property")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,7 +16,8 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from assess import route_results as rows
 from assess.errors import Problem
-from assess.fields import AXES, MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
+from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
+from assess.model import AXES
 from assess.risk import RiskClass
 from assess.settings import SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
