@@ -3,7 +3,8 @@
 A text stands in the code and in the templates in English, inside ``gettext`` (named ``_``) or ``ngettext``; the
 catalogue of a language, ``templates/texts/<code>.po``, holds its translation. Modules below the reports know no
 language: where they make a sentence of parts they return a `Text`, which is the English sentence and remembers its
-parts, so that a report can say it in another language. ``make texts`` collects all texts into the catalogues.
+parts, so that a report can say it in another language; the `message` of an error is one, too. ``make texts`` collects
+all texts into the catalogues.
 """
 
 import gettext as _standard
@@ -183,7 +184,8 @@ def find_language(name: str) -> str:
     for code, names in _NAMES.items():
         if wanted == code or wanted in (one.casefold() for one in names):
             return code
-    raise InputError(f"language {name!r} is unknown: expected one of {', '.join(LANGUAGES)}")
+    known = ", ".join(LANGUAGES)
+    raise InputError(fill("language {name!r} is unknown: expected one of {known}", name=name, known=known))
 
 
 @cache
@@ -213,7 +215,7 @@ def _read(path: Path) -> tuple[dict[str, tuple[str, ...]], Callable[[int], int]]
         with path.open("rb") as file:
             catalogue = read_po(file, abort_invalid=True)
     except (OSError, ValueError, PoFileError) as error:
-        raise InputError(f"{path}: the texts cannot be read: {error}") from None
+        raise InputError(fill("{path}: the texts cannot be read: {why}", path=path, why=str(error))) from None
     messages = {}
     for message in catalogue:
         ids, texts = _forms(message.id), _forms(message.string)
@@ -234,8 +236,17 @@ def _check(path: Path, ids: tuple[str, ...], texts: tuple[str, ...]) -> None:
         try:
             off = placeholders(text) ^ wanted - ({"n"} if len(ids) > 1 else set())
         except ValueError as error:
-            raise InputError(f"{path}: {ids[0]!r}: the braces of its text do not match: {error}") from None
+            why = str(error)
+            message = fill(
+                "{path}: {text!r}: the braces of its text do not match: {why}", path=path, text=ids[0], why=why
+            )
+            raise InputError(message) from None
         if off - {"n"}:
             raise InputError(
-                f"{path}: {ids[0]!r}: its text has to hold the same {{names}}; check {', '.join(sorted(off))}"
+                fill(
+                    "{path}: {text!r}: its translation has to hold the same names in braces; check {names}",
+                    path=path,
+                    text=ids[0],
+                    names=", ".join(sorted(off)),
+                )
             )

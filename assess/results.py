@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import InputError, Problem
-from assess.i18n import fill
+from assess.i18n import fill, join, nfill
 from assess.methods import MethodInfo, Outcome
 from assess.methods._method import ALIKE
 from assess.model import Building, CatalogueType, Place
@@ -698,8 +698,13 @@ class Results:
         found = self._by_name.get(name)
         if found is None:
             near = difflib.get_close_matches(name, self._by_name, 1, 0.6)
-            hint = f" Did you mean {near[0]!r}?" if near else ""
-            raise InputError(f"there is no item {name!r} among the {len(self):,} items.{hint}")
+            fault = nfill(
+                "there is no item {name!r}: there is only one.",
+                "there is no item {name!r} among the {n:,} items.",
+                len(self),
+                name=name,
+            )
+            raise InputError(join(" ", (fault, *(fill("Did you mean {name}?", name=repr(one)) for one in near))))
         return self.result(found)
 
     def __repr__(self) -> str:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from assess.errors import SettingsError
+from assess.i18n import Text, fill, join
 
 Verify = Literal["none", "high", "all"]
 VERIFY: tuple[str, ...] = get_args(Verify)
@@ -75,19 +76,22 @@ def _read_flag(value: Any) -> bool | None:
 
 
 _positive = partial(_read_number, is_allowed=lambda number: number > 0)
-_RULES: Mapping[str, tuple[Callable[[Any], Any], str]] = {
-    "scenario": (partial(_read_choice, choices=SCENARIOS), f"one of: {', '.join(SCENARIOS)}"),
-    "verify": (partial(_read_choice, choices=VERIFY), f"one of: {', '.join(VERIFY)}"),
-    "runs": (_read_runs, f"1 to {MOST_RUNS:,}, or {AUTO}"),
-    "seed": (partial(_read_whole, low=0, high=math.inf), "a whole number, 0 or above"),
-    "scale_motions": (_read_flag, "True or False"),
-    "zeta_acceleration": (_positive, "above 0, and finite"),
-    "zeta_velocity": (_positive, "above 0, and finite"),
-    "slide_coefficient": (partial(_read_number, is_allowed=lambda number: 0 <= number <= 1), "0 to 1"),
-    "ductility_reduction": (partial(_read_number, is_allowed=lambda number: number >= 1), "at least 1, and finite"),
+_RULES: Mapping[str, tuple[Callable[[Any], Any], Text]] = {
+    "scenario": (partial(_read_choice, choices=SCENARIOS), fill("one of: {names}", names=", ".join(SCENARIOS))),
+    "verify": (partial(_read_choice, choices=VERIFY), fill("one of: {names}", names=", ".join(VERIFY))),
+    "runs": (_read_runs, fill("1 to {most:,}, or {auto}", most=MOST_RUNS, auto=AUTO)),
+    "seed": (partial(_read_whole, low=0, high=math.inf), fill("a whole number, 0 or above")),
+    "scale_motions": (_read_flag, fill("True or False")),
+    "zeta_acceleration": (_positive, fill("above 0, and finite")),
+    "zeta_velocity": (_positive, fill("above 0, and finite")),
+    "slide_coefficient": (partial(_read_number, is_allowed=lambda number: 0 <= number <= 1), fill("0 to 1")),
+    "ductility_reduction": (
+        partial(_read_number, is_allowed=lambda number: number >= 1),
+        fill("at least 1, and finite"),
+    ),
     "route_risk": (
         partial(_read_number, is_allowed=lambda number: 0 < number < 1),
-        "above 0 and below 1 (write 3 % as 0.03)",
+        fill("above 0 and below 1 (write 3 % as 0.03)"),
     ),
 }
 """What reads the value of each setting, None for one that cannot be used, and what was expected."""
@@ -146,7 +150,9 @@ class Settings:
             given = getattr(self, name)
             value = None if given is None else read(given)
             if value is None and not (name == "scenario" and given is None):
-                raise SettingsError(f"{name} is {_show(given)}, expected {expected}")
+                shown = _show(given)
+                text = fill("{name} is {value}, expected {expected}", name=name, value=shown, expected=expected)
+                raise SettingsError(text)
             object.__setattr__(self, name, value)
 
 
@@ -167,8 +173,11 @@ def change_settings(settings: Settings | None, changes: Mapping[str, Any]) -> Se
     for name in changes:
         if name not in names:
             near = get_close_matches(name, names, 1)
-            meant = f". Did you mean {near[0]}?" if near else f"; expected one of: {', '.join(names)}"
-            raise SettingsError(f"{name} is an unknown setting{meant}")
+            if near:
+                fault = fill("{name} is an unknown setting.", name=name)
+                raise SettingsError(join(" ", (fault, fill("Did you mean {name}?", name=near[0]))))
+            known = ", ".join(names)
+            raise SettingsError(fill("{name} is an unknown setting; expected one of: {known}", name=name, known=known))
     return replace(settings or Settings(), **changes)
 
 

@@ -230,6 +230,57 @@ def test_every_method_is_tested_and_referenced():
     assert missing == []
 
 
+# ---------------------------------------------------------------- what is wrong, in every language
+
+
+def test_messages_of_errors_can_be_translated():
+    """The text of an InputError, SettingsError, WorkbookError, RecordError or OutputError is a `Text`, no bare string.
+
+    Their subclasses count too, but for PdfUnavailableError: how to install a native library is printed in English, as
+    are the messages of the command line and of studies. A text from elsewhere, such as the message of another
+    error, is checked where it is made.
+    """
+    kinds = _list_errors({"InputError", "OutputError"}) - {"PdfUnavailableError"}
+    assert kinds >= {"SettingsError", "WorkbookError", "RecordError"}
+    english = (PACKAGE / "cli", PACKAGE / "studies")
+    found = {
+        _place(path, node)
+        for path in MODULES
+        if not any(path.is_relative_to(folder) for folder in english)
+        for scope in ast.walk(_tree(path))
+        if isinstance(scope, ast.Module | ast.FunctionDef)
+        for node in ast.walk(scope)
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in kinds
+        for text in node.args
+        if _is_bare(text) or (isinstance(scope, ast.FunctionDef) and ast.unparse(text) in _list_bare(scope))
+    }
+    assert sorted(found) == []
+
+
+def _list_errors(known: set[str]) -> set[str]:
+    """Return the names of the errors and of all that derive from them."""
+    classes = [node for path in MODULES for node in ast.walk(_tree(path)) if isinstance(node, ast.ClassDef)]
+    derived = {node.name for node in classes if known.intersection(map(ast.unparse, node.bases))}
+    return known if derived <= known else _list_errors(known | derived)
+
+
+def _list_bare(function: ast.FunctionDef) -> set[str]:
+    """Return the names to which a function assigns a text that is made without `fill`."""
+    assigned = [node for node in ast.walk(function) if isinstance(node, ast.Assign) and _is_bare(node.value)]
+    return {ast.unparse(target) for node in assigned for target in node.targets}
+
+
+def _is_bare(node: ast.expr) -> bool:
+    """Return whether an expression makes a text without `fill`: a literal, an f-string, or parts put together."""
+    if isinstance(node, ast.Call):
+        return ast.unparse(node.func) == "str" or getattr(node.func, "attr", "") in {"format", "join"}
+    if isinstance(node, ast.BinOp):
+        return _is_bare(node.left) or _is_bare(node.right)
+    if isinstance(node, ast.IfExp):
+        return _is_bare(node.body) or _is_bare(node.orelse)
+    return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str))
+
+
 # ---------------------------------------------------------------- what is generated from the schema
 
 

@@ -126,7 +126,7 @@ def test_values_are_escaped_and_tags_of_the_text_are_not():
 @pytest.mark.parametrize(
     ("lines", "told"),
     [
-        ('msgid "{n} of {all}"\nmsgstr "{n} di {tutti}"\n', "has to hold the same {names}; check all, tutti"),
+        ('msgid "{n} of {all}"\nmsgstr "{n} di {tutti}"\n', "has to hold the same names in braces; check all, tutti"),
         ('msgid "{n} of {all}"\nmsgstr "{n di {all}"\n', "braces of its text do not match"),
         ("msgid no quotes\n", "the texts cannot be read"),
     ],

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.errors import InputError
+from assess.i18n import Text, fill, join
 from assess.methods._fitted_model import PREFIX, QUANTITIES, Fitted, Polynomial, Probit, build_method
 from assess.methods._method import FittedOn, Method, Range
 
@@ -84,19 +85,29 @@ def _read_text(path: Path) -> str:
     """Return the text of a file; raises InputError where it is not a text file, too large or not readable."""
     try:
         if not path.exists():
-            raise InputError(f"{path}: there is no such file. Check the name.")
+            raise InputError(fill("{path}: there is no such file. Check the name.", path=path))
         if not path.is_file():
-            raise InputError(f"{path}: it is not a file: name the .toml that `assess study fit` wrote.")
+            raise InputError(
+                fill("{path}: it is not a file: name the .toml file that `assess study fit` wrote.", path=path)
+            )
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
-        raise InputError(f"{path}: it cannot be read: {error}. Check its permissions.") from None
+        text = fill("{path}: the file cannot be read: {why}. Check its permissions.", path=path, why=str(error))
+        raise InputError(text) from None
     if len(data) > MOST_BYTES:
-        raise InputError(f"{path}: it is larger than {MOST_BYTES >> 10} kB, which no fitted model is. Name another.")
+        raise InputError(
+            fill(
+                "{path}: the file is larger than {most} kB, the limit for a fitted model. Name another file.",
+                path=path,
+                most=MOST_BYTES >> 10,
+            )
+        )
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
-        raise InputError(f"{path}: it is not a UTF-8 text. Name the .toml file that a study wrote.") from None
+        text = fill("{path}: the file is not a UTF-8 text. Name the .toml file that a study wrote.", path=path)
+        raise InputError(text) from None
 
 
 def parse_model(text: str, file: str) -> Fitted:
@@ -105,16 +116,28 @@ def parse_model(text: str, file: str) -> Fitted:
         found = tomllib.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:  # also: a number of thousands of digits
         detail = str(error).partition(";")[0]
-        raise InputError(
-            f"{file}: it is not valid TOML: {detail}. Correct the line, or have the study write the file again."
-        ) from None
+        message = fill(
+            "{file}: the file is not valid TOML: {why}. Correct the line, or have the study write the file again.",
+            file=file,
+            why=detail,
+        )
+        raise InputError(message) from None
     if found.get("format") != FORMAT or isinstance(found.get("format"), bool):
-        given = _show(found["format"]) if "format" in found else "missing"
-        raise InputError(f"{file}: format is {given}, expected {FORMAT}. Have a study of this version write the file.")
+        given = _show(found["format"]) if "format" in found else fill("missing")
+        raise InputError(
+            fill(
+                "{file}: format is {value}, expected {expected}. Have a study of this version write the file.",
+                file=file,
+                value=given,
+                expected=FORMAT,
+            )
+        )
     kind = found.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
-        given = _show(kind) if "kind" in found else "missing"
-        raise InputError(f"{file}: kind is {given}, expected one of: {', '.join(KINDS)}.")
+        given = _show(kind) if "kind" in found else fill("missing")
+        raise InputError(
+            fill("{file}: kind is {value}, expected one of: {names}.", file=file, value=given, names=", ".join(KINDS))
+        )
     return _build(file, found, kind)
 
 
@@ -139,17 +162,24 @@ class _Table:
     def __init__(self, file: str, name: str, values: object, keys: Sequence[str]) -> None:
         self.file, self.name = file, name
         if not isinstance(values, dict):
-            raise self.fault("", f"is {_show(values)}, expected a table: [{name.rstrip('.')}].")
+            raise self.wrong("", values, fill("a table: [{name}]", name=name.rstrip(".")))
         self.values: dict[str, Any] = values
         for key in keys:
             if key not in values:
-                raise self.fault(key, "is missing. Add it, or have the study write the file again.")
+                raise self.fault(key, fill("is missing. Add it, or have the study write the file again."))
         for key in values:
             if key not in keys:
-                raise self.fault(_show(key), f"is unknown. Remove it; expected are: {', '.join(keys)}.")
+                names = ", ".join(keys)
+                raise self.fault(_show(key), fill("is unknown. Remove it; expected are: {names}.", names=names))
 
-    def fault(self, key: str, what: str) -> InputError:
-        return InputError(f"{self.file}: {(self.name + key).rstrip('.')} {what}")
+    def fault(self, key: str, what: Text) -> InputError:
+        """Return the error that says of a key `what` is wrong with it."""
+        place = f"{self.file}: {(self.name + key).rstrip('.')}"
+        return InputError(join(" ", (place, what)))
+
+    def wrong(self, key: str, value: object, expected: Text) -> InputError:
+        """Return the error for a value that is not what is `expected`."""
+        return self.fault(key, fill("is {value}, expected {expected}.", value=_show(value), expected=expected))
 
     def number(self, key: str, low: float = -LARGEST) -> float:
         return self.check_number(key, self.values[key], low)
@@ -157,32 +187,34 @@ class _Table:
     def check_number(self, key: str, value: object, low: float = -LARGEST) -> float:
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not (is_number and low <= value <= LARGEST):  # type: ignore[operator]
-            least = f"of at most {LARGEST:g}" if low < 0 else f"from {low:g} to {LARGEST:g}"
-            raise self.fault(key, f"is {_show(value)}, expected a number {least}.")
+            expected = fill("a number of at most {most:g}", most=LARGEST)
+            if low >= 0:
+                expected = fill("a number from {low:g} to {most:g}", low=low, most=LARGEST)
+            raise self.wrong(key, value, expected)
         return float(value)  # type: ignore[arg-type]
 
     def ends(self, key: str, unit: str) -> Range:
         value = self.values[key]
         if not (isinstance(value, list) and len(value) == 2):
-            raise self.fault(key, f"is {_show(value)}, expected [lowest, highest].")
+            raise self.wrong(key, value, fill("[lowest, highest]"))
         low, high = (self.check_number(key, end, 0.0) for end in value)
         if low > high:
-            raise self.fault(key, f"is {_show(value)}, expected the lowest first.")
+            raise self.wrong(key, value, fill("the lowest first"))
         if high == 0:
-            raise self.fault(
-                key, f"is {_show(value)}, expected a highest above 0, as in the data that it was fitted to."
-            )
+            raise self.wrong(key, value, fill("the highest above 0, as in the data that it was fitted to"))
         return Range(low, high, unit)
 
     def text(self, key: str, longest: int) -> str:
         value = self.values[key]
         if not isinstance(value, str) or not 0 < len(value) <= longest:
-            raise self.fault(key, f"is {_show(value)}, expected a text of 1 to {longest} characters.")
+            raise self.wrong(key, value, fill("a text of 1 to {most} characters", most=longest))
         odd = [sign for sign in value if unicodedata.category(sign)[0] in "CZ" and sign != " "]
         if odd:
-            raise self.fault(key, f"holds the character {odd[0]!a}, which cannot be printed. Remove it.")
+            text = fill("holds the character {character}, which cannot be printed. Remove it.", character=ascii(odd[0]))
+            raise self.fault(key, text)
         if not value[0].isalnum():
-            raise self.fault(key, f"begins with {value[0]!r}, expected a letter or a digit.")
+            text = fill("begins with {character!r}, expected a letter or a digit.", character=value[0])
+            raise self.fault(key, text)
         return value
 
 
@@ -191,10 +223,11 @@ def _read_key(top: _Table) -> str:
 
     key = top.values["key"]
     if not isinstance(key, str) or not KEY.fullmatch(key):
-        rule = f"{PREFIX} and then small letters, digits and _, not ending in _raw or _flags"
-        raise top.fault("key", f"is {_show(key)}, expected {rule}.")
+        rule = fill("{start} and then small letters, digits and _, not ending in _raw or _flags", start=PREFIX)
+        raise top.wrong("key", key, rule)
     if any(method.key == key for method in all_methods()):
-        raise top.fault("key", f"is {_show(key)}, which a published method has. Choose another.")
+        text = fill("is {value}, the key of a published method. Choose another.", value=_show(key))
+        raise top.fault("key", text)
     return key
 
 
@@ -205,28 +238,34 @@ def _read_probit(table: _Table) -> Probit:
 def _read_polynomial(table: _Table) -> Polynomial:
     base, terms = table.values["base"], table.values["terms"]
     if base not in ("x", "1/x"):
-        raise table.fault("base", f'is {_show(base)}, expected "x" for B/H or "1/x" for its inverse.')
+        raise table.wrong("base", base, fill('"x" for B/H or "1/x" for its inverse'))
     if not (isinstance(terms, list) and 0 < len(terms) <= MOST_TERMS):
-        raise table.fault("terms", f"is {_show(terms)}, expected 1 to {MOST_TERMS} of [i, j, coefficient].")
+        raise table.wrong("terms", terms, fill("1 to {most} of [i, j, coefficient]", most=MOST_TERMS))
     found = [_read_term(table, f"terms[{at}]", term) for at, term in enumerate(terms)]
     powers = [(i, j) for i, j, _ in found]
     for at, one in enumerate(powers):
         if one in powers[:at]:
-            raise table.fault(f"terms[{at}]", f"has the powers {one[0]}, {one[1]} of another term. Remove one.")
+            text = fill("has the powers {i}, {j} of another term. Remove one.", i=one[0], j=one[1])
+            raise table.fault(f"terms[{at}]", text)
     return Polynomial(base, tuple(found))
 
 
 def _read_term(table: _Table, key: str, term: object) -> tuple[int, int, float]:
     if not (isinstance(term, list) and len(term) == 3):
-        raise table.fault(key, f"is {_show(term)}, expected [i, j, coefficient].")
+        raise table.wrong(key, term, fill("[i, j, coefficient]"))
     i, j, coefficient = term
     for power in (i, j):
         if type(power) is not int or not 0 <= power <= MOST_POWER:
-            raise table.fault(key, f"has the power {_show(power)}, expected a whole number from 0 to {MOST_POWER}.")
+            text = fill(
+                "has the power {value}, expected a whole number from 0 to {most}.", value=_show(power), most=MOST_POWER
+            )
+            raise table.fault(key, text)
     return i, j, table.check_number(key, coefficient)
 
 
 def _show(value: object) -> str:
     """Return a value of the file short enough for a message, without what a terminal would act on."""
-    text = ascii(value) if not isinstance(value, int) or abs(value) < 10**40 else "a number of over 40 digits"
+    if isinstance(value, int) and abs(value) >= 10**40:
+        return fill("a number of over 40 digits")
+    text = ascii(value)
     return text if len(text) <= 60 else f"{text[:57]}..."

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import InputError
+from assess.i18n import fill
 from assess.methods import (
     Cases,
     Joint,
@@ -121,7 +122,9 @@ def find_fragility(
         available memory.
     """
     if assessment.settings.runs == AUTO or assessment.suite is not None:
-        raise InputError('runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite')
+        raise InputError(
+            fill('runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite')
+        )
     inventory = assessment.inventory
     obstructions = find_obstructions(inventory, progress)
     beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import InputError, OutputError
+from assess.i18n import fill
 from assess.methods import Cases, Method, all_methods, simulation
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
@@ -205,7 +206,8 @@ def _write_series(results: Results, assessment: Assessment, demands: Sequence[De
         path.parent.mkdir(parents=True, exist_ok=True)
         write_series(path, assessment, demands, results, progress)
     except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror or error}.") from None
+        why = error.strerror or str(error)
+        raise OutputError(fill("{path} cannot be written: {why}.", path=path, why=why)) from None
 
 
 def _list_underestimates(assessment: Assessment) -> tuple[str, ...]:
@@ -218,11 +220,17 @@ def _list_underestimates(assessment: Assessment) -> tuple[str, ...]:
 def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:
     """Return the published methods and further ones, in the order of reports."""
     every = (*all_methods(), *further)
-    for name in ("key", "title"):
+    for name in (fill("key"), fill("title")):
         taken = [str(getattr(one, name)) for one in every]
         twice = [one for one in taken if taken.count(one) > 1]
         if twice:
-            raise InputError(f"two methods have the {name} {twice[0]!r}: give each its own, or name one only once.")
+            raise InputError(
+                fill(
+                    "two methods have the {name} {text!r}: give each its own, or name one only once.",
+                    name=name,
+                    text=twice[0],
+                )
+            )
     return every
 
 

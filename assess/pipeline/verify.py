@@ -115,8 +115,14 @@ def check_pairs(cases: int, settings: Settings, repeats: int = 1) -> None:
     runs = LOOKS[0] if settings.runs == AUTO else int(settings.runs)
     pairs = cases * runs * repeats
     if pairs > MOST_PAIRS:
-        fewer = "fewer motions" if repeats == 1 else "fewer motions, fewer values of PFA"
-        raise InputError(
-            f"runs is {runs:,}: {pairs:,} results of one motion on one piece may exceed the available memory; expected "
-            f"at most {MOST_PAIRS:,}. Use {fewer}, or split the workbook."
+        fault = fill(
+            "runs is {runs:,}: {pairs:,} results of one motion on one piece may exceed the available memory; expected "
+            "at most {most:,}.",
+            runs=runs,
+            pairs=pairs,
+            most=MOST_PAIRS,
         )
+        fix = fill("Use fewer motions, or split the workbook.")
+        if repeats > 1:
+            fix = fill("Use fewer motions, fewer values of PFA, or split the workbook.")
+        raise InputError(join(" ", (fault, fix)))

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from assess.errors import InputError, OutputError, PdfUnavailableError
+from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report.report_options import ReportOptions
 from assess.results import Results
@@ -145,7 +146,8 @@ def write_reports(
     formats = (formats,) if isinstance(formats, str) else formats
     unknown = [name for name in formats if name not in FILES]
     if unknown:
-        raise InputError(f"formats: {unknown[0]!r} is unknown, expected some of: {', '.join(FILES)}")
+        known = ", ".join(FILES)
+        raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0], known=known))
     folder, options = Path(folder), options or ReportOptions()
     options = options if options.language else replace(options, language=results.provenance.language)
     try:
@@ -153,7 +155,8 @@ def write_reports(
         _sweep(folder)
         stage = Path(tempfile.mkdtemp(prefix=_STAGE, dir=folder))
     except OSError as error:
-        raise OutputError(f"{folder} cannot be written to: {error.strerror}.") from None
+        why = error.strerror or str(error)
+        raise OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why)) from None
     try:
         with options.spoken():
             return _write_staged(Job(results, options, progress, stage), folder, stage, tuple(dict.fromkeys(formats)))
@@ -165,8 +168,8 @@ def check_folder(folder: Path) -> None:
     """Raise OutputError if reports cannot be written to `folder`, which need not be there yet: before the long work."""
     there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
     if not (there.is_dir() and os.access(there, os.W_OK)):
-        why = "you may not write there" if there.is_dir() else f"{there} is a file"
-        raise OutputError(f"{folder} cannot be written to: {why}. Name another folder.")
+        why = fill("you have no right to write there") if there.is_dir() else fill("{path} is a file", path=there)
+        raise OutputError(fill("{folder} cannot be written to: {why}. Name another folder.", folder=folder, why=why))
 
 
 def _sweep(folder: Path) -> None:
@@ -190,16 +193,19 @@ def _write_staged(job: Job, folder: Path, stage: Path, formats: Sequence[str]) -
             except PdfUnavailableError as error:
                 missing = error
             except OSError as error:
-                reason = error.strerror or str(error)
-                raise OutputError(f"{file} could not be written: {reason}. {folder} is left as it was.") from None
+                why = error.strerror or str(error)
+                text = fill(
+                    "{file} could not be written: {why}. {folder} is left as it was.", file=file, why=why, folder=folder
+                )
+                raise OutputError(text) from None
         reports.check()
     for name, path in written.items():
         try:
             (stage / FILES[name]).replace(path)
         except OSError as error:
-            raise OutputError(
-                f"{path} could not be replaced: {error.strerror}. Is it open in another program?"
-            ) from None
+            why = error.strerror or str(error)
+            text = fill("{path} could not be replaced: {why}. Is it open in another program?", path=path, why=why)
+            raise OutputError(text) from None
     if missing:
         raise missing
     return written

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from assess import resources
 from assess.errors import InputError
-from assess.i18n import LANGUAGES, load_catalogue, speaking
+from assess.i18n import LANGUAGES, fill, join, load_catalogue, speaking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +37,8 @@ class ReportOptions:
 
     def __post_init__(self) -> None:
         if self.language and self.language not in LANGUAGES:
-            raise InputError(f"language is {self.language!r}, expected one of {', '.join(LANGUAGES)}")
+            known = ", ".join(LANGUAGES)
+            raise InputError(fill("language is {name!r}, expected one of {known}", name=self.language, known=known))
         if self.templates is not None:
             _check_templates(self.templates)
 
@@ -61,14 +62,20 @@ class ReportOptions:
 def _check_templates(folder: Path) -> None:
     """Raise InputError unless every file of a firm's folder replaces a standard template: a slip in a name shows."""
     if not folder.is_dir():
-        raise InputError(f"templates: there is no folder {folder}")
+        raise InputError(fill("templates: there is no folder {folder}", folder=folder))
     standard = {path.relative_to(resources.templates()).as_posix() for path in resources.templates().rglob("*.*")}
     own = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
     unknown = sorted(name for name in own - standard if not Path(name).name.startswith("."))
     if unknown:
         near = difflib.get_close_matches(unknown[0], standard, 1, 0.5)
-        hint = f" Did you mean {near[0]}?" if near else ""
-        raise InputError(f"templates: {folder}: {unknown[0]} replaces no standard template.{hint}")
+        fault = fill("templates: {folder}: {name} replaces no standard template.", folder=folder, name=unknown[0])
+        raise InputError(join(" ", (fault, *(fill("Did you mean {name}?", name=name) for name in near))))
     if not own & standard:
         names = ", ".join(sorted({name.split("/")[0] for name in standard}))
-        raise InputError(f"templates: {folder} holds no template: expected some of {names}, as in the standard ones")
+        raise InputError(
+            fill(
+                "templates: {folder} holds no template: expected some of {names}, as in the standard templates",
+                folder=folder,
+                names=names,
+            )
+        )

@@ -37,7 +37,7 @@ SURFACE = Fitted(
 PROBIT = dataclasses.replace(SURFACE, key="fitted_probit", title="Probit with size", formula=Probit(-1.2, 1.8, 0.9))
 PUBLISHED = ("test_file_and_test_are_named_after_it", "test_docstring_has_every_part", "test_no_shaking")
 """Tests of the contract that concern the files of published methods; a fitted surface gives some risk at rest."""
-NO_FILE = "it is not a file: name the .toml that `assess study fit` wrote."
+NO_FILE = "it is not a file: name the .toml file that `assess study fit` wrote."
 BOTH = pytest.mark.parametrize("model", [SURFACE, PROBIT], ids=lambda model: model.kind)
 
 
@@ -133,8 +133,8 @@ class TestFile:
             ("pfa_g = [0.1, 0.9]", "pfa_g = [-1, 0.9]", "range.pfa_g is -1, expected a number from 0 to 1e+30."),
             ("pfa_g = [0.1, 0.9]", "pfa_g = [-0.2, -0.1]", "range.pfa_g is -0.2, expected a number from 0 to 1e+30."),
             ("pfa_g = [0.1, 0.9]", "pfa_g = [0.0, -0.1]", "range.pfa_g is -0.1, expected a number from 0 to 1e+30."),
-            ("pfa_g = [0.1, 0.9]", "pfa_g = [0.0, 0.0]", "range.pfa_g is [0.0, 0.0], expected a highest above 0"),
-            ("height_cm = [90.0, 210.0]", "height_cm = [-0.0, 0]", "range.height_cm is [-0.0, 0], expected a highest"),
+            ("pfa_g = [0.1, 0.9]", "pfa_g = [0.0, 0.0]", "range.pfa_g is [0.0, 0.0], expected the highest above 0"),
+            ("height_cm = [90.0, 210.0]", "height_cm = [-0.0, 0]", "height_cm is [-0.0, 0], expected the highest"),
             ("pfa_g = [0.1, 0.9]", "pfa = [0.1, 0.9]", "range.pfa_g is missing."),
             ("pfa_g = [0.1, 0.9]", "pfa_g = [0.1, 0.9]\ndate = 1", "range.'date' is unknown. Remove it; expected are:"),
             ("[range]", "[ranges]", "range is missing."),
@@ -154,9 +154,9 @@ class TestFile:
             (f"[1, 0, {k.b!r}]", f"[1.0, 0, {k.b!r}]", "terms[1] has the power 1.0, expected a whole number"),
             (f"[1, 0, {k.b!r}]", f"[0, 1, {k.b!r}]", "polynomial.terms[2] has the powers 0, 1 of another term."),
             ("terms = [", "terms = 3\nrest = [", "polynomial.'rest' is unknown."),
-            ("[errors]", "[errors", "it is not valid TOML: "),
-            ("[errors]", "a = " + "[" * 5000, "it is not valid TOML: "),
-            ("[errors]", "a = " + "9" * 5000, "it is not valid TOML: "),
+            ("[errors]", "[errors", "the file is not valid TOML: "),
+            ("[errors]", "a = " + "[" * 5000, "the file is not valid TOML: "),
+            ("[errors]", "a = " + "9" * 5000, "the file is not valid TOML: "),
         ],
     )  # fmt: skip
     def test_every_fault_names_the_file_the_key_and_the_mend(self, tmp_path, old, new, told):
@@ -178,9 +178,9 @@ class TestFile:
         large, binary = tmp_path / "large.toml", tmp_path / "binary.toml"
         large.write_text(write_model(SURFACE) + "#" * 66_000)
         binary.write_bytes(b"\xff\xfe\x00")
-        with pytest.raises(InputError, match=r"large\.toml: it is larger than 64 kB"):
+        with pytest.raises(InputError, match=r"large\.toml: the file is larger than 64 kB"):
             read_model(large)
-        with pytest.raises(InputError, match=r"binary\.toml: it is not a UTF-8 text"):
+        with pytest.raises(InputError, match=r"binary\.toml: the file is not a UTF-8 text"):
             read_model(binary)
 
     @pytest.mark.skipif(os.name == "nt", reason="a device has no path there")
