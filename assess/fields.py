@@ -26,7 +26,6 @@ FILES: frozenset[Where] = DATA | {"excel"}
 EVERYWHERE: frozenset[Where] = FILES | {"pieces"}
 
 
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Field:
     """One field of a row.

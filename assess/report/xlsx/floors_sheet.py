@@ -6,6 +6,7 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.fields import MOTION_FIELDS
 from assess.i18n import gettext as _
+from assess.model import AXES
 from assess.report import words
 from assess.report.content import Content
 from assess.report.findings.motions import describe_origin, describe_source, describe_treatment, factors
@@ -13,7 +14,6 @@ from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion
 from assess.report.xlsx.items_sheet import HEAD
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, with_unit
-from assess.model import AXES
 from assess.results import MotionRow
 
 _WIDTHS = {"floor": 12, "name": 22, "pfa": 12, "pfv": 14, "source": 44, "elevation": 12, "edited": 10}
