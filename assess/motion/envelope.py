@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.motion.record import FloatArray
+from assess.motion.spectrum import transform_rows
 from assess.progress import SILENT, Progress
 
 LOWEST, HIGHEST = 0.1, 25.6
@@ -141,9 +142,9 @@ def draw_noise(
     progress.check()
     for weight, values in zip(split(frequencies, envelopes.centres), envelopes.values, strict=True):
         progress.check()
-        band = irfft(white * weight, length, axis=1, workers=threads)[:, :samples]
+        band = transform_rows(irfft, white * weight, length, threads, progress)[:, :samples]
         for row, stretch in enumerate(stretches):
             progress.check()
             at = envelopes.half_time + (times - envelopes.half_time) / stretch
             noise[row] += band[row] * np.interp(at, times, values)
-    return np.asarray(rfft(noise, length, axis=1, workers=threads), dtype=np.complex128)
+    return transform_rows(rfft, noise, length, threads, progress)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from assess.motion.bending import Bend, bend_row, build_taper, lift_peaks, settle
 from assess.motion.envelope import draw_noise, filter_frequencies, filter_length
 from assess.motion.record import CORNER, FloatArray
-from assess.motion.spectrum import pseudo_acceleration, run_rows
+from assess.motion.spectrum import pseudo_acceleration, run_rows, transform_rows
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.target_fit import Fit, Spectra, measure_match
 from assess.motion.wavelets import Wavelets, adjust, build_wavelets
@@ -223,11 +223,9 @@ def _synthesise(noise: NDArray[np.complex128], generator: Generator) -> tuple[Fl
     frequencies = filter_frequencies(grid.count, grid.time_step)
     filtered = noise * generator.gains
     generator.progress.check()
-    acceleration = irfft(filtered, length, axis=1, workers=threads)
-    generator.progress.check()
+    acceleration = transform_rows(irfft, filtered, length, threads, generator.progress)
     integrated = filtered / (2j * np.pi * np.maximum(frequencies, 1e-9))
-    velocity = irfft(integrated, length, axis=1, workers=threads)
-    generator.progress.check()
+    velocity = transform_rows(irfft, integrated, length, threads, generator.progress)
     taper, slope = build_taper(grid)
     motions, peaks = np.empty((len(noise), grid.count)), np.empty((len(noise), 2))
     pfv = target.pfv if target.pfv > 0 else 1.0  # not bent where it is unknown
