@@ -43,7 +43,7 @@ REFUSED = {
     r".*_d\.smc": r"the file holds displacements",
     r".*\.V3": r"the file holds response spectra \(volume 3\), not accelerations",
     r".*\.V0c": r"the file holds raw data in counts \(volume 0\)",
-    r".*\.sac": r"which means nm/s2, but that makes the peak .* Write the unit into",
+    r".*\.sac": r"whose unit is nm/s2, but the peak would then be .* Write the unit into",
     r".*\.mseed": r"the channel holds raw counts, not accelerations\. Remove the instrument's response",
     r".*\.(hdf5|mat|dat|txt|s0a|e0a)": UNKNOWN,
     r"575market_.*\.csv": UNKNOWN,

@@ -158,7 +158,7 @@ def test_every_file_is_read_or_told():
     reasons = dict(folder.left_out)
     assert reasons["made-up-sweep.csv#up"].startswith("vertical")
     assert reasons["1103.HNZ.NP.BE_a.smc"].startswith("vertical")
-    assert "velocity" in reasons["1103.HN2.NP.RE_v.smc"]
+    assert "velocities" in reasons["1103.HN2.NP.RE_v.smc"]
     assert "the file format is not supported" in reasons["README.md"]
 
 
