@@ -2,16 +2,21 @@
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from contextvars import ContextVar, copy_context
+from dataclasses import dataclass, field
 from threading import Event
-from typing import Self
+from typing import Generic, Self, TypeVar
 
 from assess.errors import CancelledError
 
 ESTIMATE_FROM = 0.02
 """Share of a stage [-] that has to be done before the time left is estimated."""
+ASKED_EVERY = 0.05
+"""Time [s] after which it is looked whether work that is waited for is to stop."""
+
+_Found = TypeVar("_Found")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +59,7 @@ class Progress:
 
     def __init__(self, listener: Listener | None = None, cancel: Event | None = None) -> None:
         self._listener, self._cancel = listener, cancel or Event()
-        self._lock = threading.Lock()
+        self._can_stop, self._lock = cancel is not None, threading.Lock()
 
     @classmethod
     def of(cls, progress: "Progress | Listener | None", cancel: Event | None = None) -> Self:
@@ -68,6 +73,12 @@ class Progress:
         """Raise `CancelledError` if the work is to stop."""
         if self._cancel.is_set():
             raise CancelledError
+
+    def checked(self, rows: Iterable[_Found]) -> Iterator[_Found]:
+        """Yield `rows`, with a check before each."""
+        for row in rows:
+            self.check()
+            yield row
 
     @property
     def is_cancelled(self) -> bool:
@@ -84,10 +95,55 @@ class Progress:
         self.tell(Report(name, 1.0, detail, 0.0))
 
     def tell(self, report: Report) -> None:
-        """Pass a report on to the listener."""
+        """Pass a report on to the listener, unless the work is to stop."""
         if self._listener is not None:
             with self._lock:
-                self._listener(report)
+                if not self.is_cancelled:
+                    self._listener(report)
+
+    def wait_for(self, work: Callable[[], _Found]) -> _Found:
+        """Return what `work` returns; raise `CancelledError` at once if it is to stop, whatever it is doing.
+
+        For stretches that cannot be split, such as a compilation, an import or a library's own loop. They are worked on
+        in a thread, in the language in use, and go on there after a cancel, with nobody to wait for them. So `work` may
+        only compute: it writes no file, and changes nothing that others see. It had better check as well, so that it
+        ends soon: the process waits for it when it ends. Without an event to cancel by, `work` is just called.
+        """
+        if not self._can_stop:
+            return work()
+        self.check()
+        aside: _Aside[_Found] = _Aside(work)
+        context = copy_context()
+        context.run(_WAITS.set, self)
+        threading.Thread(target=context.run, args=(aside.run,), name="assess-aside").start()
+        while not aside.done.wait(ASKED_EVERY):
+            self.check()
+        return aside.result()
+
+
+@dataclass(slots=True)
+class _Aside(Generic[_Found]):
+    """Work in a thread of its own, and what came out."""
+
+    work: Callable[[], _Found]
+    done: Event = field(default_factory=Event)
+    _found: list[_Found] = field(default_factory=list)
+    _error: BaseException | None = None
+
+    def run(self) -> None:
+        """Do the work."""
+        try:
+            self._found.append(self.work())
+        except BaseException as error:  # raised in the thread that waits
+            self._error = error
+        finally:
+            self.done.set()
+
+    def result(self) -> _Found:
+        """Return what the work returned, or raise what it raised."""
+        if self._error is not None:
+            raise self._error
+        return self._found.pop()
 
 
 class Stage:
@@ -114,3 +170,10 @@ class Stage:
 
 SILENT = Progress()
 """Reports to nobody and never stops the work: the default everywhere."""
+
+_WAITS: ContextVar[Progress] = ContextVar("waits", default=SILENT)
+
+
+def check_waits() -> None:
+    """Raise `CancelledError` in work that nobody waits for any more; for loops that no `Progress` is handed to."""
+    _WAITS.get().check()

@@ -103,6 +103,10 @@ def read_suite(folder: Path, *, progress: Progress = SILENT) -> Suite:
         raise RecordError(fill("{folder}: there is no such folder. Name a folder of floor records", folder=folder))
     paths = [path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith(".")]
     paths = [path for path in paths if path.suffix.lower() not in TEXTS]
+    return progress.wait_for(lambda: _read_suite(folder, paths, progress))
+
+
+def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
     found = {path: _read(path, progress) for path in paths}
     motions = [one for path, records in found.items() for one in _horizontal(path, records, progress)]
     if not motions:

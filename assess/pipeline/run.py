@@ -21,7 +21,7 @@ from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governi
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand, Demands, build_demands
 from assess.pipeline.remarks import list_too_low, remark
-from assess.pipeline.series import write_series
+from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
     build_cases,
     build_floor,
@@ -128,6 +128,17 @@ def compute(
     """Return the arrays of a run; parameters and errors are those of `run`."""
     every = _join_methods(methods)
     settings = settings if suite is None else replace(settings, runs=len(suite))
+    return progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress))
+
+
+def _compute(
+    inventory: Inventory,
+    settings: Settings,
+    suite: "Suite | None",
+    every: tuple[Method, ...],
+    jobs: int | None,
+    progress: Progress,
+) -> Assessment:
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     case_item, case_demand = _pair(inventory, demands)
@@ -165,10 +176,33 @@ def build_results(
     progress: Progress = SILENT,
 ) -> Results:
     """Return the tables of a run; parameters and errors are those of `run`."""
-    inventory, demands = assessment.inventory, list_demands(assessment)
+    demands = list_demands(assessment)
+    folder, is_temporary = _find_folder(series_folder, figures), figures and series_folder is None
+    try:
+        results = progress.wait_for(lambda: _build_tables(assessment, demands, folder, progress))
+        if figures:
+            arrays = progress.wait_for(lambda: build_series(assessment, demands, results, progress))
+            _write_series(results.series.path, arrays, progress)
+    except BaseException:
+        if is_temporary:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+    if is_temporary:
+        weakref.finalize(results, shutil.rmtree, folder, ignore_errors=True)
+    return results
+
+
+def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
+    """Return where series are written; the name of a folder that does not exist where none are wanted."""
+    if series_folder is not None:
+        return Path(series_folder)
+    return Path(tempfile.mkdtemp(prefix="assess-") if figures else "no-series")
+
+
+def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Path, progress: Progress) -> Results:
+    inventory, example = assessment.inventory, choose_example(assessment)
     routes = _evaluate_routes(assessment, progress)
-    example, folder = choose_example(assessment), _find_folder(series_folder, figures)
-    results = Results(
+    return Results(
         settings=assessment.settings,
         provenance=build_provenance(assessment),
         building=inventory.building,
@@ -186,25 +220,12 @@ def build_results(
         worked_item=example,
         series=Series(folder / SERIES),
     )
-    if figures:
-        if series_folder is None:
-            weakref.finalize(results, shutil.rmtree, folder, ignore_errors=True)
-        _write_series(results, assessment, demands, progress)
-    return results
 
 
-def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
-    """Return where series are written; the name of a folder that does not exist where none are wanted."""
-    if series_folder is not None:
-        return Path(series_folder)
-    return Path(tempfile.mkdtemp(prefix="assess-") if figures else "no-series")
-
-
-def _write_series(results: Results, assessment: Assessment, demands: Sequence[Demand], progress: Progress) -> None:
-    path = results.series.path
+def _write_series(path: Path, arrays: Arrays, progress: Progress) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_series(path, assessment, demands, results, progress)
+        write_series(path, arrays, progress)
     except OSError as error:
         why = error.strerror or str(error)
         raise OutputError(fill("{path} cannot be written: {why}.", path=path, why=why)) from None

@@ -18,15 +18,17 @@ Arrays by name; `m` is a place in `Results.motions`:
 =========================== ==========================================================================================
 """
 
+import io
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.errors import CancelledError
 from assess.methods import Cases, Method
 from assess.methods._method import FloatArray, Joint
 from assess.pipeline.assessment import Assessment
@@ -35,6 +37,9 @@ from assess.progress import SILENT, Progress
 from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.units import ACCELERATION, GRAVITY, LENGTH, ROUNDING, VELOCITY
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 ALIKE = 0.1
 """Pieces whose height is this close to the chosen one are drawn on the contours [-]."""
@@ -50,25 +55,47 @@ WEAKEST, STRONGEST, BEYOND = 0.02, 0.4, 2.0
 Arrays = dict[str, NDArray[Any]]
 
 
-def write_series(
-    path: Path, assessment: Assessment, demands: Sequence[Demand], results: Iterable[ItemResult],
-    progress: Progress = SILENT,
-) -> None:  # fmt: skip
-    """Compute the series and write them to `path`.
+class _CheckedFile(io.BufferedWriter):
+    """A file at a path, which asks before each write whether to stop."""
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
+    def __init__(self, path: Path, progress: Progress) -> None:
+        super().__init__(io.FileIO(path, "wb"))
+        self._progress = progress
+
+    def write(self, data: "ReadableBuffer", /) -> int:
+        """Write."""
+        self._progress.check()
+        return super().write(data)
+
+
+def build_series(
+    assessment: Assessment, demands: Sequence[Demand], results: Iterable[ItemResult], progress: Progress = SILENT
+) -> Arrays:
+    """Compute the series."""
     arrays: Arrays = dict(_files(assessment))
     joints = assessment.joints
     for index, demand in enumerate(demands):
         progress.check()
         arrays |= {f"motion/{index}/{name}": array for name, array in _of_motion(demand, joints.get(demand))}
-    arrays |= {f"contours/{name}": array for name, array in _contours(assessment, results)}
-    with path.open("wb") as file:
-        np.savez(file, allow_pickle=False, **arrays)
+    return arrays | {f"contours/{name}": array for name, array in _contours(assessment, results)}
+
+
+def write_series(path: Path, arrays: Arrays, progress: Progress = SILENT) -> None:
+    """Write the series to `path`.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    CancelledError
+        If the work was cancelled; no file is left.
+    """
+    try:
+        with _CheckedFile(path, progress) as file:
+            np.savez(file, allow_pickle=False, **arrays)
+    except CancelledError:
+        path.unlink(missing_ok=True)
+        raise
 
 
 def _files(assessment: Assessment) -> Iterator[tuple[str, NDArray[Any]]]:

@@ -41,7 +41,7 @@ class Job:
         """What HTML, PDF and Excel show, in the language of the reports."""
         from assess.report.content import build_content
 
-        return build_content(self.results)
+        return self.progress.wait_for(lambda: build_content(self.results))
 
     @cached_property
     def data(self) -> Path:
@@ -49,7 +49,7 @@ class Job:
         from assess.report.data import write_json
 
         path = self.stage / FILES["json"]
-        write_json(self.results, path)
+        write_json(self.results, path, self.progress)
         return path
 
 
@@ -81,13 +81,13 @@ def _write_json(job: Job, _path: Path) -> None:
 def _write_csv(job: Job, path: Path) -> None:
     from assess.report.data import write_csv
 
-    write_csv(job.results, path)
+    write_csv(job.results, path, job.progress)
 
 
 def _write_npz(job: Job, path: Path) -> None:
     from assess.report.data import write_npz
 
-    write_npz(job.results, path)
+    write_npz(job.results, path, job.progress)
 
 
 _WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {

@@ -5,6 +5,7 @@ take little more memory than one.
 """
 
 import csv
+import io
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.fields import MOTION_FIELDS, Shape, item_fields
+from assess.progress import SILENT, Progress
 from assess.report.results_schema import FILE, VERSION
 from assess.results import Results
 from assess.units import to_edge
@@ -28,14 +30,14 @@ _MOTION = Shape(MOTION_FIELDS)
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 
-def write_json(results: Results, path: Path) -> None:
-    """Write results.json; `SCHEMA` is the JSON Schema of its shape."""
+def write_json(results: Results, path: Path, progress: Progress = SILENT) -> None:
+    """Write results.json; `SCHEMA` is the JSON Schema of its shape. `progress` is checked row by row."""
     shape = Shape(item_fields(results))
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write("{\n")
         for name, value in describe_run(results).items():
             file.write(f" {json.dumps(name)}: {_dump(value)},\n")
-        _write_list(file, "items", map(shape.nest, results))
+        _write_list(file, "items", map(shape.nest, progress.checked(results)))
         file.write(",\n")
         _write_routes(file, results.route_tables.to_record())
         file.write(",\n")
@@ -122,16 +124,17 @@ def _floor_record(results: Results, name: str) -> dict[str, Any]:
 _PLAIN = frozenset({float, int, bool, type(None)})
 
 
-def write_csv(results: Results, path: Path) -> None:
+def write_csv(results: Results, path: Path, progress: Progress = SILENT) -> None:
     """Write items.csv: one row an item, UTF-8 with a byte order mark, by which Excel knows it.
 
-    A text that a spreadsheet would take for a formula is written behind an apostrophe; numbers stay numbers.
+    A text that a spreadsheet would take for a formula is written behind an apostrophe; numbers stay numbers. `progress`
+    is checked row by row.
     """
     shape = Shape(item_fields(results))
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer = csv.writer(file)
         writer.writerow([field.key for field in shape.fields])
-        for one in results:
+        for one in progress.checked(results):
             values = shape.flatten(one).values()
             writer.writerow([value if type(value) in _PLAIN else disarm(value) for value in values])
 
@@ -151,7 +154,7 @@ def disarm(value: object) -> object:
 # ---------------------------------------------------------------- outcomes.npz
 
 
-def write_npz(results: Results, path: Path) -> None:
+def write_npz(results: Results, path: Path, progress: Progress = SILENT) -> None:
     """Write outcomes.npz: under which motions each piece overturned, for those who count what falls together.
 
     Motion k is one earthquake on every floor of the building: two pieces fall together where both have bit k set.
@@ -166,26 +169,33 @@ def write_npz(results: Results, path: Path) -> None:
     ------
     OSError
         If the file cannot be written.
+    CancelledError
+        If `progress` was cancelled.
     """
+    path.write_bytes(progress.wait_for(lambda: _pack_outcomes(results)))
+
+
+def _pack_outcomes(results: Results) -> bytes:
     blocks = [(one, _outcomes(results, one.index)) for one in results.motions if one.ensemble is not None]
     most = max((rotation.shape[1] for _, (_, _, _, rotation) in blocks), default=0)
     cases = _joined([block[0] for _, block in blocks], np.zeros(0, dtype=np.int64))
     items = [results.item_rows[at] for at in results.cases_table.item[cases]]
     motions = [one for one, block in blocks for _ in block[0]]
-    with path.open("wb") as file:
-        np.savez_compressed(
-            file,
-            item=np.array([item.item for item in items], dtype=np.str_),
-            row=np.array([item.row for item in items], dtype=np.int64),
-            axis=np.array([motion.axis for motion in motions], dtype=np.str_),
-            source=np.array([motion.label for motion in motions], dtype=np.str_),
-            governs=np.isin(cases, [item.governing for item in results.item_rows]),
-            runs=_joined([block[1] for _, block in blocks], np.zeros(0, dtype=np.int64)),
-            overturned=_joined([_widen_bits(block[2], most) for _, block in blocks], np.zeros((0, 0), np.uint8)),
-            max_rotation_ratio=_joined(
-                [_widen(block[3], block[1], most) for _, block in blocks], np.zeros((0, 0), np.float32)
-            ),
-        )
+    packed = io.BytesIO()
+    np.savez_compressed(
+        packed,
+        item=np.array([item.item for item in items], dtype=np.str_),
+        row=np.array([item.row for item in items], dtype=np.int64),
+        axis=np.array([motion.axis for motion in motions], dtype=np.str_),
+        source=np.array([motion.label for motion in motions], dtype=np.str_),
+        governs=np.isin(cases, [item.governing for item in results.item_rows]),
+        runs=_joined([block[1] for _, block in blocks], np.zeros(0, dtype=np.int64)),
+        overturned=_joined([_widen_bits(block[2], most) for _, block in blocks], np.zeros((0, 0), np.uint8)),
+        max_rotation_ratio=_joined(
+            [_widen(block[3], block[1], most) for _, block in blocks], np.zeros((0, 0), np.float32)
+        ),
+    )
+    return packed.getvalue()
 
 
 def _outcomes(results: Results, motion: int) -> tuple[NDArray[Any], ...]:

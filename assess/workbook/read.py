@@ -9,13 +9,13 @@ from typing import Any
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import fill
 from assess.model import Inventory, Place, Segment
-from assess.progress import SILENT, Progress
+from assess.progress import SILENT, Progress, Stage
 from assess.workbook import check, check_routes
 from assess.workbook.check import Check
 from assess.workbook.names import ENGLISH, find_near, find_sheet, key, plain, translate, versions
 from assess.workbook.open import Book, read_file
 from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
-from assess.workbook.records import FileReader
+from assess.workbook.records import FileReader, Files
 from assess.workbook.resolve import (
     build_building,
     build_catalogue,
@@ -69,19 +69,23 @@ def read_inventory(
         sheet and cell.
     """
     path = Path(source) if isinstance(source, str | Path) else Path(IN_CODE)
+    files = Path(records) if isinstance(records, str | Path) else records
     with progress.stage("reading", path.name) as stage:
-        data = read_file(path) if isinstance(source, str | Path) else source if isinstance(source, bytes) else None
-        if isinstance(source, Mapping):
-            tables, problems = _tables_in_code(source)
-        else:
-            tables, problems = read_tables(data or b"", path.name, progress)
-        hashed = data if data is not None else json.dumps(source, sort_keys=True, default=str).encode()
-        stage.at(0.5)
-        files = Path(records) if isinstance(records, str | Path) else records
-        if files is None and isinstance(source, str | Path):
-            files = path.resolve().parent
-        reader = FileReader(files, progress)
-        tables, problems = _check(tables, problems, reader, strict=strict)
+        return progress.wait_for(lambda: _read(source, path, files, stage, strict=strict))
+
+
+def _read(source: str | Path | bytes | Rows, path: Path, files: Files, stage: Stage, *, strict: bool) -> Inventory:
+    data = read_file(path) if isinstance(source, str | Path) else source if isinstance(source, bytes) else None
+    if isinstance(source, Mapping):
+        tables, problems = _tables_in_code(source)
+    else:
+        tables, problems = read_tables(data or b"", path.name, stage.progress)
+    hashed = data if data is not None else json.dumps(source, sort_keys=True, default=str).encode()
+    stage.at(0.5)
+    if files is None and isinstance(source, str | Path):
+        files = path.resolve().parent
+    reader = FileReader(files, stage.progress)
+    tables, problems = _check(tables, problems, reader, strict=strict)
     return Inventory(
         source=path,
         sha256=hashlib.sha256(hashed).hexdigest(),

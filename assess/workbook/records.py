@@ -37,7 +37,7 @@ class FileReader:
     files : mapping of str to bytes, or Path, optional
         The files by name, or the folder in which they are.
     progress : Progress
-        Checked before every file.
+        Checked before every file, and every member of an archive.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class FileReader:
         content, address = self._find(file)
         if address not in self._read:
             self.progress.check()
-            found, digest = self._read[address] = _parse(content, address)
+            found, digest = self._read[address] = _parse(content, address, self.progress)
             if not isinstance(found, CellError):
                 self.hashes[file] = digest
         return self._read[address]
@@ -148,11 +148,12 @@ class FileReader:
         return self.given[address], address
 
 
-def _parse(data: bytes | Path, address: str) -> tuple[tuple[Record, ...] | CellError, str]:
+def _parse(data: bytes | Path, address: str, progress: Progress) -> tuple[tuple[Record, ...] | CellError, str]:
     """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read."""
     try:
         read = data if isinstance(data, bytes) else read_bytes(data)
-        return parse_records(read, PurePosixPath(_posix(address)).name), hashlib.sha256(read).hexdigest()
+        found = parse_records(read, PurePosixPath(_posix(address)).name, progress=progress)
+        return found, hashlib.sha256(read).hexdigest()
     except RecordError as error:
         return CellError(fill("the record cannot be read: {why}.", why=error.message)), ""
 

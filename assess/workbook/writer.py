@@ -7,13 +7,34 @@ import tempfile
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import xlsxwriter
+
+from assess.progress import SILENT, Progress
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 _TEXT_STAYS_TEXT = dict.fromkeys(("strings_to_formulas", "strings_to_urls", "strings_to_numbers"), False)
 
 
-def write_book(path: Path, fill: Callable[[xlsxwriter.Workbook], None], by_row: bool = False) -> None:
+class _Packed(io.BytesIO):
+    """The packed file, which asks before each write whether to stop."""
+
+    def __init__(self, progress: Progress) -> None:
+        super().__init__()
+        self._progress = progress
+
+    def write(self, data: "ReadableBuffer", /) -> int:
+        """Write."""
+        self._progress.check()
+        return super().write(data)
+
+
+def write_book(
+    path: Path, fill: Callable[[xlsxwriter.Workbook], None], by_row: bool = False, progress: Progress = SILENT
+) -> None:
     """Write a workbook.
 
     Parameters
@@ -24,13 +45,17 @@ def write_book(path: Path, fill: Callable[[xlsxwriter.Workbook], None], by_row: 
         Adds the sheets to the open workbook.
     by_row : bool
         Whether the sheets are written row by row, in little memory.
+    progress : Progress
+        Checked while they are packed.
 
     Raises
     ------
     OSError
         If it cannot be written.
+    CancelledError
+        If the work was cancelled; no file is left.
     """
-    packed = io.BytesIO()
+    packed = _Packed(progress)
     with tempfile.TemporaryDirectory(prefix=".assess-sheets-", dir=path.parent) as parts:
         try:
             book = xlsxwriter.Workbook(packed, {"constant_memory": by_row, "tmpdir": parts, **_TEXT_STAYS_TEXT})

@@ -70,8 +70,7 @@ def read_records(path: Path, *, progress: Progress = SILENT) -> tuple[Record, ..
     RecordError
         If the file cannot be read or used; the message names the file, what is the matter, and how to fix it.
     """
-    progress.check()
-    return parse_records(read_bytes(path), path.name, progress=progress)
+    return progress.wait_for(lambda: parse_records(read_bytes(path), path.name, progress=progress))
 
 
 def read_bytes(path: Path) -> bytes:

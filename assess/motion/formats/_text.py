@@ -17,11 +17,14 @@ from assess.i18n import Text, fill, nfill
 from assess.motion.formats._format import Format, keep_readable
 from assess.motion.formats._values import read_real
 from assess.motion.record import MOST_SAMPLES, FloatArray, Record
+from assess.progress import check_waits
 
 LONGEST_TEXT = 160
 """Characters kept of a line of a header."""
 MOST_LINES = 10_000_000
 """Lines of a file; with one sample to a line there are no more than MOST_SAMPLES of them, and two marks end each."""
+AT_ONCE = 100_000
+"""Numbers that are converted between two looks at whether to stop."""
 MOST_BEYOND = 0.01
 """Share of the data that may stand beyond the count in the header [-]."""
 
@@ -237,6 +240,11 @@ def too_long(announced: int) -> RecordError:
     )
 
 
+def _convert(cells: Sequence[str]) -> FloatArray:
+    check_waits()  # numpy holds the interpreter's lock while it converts
+    return np.array(cells, dtype=np.float64)
+
+
 def convert(cells: Sequence[str], section: Section, start: int, per_line: int | None) -> FloatArray:
     """Return cells of the section's lines from `start` on as numbers; `per_line` is None where lines do not count.
 
@@ -246,7 +254,7 @@ def convert(cells: Sequence[str], section: Section, start: int, per_line: int | 
         If one is no number; the message names its line or its place.
     """
     try:
-        return np.array(cells, dtype=np.float64)
+        return np.concatenate([_convert(cells[at : at + AT_ONCE]) for at in range(0, len(cells), AT_ONCE) or (0,)])
     except ValueError:
         place = next((place for place, text in enumerate(cells) if read_real(text) is None), 0)
         text = cells[place].strip()

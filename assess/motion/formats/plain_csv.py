@@ -10,6 +10,7 @@ Cells are separated by commas, semicolons or tabs; with the last two, numbers ma
 """
 
 import re
+from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -20,11 +21,14 @@ from assess.i18n import fill
 from assess.motion.formats._format import Format, build_record
 from assess.motion.formats._text import split_text
 from assess.motion.record import FloatArray, Record, build_series
+from assess.progress import check_waits
 from assess.units import ACCELERATION, TIME, read_unit
 
 TITLE = "plain CSV"
 KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
 UNITS = ", ".join(ACCELERATION)
+CHECKED_EVERY = 10_000
+"""Lines after which it is looked whether to stop."""
 
 _ANSWERS = {"yes": True, "true": True, "no": False, "false": False, "": False}
 _VERTICAL = frozenset({"up", "down", "vertical", "vert", "ud", "z"})
@@ -172,14 +176,15 @@ def _take_unit(heading: str) -> tuple[str, str]:
 
 def _read_numbers(table: _Table) -> FloatArray:
     """Return times and channels, (n, 1 + channels), in the file's own units."""
-    numbers = [
-        _read_row(_cells(row, table.separator), table, line)
-        for line, row in enumerate(table.rows, start=table.first)
-        if not _is_blank(row)
-    ]
+    numbers = array("d")  # a list of rows would be gone through again and again by Python's collector
+    for line, row in enumerate(table.rows, start=table.first):
+        if line % CHECKED_EVERY == 0:
+            check_waits()
+        if not _is_blank(row):
+            numbers.extend(_read_row(_cells(row, table.separator), table, line))
     if not numbers:
         raise RecordError(fill("there are no rows below the headings. Add the samples"))
-    return np.array(numbers, dtype=np.float64)
+    return np.frombuffer(numbers).reshape(-1, 1 + len(table.columns))
 
 
 def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:

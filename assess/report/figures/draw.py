@@ -3,15 +3,16 @@
 import math
 import re
 import threading
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial, wraps
 from io import BytesIO
 from typing import Any
 
 import numpy as np
 
 from assess.i18n import spoken
-from assess.progress import SILENT, Progress
+from assess.progress import ASKED_EVERY, SILENT, Progress
 from assess.report import words
 from assess.report.fonts import find_missing, replace_signs
 from assess.risk import RiskClass
@@ -29,37 +30,61 @@ def draw(
     """Draw one figure [inches] and return it as "svg", "pdf" or "png".
 
     Numbers along the axes are written as the language in use writes them; a character without a glyph shows as �.
-    It can be cancelled before it is painted, and before each panel is drawn.
+    It can be cancelled with whatever is put into it, and before each panel is laid out and drawn. It is not made in a
+    thread that is left behind, as the defaults of matplotlib have to be set back by then.
     """
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
-    style = mpl.rc_context({"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "hatch.linewidth": 0.5})
-    with _DRAWING, style:
+    Figure, rc_context = progress.wait_for(_import_matplotlib)
+    style = rc_context({"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "hatch.linewidth": 0.5})
+    with _one_at_a_time(progress), style:
         figure = Figure(figsize=(width, height), layout="constrained")
-        progress.check()
+        figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
         paint(figure)
         _add_checks(figure, progress)
+        progress.check()
         _replace_missing(figure)
         _write_numbers(figure)
         file = BytesIO()
         figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
+    progress.check()
     return _shorten(file.getvalue()) if kind == "svg" else file.getvalue()
 
 
+def _import_matplotlib() -> tuple[Any, Any]:
+    """Return what figures are drawn with; its fonts are listed, and what writes SVG is loaded."""
+    import matplotlib as mpl
+    from matplotlib import font_manager
+    from matplotlib.backends import backend_svg
+    from matplotlib.figure import Figure
+
+    _ = font_manager, backend_svg
+    return Figure, mpl.rc_context
+
+
+@contextmanager
+def _one_at_a_time(progress: Progress) -> Iterator[None]:
+    while not _DRAWING.acquire(timeout=ASKED_EVERY):
+        progress.check()
+    try:
+        yield
+    finally:
+        _DRAWING.release()
+
+
 def _add_checks(figure: Any, progress: Progress) -> None:
-    """Have the work be cancelled while a figure is drawn: an empty artist checks that before and after each panel."""
-    from matplotlib.artist import Artist
+    """Have the work be cancelled before each panel, and each of its axes, is laid out or drawn."""
+    for panel in figure.axes:
+        for one in (panel, panel.xaxis, panel.yaxis):
+            for name in ("get_tightbbox", "draw"):
+                setattr(one, name, _after_check(getattr(one, name), progress))
 
-    class Check(Artist):
-        def draw(self, _renderer: Any) -> None:
-            progress.check()
 
-    for axes in figure.axes:
-        check = Check()
-        check.set_zorder(axes.get_zorder())
-        check.set_in_layout(False)
-        axes.figure.add_artist(check)
+def _after_check(work: Callable[..., Any], progress: Progress) -> Callable[..., Any]:
+    @wraps(work)
+    def checked(*given: Any, **named: Any) -> Any:
+        progress.check()
+        return work(*given, **named)
+
+    return checked
 
 
 def _replace_missing(figure: Any) -> None:

@@ -46,6 +46,11 @@ def build_context(
     content: Content, options: ReportOptions, *, for_print: bool, progress: Progress = SILENT
 ) -> dict[str, Any]:
     """Return the names that the templates use; figures are cancelled while they are drawn."""
+    aside = progress.wait_for(lambda: _of_content(content, options, for_print=for_print, progress=progress))
+    return {**aside, **_of_figures(content, progress)}
+
+
+def _of_content(content: Content, options: ReportOptions, *, for_print: bool, progress: Progress) -> dict[str, Any]:
     is_long = len(content.results) > FULL_ROWS
     is_compact = is_long and for_print and not options.accessible
     return {
@@ -64,7 +69,6 @@ def build_context(
         **_of_floors(content, progress),
         **_of_routes(content, for_print=for_print),
         **_of_methods(content),
-        **_of_figures(content, progress),
     }
 
 
@@ -170,7 +174,7 @@ def _of_methods(content: Content) -> dict[str, Any]:
 
 def _of_figures(content: Content, progress: Progress) -> dict[str, Any]:
     """Draw the figures: the map of risk, the motions of the simulation, and the records."""
-    contours = build_contours(content.run)
+    contours = progress.wait_for(lambda: build_contours(content.run))
     figures = {"contours": _svg(draw_contours(contours, progress))} if contours else {}
     traced = [
         {"image": _svg(one.drawing), "caption": one.caption, "alternative": one.alternative}

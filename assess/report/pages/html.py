@@ -22,7 +22,8 @@ SCRIPT = "script/report.js"
 
 def write_html(content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
     """Write report.html; raises InputError where a template of the firm's own cannot be used."""
-    page = render(with_problems(content, list_missing_figures(content)), options, progress=progress)
+    problems = progress.wait_for(lambda: list_missing_figures(content))
+    page = render(with_problems(content, problems), options, progress=progress)
     path.write_text(page, encoding="utf-8")
 
 
@@ -51,16 +52,15 @@ def render(
     CancelledError
         If the work was cancelled.
     """
-    from jinja2 import TemplateError
-    from jinja2.exceptions import SecurityError
-
     options = options or ReportOptions()
+    TemplateError, SecurityError = progress.wait_for(_import_errors)
     script = "" if for_print else options.read(SCRIPT)
     context = build_context(content, options, for_print=for_print, progress=progress)
     context |= {"script": script, "script_hash": hash_script(script), "style": _style(options, for_print)}
     parts = []
     try:
-        for part in _environment(options).get_template("report.html.j2").generate(**context):
+        template = progress.wait_for(lambda: _environment(options).get_template("report.html.j2"))
+        for part in template.generate(**context):
             progress.check()
             parts.append(part)
     except (TemplateError, SecurityError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
@@ -118,6 +118,13 @@ def _environment(options: ReportOptions) -> Any:
     environment.filters |= {**FILTERS, "equation": write_equation}
     environment.globals |= GLOBALS
     return environment
+
+
+def _import_errors() -> tuple[type[Exception], type[Exception]]:
+    from jinja2 import TemplateError
+    from jinja2.exceptions import SecurityError
+
+    return TemplateError, SecurityError
 
 
 # ---------------------------------------------------------------- parts of the page that are no plain text

@@ -68,8 +68,12 @@ def write_pdf(
     CancelledError
         If the work was cancelled; what is written of the file is of no use.
     """
-    problems = [*list_problems(content.run), *list_missing_figures(content)]
+    problems = progress.wait_for(lambda: [*list_problems(content.run), *list_missing_figures(content)])
     html = render(with_problems(content, problems), options, for_print=True, progress=progress)
+    _lay_out(progress.wait_for(lambda: _build_job(html, content, path, options, data)), progress)
+
+
+def _build_job(html: str, content: Content, path: Path, options: ReportOptions, data: Path | None) -> bytes:
     files = list_attached(content.run, data)
     job = {
         "html": replace_signs(html, find_nowhere(find_missing(html))),
@@ -78,7 +82,7 @@ def write_pdf(
         "time": report_time().isoformat(),
         "attachments": [asdict(file) for file in files],
     }
-    _lay_out(json.dumps(job).encode(), progress)
+    return json.dumps(job).encode()
 
 
 def list_problems(results: Results) -> list[Problem]:

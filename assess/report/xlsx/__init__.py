@@ -65,7 +65,7 @@ def write_xlsx(content: Content, path: Path, progress: Progress = SILENT) -> Non
         book.set_properties({"title": title, "created": created})
         _write_sheets(book, content, progress)
 
-    write_book(path, write, by_row=True)
+    write_book(path, write, by_row=True, progress=progress)
 
 
 def _write_sheets(book: xlsxwriter.Workbook, content: Content, progress: Progress) -> None:
