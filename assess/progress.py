@@ -47,7 +47,7 @@ Listener = Callable[[Report], None]
 class Progress:
     """Passes reports on to a listener, and raises `CancelledError` in the work once `cancel` is set.
 
-    It may be used from several threads at once. Work calls `check` at least every 0.2 s.
+    It may be used from several threads at once. Work calls `check` at least every 0.2 s, or goes through `wait_for`.
 
     Parameters
     ----------

@@ -125,6 +125,10 @@ def find_fragility(
         raise InputError(
             fill('runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite')
         )
+    return progress.wait_for(lambda: _find_fragility(assessment, values, jobs, progress))
+
+
+def _find_fragility(assessment: Assessment, values: Sequence[float], jobs: int | None, progress: Progress) -> Fragility:
     inventory = assessment.inventory
     obstructions = find_obstructions(inventory, progress)
     beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.motion.generate import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
-from tests.benchmarks import report, rocking, routes, verified
+from tests.benchmarks import cancel, report, rocking, routes, verified
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -58,7 +58,15 @@ def main() -> None:
         )
         print(_once("1,000 items, not verified, json,csv", [*run, str(thousand), "--formats", "json,csv", *out]))
         print()
-        for row in (*report.rows(folder), "", *verified.rows(folder), "", *routes.rows(folder)):
+        for row in (
+            *report.rows(folder),
+            "",
+            *verified.rows(folder),
+            "",
+            *routes.rows(folder),
+            "",
+            *cancel.rows(folder),
+        ):
             print(row)
     print("\n| motions of 4,000 samples | seconds | rival | seconds | times as fast | aim |\n|---|---|---|---|---|---|")
     print(_spectrum())

@@ -5,7 +5,7 @@ import re
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial, wraps
+from functools import partial
 from io import BytesIO
 from typing import Any
 
@@ -39,8 +39,6 @@ def draw(
         figure = Figure(figsize=(width, height), layout="constrained")
         figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
         paint(figure)
-        _add_checks(figure, progress)
-        progress.check()
         _replace_missing(figure)
         _write_numbers(figure)
         file = BytesIO()
@@ -68,23 +66,6 @@ def _one_at_a_time(progress: Progress) -> Iterator[None]:
         yield
     finally:
         _DRAWING.release()
-
-
-def _add_checks(figure: Any, progress: Progress) -> None:
-    """Have the work be cancelled before each panel, and each of its axes, is laid out or drawn."""
-    for panel in figure.axes:
-        for one in (panel, panel.xaxis, panel.yaxis):
-            for name in ("get_tightbbox", "draw"):
-                setattr(one, name, _after_check(getattr(one, name), progress))
-
-
-def _after_check(work: Callable[..., Any], progress: Progress) -> Callable[..., Any]:
-    @wraps(work)
-    def checked(*given: Any, **named: Any) -> Any:
-        progress.check()
-        return work(*given, **named)
-
-    return checked
 
 
 def _replace_missing(figure: Any) -> None:

@@ -1,0 +1,273 @@
+"""Cancelling: it is obeyed in whatever the work is doing, leaves nothing behind, and the rest of the work ends soon."""
+
+import threading
+from pathlib import Path
+from threading import Event
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+
+import assess
+from assess.errors import CancelledError, InputError
+from assess.i18n import gettext, load_catalogue, speaking
+from assess.motion.formats import _text, plain_csv, read_records
+from assess.pipeline import run as pipeline
+from assess.pipeline.series import write_series
+from assess.progress import SILENT, Progress, Report, check_waits
+from assess.report import FORMATS, data
+from assess.report.figures.draw import draw
+from assess.workbook.writer import write_book
+from tests.workbooks import UNVERIFIED, write
+
+ROWS = 2000
+
+
+class Blocked:
+    """Work that sets a cancel, and then does not look at it until it is let go, as a compilation does."""
+
+    def __init__(self, cancel: Event) -> None:
+        self.cancel, self.released, self.ended = cancel, Event(), Event()
+        self.threads: list[threading.Thread] = []
+
+    def __call__(self, *_given, **_named):
+        self.threads.append(threading.current_thread())
+        self.cancel.set()
+        self.released.wait()
+        try:
+            check_waits()
+        finally:
+            self.ended.set()
+
+    def let_go(self) -> None:
+        self.released.set()
+        for thread in self.threads:
+            thread.join()
+
+
+@pytest.fixture
+def blocked():
+    work = Blocked(Event())
+    yield work
+    work.let_go()
+
+
+def _join() -> None:
+    """Wait for work that was left behind."""
+    for thread in threading.enumerate():
+        if thread.name == "assess-aside":
+            thread.join()
+
+
+# ---------------------------------------------------------------- waiting
+
+
+def test_work_without_an_event_is_just_called():
+    for progress in (SILENT, Progress(print)):
+        assert progress.wait_for(threading.current_thread) is threading.current_thread()
+
+
+def test_work_aside_returns_raises_and_speaks_as_it_would_here():
+    progress = Progress(cancel=Event())
+    assert progress.wait_for(threading.current_thread) is not threading.current_thread()
+    with speaking(load_catalogue("it")):
+        assert progress.wait_for(lambda: gettext("Summary")) == gettext("Summary") != "Summary"
+    error = InputError("no")
+    with pytest.raises(InputError) as caught:
+        progress.wait_for(lambda: (_ for _ in ()).throw(error))
+    assert caught.value is error
+
+
+def test_work_that_does_not_look_is_left_at_once_and_ends_at_its_next_look(blocked):
+    with pytest.raises(CancelledError):
+        Progress(cancel=blocked.cancel).wait_for(blocked)
+    assert not blocked.ended.is_set()
+    blocked.let_go()
+    assert blocked.ended.is_set()
+    check_waits()  # nobody has cancelled what this thread does
+
+
+def test_nothing_is_begun_or_reported_after_a_cancel():
+    cancel, reports = Event(), list[Report]()
+    progress = Progress(reports.append, cancel)
+    with progress.stage("reading"):
+        cancel.set()
+        progress.tell(Report("reading", 0.5, "", None))
+        with pytest.raises(CancelledError):
+            progress.wait_for(lambda: pytest.fail("it was begun"))
+    assert [one.share for one in reports] == [0.0]
+
+
+def test_rows_are_checked_one_by_one():
+    cancel = Event()
+    rows = Progress(cancel=cancel).checked(range(10))
+    assert [next(rows), next(rows)] == [0, 1]
+    cancel.set()
+    with pytest.raises(CancelledError):
+        next(rows)
+
+
+# ---------------------------------------------------------------- reading
+
+
+def _after(number: int, real, cancel: Event, calls: list[int]):
+    """Return `real`, which sets `cancel` on its call of a number."""
+
+    def counted(*given):
+        calls.append(1)
+        if len(calls) == number:
+            cancel.set()
+        return real(*given)
+
+    return counted
+
+
+def test_a_long_record_of_plain_csv_is_not_read_to_its_end(tmp_path, monkeypatch):
+    path, cancel, rows = tmp_path / "long.csv", Event(), list[int]()
+    lines = (f"{at / 100:.2f},{at % 7}" for at in range(ROWS))
+    path.write_text("time [s],north [cm/s2]\n" + "\n".join(lines), encoding="utf-8")
+    monkeypatch.setattr(plain_csv, "CHECKED_EVERY", 10)
+    (whole,) = read_records(path, progress=Progress(cancel=Event()))
+    assert whole.acceleration.size == ROWS
+    monkeypatch.setattr(plain_csv, "_read_row", _after(50, plain_csv._read_row, cancel, rows))
+    with pytest.raises(CancelledError):
+        read_records(path, progress=Progress(cancel=cancel))
+    _join()
+    assert 50 <= len(rows) <= 60
+
+
+def test_a_long_record_of_words_is_not_converted_to_its_end(tmp_path, monkeypatch):
+    path, cancel, blocks = tmp_path / "long.at2", Event(), list[int]()
+    header = "PEER\nQuake, 1/1/2000, Station, 90\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 2000, DT= .01 SEC\n"
+    path.write_text(header + "\n".join(f"{at % 7 / 100:.4E}" for at in range(ROWS)), encoding="utf-8")
+    (whole,) = read_records(path)
+    monkeypatch.setattr(_text, "AT_ONCE", 100)
+    (again,) = read_records(path)
+    np.testing.assert_array_equal(again.acceleration, whole.acceleration)
+    monkeypatch.setattr(_text, "_convert", _after(3, _text._convert, cancel, blocks))
+    with pytest.raises(CancelledError):
+        read_records(path, progress=Progress(cancel=cancel))
+    _join()
+    assert len(blocks) == 3
+
+
+def test_a_workbook_is_left_in_the_midst_of_its_checks(tmp_path, monkeypatch, blocked):
+    path = write(tmp_path / "w.xlsx")
+    monkeypatch.setattr("assess.workbook.read._check", blocked)
+    with pytest.raises(CancelledError):
+        assess.read_inventory(path, progress=Progress(cancel=blocked.cancel))
+    assert not blocked.ended.is_set()
+
+
+# ---------------------------------------------------------------- a run
+
+
+def test_a_run_is_left_in_the_midst_of_a_compilation(tmp_path, monkeypatch, blocked):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
+    monkeypatch.setattr(pipeline, "verify", blocked)
+    with pytest.raises(CancelledError):
+        assess.run(inventory, cancel=blocked.cancel, series_folder=tmp_path / "series")
+    assert not blocked.ended.is_set()
+    assert not (tmp_path / "series").exists()
+
+
+def test_a_run_that_is_cancelled_late_leaves_no_folder(tmp_path, monkeypatch, blocked):
+    inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
+    monkeypatch.setattr("assess.pipeline.run.tempfile.mkdtemp", lambda **_: str(_make(tmp_path / "temporary")))
+    monkeypatch.setattr(pipeline, "build_series", blocked)
+    with pytest.raises(CancelledError):
+        assess.run(inventory, UNVERIFIED, cancel=blocked.cancel)
+    assert not (tmp_path / "temporary").exists()
+
+
+def _make(folder: Path) -> Path:
+    folder.mkdir()
+    return folder
+
+
+def test_a_file_of_series_is_not_left_half_written(tmp_path):
+    cancel = Event()
+    cancel.set()
+    with pytest.raises(CancelledError):
+        write_series(tmp_path / "series.npz", {"a": np.zeros(10)}, Progress(cancel=cancel))
+    assert list(tmp_path.iterdir()) == []
+
+
+# ---------------------------------------------------------------- reports
+
+
+def test_no_format_leaves_a_file(tmp_path, monkeypatch):
+    """Cancelled at an early look of each format, whatever it is at."""
+    results, out = assess.run(write(tmp_path / "w.xlsx"), UNVERIFIED), tmp_path / "out"
+    for name in (*FORMATS, "npz"):
+        for number in (2, 4):
+            cancel, looks = Event(), list[int]()
+            progress = Progress(cancel=cancel)
+            monkeypatch.setattr(progress, "check", _after(number, progress.check, cancel, looks))
+            with pytest.raises(CancelledError):
+                assess.write_reports(results, out, name, progress=progress)
+            assert list(out.iterdir()) == [], name
+
+
+def test_outcomes_are_left_in_the_midst_of_packing(tmp_path, monkeypatch, blocked):
+    results = assess.run(write(tmp_path / "w.xlsx"), UNVERIFIED)
+    monkeypatch.setattr(data, "_pack_outcomes", blocked)
+    with pytest.raises(CancelledError):
+        assess.write_reports(results, tmp_path / "out", "npz", progress=Progress(cancel=blocked.cancel))
+    assert not blocked.ended.is_set()
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_a_workbook_is_left_in_the_midst_of_packing(tmp_path):
+    cancel = Event()
+
+    def fill(book):
+        book.add_worksheet().write_string(0, 0, "text")
+        cancel.set()  # what is left is XlsxWriter's own work
+
+    with pytest.raises(CancelledError):
+        write_book(tmp_path / "book.xlsx", fill, by_row=True, progress=Progress(cancel=cancel))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_figure_is_left_with_the_next_thing_put_into_it():
+    before, cancel, put = dict(mpl.rcParams), Event(), []
+
+    def paint(figure):
+        axes = figure.subplots()
+        for at in range(10):
+            if at == 3:
+                cancel.set()
+            axes.plot([0, 1], [0, at])
+            put.append(at)
+
+    with pytest.raises(CancelledError):
+        draw(3, 2, paint, progress=Progress(cancel=cancel))
+    assert put == [0, 1, 2]
+    assert dict(mpl.rcParams) == before
+    whole = draw(3, 2, lambda figure: figure.subplots(), progress=Progress(cancel=Event()))
+    assert whole == draw(3, 2, lambda figure: figure.subplots())
+
+
+def test_a_figure_is_left_while_it_is_laid_out_or_drawn():
+    cancel = Event()
+
+    def paint(figure):
+        figure.subplots().text(0.5, 0.5, "text")
+        cancel.set()  # what is left is matplotlib's own work
+
+    with pytest.raises(CancelledError):
+        draw(3, 2, paint, progress=Progress(cancel=cancel))
+
+
+def test_a_figure_that_waits_for_another_can_be_cancelled(monkeypatch):
+    cancel, drawn = Event(), list[object]()
+    progress = Progress(cancel=cancel)
+    monkeypatch.setattr(progress, "check", _after(3, progress.check, cancel, []))
+
+    def paint_inside(_figure):
+        with pytest.raises(CancelledError):
+            draw(3, 2, drawn.append, progress=progress)
+
+    draw(3, 2, paint_inside)
+    assert drawn == []
