@@ -28,7 +28,7 @@ def draw(
     samples = envelopes.values.shape[1]
     noise = draw_noise(envelopes, STEP, seed=seed, axis=axis, first=first, count=count, threads=threads)
     assert noise.shape == (count, filter_frequencies(samples, STEP).size)
-    return np.asarray(np.fft.irfft(noise, filter_length(samples, STEP), axis=1))
+    return np.array([np.fft.irfft(row, filter_length(samples, STEP)) for row in noise])  # each as if it were alone
 
 
 # --- octaves ---
