@@ -11,7 +11,7 @@ import numpy as np
 
 from assess.compiled import compiled
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import run_rows
+from assess.motion.rows import run_rows
 from assess.motion.target import Grid
 from assess.progress import SILENT, Progress
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import transform_rows
+from assess.motion.rows import transform_rows
 from assess.progress import SILENT, Progress
 
 LOWEST, HIGHEST = 0.1, 25.6

@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from assess.motion.bending import Bend, bend_row, build_taper, lift_peaks, settle
 from assess.motion.envelope import draw_noise, filter_frequencies, filter_length
 from assess.motion.record import CORNER, FloatArray
-from assess.motion.spectrum import pseudo_acceleration, run_rows, transform_rows
+from assess.motion.rows import run_rows, transform_rows
+from assess.motion.spectrum import pseudo_acceleration
 from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.target_fit import Fit, Spectra, measure_match
 from assess.motion.wavelets import Wavelets, adjust, build_wavelets

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import run_rows
+from assess.motion.rows import run_rows
 from assess.progress import SILENT, Progress
 from assess.rocking import block, kernel
 from assess.units import GRAVITY

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.motion.record import FloatArray
-from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum, run_rows
+from assess.motion.rows import run_rows
+from assess.motion.spectrum import build_periods, oscillator_step, response_spectrum
 from assess.progress import SILENT
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
 

@@ -275,6 +275,7 @@ def test_the_page_never_scrolls_sideways(open_page, width):
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     too_wide = "heads => heads.filter(h => h.scrollWidth > h.clientWidth + 1).map(h => h.innerText)"
     assert page.locator("thead th").evaluate_all(too_wide) == []
+    assert page.locator("#pieces td").evaluate_all(too_wide) == []
     for selector in ("#pieces", "svg.floor-plan", "#filter-bar"):
         assert page.locator(selector).first.is_visible()
 

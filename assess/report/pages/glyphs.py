@@ -8,7 +8,7 @@ from typing import Any
 from assess.errors import Problem
 from assess.i18n import fill, nfill
 from assess.report.fonts import find_missing
-from assess.results import Results
+from assess.results import ItemRow, Results
 from assess.route_results import SegmentRow
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, Sheet
 
@@ -109,7 +109,8 @@ def _text(results: Results, row: Any, name: str) -> str:
         return " ".join(f"{one.record} {one.event}" for one in results.motions_of(row.floor, axis))
     if isinstance(row, SegmentRow):
         name = _OF_SEGMENTS.get(name, name)
-    return str(getattr(row, name) or "")
+    value = row.more.get(name) if isinstance(row, ItemRow) and name in row.more else getattr(row, name)
+    return str(value or "")
 
 
 def _cell(results: Results, sheet: Sheet, row: Any, name: str) -> str:

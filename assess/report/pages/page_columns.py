@@ -163,7 +163,7 @@ def _of_piece(field: Field, where: Where, method: "MethodInfo | None") -> PageCo
         return _describe(column, where)
     composed: Mapping[str, Mapping[str, Any]] = {
         "breadth_cm": {"key": "size", "text": words.size, "sort": lambda one: one.item.height_cm, "places": 17},
-        "adopted_probability": {"text": words.chance, "places": 25},
+        "adopted_probability": {"text": words.chance, "places": 25, "is_wide": True},
         "verification_record_overturned": {"text": words.under_record},
         "adopted_class": {"text": words.risk_words, "sort": _rank},
         "adopted_flags": {"text": lambda one: ", ".join(map(_say_flag, one.adopted.flags))},
