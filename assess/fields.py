@@ -13,7 +13,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.methods import MethodInfo
 from assess.model import ANCHORED, AXES, IMPORTANCE
-from assess.results import CaseRow, ItemResult, ItemRow, MotionRow, Results, Simulation
+from assess.results import CaseRow, MotionRow, Results, Simulation
 from assess.risk import RiskClass
 
 Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "records"]
@@ -92,12 +92,7 @@ def _head(label: str, unit: str) -> str:
 
 def _of_item(key: str, label: str, **more: Any) -> Field:
     """A field of the row as it was assessed, or a column of the workbook that nothing is computed with."""
-    is_computed_with = key in ItemRow.__slots__
-
-    def read(one: ItemResult) -> Any:
-        return getattr(one.item, key) if is_computed_with else one.item.more.get(key)
-
-    return Field(key=key, read=read, label=label, **more)
+    return Field(key=key, read=lambda one: one.item.field(key), label=label, **more)
 
 
 def _word(risk: RiskClass | None) -> str | None:

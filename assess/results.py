@@ -251,6 +251,10 @@ class ItemRow:
     first_case: int
     last_case: int
 
+    def field(self, key: str) -> Any:
+        """Return one field by its key, whether or not anything is computed with it: None where that is blank."""
+        return getattr(self, key) if key in ItemRow.__slots__ else self.more.get(key)
+
 
 class MethodResult(NamedTuple):
     """What one method gives for one case; `value` is None where it was not evaluated.

@@ -109,8 +109,7 @@ def _text(results: Results, row: Any, name: str) -> str:
         return " ".join(f"{one.record} {one.event}" for one in results.motions_of(row.floor, axis))
     if isinstance(row, SegmentRow):
         name = _OF_SEGMENTS.get(name, name)
-    value = row.more.get(name) if isinstance(row, ItemRow) and name in row.more else getattr(row, name)
-    return str(value or "")
+    return str((row.field(name) if isinstance(row, ItemRow) else getattr(row, name)) or "")
 
 
 def _cell(results: Results, sheet: Sheet, row: Any, name: str) -> str:
