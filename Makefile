@@ -5,6 +5,9 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
+# Tests start Python hundreds of times: what it compiles is kept, whatever the machine is set to.
+export PYTHONDONTWRITEBYTECODE :=
+
 # Workers keep to neighbouring tests, which share what they set up; more than eight gain nothing and take memory.
 PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist worksteal
 SLOW := slow or browser or libreoffice or verapdf
