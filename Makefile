@@ -24,7 +24,7 @@ test: $(VENV)/.developing
 test-slow: $(VENV)/.developing
 	$(PYTEST) -m "($(SLOW)) and not long"
 
-# Whole studies, fuzzing, the lowest and the newest dependencies: an hour. Writes docs/tests.md.
+# Whole studies, fuzzing, the lowest and the newest dependencies: half an hour. Writes docs/tests.md.
 test-long: $(VENV)/.developing
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'uv>=0.5'
 	$(BIN)/python tests/run_long.py

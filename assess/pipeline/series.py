@@ -20,6 +20,7 @@ Arrays by name; `m` is a place in `Results.motions`:
 
 import io
 import math
+import zipfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -91,8 +92,13 @@ def write_series(path: Path, arrays: Arrays, progress: Progress = SILENT) -> Non
         If the work was cancelled; no file is left.
     """
     try:
-        with _CheckedFile(path, progress) as file:
-            np.savez(file, allow_pickle=False, **arrays)
+        with (
+            _CheckedFile(path, progress) as file,
+            zipfile.ZipFile(file, "w") as box,
+        ):  # numpy.savez may not close its own
+            for name, array in arrays.items():
+                with box.open(f"{name}.npy", "w", force_zip64=True) as part:
+                    np.lib.format.write_array(part, array, allow_pickle=False)
     except CancelledError:
         path.unlink(missing_ok=True)
         raise
