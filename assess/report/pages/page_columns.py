@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from assess.methods import MethodInfo
 
 NUMBERS = ("number", "count", "share")
-LONGEST: Mapping[str, int] = {"floor": 20, "description": 120}
+LONGEST: Mapping[str, int] = {"floor": 20}
 """Characters of a text in a table, by key; of others 40."""
 COMPACT: Mapping[str, int] = {
     "item": 12, "floor": 6, "room": 14, "description": 30, "quantity": 5, "breadth_to_height": 6,
