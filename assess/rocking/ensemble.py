@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -46,31 +47,109 @@ class Rocking:
     impacts: NDArray[np.int64]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Bodies:
+    """m bodies, each one and the same (m, 1) or one a motion (m, k), as arrays of one shape.
+
+    Parameters
+    ----------
+    breadth, height : arrays
+        Sizes [m]; breadth is the side parallel to the motion.
+    centre : array
+        Height of the centre of gravity as a share of the body's [-].
+    restitution : array
+        Angular velocity after an impact over that before it [-].
+    scale : array
+        Factor on the motion [-].
+    """
+
+    breadth: FloatArray
+    height: FloatArray
+    centre: FloatArray
+    restitution: FloatArray
+    scale: FloatArray
+
+    @classmethod
+    def of(
+        cls, breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike, centre: ArrayLike, scale: ArrayLike
+    ) -> "Bodies":
+        """Build them from (m,) or (m, k) arrays, or numbers; ValueError as of `rock_blocks`."""
+        given = [np.asarray(values, dtype=np.float64) for values in (breadth, height, centre, restitution, scale)]
+        rows = np.broadcast_arrays(*(one[:, None] if one.ndim == 1 else one for one in np.atleast_1d(*given)))
+        b, h, z, eta, factor = (np.array(values) for values in rows)
+        if not (b.ndim == 2 and all((np.isfinite(one) & (one > 0)).all() for one in (b, h))):
+            raise ValueError("breadth and height must be lists of finite numbers above 0 m")
+        if not ((z > 0) & (z < 1)).all():
+            raise ValueError("centre must be above 0 and below 1")
+        if not (np.isfinite(factor) & (factor >= 0)).all():
+            raise ValueError("scale must be finite, and 0 or above")
+        stout = b / h >= block.stocky_limit(z)
+        if (stout & np.isnan(eta)).any():
+            worst, limit = (b / h)[stout].max(), block.stocky_limit(z)[stout].min()
+            raise ValueError(f"a block with B/H of {worst:.3g} does not rock: expected below {limit:.3g}")
+        eta = np.where(np.isnan(eta), block.restitution(b, h, z), eta)
+        if not ((eta >= 0) & (eta <= 1)).all():
+            raise ValueError("restitution must be 0 to 1")
+        return cls(b, h, z, eta, factor)
+
+    def __len__(self) -> int:
+        return len(self.breadth)
+
+    @property
+    def arrays(self) -> tuple[FloatArray, ...]:
+        """Its arrays in the order of `Bodies.of`, after restitution."""
+        return self.breadth, self.height, self.centre, self.restitution, self.scale
+
+    def take(self, rows: NDArray[np.intp]) -> "Bodies":
+        """Return those at `rows`."""
+        return Bodies(*(one[rows] for one in self.arrays))
+
+    def count_parts(self, time_step: float) -> NDArray[np.int64]:
+        """Return into how many parts the steps are divided for each body (m,)."""
+        p = block.frequency_parameter(self.breadth, self.height, self.centre).max(axis=1)
+        return np.asarray(np.ceil(p * time_step / LONGEST_STEP), dtype=np.int64)
+
+    def to_kernel(self, time_step: float) -> FloatArray:
+        """Return them as the kernel takes them, (m, 1 or k, 5)."""
+        shape = self.breadth, self.height, self.centre
+        p = block.frequency_parameter(*shape)
+        columns = block.critical_angle(*shape), (p * time_step) ** 2, self.restitution, block.threshold(*shape)
+        return np.stack([*columns, self.scale], axis=2)
+
+
 def rock_blocks(
     breadth: ArrayLike,
     height: ArrayLike,
-    motions: FloatArray,
+    motions: NDArray[Any],
     time_step: float,
     *,
     restitution: ArrayLike = math.nan,
+    centre: ArrayLike = block.MIDDLE,
+    scale: ArrayLike = 1.0,
     threads: int = 1,
     progress: Progress = SILENT,
 ) -> Rocking:
     """Integrate every block under every motion (eq. 3 of the paper, with impacts).
 
     A motion is linear between its samples and followed by rest; a block that is still rocking at its end is followed
-    until it can no longer fall. A block at rest starts again where the motion exceeds its threshold g B/H.
+    until it can no longer fall. A block at rest starts again where the motion exceeds its threshold, g b/z.
 
     Parameters
     ----------
-    breadth, height : (m,) arrays
-        Sizes of the blocks [m]; breadth is the side parallel to the motion. Equal blocks are integrated once.
+    breadth, height : (m,) or (m, k) arrays
+        Sizes of the blocks [m]; breadth is the side parallel to the motion. With (m, k) a block has other sizes under
+        each motion. Equal blocks of (m,) are integrated once.
     motions : (k, n) array
         Base accelerations [m/s2].
     time_step : float
         [s]
-    restitution : (m,) array or float
-        Angular velocity after an impact over that before it [-], 0 to 1; NaN is Housner's 1 - 1.5 sin2(alpha).
+    restitution : (m,) or (m, k) array or float
+        Angular velocity after an impact over that before it [-], 0 to 1; NaN is that of equal angular momentum,
+        Housner's 1 - 1.5 sin2(alpha) for a uniform block.
+    centre : (m,) or (m, k) array or float
+        Height of the centre of gravity as a share of the block's [-]; 0.5 for a uniform one.
+    scale : (m,) or (m, k) array or float
+        Factor on the motion [-].
     threads : int
         Tiles are shared out among as many; they do not change a result, nor do the order of blocks or of motions.
     progress : Progress
@@ -81,21 +160,22 @@ def rock_blocks(
     CancelledError
         If the caller stops the work.
     ValueError
-        If a size is not above 0, a block is too stocky to rock (B/H of 1.41 or more), a restitution is outside 0 to 1,
-        or the motions or their time step are not finite numbers of that shape.
+        If a size is not above 0, a block without a restitution is too stocky to rock (B/H of 1.41 or more, if uniform),
+        a centre is not within the block, a restitution is outside 0 to 1, or the motions or their time step are not
+        finite numbers of that shape.
     """
-    b, h, eta = check_blocks(breadth, height, restitution)
-    motions = check_motions(motions, time_step)
-    sizes, which = np.unique(np.stack([b, h, eta]), axis=1, return_inverse=True)
-    outcome = np.zeros((sizes.shape[1], len(motions), 3))
-    outcome[..., kernel.FALL] = -1.0
-    divisions = count_parts(sizes, time_step)
+    bodies, motions = Bodies.of(breadth, height, restitution, centre, scale), check_motions(motions, time_step)
+    bodies, which = _drop_alike(bodies)
+    if bodies.breadth.shape[1] not in (1, len(motions)):
+        raise ValueError(f"blocks have {bodies.breadth.shape[1]} sizes each, expected 1 or {len(motions)}")
+    outcome = np.zeros((len(bodies), len(motions), 3))
+    divisions = bodies.count_parts(time_step)
     for parts in np.unique(divisions):
         own = np.flatnonzero(divisions == parts)
-        found = _rock_alike(sizes[:, own], divide(motions, int(parts)), time_step / parts, threads, progress)
+        found = _rock_alike(bodies.take(own), divide(motions, int(parts)), time_step / parts, threads, progress)
         found[..., kernel.FALL] *= np.where(found[..., kernel.FALL] < 0, 1, time_step / parts)
         outcome[own] = found
-    outcome = outcome[which.ravel()]
+    outcome = outcome[which]
     fell = outcome[..., kernel.FALL] >= 0
     return Rocking(
         overturned=fell,
@@ -105,23 +185,17 @@ def rock_blocks(
     )
 
 
-def check_blocks(breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike) -> tuple[FloatArray, ...]:
-    """Return breadth, height [m] and restitution of blocks as (m,) arrays; ValueError as of `rock_blocks`."""
-    given = np.broadcast_arrays(*np.atleast_1d(breadth, height, restitution))
-    b, h, eta = (np.array(values, dtype=np.float64) for values in given)
-    if not (b.ndim == 1 and np.isfinite(b).all() and np.isfinite(h).all() and (b > 0).all() and (h > 0).all()):
-        raise ValueError("breadth and height must be lists of finite numbers above 0 m")
-    if (b / h >= block.STOCKY).any():
-        raise ValueError(f"a block with B/H of {(b / h).max():.3g} does not rock: expected below {block.STOCKY}")
-    eta = np.where(np.isnan(eta), block.restitution(b, h), eta)
-    if not ((eta >= 0) & (eta <= 1)).all():
-        raise ValueError("restitution must be 0 to 1")
-    return b, h, eta
+def _drop_alike(bodies: Bodies) -> tuple[Bodies, NDArray[np.intp]]:
+    """Return each of several equal bodies once, and which each was; those that change with the motion as they are."""
+    if bodies.breadth.shape[1] > 1:
+        return bodies, np.arange(len(bodies))
+    sizes, which = np.unique(np.hstack(bodies.arrays), axis=0, return_inverse=True)
+    return Bodies(*(column[:, None] for column in sizes.T)), which.ravel()
 
 
-def check_motions(motions: FloatArray, time_step: float) -> FloatArray:
+def check_motions(motions: NDArray[Any], time_step: float) -> NDArray[Any]:
     """Return motions (k, n); ValueError as of `rock_blocks`."""
-    motions = np.asarray(motions, dtype=np.float64)
+    motions = np.asarray(motions)
     if motions.ndim != 2 or not len(motions) or motions.shape[1] < 2 or not np.isfinite(motions).all():
         raise ValueError(f"motions have shape {motions.shape}, expected (k, n) finite samples with n of 2 or more")
     if not 0 < time_step < math.inf:
@@ -129,13 +203,7 @@ def check_motions(motions: FloatArray, time_step: float) -> FloatArray:
     return motions
 
 
-def count_parts(sizes: FloatArray, time_step: float) -> NDArray[np.int64]:
-    """Return into how many parts the steps are divided for each block of `sizes` (3, m)."""
-    p = block.frequency_parameter(sizes[0], sizes[1])
-    return np.ceil(p * time_step / LONGEST_STEP).astype(np.int64)
-
-
-def divide(motions: FloatArray, parts: int) -> FloatArray:
+def divide(motions: NDArray[Any], parts: int) -> FloatArray:
     """Return motions [g] with `parts` steps for each of theirs, followed by two zeros, as the kernel takes them."""
     count = motions.shape[1]
     at = np.arange((count - 1) * parts + 1) / parts
@@ -146,18 +214,9 @@ def divide(motions: FloatArray, parts: int) -> FloatArray:
     return padded
 
 
-def build_blocks(sizes: FloatArray, time_step: float) -> FloatArray:
-    """Return blocks of `sizes` (3, m) as the kernel takes them, (m, 4)."""
-    b, h, eta = sizes
-    p = block.frequency_parameter(b, h)
-    return np.stack([block.critical_angle(b, h), (p * time_step) ** 2, eta, b / h], axis=1)
-
-
-def _rock_alike(
-    sizes: FloatArray, motions: FloatArray, time_step: float, threads: int, progress: Progress
-) -> FloatArray:
-    """Integrate blocks of `sizes` (3, m) under padded motions (k, n) [g]; returns the kernel's outcome (m, k, 3)."""
-    blocks = build_blocks(sizes, time_step)
+def _rock_alike(bodies: Bodies, motions: FloatArray, time_step: float, threads: int, progress: Progress) -> FloatArray:
+    """Integrate m bodies under padded motions (k, n) [g]; returns the kernel's outcome (m, k, 3)."""
+    blocks = bodies.to_kernel(time_step)
     outcome = np.zeros((len(blocks), len(motions), 3))
     outcome[..., kernel.FALL] = -1.0
     no_trace, tiles = np.zeros((0, 3)), list(_tiles(len(blocks), *motions.shape))

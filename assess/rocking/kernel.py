@@ -71,10 +71,12 @@ C0, C1, C2, C3, C4, C5, C6, C7 = (
 PHI, VELOCITY, DONE, EDGE, PEAK, LEFT, MARK = (row * LANES for row in range(7))
 """Where a block is: angle, velocity, share of the sample that is done, edge, largest angle, samples left, a mark."""
 ALPHA, PP, ETA, TAN, COS = (row * LANES for row in range(7, 12))
-"""The block: critical angle, (p dt)2, restitution, threshold B/H, cosine of the angle."""
+"""The block: critical angle, (p dt)2, restitution, threshold tan(alpha), cosine of the angle."""
 A0, A1, START, SPAN, D1, D2, D3, D4, D5, D6 = (row * LANES for row in range(12, 22))
 """Its last step: accelerations at the two samples, angle at its start, its length, and k times the k-th Taylor term."""
-ROWS = 22
+SCALE = 22 * LANES
+"""Factor on its motion."""
+ROWS = 23
 AT, STRIDE, BLOCK, MOTION, IMPACTS, AFTER = (row * LANES for row in range(6))
 """Counters: sample, samples a step (0 after the end of the motion), which block (-1: none) and motion, impacts, steps
 after the end of the motion."""
@@ -91,8 +93,9 @@ def rock(
 
     Parameters
     ----------
-    blocks : (m, 4) array
-        Critical angle [rad], (p dt)2 [-], restitution [-] and threshold B/H [-].
+    blocks : (m, 1 or k, 5) array
+        Critical angle [rad], (p dt)2 [-], restitution [-], threshold tan(alpha) [g] and factor on the motion [-]: the
+        same under all motions, or one a motion.
     motions : (k, n + 2) array
         Base acceleration [g], each row followed by two zeros.
     first, last : int
@@ -145,7 +148,7 @@ def _step(s: FloatArray, count: IntArray, samples: FloatArray) -> int:  # pragma
     """Take one step in every lane; mark those to be seen to, and count them. Long, since it is the hot loop."""
     for lane in range(LANES):
         at = count[AT + lane]
-        s[A0 + lane], s[A1 + lane] = samples[at], samples[at + 1]
+        s[A0 + lane], s[A1 + lane] = s[SCALE + lane] * samples[at], s[SCALE + lane] * samples[at + 1]
         count[AT + lane] = at + count[STRIDE + lane]
     for i in range(LANES):
         phi, span = s[PHI + i], 1.0 - s[DONE + i]
@@ -199,7 +202,8 @@ def _take(
     width = motions.shape[1]
     while pair < end:
         motion, block = pair // len(blocks), pair % len(blocks)
-        s[ALPHA + lane], s[PP + lane], s[ETA + lane], s[TAN + lane] = blocks[block]
+        one = blocks[block, motion if blocks.shape[1] > 1 else 0]
+        s[ALPHA + lane], s[PP + lane], s[ETA + lane], s[TAN + lane], s[SCALE + lane] = one
         s[COS + lane] = math.cos(s[ALPHA + lane])
         s[DONE + lane], s[PEAK + lane], s[LEFT + lane] = 0.0, 0.0, width - 2.0
         count[AT + lane], count[STRIDE + lane] = motion * width, 1
@@ -221,11 +225,11 @@ def _start(
 ) -> bool:  # pragma: no cover
     """Find where a block at rest starts to rock, from the lane's place on; False if the motion never makes it."""
     motion, crest = motions[count[MOTION + lane]], crests[count[MOTION + lane]]
-    row = count[MOTION + lane] * motions.shape[1]
+    row, scale = count[MOTION + lane] * motions.shape[1], s[SCALE + lane]
     at, done, tan = count[AT + lane] - row, s[DONE + lane], s[TAN + lane]
     last = at + int(s[LEFT + lane])
     while at < last:
-        a0, a1 = motion[at], motion[at + 1]
+        a0, a1 = scale * motion[at], scale * motion[at + 1]
         here = a0 + done * (a1 - a0)
         if abs(here) <= tan < abs(a1):
             done = (math.copysign(tan, a1) - a0) / (a1 - a0)
@@ -236,7 +240,7 @@ def _start(
             count[AT + lane] = row + at
             return True
         at, done = at + 1, 0.0
-        while at < last and at % STRETCH == 0 and abs(motion[at]) <= tan and crest[at // STRETCH] <= tan:
+        while at < last and at % STRETCH == 0 and scale * max(abs(motion[at]), crest[at // STRETCH]) <= tan:
             at += STRETCH
     return False
 

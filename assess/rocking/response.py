@@ -10,7 +10,7 @@ import numpy as np
 
 from assess.motion.record import FloatArray
 from assess.rocking import block, kernel
-from assess.rocking.ensemble import build_blocks, check_blocks, check_motions, count_parts, divide
+from assess.rocking.ensemble import Bodies, check_motions, divide
 
 MOST_TRACED = 10_000_000
 """Steps of which the path is kept, 240 MB; the outcome is that of all."""
@@ -48,7 +48,13 @@ class Response:
 
 
 def follow_block(
-    breadth: float, height: float, acceleration: FloatArray, time_step: float, *, restitution: float = math.nan
+    breadth: float,
+    height: float,
+    acceleration: FloatArray,
+    time_step: float,
+    *,
+    restitution: float = math.nan,
+    centre: float = block.MIDDLE,
 ) -> Response:
     """Integrate one block under one motion, as `assess.rocking.ensemble.rock_blocks` does, and keep its path.
 
@@ -61,31 +67,33 @@ def follow_block(
     time_step : float
         [s]
     restitution : float
-        Angular velocity after an impact over that before it [-], 0 to 1; NaN is Housner's 1 - 1.5 sin2(alpha).
+        Angular velocity after an impact over that before it [-], 0 to 1; NaN is that of equal angular momentum.
+    centre : float
+        Height of the centre of gravity as a share of the block's [-].
 
     Raises
     ------
     ValueError
         As `rock_blocks`.
     """
-    sizes = np.stack(check_blocks(breadth, height, restitution))
+    body = Bodies.of(breadth, height, restitution, centre, 1.0)
     motions = check_motions(np.asarray(acceleration)[np.newaxis], time_step)
-    parts = int(count_parts(sizes, time_step)[0])
+    parts = int(body.count_parts(time_step)[0])
     motions, step = divide(motions, parts), time_step / parts
-    blocks, outcome = build_blocks(sizes, step), np.array([[[0.0, -1.0, 0.0]]])
+    blocks, outcome = body.to_kernel(step), np.array([[[0.0, -1.0, 0.0]]])
     # The first pass counts the steps, the second keeps them, but for the last: together they take milliseconds.
     taken = kernel.rock(blocks, motions, 0, 1, outcome, np.zeros((0, 3))) // kernel.LANES
     trace = np.zeros((min(max(taken - 1, 0), MOST_TRACED), 3))
     kernel.rock(blocks, motions, 0, 1, outcome, trace)
     rotation, fall, struck = (float(value) for value in outcome[0, 0])
-    start, last = _find_start(motions[0, :-2], blocks[0, 3]), motions.shape[1] - 3.0
+    start, last = _find_start(motions[0, :-2], blocks[0, 0, 3]), motions.shape[1] - 3.0
     times, theta, impact_times = _fill_rests(start, trace, last)
     if start == start and taken - 1 <= MOST_TRACED:
         times, theta, impact_times = _end(times, theta, impact_times, last, fall, int(struck))
     return Response(
-        critical_angle=float(blocks[0, 0]),
-        frequency_parameter=float(block.frequency_parameter(sizes[0], sizes[1])[0]),
-        restitution=float(sizes[2, 0]),
+        critical_angle=float(blocks[0, 0, 0]),
+        frequency_parameter=float(block.frequency_parameter(breadth, height, centre)),
+        restitution=float(body.restitution[0, 0]),
         overturned=fall >= 0,
         rotation=rotation,
         fall_time=fall * step if fall >= 0 else math.nan,

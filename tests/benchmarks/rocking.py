@@ -66,8 +66,7 @@ def _rock(breadth: Array, height: Array, motions: Array, threads: int) -> float:
 
 
 def _steps(breadth: Array, height: Array, motions: Array) -> int:
-    alpha, p = block.critical_angle(breadth, height), block.frequency_parameter(breadth, height)
-    blocks = np.stack([alpha, (p * STEP) ** 2, block.restitution(breadth, height), breadth / height], axis=1)
+    blocks = ensemble.Bodies.of(breadth, height, math.nan, block.MIDDLE, 1.0).to_kernel(STEP)
     outcome = np.zeros((BLOCKS, MOTIONS, 3))
     return int(kernel.rock(blocks, ensemble.divide(motions, 1), 0, MOTIONS, outcome, np.zeros((0, 3))))
 

@@ -48,3 +48,27 @@ def test_restitution_vanishes_where_a_block_no_longer_rocks():
     assert 0 < restitution[2] < 0.01
     assert restitution[3] == pytest.approx(0, abs=1e-12)
     assert restitution[4] < 0
+
+
+@pytest.mark.parametrize(
+    ("centre", "alpha", "p", "eta", "threshold"),
+    [
+        (0.4, 0.25732, 2.87596, 0.91414, 0.2632),
+        (0.5, 0.20750, 2.75246, 0.93634, 0.2105),
+        (0.6, 0.17367, 2.61979, 0.95163, 0.1754),
+    ],
+)
+def test_general_body_rotates_about_its_own_centre_of_gravity(centre, alpha, p, eta, threshold):
+    """Physics of a body whose centre of gravity is not in the middle: 0.40 x 1.90 m, computed twice independently."""
+    body = 0.40, 1.90, centre
+    assert block.critical_angle(*body) == pytest.approx(alpha, abs=5e-6)
+    assert block.frequency_parameter(*body) == pytest.approx(p, abs=5e-6)
+    assert block.restitution(*body) == pytest.approx(eta, abs=5e-6)
+    assert block.threshold(*body) == pytest.approx(threshold, abs=5e-5)
+
+
+@pytest.mark.parametrize("centre", [0.3, 0.5, 0.7])
+def test_body_at_the_stocky_limit_has_almost_no_restitution(centre):
+    limit = block.stocky_limit(centre)
+    assert 0 < block.restitution(limit, 1.0, centre) < 0.006
+    assert block.restitution(math.sqrt(2) / block.STOCKY * limit, 1.0, centre) == pytest.approx(0, abs=1e-12)

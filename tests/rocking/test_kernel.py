@@ -33,14 +33,14 @@ class Free:
     """A block released at an angle [rad] over still ground, in one lane of the kernel; the others are idle."""
 
     def __init__(self, alpha: float, p_dt: float, eta: float, angle: float) -> None:
-        self.ground, self.blocks = np.zeros((1, STILL + 2)), np.array([[alpha, p_dt**2, eta, math.tan(alpha)]])
+        self.ground, self.blocks = np.zeros((1, STILL + 2)), np.array([[[alpha, p_dt**2, eta, math.tan(alpha), 1.0]]])
         self.state = np.zeros(kernel.ROWS * kernel.LANES)
         self.count = np.zeros(kernel.COUNTERS * kernel.LANES, dtype=np.int64)
         self.crests = kernel._find_crests(self.ground, 0, 1)
         for lane in range(kernel.LANES):
             kernel._take(self.state, self.count, lane, 0, 0, self.blocks, self.ground, self.crests)
         s, c = self.state, self.count
-        s[[kernel.ALPHA, kernel.PP, kernel.ETA, kernel.TAN]] = self.blocks[0]
+        s[[kernel.ALPHA, kernel.PP, kernel.ETA, kernel.TAN, kernel.SCALE]] = self.blocks[0, 0]
         s[kernel.COS] = np.cos(s[kernel.ALPHA])
         s[[kernel.PHI, kernel.VELOCITY, kernel.DONE, kernel.EDGE, kernel.PEAK]] = angle, 0, 0, 1, angle
         s[kernel.LEFT], c[kernel.STRIDE], c[kernel.BLOCK] = STILL, 1, 0
@@ -86,7 +86,7 @@ def refer(values: Array, time_step: float, breadth: float = 0.4, height: float =
 
 def trace_of(values: Array, p_dt: float, alpha: float, eta: float = 0.9, row: int = 0) -> tuple[Array, Array]:
     """Return outcome and trace of one block by the kernel itself, under a motion [threshold] in a row of several."""
-    blocks = np.array([[alpha, p_dt**2, eta, math.tan(alpha)]])
+    blocks = np.array([[[alpha, p_dt**2, eta, math.tan(alpha), 1.0]]])
     motions = np.ones((row + 1, values.size + 2))
     motions[row] = np.concatenate([values, [0, 0]]) * math.tan(alpha)
     outcome, trace = np.zeros((1, row + 1, 3)), np.full((5000, 3), math.nan)
@@ -239,7 +239,7 @@ def test_a_step_is_of_sixth_order() -> None:
         ground = np.stack([first, first + slope * p_dt], axis=1)
         state, count = np.zeros(kernel.ROWS * lanes), np.zeros(kernel.COUNTERS * lanes, dtype=np.int64)
         rows = (kernel.PHI, phi), (kernel.VELOCITY, speed * p_dt), (kernel.EDGE, edge), (kernel.ALPHA, 0.3)
-        for row, values in (*rows, (kernel.PP, p_dt**2), (kernel.LEFT, 9.0)):
+        for row, values in (*rows, (kernel.PP, p_dt**2), (kernel.LEFT, 9.0), (kernel.SCALE, 1.0)):
             state[row : row + lanes] = values
         count[kernel.AT : kernel.AT + lanes] = 2 * np.arange(lanes)
         kernel._step(state, count, ground.ravel())
@@ -278,7 +278,7 @@ def test_a_block_that_stands_on_its_edge_for_ever_is_not_followed_for_ever() -> 
 
 @pytest.mark.parametrize(("ramp", "sign"), [(0.1, 1), (0.1, -1), (0.3, 1), (5.0, -1)])
 def test_a_start_lies_where_the_ramp_meets_the_threshold(ramp: float, sign: int) -> None:
-    blocks, motion = np.array([[math.atan(0.25), 1e-4, 0.9, 0.25]]), np.zeros((1, 102))
+    blocks, motion = np.array([[[math.atan(0.25), 1e-4, 0.9, 0.25, 1.0]]]), np.zeros((1, 102))
     motion[0, :100] = sign * ramp * np.maximum(0, np.arange(100) - 70)
     state = np.zeros(kernel.ROWS * kernel.LANES)
     count = np.zeros(kernel.COUNTERS * kernel.LANES, dtype=np.int64)
@@ -310,7 +310,7 @@ def test_a_hop_from_rest_may_end_within_its_first_step(first: float) -> None:
 @given(seed=st.integers(0, 10_000), sign=st.sampled_from([-1, 1]), samples=st.sampled_from([25, 600]))
 @settings(max_examples=100, deadline=None)
 def test_no_block_moves_up_to_its_threshold(seed: int, sign: int, samples: int) -> None:
-    blocks = np.array([[math.atan(0.25), 1e-3, 0.9, 0.25]])
+    blocks = np.array([[[math.atan(0.25), 1e-3, 0.9, 0.25, 1.0]]])
     motion = np.concatenate([sign * 0.25 * noise(seed, 1, samples), np.zeros((1, 2))], axis=1)
     assert np.abs(motion).max() == 0.25
     outcome = np.full((1, 1, 3), -1.0)
@@ -344,7 +344,7 @@ def test_a_second_pulse_overturns_what_the_first_left_at_rest() -> None:
 
 
 def test_a_block_at_rest_takes_no_steps() -> None:
-    blocks = np.array([[math.atan(0.25), 1e-3, 0.9, 0.25]])
+    blocks = np.array([[[math.atan(0.25), 1e-3, 0.9, 0.25, 1.0]]])
     pulse = np.full(6, 0.4)
 
     def steps(rest: int) -> int:
@@ -356,7 +356,7 @@ def test_a_block_at_rest_takes_no_steps() -> None:
 
 def test_no_pause_of_a_motion_hides_its_next_peak() -> None:
     """A block at rest skips 32 samples at once where it may: a peak at any place is met."""
-    blocks, outcome = np.array([[math.atan(0.25), 1e-3, 0.9, 0.25]]), np.zeros((1, 1, 3))
+    blocks, outcome = np.array([[[math.atan(0.25), 1e-3, 0.9, 0.25, 1.0]]]), np.zeros((1, 1, 3))
     for place in range(150):
         motion = np.zeros((1, 152))
         motion[0, place] = 0.3
@@ -623,16 +623,57 @@ def test_each_block_has_its_own_division() -> None:
         assert alike(alone, pick(together, np.array([at]), np.arange(4)))
 
 
+# --- bodies that change with the motion ---
+
+
+def test_a_block_that_changes_with_the_motion_is_that_block_under_each() -> None:
+    """Sizes, centre, restitution and scale of each pair, held against one call a pair."""
+    rng = np.random.default_rng(5)
+    shape = 12, len(MOTIONS)
+    breadth, height = rng.uniform(0.3, 0.6, shape), rng.uniform(1.2, 2.2, shape)
+    more = {"centre": rng.uniform(0.35, 0.6, shape), "restitution": rng.uniform(0.8, 0.98, shape)}
+    scale = rng.uniform(0.5, 1.6, shape)
+    found = rock_blocks(breadth, height, MOTIONS, 0.01, scale=scale, **more)
+    for m, k in np.ndindex(shape):
+        own = {name: values[m, k] for name, values in more.items()}
+        one = rock_blocks(breadth[m, k], height[m, k], MOTIONS[k : k + 1] * scale[m, k], 0.01, **own)
+        assert found.overturned[m, k] == one.overturned[0, 0]
+        assert found.rotation[m, k] == pytest.approx(one.rotation[0, 0], rel=1e-6, abs=1e-9)
+    assert 0 < found.overturned.sum() < found.overturned.size
+
+
+def test_a_higher_centre_of_gravity_falls_under_more_motions() -> None:
+    shares = [rock_blocks(0.4, 1.6, MOTIONS, 0.01, centre=centre).overturned.mean() for centre in (0.35, 0.5, 0.65)]
+    assert shares[0] < shares[1] < shares[2]
+
+
 # --- what is refused ---
 
 
 @pytest.mark.parametrize(
     ("breadth", "height"),
-    [(0, 1), (-0.4, 1), (0.4, 0), (math.nan, 1), (0.4, math.inf), ([0.4, math.nan], 1), ([[0.4]], [[1.0]])],
+    [(0, 1), (-0.4, 1), (0.4, 0), (math.nan, 1), (0.4, math.inf), ([0.4, math.nan], 1), ([[[0.4]]], [[[1.0]]])],
 )
 def test_sizes_that_cannot_be(breadth: object, height: object) -> None:
     with pytest.raises(ValueError, match="breadth and height must be lists of finite numbers above 0 m"):
         rock_blocks(breadth, height, MOTIONS, 0.01)
+
+
+@pytest.mark.parametrize("centre", [0, 1, -0.5, math.nan])
+def test_a_centre_of_gravity_outside_the_block_is_refused(centre: float) -> None:
+    with pytest.raises(ValueError, match="centre must be above 0 and below 1"):
+        rock_blocks(0.4, 1, MOTIONS, 0.01, centre=centre)
+
+
+@pytest.mark.parametrize("scale", [-1, math.nan, math.inf])
+def test_a_scale_that_cannot_be(scale: float) -> None:
+    with pytest.raises(ValueError, match="scale must be finite, and 0 or above"):
+        rock_blocks(0.4, 1, MOTIONS, 0.01, scale=scale)
+
+
+def test_sizes_by_motion_are_one_a_motion() -> None:
+    with pytest.raises(ValueError, match=r"blocks have 2 sizes each, expected 1 or \d+"):
+        rock_blocks([[0.4, 0.5]], 1, MOTIONS, 0.01)
 
 
 def test_stocky_blocks_are_refused() -> None:
