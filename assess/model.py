@@ -23,15 +23,18 @@ AXES: tuple[Axis, Axis] = ("X", "Y")
 ANCHORED = ("no", "yes", "partly", "unknown")
 IMPORTANCE = ("life safety", "function", "property")
 
+MID_HEIGHT = 0.5
+"""Height of the centre of gravity of a piece of which none is known, as a share of its height [-]."""
+
 NEAR_AXIS = 15.0
 """Up to this angle [deg] from an axis a piece, or a record, counts as lying along it."""
 
-ASSUMABLE = ("breadth", "width", "height", "axis", "friction", "quantity", "anchored")
+ASSUMABLE = ("breadth", "width", "height", "centre_of_gravity", "axis", "friction", "quantity", "anchored")
 """Fields of an item that may be filled in where the workbook leaves them blank."""
 
 _FRAMED = (
-    "item", "floor", "room", "description", "type", "quantity", "breadth", "width", "height", "axis", "angle_deg",
-    "x", "y", "friction", "importance", "anchored", "route", "segment", "edge_distance", "notes",
+    "item", "floor", "room", "description", "type", "quantity", "breadth", "width", "height", "centre_of_gravity",
+    "axis", "angle_deg", "x", "y", "friction", "importance", "anchored", "route", "segment", "edge_distance", "notes",
 )  # fmt: skip
 """Fields in the order of `Inventory.frame`."""
 
@@ -57,8 +60,10 @@ def split_names(text: str | None) -> list[str]:
 class Building:
     """The building and the earthquake; a blank text or None where the workbook says nothing.
 
-    Lengths in m, `period` in s, accelerations in m/s2, `azimuth_deg` clockwise from north. `cells` tells in which cell
-    of the sheet a field stands.
+    Lengths in m, `period` in s, accelerations in m/s2, velocities in m/s, `azimuth_deg` clockwise from north.
+    `motion_uncertainty` is a standard deviation of the natural logarithm of PFA [-], `piece_uncertainty` whether pieces
+    vary from one simulated earthquake to the next; None where blank. `cells` tells in which cell of the sheet a field
+    stands.
     """
 
     building: str = ""
@@ -79,9 +84,12 @@ class Building:
     scenario: str = ""
     scenario_kind: str = ""
     ground_pga: float | None = None
+    ground_pgv: float | None = None
     sds: float | None = None
     friction: float | None = None
     restitution: float | None = None
+    motion_uncertainty: float | None = None
+    piece_uncertainty: bool | None = None
     language: str = ""
     cells: Mapping[str, str] = field(default_factory=dict)
 
@@ -210,8 +218,9 @@ class Floor:
 class Item:
     """One row of furniture. Sizes, positions and distances in m; `angle_deg` anticlockwise from X to Breadth.
 
-    `assumed` names the fields that were blank in the workbook and were filled in: sizes from the catalogue, the axis
-    from the angle. A blank `friction` is the building's: see `Inventory.complete`.
+    `centre_of_gravity` is its height above the floor as a share of the piece's height [-].
+    `assumed` names the fields that were blank in the workbook and were filled in: sizes and the centre of gravity from
+    the catalogue, the axis from the angle. A blank `friction` is the building's: see `Inventory.complete`.
     `extra` holds what stood in columns that `assess` does not know; `more` the values of columns of the schema that
     have no field here, since nothing is computed with them.
     """
@@ -226,6 +235,7 @@ class Item:
     breadth: float
     width: float | None = None
     height: float
+    centre_of_gravity: float = MID_HEIGHT
     axis: Axis | None = None
     anchored: str = "unknown"
     friction: float | None = None
@@ -281,13 +291,14 @@ class Segment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CatalogueType:
-    """A type of furniture with its sizes [m]."""
+    """A type of furniture with its sizes [m] and the height of its centre of gravity as a share of its own [-]."""
 
     row: int
     type: str
     breadth: float | None = None
     width: float | None = None
     height: float | None = None
+    centre_of_gravity: float | None = None
     source: str = ""
 
 

@@ -22,6 +22,7 @@ checked range, or on a route; or all."""
 
 AUTO = "auto"
 RUNS, MOST_RUNS = 200, 100_000
+MOST_SCALE = 10.0
 SEED = 1
 ROUTE_RISK = 0.03
 
@@ -81,6 +82,11 @@ _RULES: Mapping[str, tuple[Callable[[Any], Any], Text]] = {
     "verify": (partial(_read_choice, choices=VERIFY), fill("one of: {names}", names=", ".join(VERIFY))),
     "runs": (_read_runs, fill("1 to {most:,}, or {auto}", most=MOST_RUNS, auto=AUTO)),
     "seed": (partial(_read_whole, low=0, high=math.inf), fill("a whole number, 0 or above")),
+    "scale": (
+        partial(_read_number, is_allowed=lambda number: 0 < number <= MOST_SCALE),
+        fill("above 0 and at most {most:g}", most=MOST_SCALE),
+    ),
+    "ideal": (_read_flag, fill("True or False")),
     "scale_motions": (_read_flag, fill("True or False")),
     "zeta_acceleration": (_positive, fill("above 0, and finite")),
     "zeta_velocity": (_positive, fill("above 0, and finite")),
@@ -114,6 +120,12 @@ class Settings:
         within one class, at most 5,000. 0 of 100 cannot show "low": the interval's upper end is 0.037.
     seed : int
         Random seed of the generated motions, 0 or above.
+    scale : float
+        Factor on the motion of every floor, of records and of peaks alike [-], above 0 and at most 10: what a weaker
+        or stronger earthquake of the same kind would do.
+    ideal : bool
+        Whether the adopted chance is that of exactly this motion and of every piece exactly as given, without the
+        uncertainty of either.
     scale_motions : bool
         Whether motions of the user's own are scaled to each floor's PFA.
     zeta_acceleration, zeta_velocity : float
@@ -135,9 +147,11 @@ class Settings:
     """
 
     scenario: Scenario | None = None
-    verify: Verify = "high"
+    verify: Verify = "all"
     runs: int | Literal["auto"] = RUNS
     seed: int = SEED
+    scale: float = 1.0
+    ideal: bool = False
     scale_motions: bool = False
     zeta_acceleration: float = 0.20
     zeta_velocity: float = 0.5

@@ -17,6 +17,7 @@ ACCELERATION: Mapping[str, float] = {"g": GRAVITY, "m/s2": 1.0, "cm/s2": 0.01, "
 VELOCITY: Mapping[str, float] = {"cm/s": 0.01, "m/s": 1.0, "in/s": 0.0254}
 ANGLE: Mapping[str, float] = {"deg": 1.0}
 TIME: Mapping[str, float] = {"s": 1.0}
+SHARE: Mapping[str, float] = {"%": 0.01}
 
 QUANTITIES: Mapping[str, Mapping[str, float]] = {
     "length": LENGTH,
@@ -24,6 +25,7 @@ QUANTITIES: Mapping[str, Mapping[str, float]] = {
     "velocity": VELOCITY,
     "angle": ANGLE,
     "time": TIME,
+    "share": SHARE,
 }
 
 

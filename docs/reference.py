@@ -89,7 +89,10 @@ def _describe_workbook() -> Iterator[str]:
     yield "type, and are left out when the workbook is read."
 
 
-KINDS = {"count": "whole number", "records": "names of files", "file": "name of a file", "language": "choice"}
+KINDS = {
+    "count": "whole number", "records": "names of files", "file": "name of a file", "flag": "choice",
+    "language": "choice",
+}  # fmt: skip
 
 
 def _describe_values(column: Column) -> str:

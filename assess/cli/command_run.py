@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.console import print_error, print_warnings, show_progress
-from assess.cli.options import Jobs, Runs, Scenario, Seed, Workbook, read_settings
+from assess.cli.options import Jobs, Runs, Scale, Scenario, Seed, Workbook, read_settings
 from assess.errors import InputError
 from assess.progress import Progress
 from assess.settings import ROUTE_RISK, Settings
@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 ORDER = 3
 EXAMPLES = (
     "assess run building.xlsx",
-    "assess run building.xlsx --verify all --runs auto --out report --open",
+    "assess run building.xlsx --runs auto --out report --open",
     'assess run building.xlsx --verify none --scenario "ASCE 7-22" --formats xlsx,csv',
     "assess run building.xlsx --motions my-records --scale-motions",
+    "assess run building.xlsx --scale 0.9 --ideal --out weaker",
 )
 
 MOST_METHODS = 4
@@ -39,8 +40,8 @@ def command(
     out: Annotated[Path | None, typer.Option(help="Folder of the reports.", show_default="NAME-report")] = None,
     verify: Annotated[
         str,
-        typer.Option(help="Pieces to simulate by integration: none, high (high risk, doubtful, on routes), all."),
-    ] = "high",
+        typer.Option(help="Pieces to simulate by integration: all, high (high risk, doubtful, on routes), none."),
+    ] = "all",
     runs: Runs = None,
     seed: Seed = None,
     motions: Annotated[
@@ -48,9 +49,17 @@ def command(
         typer.Option(help="Folder of your own floor records, in place of generated motions.", show_default=False),
     ] = None,
     scale_motions: Annotated[
-        bool, typer.Option("--scale-motions", help="Scale these records to each floor's PFA.")
+        bool, typer.Option("--scale-motions", help="Scale the records of --motions to each floor's PFA.")
     ] = False,
     scenario: Scenario = None,
+    scale: Scale = 1.0,
+    ideal: Annotated[
+        bool,
+        typer.Option(
+            "--ideal",
+            help="Adopt the chance if exactly this motion recurred, every piece exactly as given: without uncertainty.",
+        ),
+    ] = False,
     methods: Annotated[
         list[Path] | None,
         typer.Option(
@@ -89,8 +98,9 @@ def command(
     wanted = _read_formats(formats, verify, open_report)
     _check_motions(verify, runs, seed, motions, scale_motions)
     settings = read_settings(
-        verify=verify, runs=runs, seed=seed, scenario=scenario, scale_motions=scale_motions, route_risk=route_risk
-    )
+        verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
+        route_risk=route_risk,
+    )  # fmt: skip
     _check_folder(folder)
     options = _read_options(language, templates, accessible)
     with show_progress() as progress:

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from assess.errors import InputError, OutputError
-from assess.settings import AUTO, RUNS, SCENARIOS, SEED, Settings, change_settings
+from assess.settings import AUTO, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
 
 Workbook = Annotated[Path, typer.Argument(help="The inventory, an .xlsx workbook.", show_default=False)]
 Runs = Annotated[
@@ -17,6 +17,13 @@ Runs = Annotated[
     ),
 ]
 Seed = Annotated[int | None, typer.Option(help="Random seed of the generated motions.", show_default=str(SEED))]
+Scale = Annotated[
+    float,
+    typer.Option(
+        help=f"Factor on every floor's motion, records and peaks alike: above 0, at most {MOST_SCALE:g}.",
+        show_default=True,
+    ),
+]
 Scenario = Annotated[
     str | None,
     typer.Option(help=f"Source of the floor motion: {', '.join(SCENARIOS)}.", show_default="the workbook's"),

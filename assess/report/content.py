@@ -20,7 +20,7 @@ from assess.report.provenance import report_time, say_date, say_reference
 from assess.report.summary import FLOORS, Summary, build_summary, list_risky
 from assess.results import FloorRow, ItemResult, MotionRow, Results, WorkedMethod
 from assess.risk import LIMITS, RiskClass, classify
-from assess.workbook.schema import BUILDING
+from assess.workbook.schema import BUILDING, NO, YES
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo
@@ -217,8 +217,9 @@ def _describe_building(results: Results) -> dict[str, tuple[str, str]]:
             value = _scenario_kind(value, results.provenance.scenario)
         if value not in (None, "") and column.kind != "file":
             shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
+            shown = (YES if value else NO) if column.kind == "flag" else shown
             shown += f" {column.unit}" if column.quantity else ""
-            lines[column.name] = (_(column.label), words.clip(_(shown) if column.kind == "choice" else shown))
+            lines[column.name] = (_(column.label), words.clip(_(shown) if column.kind in ("choice", "flag") else shown))
     return lines
 
 

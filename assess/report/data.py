@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from assess.fields import MOTION_FIELDS, Shape, item_fields
 from assess.progress import SILENT, Progress
-from assess.report.results_schema import FILE, VERSION
+from assess.report.results_schema import FILE, VERSION, building_key
 from assess.results import Results
 from assess.units import to_edge
 from assess.workbook.schema import BUILDING
@@ -101,7 +101,7 @@ def building_record(results: Results) -> dict[str, Any]:
         value = getattr(results.building, column.name)
         if column.quantity and column.quantity != "angle":
             value = None if value is None else to_edge(value, column.factor)
-            record[f"{column.name}_{column.unit}"] = value
+            record[building_key(column)] = value
         else:
             record[column.name] = value.name if isinstance(value, Path) else value
     return record

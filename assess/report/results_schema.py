@@ -19,7 +19,7 @@ from assess.errors import Problem
 from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
 from assess.model import AXES
 from assess.risk import RiskClass
-from assess.settings import SCENARIOS, Settings
+from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
 VERSION = "3.0"
@@ -148,9 +148,15 @@ def _method() -> Schema:
 
 
 def _building(column: Column) -> Iterable[tuple[str, Schema]]:
-    kinds = {"number": _or_null({"type": "number"}), "count": _or_null({"type": "integer"}), "file": _or_null(TEXT)}
+    kinds = {"number": _or_null({"type": "number"}), "count": _or_null({"type": "integer"}),
+             "flag": _or_null({"type": "boolean"}), "file": _or_null(TEXT)}  # fmt: skip
+    yield building_key(column), kinds.get(column.kind, TEXT)
+
+
+def building_key(column: Column) -> str:
+    """Return what results.json calls a line of the sheet Building: its field, with the unit but for angles."""
     has_unit = column.quantity and column.quantity != "angle"
-    yield f"{column.name}_{column.unit}" if has_unit else column.name, kinds.get(column.kind, TEXT)
+    return f"{column.name}_{column.unit.replace('/', '_')}" if has_unit else column.name
 
 
 def _assess() -> Schema:
@@ -189,6 +195,7 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     (rows.RouteFixRow, "left"): SHARE,
     (Settings, "scenario"): {"enum": list(SCENARIOS)},
     (Settings, "route_risk"): INSIDE,
+    (Settings, "scale"): {"type": "number", "exclusiveMinimum": 0, "maximum": MOST_SCALE},
     (Settings, "ductility_reduction"): {"type": "number", "minimum": 1},
     (Problem, "severity"): {"enum": ["warning", "note"]},
 }

@@ -21,6 +21,10 @@ _ITEM_FIELDS = frozenset(field.name for field in fields(Item))
 _DEFINED_BY = {sheet.name: sheet.columns[0].name for sheet in SHEETS if sheet.layout == "table"}
 """The column of each table that defines its names: the first."""
 
+SIZES = ("breadth", "width", "height")
+FROM_TYPE = (*SIZES, "centre_of_gravity")
+"""Fields of an item that its type of the catalogue gives where they are blank."""
+
 T = TypeVar("T", CatalogueType, Place, Segment)
 
 Segments = Mapping[str, Mapping[str, Row]]
@@ -151,9 +155,9 @@ def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item,
 
 
 def _build_item(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> Item | None:
-    values, sizes = row.filled(), filled_sizes(table, row, types)
-    assumed = [name for name in sizes if name not in values]
-    values |= sizes
+    values, typed = row.filled(), _fill_from_type(table, row, types, FROM_TYPE)
+    assumed = [name for name in typed if name not in values]
+    values |= typed
     if "axis" not in values and (axis := turned_axis(row)):
         values["axis"] = axis
         assumed.append("axis")
@@ -167,12 +171,18 @@ def _build_item(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> I
 
 def filled_sizes(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> dict[str, float]:
     """Return the sizes of an item [m]: its own, else those of its type."""
+    return _fill_from_type(table, row, types, SIZES)
+
+
+def _fill_from_type(
+    table: Table, row: Row, types: Mapping[str, CatalogueType], names: Iterable[str]
+) -> dict[str, float]:
     kind, found = types.get(key(row.get("type") or "")), {}
-    for name in ("breadth", "width", "height"):
+    for name in names:
         own = row.get(name)
-        size = own if own is not None or table.spoilt(name, row) else getattr(kind, name, None)
-        if size is not None:
-            found[name] = size
+        value = own if own is not None or table.spoilt(name, row) else getattr(kind, name, None)
+        if value is not None:
+            found[name] = value
     return found
 
 

@@ -12,11 +12,12 @@ from assess.model import ANCHORED, AXES, IMPORTANCE
 from assess.settings import SCENARIOS
 from assess.units import QUANTITIES
 
-Kind = Literal["text", "number", "count", "choice", "language", "date", "file", "records"]
+Kind = Literal["text", "number", "count", "choice", "flag", "language", "date", "file", "records"]
 
 PLACES = ("room", "corridor", "door", "stair", "exit")
 LANGUAGES = ("English", "Italiano")
 """Of reports: names that `assess.i18n.find_language` knows."""
+YES, NO = "yes", "no"
 
 
 DEFAULT_WIDTH = 0.9
@@ -46,7 +47,7 @@ class Column:
     usual_low, usual_high : float, optional
         Outside these a warning, in `unit`.
     choices : tuple of str
-        What a choice may be.
+        What a choice may be; of a flag `YES` and `NO`, which are read as True and False.
     source : str
         Sheet whose first column lists what the cell may name.
     default : str
@@ -112,6 +113,8 @@ _VELOCITY: dict[str, Any] = {
     "quantity": "velocity", "unit": "cm/s", "imperial": "in/s", "low": 0.01, "high": 1000, "usual_low": 1,
     "usual_high": 300, "default": "estimated from T1, else bounded",
 }  # fmt: skip
+_GROUND_VELOCITY = _VELOCITY | {"default": ""}
+_CENTRE: dict[str, Any] = {"quantity": "share", "unit": "%", "imperial": "%", "low": 5, "high": 95}
 _DEGREES: dict[str, Any] = {"quantity": "angle", "unit": "deg", "imperial": "deg", "low": -360, "high": 360}
 
 BUILDING = Sheet(
@@ -141,12 +144,20 @@ BUILDING = Sheet(
                "its neighbours, else ASCE 7-22. A code: every floor.", choices=SCENARIOS, default="as filled"),
         Column("ground_pga", "Ground PGA", "number", "Peak ground acceleration (0.4 SDS in ASCE 7, α S in EN 1998-1 "
                "and NTC): gives the motion of floors without record or PFA.", **_ACCELERATION),
+        Column("ground_pgv", "Ground PGV", "number", "Peak ground velocity of the same earthquake.",
+               **_GROUND_VELOCITY),
         Column("sds", "SDS", "number", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank "
                "Ground PGA.", **_ACCELERATION),
         Column("friction", "Default friction", "number", "Coefficient of friction of pieces whose own is blank. "
                "Blank: no sliding, as the paper assumes.", low=0.01, high=2, default="no sliding"),
         Column("restitution", "Restitution", "number", "Angular velocity after an impact over that before it, for "
                "direct integration.", low=0.01, high=1, default="Housner's"),
+        Column("motion_uncertainty", "Motion uncertainty", "number", "How much stronger or weaker an earthquake "
+               "like this one could be: standard deviation of ln amplitude, common to all floors. 0: exactly this one.",
+               low=0, high=1.5, default="0.4, assumed; guidelines for loss assessment use the order of 0.4 to 0.6"),
+        Column("piece_uncertainty", "Piece uncertainty", "flag", "yes: base, height, centre of gravity and "
+               "restitution of each piece differ a little from what is filled in, in each simulated motion. no: exactly "
+               "as filled in.", choices=(YES, NO), default=YES),
         Column("language", "Report language", "language", "Language of the report.", choices=LANGUAGES,
                default="the workbook's"),
     ),
@@ -205,6 +216,9 @@ ITEMS = Sheet(
                "if inside.", **_LENGTH, low=-100, high=100000.0, default="as the plan has it, else 0, at the edge"),
         Column("importance", "Importance", "choice", "What its fall would endanger. life safety comes first in the "
                "list of what to fix.", choices=IMPORTANCE),
+        Column("centre_of_gravity", "Centre of gravity", "number", "Height of the centre of gravity above the floor, "
+               "as a share of the piece's height, with what it holds. Above 50: top-heavy, falls sooner.", **_CENTRE,
+               default="the Type's in the Catalogue, else 50", width=10),
         Column("notes", "Notes", "text", "Anything else.", width=30),
     ),
 )  # fmt: skip
@@ -253,6 +267,8 @@ CATALOGUE = Sheet(
         Column("breadth", "Breadth", "number", "The shorter plan side.", **_TYPE_SIZE),
         Column("width", "Width", "number", "The longer plan side.", **_TYPE_SIZE),
         Column("height", "Height", "number", "From the floor to the top.", **_TYPE_SIZE),
+        Column("centre_of_gravity", "Centre of gravity", "number", "Height of the centre of gravity above the floor, "
+               "as a share of the height.", **_CENTRE, default="50", width=10),
         Column("source", "Source", "text", "Where the sizes come from.", width=60),
     ),
 )  # fmt: skip

@@ -14,7 +14,7 @@ from assess.i18n import Text, fill, find_language
 from assess.units import QUANTITIES
 from assess.workbook.names import find_choice, find_near, plain, say_choices
 from assess.workbook.open import UNSAVED
-from assess.workbook.schema import Column
+from assess.workbook.schema import YES, Column
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _TIMES = (datetime.datetime, datetime.date, datetime.time)
@@ -188,6 +188,11 @@ def _read_choice(column: Column, value: object, unit: str) -> str:
     )  # fmt: skip
 
 
+def _read_flag(column: Column, value: object, unit: str) -> bool:
+    """Return whether a cell says yes; a spreadsheet's own TRUE and FALSE count as well."""
+    return value if isinstance(value, bool) else _read_choice(column, value, unit) == YES
+
+
 def _read_language(column: Column, value: object, unit: str) -> str:
     """Return the language that was meant by any of its names, or its code."""
     try:
@@ -209,6 +214,7 @@ READERS: Mapping[str, Callable[[Column, object, str], object]] = {
     "number": _read_number,
     "count": _read_count,
     "choice": _read_choice,
+    "flag": _read_flag,
     "language": _read_language,
     "date": _read_date,
 }
@@ -239,6 +245,8 @@ def _likely_slip(column: Column, number: float, unit: str) -> Text | str:
     """Guess the unit that was meant: one in which the number would be usual."""
     if number < 0:
         return fill("Remove the minus sign.") if (column.low or 0) >= 0 else ""
+    if unit == "%" and number < 1 and _is_within(column, 100 * number, unit):
+        return fill("Write {percent:g} for {percent:g} %.", percent=100 * number)
     first = ("in", "ft") if unit in ("in", "ft") else ()
     for other in (*first, *_UNIT_NAMES, "g", "m/s2", "cm/s2", "m/s", "cm/s"):
         is_known = other != unit and other in QUANTITIES.get(column.quantity, {})
