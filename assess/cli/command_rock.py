@@ -13,7 +13,7 @@ import typer
 from assess.cli.console import count, show_progress
 from assess.cli.options import AsJson, check_file, check_size, figure_kind, save_file
 from assess.errors import InputError
-from assess.units import GRAVITY, LENGTH, VELOCITY
+from assess.units import GRAVITY, LENGTH, SHARE, VELOCITY
 
 if TYPE_CHECKING:
     from assess.motion.formats import Channel
@@ -24,6 +24,7 @@ ORDER = 5
 EXAMPLES = (
     "assess rock --breadth 40 --height 180 --record floor12.smc",
     "assess rock --breadth 40 --height 180 --record floor12.csv#east --pfa 0.5 --plot rocking.png",
+    "assess rock --breadth 40 --height 180 --record floor12.smc --cg 60",
 )
 
 LIMITS = "one rigid block in plane motion: no sliding, no vertical motion, nothing beside it"
@@ -43,6 +44,9 @@ def command(
     pfa: Annotated[
         float | None, typer.Option(help="Scale the motion to this peak [g].", show_default="not scaled")
     ] = None,
+    cg: Annotated[
+        float | None, typer.Option(help="Height of the centre of gravity [% of the height].", show_default="50")
+    ] = None,
     restitution: Annotated[
         float | None,
         typer.Option(help="Ratio of angular velocity after an impact to that before it.", show_default="Housner 1963"),
@@ -54,15 +58,17 @@ def command(
     """Integrate the rocking of one block under one record, by Housner's equation."""
     check_file(plot, "figure")
     with show_progress():
-        case = read_case(breadth, height, record, pfa, restitution, baseline)
+        case = read_case(breadth, height, record, pfa, restitution, baseline, cg)
         from assess.rocking.response import follow_block
 
         try:
             response = follow_block(
-                case.breadth, case.height, case.motion.acceleration, case.motion.time_step, restitution=case.restitution
-            )
-        except ValueError as error:  # the largest B/H of a block that rocks is a limit of the integration
-            raise InputError(f"--breadth and --height: {error}") from None
+                case.breadth, case.height, case.motion.acceleration, case.motion.time_step,
+                restitution=case.restitution, centre=case.centre,
+            )  # fmt: skip
+        except ValueError as error:  # the stockiest block that rocks is a limit of the integration
+            named = "--breadth and --height" if case.is_mid_height else "--breadth, --height and --cg"
+            raise InputError(f"{named}: {error}") from None
     typer.echo(json.dumps(describe(case, response), indent=1) if as_json else "\n".join(list_lines(case, response)))
     if plot is not None:
         write_figure(case, response, plot)
@@ -80,6 +86,8 @@ class Case:
     ----------
     breadth, height : float
         Sizes of the block [m].
+    centre : float
+        Height of its centre of gravity as a share of its height [-].
     restitution : float
         As given [-]; NaN is Housner's.
     channel : Channel
@@ -96,6 +104,7 @@ class Case:
 
     breadth: float
     height: float
+    centre: float
     restitution: float
     channel: "Channel"
     baseline: "Baseline"
@@ -105,12 +114,30 @@ class Case:
 
     @property
     def threshold_g(self) -> float:
-        """Acceleration above which the block starts to rock, B/H [g]."""
-        return self.breadth / self.height
+        """Acceleration above which the block starts to rock [g]: b/z_c, half base over centre of gravity."""
+        return self.breadth / (2 * self.centre * self.height)
+
+    @property
+    def is_mid_height(self) -> bool:
+        """Whether the centre of gravity is at mid-height, where b/z_c is B/H."""
+        from assess.model import MID_HEIGHT
+
+        return self.centre == MID_HEIGHT
+
+    @property
+    def threshold_name(self) -> str:
+        """What the threshold is called."""
+        return "B/H" if self.is_mid_height else "b/z_c"
 
 
 def read_case(
-    breadth_cm: float, height_cm: float, record: str, pfa_g: float | None, restitution: float | None, baseline: str
+    breadth_cm: float,
+    height_cm: float,
+    record: str,
+    pfa_g: float | None,
+    restitution: float | None,
+    baseline: str,
+    centre_percent: float | None = None,
 ) -> Case:
     """Check the options, by the limits of the workbook, and read the record.
 
@@ -120,11 +147,14 @@ def read_case(
         If an option cannot be used; or if the record cannot be read, holds several channels and none is named, or is
         vertical.
     """
+    from assess.model import MID_HEIGHT
     from assess.motion.formats import read_channel
     from assess.motion.record import MOST_ACCELERATION, Baseline
 
     check_size("breadth", breadth_cm)
     check_size("height", height_cm)
+    if centre_percent is not None:
+        check_size("cg", centre_percent, "centre_of_gravity")
     most = MOST_ACCELERATION / GRAVITY
     if pfa_g is not None and not 0 < pfa_g <= most:
         raise InputError(f"--pfa is {pfa_g:g} g, expected above 0 and at most {most:g} g")
@@ -140,6 +170,7 @@ def read_case(
     return Case(
         breadth=breadth_cm * LENGTH["cm"],
         height=height_cm * LENGTH["cm"],
+        centre=MID_HEIGHT if centre_percent is None else centre_percent * SHARE["%"],
         restitution=math.nan if restitution is None else restitution,
         channel=channel,
         baseline=cast("Baseline", baseline),
@@ -181,9 +212,12 @@ def list_lines(case: Case, response: "Response") -> Iterator[str]:
     record = case.channel.record
     whose = "given" if case.restitution == case.restitution else "Housner's"
     yield (
-        f"Block    {_size(case, 'x')}: B/H {case.threshold_g:.4f}, alpha {math.degrees(response.critical_angle):.2f} "
-        f"deg, p {response.frequency_parameter:.3f} rad/s, restitution {response.restitution:.4f} ({whose})"
+        f"Block    {_size(case, 'x')}: B/H {case.breadth / case.height:.4f}, "
+        f"alpha {math.degrees(response.critical_angle):.2f} deg, p {response.frequency_parameter:.3f} rad/s, "
+        f"restitution {response.restitution:.4f} ({whose})"
     )
+    if not case.is_mid_height:
+        yield f"         {_centre(case)}: b/z_c {case.threshold_g:.4f}"
     azimuth = "" if record.azimuth_deg is None else f"{record.azimuth_deg:g} deg"
     parts = (f"channel {record.channel}", record.location, azimuth, record.format)
     yield f"Record   {case.channel.name} ({', '.join(part for part in parts if part)})"
@@ -191,7 +225,7 @@ def list_lines(case: Case, response: "Response") -> Iterator[str]:
     yield from (f"         note: {note}" for note in record.notes)
     yield f"Motion   {_motion(case)}"
     exceeds = "exceeded" if case.pfa_g > case.threshold_g else "not exceeded"
-    yield f"Rocks    above g B/H = {case.threshold_g:.4f} g: {exceeds}"
+    yield f"Rocks    above g {case.threshold_name} = {case.threshold_g:.4f} g: {exceeds}"
     yield f"Outcome  {describe_outcome(case, response)}"
     yield f"Limits   {LIMITS}"
 
@@ -199,6 +233,10 @@ def list_lines(case: Case, response: "Response") -> Iterator[str]:
 def _size(case: Case, times: str) -> str:
     breadth, height = (round(size / LENGTH["cm"], 1) for size in (case.breadth, case.height))
     return f"{breadth:.12g} {times} {height:.12g} cm"
+
+
+def _centre(case: Case) -> str:
+    return f"centre of gravity at {case.centre / SHARE['%']:.12g} % of the height"
 
 
 def _motion(case: Case) -> str:
@@ -236,7 +274,9 @@ def _paint(case: Case, response: "Response", figure: Any) -> None:
     top.set_title(f"The block {outcome}", loc="left", fontsize=9.5, fontweight="bold", pad=18)
     scaled = "" if case.factor == 1 else f" (scaled by {case.factor:.3g})"
     name = case.channel.name[:LONGEST_NAME].replace("$", r"\$")
-    under = f"{_size(case, '×')}, B/H {case.threshold_g:.3f}, under {name}, PFA {case.pfa_g:.3f} g{scaled}"
+    centre = "" if case.is_mid_height else f", {_centre(case)}"
+    block = f"{_size(case, '×')}, B/H {case.breadth / case.height:.3f}{centre}"
+    under = f"{block}, under {name}, PFA {case.pfa_g:.3f} g{scaled}"
     top.text(0, 1.03, under, transform=top.transAxes, va="bottom")
     _paint_motion(top, case, response)
     _paint_path(bottom, response)
@@ -264,7 +304,7 @@ def _paint_motion(axes: Any, case: Case, response: "Response") -> None:
     most = 1.3 * max(case.pfa_g, case.threshold_g)
     axes.set_ylim(-most, most)
     axes.set_ylabel("acceleration [g]")
-    _note(axes, f"dashed: ±B/H = ±{case.threshold_g:.3f} g, above which it starts to rock")
+    _note(axes, f"dashed: ±{case.threshold_name} = ±{case.threshold_g:.3f} g, above which it starts to rock")
 
 
 def _paint_path(axes: Any, response: "Response") -> None:

@@ -73,11 +73,14 @@ def figure_kind(path: Path) -> str:
     return path.suffix.lower().removeprefix(".")
 
 
-def check_size(option: str, value_cm: float) -> None:
-    """Raise InputError unless a size [cm] lies within the limits of the workbook's column of the same name."""
+def check_size(option: str, value: float, name: str = "") -> None:
+    """Raise InputError unless a value lies within the limits of a column of Items, in the unit of that column.
+
+    `name` is the column's field, by default that of the option.
+    """
     from assess.workbook.schema import ITEMS
 
-    column = ITEMS.column(option)
+    column = ITEMS.column(name or option)
     low, high = column.low or 0.0, column.high or float("inf")
-    if not low <= value_cm <= high:
-        raise InputError(f"--{option} is {value_cm:g} cm, expected {low:g} to {high:g} cm")
+    if not low <= value <= high:
+        raise InputError(f"--{option} is {value:g} {column.unit}, expected {low:g} to {high:g} {column.unit}")
