@@ -21,6 +21,9 @@ WRONG = [
     ("seed", -1, "seed is -1, expected a whole number, 0 or above"),
     ("seed", 1.0, "seed is 1.0, expected a whole number"),
     ("scale_motions", "yes", "scale_motions is 'yes', expected True or False"),
+    *(("ideal", one, f"ideal is {one!r}, expected True or False") for one in (1, None)),
+    *(("scale", one, f"scale is {one}, expected above 0 and at most 10") for one in (0, -0.5, 10.01, math.nan, True)),
+    ("scale", "0.9", "scale is '0.9', expected above 0 and at most 10"),
     *(("zeta_velocity", zeta, "expected above 0, and finite") for zeta in (0.0, -1.0, math.nan, math.inf, "0.5")),
     ("zeta_acceleration", 0, "zeta_acceleration is 0, expected above 0, and finite"),
     ("slide_coefficient", 1.01, "slide_coefficient is 1.01, expected 0 to 1"),
@@ -73,9 +76,20 @@ def test_runs_that_can_be_used(given, runs):
 
 
 def test_equal_settings_in_other_spellings_are_equal():
-    assert Settings(scenario="asce 7-22", verify="HIGH", runs="200", slide_coefficient=1) == Settings(
-        scenario="ASCE 7-22"
+    assert Settings(scenario="asce 7-22", verify="HIGH", runs="200", slide_coefficient=1, scale=1) == Settings(
+        scenario="ASCE 7-22", verify="high"
     )
+
+
+def test_by_default_every_piece_is_simulated_with_its_uncertainty_under_the_motions_as_they_are():
+    usual = Settings()
+    assert (usual.verify, usual.ideal, usual.scale) == ("all", False, 1.0)
+
+
+@pytest.mark.parametrize("scale", [10, 0.01, np.float64(0.9)])
+def test_scales_that_can_be_used(scale):
+    found = Settings(scale=scale).scale
+    assert (found, type(found)) == (scale, float)
 
 
 def test_settings_are_changed_by_keyword():

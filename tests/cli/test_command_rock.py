@@ -85,6 +85,28 @@ def test_restitution_and_baseline_change_the_outcome():
     assert document(record=corrected, baseline="none") == document(record=corrected)
 
 
+def test_the_centre_of_gravity_changes_angle_frequency_restitution_and_threshold():
+    """Reference values: a 40 x 190 cm block by the equations of a body with I_cg = m (B2 + H2)/12."""
+    expected = {40: (0.25732, 2.87596, 0.91414), 50: (0.20750, 2.75246, 0.93634), 60: (0.17367, 2.61979, 0.95163)}
+    for cg, values in expected.items():
+        found = document(height=190, pfa=0.1, cg=cg)
+        names = ("critical_angle_rad", "frequency_parameter_rad_s", "restitution")
+        assert [found[name] for name in names] == pytest.approx(values, abs=6e-6)
+    assert document(height=190, pfa=0.1, cg=50) == document(height=190, pfa=0.1)
+    starts = {cg: document(height=190, pfa=0.19, cg=cg)["max_rotation_ratio"] > 0 for cg in expected}
+    assert starts == {40: False, 50: False, 60: True}
+
+
+def test_the_text_states_the_centre_of_gravity_where_it_is_given():
+    lines = rock(height=190, pfa=0.19, cg=60).stdout.splitlines()
+    assert lines[0].startswith("Block    40 x 190 cm: B/H 0.2105, alpha 9.95 deg, p 2.620 rad/s, restitution 0.9516")
+    assert lines[1] == "         centre of gravity at 60 % of the height: b/z_c 0.1754"
+    assert "Rocks    above g b/z_c = 0.1754 g: exceeded" in lines
+    text = rock(height=190, pfa=0.1, cg=40).stdout
+    assert "does not start to rock: the peak 0.1000 g does not exceed its threshold 0.2632 g" in text
+    assert "centre of gravity" not in rock(height=190, pfa=0.1, cg=50).stdout
+
+
 def test_the_text_tells_a_person():
     done = rock(pfa=0.5)
     assert (done.exit_code, done.stderr) == (0, "")
@@ -134,6 +156,11 @@ def test_a_channel_of_a_file_and_of_an_archive(tmp_path):
         ({"height": 1800}, "--height is 1800 cm, expected 5 to 600 cm"),
         ({"height": "inf"}, "--height is inf cm, expected 5 to 600 cm"),
         ({"breadth": 141, "height": 100}, "--breadth and --height: a block with B/H of 1.41 does not rock"),
+        ({"cg": 4.9}, "--cg is 4.9 %, expected 5 to 95 %"),
+        ({"cg": 96}, "--cg is 96 %, expected 5 to 95 %"),
+        ({"cg": 0.5}, "--cg is 0.5 %, expected 5 to 95 %"),
+        ({"cg": "nan"}, "--cg is nan %, expected 5 to 95 %"),
+        ({"breadth": 141, "height": 100, "cg": 40}, "--breadth, --height and --cg: a block with "),
         ({"pfa": 0}, "--pfa is 0 g, expected above 0 and at most 50 g"),
         ({"pfa": -0.5}, "--pfa is -0.5 g, expected above 0 and at most 50 g"),
         ({"pfa": 51}, "--pfa is 51 g, expected above 0 and at most 50 g"),
@@ -205,7 +232,18 @@ def test_a_figure_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
 
 def test_help_names_the_units():
     text = CliRunner().invoke(app, ["rock", "--help"]).output
-    for words in ("--breadth", "[cm]", "--pfa", "[g]", "--restitution", "--baseline", "--json", "--plot"):
+    for words in (
+        "--breadth",
+        "[cm]",
+        "--cg",
+        "[% of the height]",
+        "--pfa",
+        "[g]",
+        "--restitution",
+        "--baseline",
+        "--json",
+        "--plot",
+    ):
         assert words in text
 
 
@@ -243,8 +281,8 @@ def fallen(side=1, at=5.39):
     )  # fmt: skip
 
 
-def case(pfa=0.5, record=FLOOR, restitution=None):
-    return read_case(40, 180, str(record), pfa, restitution, "standard")
+def case(pfa=0.5, record=FLOOR, restitution=None, cg=None):
+    return read_case(40, 180, str(record), pfa, restitution, "standard", cg)
 
 
 @pytest.mark.parametrize(
@@ -324,6 +362,14 @@ def test_the_figure_shows_motion_threshold_path_and_impacts():
     assert bottom.get_xlim() == (0, pytest.approx(30.055))
     low, high = bottom.get_ylim()
     assert (low, high) == pytest.approx((-1.5, 2.3))
+
+
+def test_the_figure_shows_the_threshold_of_the_centre_of_gravity():
+    top, _ = paint(case(cg=60), fallen()).axes
+    texts = [text.get_text() for text in top.texts]
+    assert any(text.startswith("40 × 180 cm, B/H 0.222, centre of gravity at 60 % of the height, ") for text in texts)
+    assert "dashed: ±b/z_c = ±0.185 g, above which it starts to rock" in texts
+    assert top.lines[2].get_ydata()[0] == pytest.approx(20 / 108)
 
 
 def test_the_figure_is_turned_towards_the_fall_and_reaches_it():

@@ -135,6 +135,10 @@ def test_bad_input_writes_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--scale", "0"], "--scale is 0.0, expected above 0 and at most 10"),
+        (["--scale", "11"], "--scale is 11.0, expected above 0 and at most 10"),
+        (["--scale", "nan"], "--scale is nan, expected above 0 and at most 10"),
+        (["--verify", "none", "--ideal"], "--ideal: without a simulation there is none to adopt; leave out --ideal or"),
         (["--verify", "maybe"], "--verify is 'maybe', expected one of: none, high, all"),
         (["--runs", "0"], "--runs is '0', expected 1 to 100,000, or auto"),
         (["--runs", "9" * 5000], "--runs is '999"),
@@ -172,6 +176,28 @@ def test_wrong_usage_exits_with_2(tmp_path, arguments, message):
     assert done.exit_code == 2
     assert message in " ".join(re.sub(r"[│\n]", " ", done.stderr).split())
     assert not (tmp_path / "out").exists()
+
+
+def test_scale_and_ideal_reach_the_settings(tmp_path, monkeypatch):
+    given = []
+
+    def stop(inventory, settings, **_):
+        given.append(settings)
+        raise assess.InputError("seen")
+
+    monkeypatch.setattr("assess.pipeline.run.run", stop)
+    path = write(tmp_path / "w.xlsx")
+    for words in ([], ["--scale", "0.9", "--ideal"], ["--verify", "high"]):
+        assert run(app, ["run", str(path), "--out", str(tmp_path / "out"), *words]).exit_code == 2
+    assert [(one.verify, one.scale, one.ideal, one.scale_motions) for one in given] == [
+        ("all", 1.0, False, False), ("all", 0.9, True, False), ("high", 1.0, False, False),
+    ]  # fmt: skip
+
+
+def test_the_help_tells_the_scale_of_the_earthquake_from_that_of_ones_own_motions():
+    text = " ".join(run(app, ["run", "--help"]).output.split())
+    assert "Factor on every floor's motion, records and peaks alike: above 0, at most 10." in text
+    assert "Scale the records of --motions to each floor's PFA." in text
 
 
 def test_a_scenario_that_a_floor_cannot_serve_names_the_floor(tmp_path):

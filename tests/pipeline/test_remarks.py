@@ -53,7 +53,7 @@ def test_ground_motion_that_no_floor_needs_is_kept_not_used(tmp_path, scenario, 
     remarks = _remarks(tmp_path, [{"floor": "1", "pfa_x": 0.3}], scenario, ground_pga=0.2, sds=0.5)
     assert remarks == {
         f"Building!B18: Ground PGA is not used: {why}.": "note",
-        f"Building!B19: SDS is not used: {why}.": "note",
+        f"Building!B20: SDS is not used: {why}.": "note",
     }
 
 
@@ -62,7 +62,7 @@ def test_ground_pga_comes_before_an_sds_that_differs(tmp_path, sds, severity):
     """0.4 x 0.503 = 0.2012 differs from 0.2 by 0.6 %; 0.24 would shake more, 0.16 less."""
     remarks = _remarks(tmp_path, [{"floor": "1", "elevation": 3}], ground_pga=0.2, sds=sds)
     values = f"0.4 SDS is {0.4 * sds:.3f} g, Ground PGA 0.200 g is used"
-    text = f"Building!B19: SDS is not used: {values}. Correct one of them, or clear it."
+    text = f"Building!B20: SDS is not used: {values}. Correct one of them, or clear it."
     assert remarks == ({text: severity} if severity else {})
 
 

@@ -17,7 +17,9 @@ from assess.errors import WorkbookError
 from assess.i18n import LANGUAGES, find_language, gettext, load_catalogue, speaking
 from assess.model import Building, Inventory
 from assess.risk import RiskClass
+from assess.workbook.live_row import FIRST
 from assess.workbook.names import find_sheet, fold, plain, say_choices, say_live, translate
+from assess.workbook.open import column_letters
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.template import Units, describe
@@ -161,7 +163,8 @@ def test_the_classes_stand_in_italian(book: Any) -> None:
     with speaking(load_catalogue("it")):
         words = {f"{risk.symbol} {gettext(risk.word)}" for risk in RiskClass}
     assert words == {"○ basso", "◇ medio", "▲ alto", "■ molto alto"}
-    assert all(f'"{word}"' in book["Arredi"]["Y2"].value for word in words)
+    letter = column_letters(FIRST + len(LIVE) - 1)
+    assert all(f'"{word}"' in book["Arredi"][f"{letter}2"].value for word in words)
 
 
 # ---------------------------------------------------------------- read

@@ -64,6 +64,45 @@ def test_breadth_greater_than_height_is_warned_of(tmp_path: Path) -> None:
     }
 
 
+def test_the_centre_of_gravity_is_the_rows_own_else_the_types_else_at_mid_height(tmp_path: Path) -> None:
+    header = ["Item", "Floor", "Type", "Centre of gravity [%]"]
+    types: Sheet = [["Type", "Breadth [cm]", "Height [cm]", "Centre of gravity [%]"], ["Rack", 60, 200, 60],
+                    ["Desk", 70, 75, None]]  # fmt: skip
+    rows: Sheet = [header, ["A1", "1", "Rack", 45], ["A2", "1", "rack", None], ["A3", "1", "Desk", None]]
+    inventory = read(tmp_path, rows, Catalogue=types)
+    assert [one.centre_of_gravity for one in inventory.items] == pytest.approx([0.45, 0.6, 0.5], abs=1e-15)
+    assert ["centre_of_gravity" in one.assumed for one in inventory.items] == [False, True, False]
+    assert inventory.items[1].assumed == ("breadth", "height", "centre_of_gravity", "quantity", "anchored")
+    assert [one.centre_of_gravity for one in inventory.catalogue] == [0.6, None]
+    assert inventory.frame()["centre_of_gravity"].tolist() == pytest.approx([0.45, 0.6, 0.5], abs=1e-15)
+    assert all(one.more == {} for one in inventory.items)
+
+
+def test_an_impossible_centre_of_gravity_of_a_type_is_named(tmp_path: Path) -> None:
+    types: Sheet = [["Type", "Height [cm]", "Centre of gravity [%]"], ["Rack", 200, 0.6], ["Lamp", 160, 99]]
+    assert errors_of(write(tmp_path, Catalogue=types)) == {
+        "Catalogue!C2: Centre of gravity is 0.6 %, expected 5 to 95 %. Write 60 for 60 %.",
+        "Catalogue!C3: Centre of gravity is 99 %, expected 5 to 95 %. Check the number and the unit in the header.",
+    }
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        ("Centre of gravity", "Centre of gravity has no unit. Write the unit that the numbers are in"),
+        ("Centre of gravity [cm]", "the unit 'cm' of Centre of gravity is not known. Write the unit that the numbers"),
+        ("Centre of gravity %", "the column 'Centre of gravity %' is not known. Did you mean Centre of gravity [%]?"),
+        (
+            "Center of gravity [%]",
+            "the column 'Center of gravity [%]' is not known. Did you mean Centre of gravity [%]?",
+        ),
+    ],
+)
+def test_a_centre_of_gravity_needs_its_unit(tmp_path: Path, header: str, message: str) -> None:
+    (error,) = errors_of(write(tmp_path, [[*ITEMS[0], header], [*ITEMS[1], 45]]))
+    assert error.startswith(f"Items!E1: {message}")
+
+
 ANGLES = [
     (0, "X"), (15, "X"), (15.001, None), (-15, "X"), (45, None), (74.999, None), (75, "Y"), (90, "Y"), (105, "Y"),
     (106, None), (164, None), (165, "X"), (180, "X"), (-90, "Y"), (270, "Y"), (360, "X"), (-345, "X"), (-344, None),
@@ -132,6 +171,50 @@ def test_building(tmp_path: Path) -> None:
     assert remarks(inventory, "note") == {
         "Building!A10: 'Architect' is not known; it is not used.",
     }
+
+
+def test_the_uncertainties_and_the_velocity_of_the_ground(tmp_path: Path) -> None:
+    rows: Sheet = [["Ground PGV [in/s]", 10], ["Motion uncertainty", 0.6], ["Piece uncertainty", "No"]]
+    found = read(tmp_path, Building=rows).building
+    assert (found.motion_uncertainty, found.piece_uncertainty) == (0.6, False)
+    assert found.ground_pgv == pytest.approx(0.254)
+    assert (found.cell("ground_pgv"), found.cell("motion_uncertainty")) == ("B1", "B2")
+
+
+def test_blank_uncertainties_are_left_to_the_defaults(tmp_path: Path) -> None:
+    rows: Sheet = [["Ground PGV [cm/s]", None], ["Motion uncertainty", None], ["Piece uncertainty", None]]
+    for found in (read(tmp_path).building, read(tmp_path, Building=rows).building):
+        assert (found.ground_pgv, found.motion_uncertainty, found.piece_uncertainty) == (None, None, None)
+
+
+@pytest.mark.parametrize(
+    ("value", "is_uncertain"),
+    [("yes", True), (" YES ", True), (True, True), ("sì", True), ("no", False), (False, False)],
+)
+def test_yes_and_no(tmp_path: Path, value: object, is_uncertain: bool) -> None:
+    assert read(tmp_path, Building=[["Piece uncertainty", value]]).building.piece_uncertainty is is_uncertain
+
+
+@pytest.mark.parametrize(
+    ("label", "value", "message"),
+    [
+        ("Motion uncertainty", -0.1, "Motion uncertainty is -0.1, expected 0 to 1.5. Remove the minus sign."),
+        ("Motion uncertainty", 1.6, "Motion uncertainty is 1.6, expected 0 to 1.5. Check the number and the unit in "),
+        ("Motion uncertainty", 40, "Motion uncertainty is 40, expected 0 to 1.5. Check the number and the unit in the"),
+        ("Piece uncertainty", 1, "Piece uncertainty is '1', expected one of: yes, no. Choose from the list."),
+        ("Piece uncertainty", "partly", "Piece uncertainty is 'partly', expected one of: yes, no. Choose from the"),
+        ("Ground PGV [cm/s]", 0, "Ground PGV is 0 cm/s, expected 0.01 to 1000 cm/s. Check the number and the unit"),
+        ("Ground PGV [m/s]", 25, "Ground PGV is 25 m/s, expected 0.0001 to 10 m/s. Did you type cm/s?"),
+    ],
+)
+def test_uncertainties_that_are_wrong(tmp_path: Path, label: str, value: object, message: str) -> None:
+    (error,) = errors_of(write(tmp_path, Building=[["Use", "Office"], [label, value]]))
+    assert error.startswith(f"Building!B2: {message}")
+
+
+def test_uncertainties_stand_at_their_limits(tmp_path: Path) -> None:
+    for value in (0, 1.5):
+        assert read(tmp_path, Building=[["Motion uncertainty", value]]).building.motion_uncertainty == value
 
 
 def test_the_building_may_be_missing(tmp_path: Path) -> None:
