@@ -22,6 +22,7 @@ from assess.methods import MethodInfo, Outcome
 from assess.methods._method import ALIKE
 from assess.model import Building, CatalogueType, Place
 from assess.risk import RiskClass, classify
+from assess.rocking.draws import TRIED, Uncertainty
 from assess.route_results import RouteTables
 from assess.settings import Settings
 
@@ -30,15 +31,21 @@ if TYPE_CHECKING:
 
 Detail = float | str | bool | None
 
+BASES = ("formula", "simulated", "unconfirmed")
+"""What an adopted risk rests on: the formula, where nothing was simulated; the simulation; or the formula, where
+simulation gave a lower class that cannot be relied on. Lists, counts and sums do not mix them."""
 PIECE_FLAGS = (
-    "does_not_rock", "slides", "fell_in_record", "generic_spectrum", "weak_motions", "undecided", "not_lowered",
+    "does_not_rock", "slides", "fell_in_record", "ideal_higher", "generic_spectrum", "unknown_period", "weak_motions",
+    "undecided", "unconfirmed",
 )  # fmt: skip
 """Flags that belong to a piece rather than to one method, in the order in which they are listed."""
 PIECE_FLAG_TEXTS: Mapping[str, str] = {
     "slides": fill("friction is below B/H: the piece slides before it rocks, which no method here takes into account"),
-    "not_lowered": fill(
-        "simulation gave a lower class, which is not adopted: the floor's spectrum is generic, its PFV is an estimate, "
-        "or the motions are weaker than the floor's"
+    "unconfirmed": fill(
+        "simulation gave a lower class, which is not adopted, as its motions may be too weak: the formula's stands"
+    ),
+    "ideal_higher": fill(
+        "its class would be higher if exactly this motion recurred and the piece were exactly as given"
     ),
 }
 """Meanings of those flags that no method explains."""
@@ -57,7 +64,7 @@ MOTION_FLAGS: Mapping[str, str] = {
     "pfv_estimated": fill("PFV was not given: estimated from PFA and the building's period T1"),
 }
 """Flags of a floor's motion, and their meanings."""
-CARRIED = ("fell_in_record", "undecided")
+CARRIED = ("fell_in_record", "ideal_higher", "undecided")
 """Flags that count for a piece under whichever of its motions they were raised."""
 MOST_KEPT = 2000
 """Items up to which what was read of them is kept; that of a larger inventory would fill the memory."""
@@ -127,6 +134,7 @@ class EnsembleRow:
     motions: int
     least_motions: int
     generic_spectrum: bool
+    unknown_period: bool
     weak_motions: bool
     is_generated: bool
     cases: int
@@ -231,6 +239,7 @@ class ItemRow:
     breadth_cm: float
     width_cm: float | None
     height_cm: float
+    centre_of_gravity: float
     breadth_to_height: float
     axis_given: str | None
     angle_deg: float | None
@@ -268,15 +277,32 @@ class MethodResult(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class Ideal:
+    """What direct integration found of a piece exactly as given if exactly this motion recurred.
+
+    `overturned` counts motions, `probability` is its ratio to their number, `low` and `high` its sampling interval [-].
+    """
+
+    overturned: int
+    probability: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
 class Simulation:
     """What direct integration found of one case.
 
     Parameters
     ----------
     runs, overturned : int
-        Motions, and those under which it overturned.
+        Draws of an earthquake and of the piece, and those in which it overturned.
     probability, low, high : float
         Their ratio and its sampling interval [-].
+    ideal : Ideal
+        The same without uncertainty of the motion and of the piece.
+    tried : mapping of float to float
+        The ratio at other dispersions of the motion, by the dispersion [-].
     record_overturned, record_max_rotation_ratio : bool, float, optional
         Whether it overturns under the recorded motion itself, and the largest |theta| over the critical angle there
         [-]; None where no record is known.
@@ -287,6 +313,8 @@ class Simulation:
     probability: float
     low: float
     high: float
+    ideal: Ideal
+    tried: Mapping[float, float]
     record_overturned: bool | None
     record_max_rotation_ratio: float | None
 
@@ -295,12 +323,14 @@ class Simulation:
 class Adopted:
     """The risk that a report goes by.
 
-    `low` and `high` bound the interval of a simulated chance, and are None where the formula's is adopted. `upper` is
-    the class by the upper bound. `lowered_from` is the class by formula where simulation lowered it. Simulation may not
-    lower the class of a doubtful one.
+    `basis` is one of `BASES`. `low` and `high` bound the sampling interval of a simulated chance, and are None where
+    the formula's is adopted. `upper` is the class by the upper bound. `lowered_from` is the class by formula where
+    simulation lowered it, which it may not where `is_doubtful`. `can_rock`: whether the strongest motion that may be
+    drawn can start the piece rocking.
     """
 
     method: str
+    basis: str
     probability: float
     low: float | None
     high: float | None
@@ -308,7 +338,18 @@ class Adopted:
     upper: RiskClass
     lowered_from: RiskClass | None
     is_doubtful: bool
+    can_rock: bool
     flags: tuple[str, ...]
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether the simulation's chance is adopted."""
+        return self.basis == "simulated"
+
+    @property
+    def is_unconfirmed(self) -> bool:
+        """Whether the formula's class stands although simulation gave a lower one."""
+        return self.basis == "unconfirmed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -423,7 +464,8 @@ class CaseTable:
     outcomes : mapping of str to Outcome
         Every method's values, details and flags, (n,) each, by its key.
     adopted : mapping of str to (n,) array
-        probability, low, high [-]; risk, upper (classes); verified, doubtful, not_lowered (boolean).
+        probability, low, high [-]; risk, upper (classes); basis (place in `BASES`); doubtful, ideal_higher, can_rock
+        (boolean).
     """
 
     item: NDArray[np.int32]
@@ -480,8 +522,10 @@ class _CaseReader:
     def _simulated(self, case: int, probability: float) -> Simulation:
         found = {name: values[case] for name, values in self._found.items()}
         fell = found["record_overturned"]
+        ideal = Ideal(int(found["ideal_overturned"]), found["ideal"], found["ideal_low"], found["ideal_high"])
         return Simulation(
-            int(found["runs"]), int(found["overturned"]), probability, found["low"], found["high"],
+            int(found["runs"]), int(found["overturned"]), probability, found["low"], found["high"], ideal,
+            {one: found[f"dispersion_{one:g}"] for one in TRIED},
             None if fell is None else bool(fell), found["record_rotation"],
         )  # fmt: skip
 
@@ -490,10 +534,13 @@ class _CaseReader:
         if adopted["probability"][case] is None:
             raise ValueError("the adopted formula gave no value")
         raised = {flag for method in methods.values() for flag in method.flags}
+        basis = BASES[adopted["basis"][case]]
+        raised |= {"unconfirmed"} if basis == "unconfirmed" else set()
+        raised |= {"ideal_higher"} if adopted["ideal_higher"][case] else set()
         piece = [flag for flag in PIECE_FLAGS if flag in raised] if raised else []
-        piece += ["not_lowered"] if adopted["not_lowered"][case] else []
         return Adopted(
-            method=self._simulation if adopted["verified"][case] else self._formula,
+            method=self._simulation if basis == "simulated" else self._formula,
+            basis=basis,
             probability=adopted["probability"][case],
             low=adopted["low"][case],
             high=adopted["high"][case],
@@ -501,6 +548,7 @@ class _CaseReader:
             upper=RiskClass(adopted["upper"][case]),
             lowered_from=None,
             is_doubtful=adopted["doubtful"][case],
+            can_rock=adopted["can_rock"][case],
             flags=tuple(dict.fromkeys((*methods[self._formula].flags, *motion.flags, *piece))),
         )
 
@@ -607,6 +655,8 @@ class Provenance:
         Hashes (SHA-256) of the recorded motions, by name.
     scenario : str
         Where the floor motion came from, one of `assess.settings.SCENARIOS`.
+    uncertainty : Uncertainty
+        What was drawn of the earthquake and of the pieces.
     suite : SuiteInfo, optional
         The user's own motions.
     language : str
@@ -631,6 +681,7 @@ class Provenance:
     sha256: str
     files: Mapping[str, str]
     scenario: str
+    uncertainty: Uncertainty
     suite: SuiteInfo | None
     language: str
     sheets: Mapping[str, str]

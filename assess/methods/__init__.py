@@ -6,12 +6,20 @@ from functools import cache
 
 from assess.methods._info import Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference, Role
 from assess.methods._method import Cases, Example, Joint, LiveCells, Method, Outcome
-from assess.methods._simulate import LOOKS, LOOKS_Z, interval_width, make_batches, rock_cases, run_side_by_side
+from assess.methods._simulate import (
+    LOOKS,
+    LOOKS_Z,
+    interval_width,
+    make_batches,
+    rock_cases,
+    rock_draws,
+    run_side_by_side,
+)
 
 __all__ = [
     "LOOKS", "LOOKS_Z", "Cases", "Column", "Example", "FittedOn", "Joint", "LiveCells", "Method", "MethodInfo",
     "Outcome", "Parameter", "Range", "Reason", "Reference", "adopted_formula", "all_methods", "interval_width",
-    "make_batches", "rock_cases", "run_side_by_side", "simulation",
+    "make_batches", "rock_cases", "rock_draws", "run_side_by_side", "simulation",
 ]  # fmt: skip
 
 

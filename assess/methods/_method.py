@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from assess.methods._info import ESTIMATED, PFV_FLAGS, Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference
 from assess.progress import SILENT, Progress
+from assess.rocking.block import MIDDLE, stocky_limit, threshold
+from assess.rocking.draws import Uncertainty
 from assess.settings import Settings
 
 __all__ = [
@@ -37,8 +39,8 @@ class Ensemble(Protocol):
         ...
 
     @property
-    def is_weak(self) -> bool:
-        """Whether its motions are known to be weaker than the floor's."""
+    def is_unshaped(self) -> bool:
+        """Whether its generic spectrum rests on neither T1 nor the building's height: it may be too weak."""
         ...
 
     @property
@@ -64,6 +66,11 @@ class Motions(Protocol):
         """Response spectra of the first of them, and the one that they were made for; None where unknown."""
         ...
 
+    @property
+    def is_weak(self) -> bool:
+        """Whether they are weaker than the floor's motion."""
+        ...
+
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
         ...
@@ -87,8 +94,14 @@ class Cases:
         Angular velocity after an impact over that before it [-]; NaN is Housner's.
     ensemble : (n,) integer array
         Which of `ensembles` is the case's motion; -1 where it is not to be integrated.
+    centre : (n,) array
+        Height of the centre of gravity as a share of the piece's [-].
+    name : (n,) integer array
+        The piece, from `assess.rocking.draws.name_number`: by it what is not known of it is drawn.
     ensembles : sequence of Ensemble
         Motions of floors.
+    uncertainty : Uncertainty
+        What is drawn.
     """
 
     breadth: FloatArray
@@ -99,7 +112,10 @@ class Cases:
     pfv_estimated: BoolArray
     restitution: FloatArray
     ensemble: NDArray[np.intp]
+    centre: FloatArray
+    name: NDArray[np.int64]
     ensembles: Sequence[Ensemble] = ()
+    uncertainty: Uncertainty = field(default_factory=Uncertainty)
 
     @classmethod
     def of(
@@ -113,20 +129,34 @@ class Cases:
         pfv_estimated: ArrayLike = False,
         restitution: ArrayLike = math.nan,
         ensemble: ArrayLike = -1,
+        centre: ArrayLike = MIDDLE,
+        name: ArrayLike = 0,
         ensembles: Sequence[Ensemble] = (),
+        uncertainty: Uncertainty | None = None,
     ) -> Self:
         """Build a batch from numbers and arrays, brought to one length; what is left out is unknown."""
         given = np.broadcast_arrays(
-            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, pfv_estimated, ensemble)
+            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, centre, pfv_estimated, ensemble, name)
         )
-        b, h, a, v, mu, eta = (np.array(values, dtype=np.float64) for values in given[:6])
-        estimated, which = np.array(given[6], dtype=np.bool_), np.array(given[7], dtype=np.intp)
-        return cls(b, h, a, v, mu, estimated, eta, which, ensembles)
+        b, h, a, v, mu, eta, z = (np.array(values, dtype=np.float64) for values in given[:7])
+        estimated, which = np.array(given[7], dtype=np.bool_), np.array(given[8], dtype=np.intp)
+        names = np.array(given[9], dtype=np.int64)
+        return cls(b, h, a, v, mu, estimated, eta, which, z, names, ensembles, uncertainty or Uncertainty())
 
     @property
     def breadth_to_height(self) -> FloatArray:
         """B/H [-]."""
         return self.breadth / self.height
+
+    @property
+    def threshold(self) -> FloatArray:
+        """Acceleration at which rocking starts [g]: b/z, half base over height of the centre of gravity."""
+        return np.asarray(threshold(self.breadth, self.height, self.centre))
+
+    @property
+    def is_stocky(self) -> BoolArray:
+        """Whether a piece is too stocky to rock: B/H of 1.41 or more, if it is uniform."""
+        return np.asarray(self.breadth_to_height >= stocky_limit(self.centre))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -142,25 +172,31 @@ class Joint:
     runs : (m,) integer array
         Motions that each case was integrated under, the first ones.
     fell : (m, k) boolean array
-        Whether it overturned; False beyond its runs.
+        Whether it overturned in each draw, of the motion and of the piece; False beyond its runs.
+    ideal : (m, k) boolean array
+        Whether it overturned, as it is given, under each motion itself; False beyond its runs.
     rotation : (m, k) array
-        Largest |theta| over the critical angle [-]; 0 beyond its runs.
+        Largest |theta| over the critical angle in each draw [-]; 0 beyond its runs.
     examples : sequence of ((n,) array, float)
         The first three motions [m/s2] and their time steps [s].
     fit : Fit, optional
         How the motions meet their target.
     spectra : Spectra, optional
         Response spectra of the first motions, at most 100, under which a case was integrated, and of their target.
+    is_weak : bool
+        Whether the motions are weaker than the floor's.
     """
 
     ensemble: int
     cases: NDArray[np.intp]
     runs: NDArray[np.int64]
     fell: BoolArray
+    ideal: BoolArray
     rotation: NDArray[np.float32]
     examples: Sequence[tuple[NDArray[np.float32], float]]
     fit: "Fit | None"
     spectra: "Spectra | None" = None
+    is_weak: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

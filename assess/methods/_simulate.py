@@ -1,6 +1,6 @@
 """What simulations of many pieces under many motions share: batches, threads, and how many motions are enough."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from assess.methods._method import BoolArray, Cases, FloatArray, Motions
 from assess.progress import SILENT, Progress
 from assess.risk import NORMAL_95
+from assess.rocking.draws import draw_bodies, draw_earthquakes
 from assess.settings import AUTO, Settings
 
 LOOKS = (125, 250, 500, 1000, 2500, 5000)
@@ -52,16 +53,56 @@ def make_batches(motions: Motions, first: int, last: int, size: int) -> Iterator
 def rock_cases(
     cases: Cases,
     own: NDArray[np.intp],
-    motions: FloatArray,
+    motions: NDArray[Any],
     time_step: float,
     threads: int,
     progress: Progress = SILENT,
 ) -> tuple[BoolArray, FloatArray]:
-    """Return whether each of the cases `own` overturns under each motion, and how far it turns: (m, k) each."""
+    """Return whether each of the cases `own`, as it is given, overturns under each motion, and how far it turns.
+
+    (m, k) each.
+    """
     from assess.rocking.ensemble import rock_blocks
 
     found = rock_blocks(
         cases.breadth[own], cases.height[own], motions, time_step,
-        restitution=cases.restitution[own], threads=threads, progress=progress,
+        restitution=cases.restitution[own], centre=cases.centre[own], threads=threads, progress=progress,
     )  # fmt: skip
     return found.overturned, found.rotation
+
+
+def rock_draws(
+    cases: Cases,
+    own: NDArray[np.intp],
+    motions: NDArray[Any],
+    time_step: float,
+    *,
+    first: int,
+    dispersions: Sequence[float],
+    seed: int,
+    threads: int,
+    progress: Progress = SILENT,
+) -> tuple[BoolArray, FloatArray]:
+    """Return whether each of the cases `own` overturns in each draw, and how far it turns: (d, m, k) each.
+
+    Motion k of `motions`, draw `first` + k, is scaled by one factor for the whole building, and the pieces are those of
+    that draw where they are uncertain; once for each of d `dispersions` of the motion.
+    """
+    from assess.rocking.ensemble import rock_blocks
+
+    count = len(motions)
+    shape = cases.breadth[own], cases.height[own], cases.centre[own], cases.restitution[own]
+    if cases.uncertainty.piece:
+        drawn = draw_bodies(*shape, cases.name[own], seed=seed, first=first, count=count)
+        b, h, z, eta = drawn.breadth, drawn.height, drawn.centre, drawn.restitution
+    else:
+        b, h, z, eta = (np.repeat(one[:, None], count, axis=1) for one in shape)
+    scales = [np.exp(one * draw_earthquakes(seed, first, count)) for one in dispersions]
+    every = len(dispersions), 1
+    found = rock_blocks(
+        np.tile(b, every), np.tile(h, every), motions, time_step,
+        restitution=np.tile(eta, every), centre=np.tile(z, every), scale=np.repeat(scales, own.size, axis=0),
+        threads=threads, progress=progress,
+    )  # fmt: skip
+    wanted = len(dispersions), own.size, count
+    return found.overturned.reshape(wanted), found.rotation.reshape(wanted)

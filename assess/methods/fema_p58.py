@@ -93,7 +93,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     flags = {
         "pfv_unknown": np.isnan(cases.pfv),
         "pfv_estimated": known & cases.pfv_estimated,
-        "does_not_rock": cases.breadth_to_height >= STOCKY,
+        "does_not_rock": cases.is_stocky,
         "extrapolated": known & ~CHECKED_BREADTH_TO_HEIGHT.holds(cases.breadth_to_height),
     }
     return Outcome(value, {"median_pfv_cm_s": median / VELOCITY["cm/s"]}, flags)

@@ -42,62 +42,84 @@ from assess.methods._method import (
     Reason,
     Reference,
 )  # fmt: skip
-from assess.methods._simulate import LOOKS, interval_width, make_batches, rock_cases, run_side_by_side
+from assess.methods._simulate import LOOKS, interval_width, make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.progress import SILENT, Progress, Stage
 from assess.risk import classify_all, wilson_end, wilson_interval
-from assess.rocking.block import STOCKY, critical_angle, frequency_parameter, radius, restitution
+from assess.rocking.block import critical_angle, frequency_parameter, radius, restitution
+from assess.rocking.draws import TRIED
 from assess.settings import AUTO, Settings
 from assess.units import GRAVITY, LENGTH
 
 BATCH = 500
 """Motions made at once."""
-MOST_PAIRS = 2_000_000
-"""Pairs of case and motion that are rocked at once; they take some 70 bytes each."""
+MOST_PAIRS = 400_000
+"""Pairs of case and motion that are rocked at once; they take some 800 bytes each, for all dispersions together."""
 SHOWN = 3
 """Motions kept for reports."""
 
 
 def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage | None = None) -> Outcome:
     """Integrate the cases that have an ensemble, each of which is one part of `stage`; the others have no value."""
-    known = (cases.ensemble >= 0) & (cases.breadth_to_height < STOCKY)
+    known = (cases.ensemble >= 0) & ~cases.is_stocky
     found = _Found.empty(cases.breadth.size)
     owns = [(number, np.flatnonzero(known & (cases.ensemble == number))) for number in range(len(cases.ensembles))]
     owns = [(number, own) for number, own in owns if own.size]
     side_by_side = min(threads, len(owns))
     stage = stage or Stage(SILENT, "verification", "", len(cases.ensembles))
 
-    def work(number: int, own: NDArray[np.intp]) -> tuple[Joint, tuple[FloatArray, FloatArray]]:
-        run = _Run(cases, own, number, settings, max(1, threads // side_by_side), stage)
-        return run.integrate(), run.under_record()
+    def work(number: int, own: NDArray[np.intp]) -> "_Rocked":
+        return _Run(cases, own, number, settings, max(1, threads // side_by_side), stage).integrate()
 
     joints = []
-    for joint, record in run_side_by_side(work, owns, side_by_side):
-        found.take(joint, record, cases.ensembles[joint.ensemble])
-        joints.append(joint)
+    for rocked in run_side_by_side(work, owns, side_by_side):
+        found.take(rocked, cases.ensembles[rocked.joint.ensemble])
+        joints.append(rocked.joint)
     return _summarise(found, cases, settings, joints)
 
 
 def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[Joint]) -> Outcome:
     done, runs = found.runs > 0, np.maximum(found.runs, 1)
-    low, high = (
-        np.where(done, end, np.nan) for end in wilson_interval(found.overturned, runs, interval_width(settings))
-    )
+
+    def share(fallen: NDArray[np.int64]) -> FloatArray:
+        return np.where(done, fallen / runs, np.nan)
+
+    def ends(fallen: NDArray[np.int64]) -> list[FloatArray]:
+        return [np.where(done, end, np.nan) for end in wilson_interval(fallen, runs, interval_width(settings))]
+
+    low, high = ends(found.overturned)
+    ideal_low, ideal_high = ends(found.ideal)
+    open_low, open_high = (ideal_low, ideal_high) if settings.ideal else (low, high)
     detail = {
         "runs": np.where(done, runs, np.nan),
         "overturned": np.where(done, found.overturned, np.nan),
         "low": low,
         "high": high,
+        "ideal": share(found.ideal),
+        "ideal_overturned": np.where(done, found.ideal, np.nan),
+        "ideal_low": ideal_low,
+        "ideal_high": ideal_high,
+        **{f"dispersion_{one:g}": share(found.tried[at]) for at, one in enumerate(TRIED)},
         "record_overturned": found.record_fell,
         "record_rotation": found.record_rotation,
     }
     flags = {
         "fell_in_record": found.record_fell == 1,
         "generic_spectrum": found.generic,
+        "unknown_period": found.unshaped,
         "weak_motions": found.weak,
-        "undecided": done & (settings.runs == AUTO) & (classify_all(low) != classify_all(high)),
-        "does_not_rock": cases.breadth_to_height >= STOCKY,
+        "undecided": done & (settings.runs == AUTO) & (classify_all(open_low) != classify_all(open_high)),
+        "does_not_rock": cases.is_stocky,
     }
-    return Outcome(np.where(done, found.overturned / runs, np.nan), detail, flags, tuple(joints))
+    return Outcome(share(found.overturned), detail, flags, tuple(joints))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rocked:
+    """What the cases of one ensemble did: in draws at each of `TRIED` (d, m), and under the record itself (m,)."""
+
+    joint: Joint
+    tried: NDArray[np.int64]
+    record: tuple[FloatArray, FloatArray]
 
 
 @dataclass(slots=True)
@@ -106,20 +128,28 @@ class _Found:
 
     runs: NDArray[np.int64]
     overturned: NDArray[np.int64]
+    ideal: NDArray[np.int64]
+    tried: NDArray[np.int64]
     record_fell: FloatArray
     record_rotation: FloatArray
     generic: BoolArray
+    unshaped: BoolArray
     weak: BoolArray
 
     @classmethod
     def empty(cls, count: int) -> "_Found":
-        numbers, unknown, no = np.zeros(count, dtype=np.int64), np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
-        return cls(numbers, numbers.copy(), unknown, unknown.copy(), no, no.copy())
+        none, no, unknown = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.bool_), np.full(count, np.nan)
+        tried = np.zeros((len(TRIED), count), dtype=np.int64)
+        return cls(none, none.copy(), none.copy(), tried, unknown, unknown.copy(), no, no.copy(), no.copy())
 
-    def take(self, joint: Joint, record: tuple[FloatArray, FloatArray], ensemble: Ensemble) -> None:
-        self.runs[joint.cases], self.overturned[joint.cases] = joint.runs, joint.fell.sum(axis=1)
-        self.record_fell[joint.cases], self.record_rotation[joint.cases] = record
-        self.generic[joint.cases], self.weak[joint.cases] = ensemble.is_generic, ensemble.is_weak
+    def take(self, rocked: _Rocked, ensemble: Ensemble) -> None:
+        joint = rocked.joint
+        own = joint.cases
+        self.runs[own], self.overturned[own] = joint.runs, joint.fell.sum(axis=1)
+        self.ideal[own], self.tried[:, own] = joint.ideal.sum(axis=1), rocked.tried
+        self.record_fell[own], self.record_rotation[own] = rocked.record
+        self.generic[own], self.unshaped[own] = ensemble.is_generic, ensemble.is_unshaped
+        self.weak[own] = joint.is_weak
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,32 +171,37 @@ class _Run:
     def progress(self) -> Progress:
         return self.stage.progress
 
-    def integrate(self) -> Joint:
+    def integrate(self) -> _Rocked:
         """Integrate the cases, check by check with runs="auto"; those that are decided leave."""
         motions = self.ensemble.open(self.threads, self.progress)
         checks = LOOKS if self.settings.runs == AUTO else (int(self.settings.runs),)
-        fell, rotation = np.zeros((self.own.size, 0), np.bool_), np.zeros((self.own.size, 0), np.float32)
-        runs, going = np.zeros(self.own.size, dtype=np.int64), np.arange(self.own.size)
-        size = min(BATCH, max(1, MOST_PAIRS // self.own.size))
+        count, runs = self.own.size, np.zeros(self.own.size, dtype=np.int64)
+        fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
+        rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
+        size, going = min(BATCH, max(1, MOST_PAIRS // count)), np.arange(count)
         for first, last in zip((0, *checks), checks, strict=False):
             wider = ((0, 0), (0, last - first))
-            fell, rotation = np.pad(fell, wider), np.pad(rotation, wider)
+            fell, ideal, rotation = np.pad(fell, wider), np.pad(ideal, wider), np.pad(rotation, wider)
             for at, batch, time_step in make_batches(motions, first, last, size):
                 here = slice(at, at + len(batch))
-                fell[going, here], rotation[going, here] = self._rock(self.own[going], batch, time_step)
+                drawn, turned = self._rock_draws(self.own[going], batch, time_step, at)
+                fell[going, here], rotation[going, here] = drawn[0], turned[0]
+                tried[:, going] += drawn[1:].sum(axis=2)
+                ideal[going, here], _ = self._rock(self.own[going], batch, time_step)
                 self.stage.at(here.stop / checks[-1], self.number)
             runs[going] = last
-            going = going[_is_open(fell[going], self.settings)]
+            going = going[_is_open((ideal if self.settings.ideal else fell)[going], self.settings)]
             if not going.size:
                 break
         self.stage.at(1.0, self.number)
-        return Joint(
-            ensemble=self.number, cases=self.own, runs=runs, fell=fell, rotation=rotation,
+        joint = Joint(
+            ensemble=self.number, cases=self.own, runs=runs, fell=fell, ideal=ideal, rotation=rotation,
             examples=_examples(motions, fell.shape[1]), fit=motions.fit,
-            spectra=motions.spectra and motions.spectra.first(fell.shape[1]),
+            spectra=motions.spectra and motions.spectra.first(fell.shape[1]), is_weak=motions.is_weak,
         )  # fmt: skip
+        return _Rocked(joint, tried, self._rock_under_record())
 
-    def under_record(self) -> tuple[FloatArray, FloatArray]:
+    def _rock_under_record(self) -> tuple[FloatArray, FloatArray]:
         """Return whether each case overturns under the record itself, and how far it turns; NaN without a record."""
         if self.ensemble.record is None:
             return np.full(self.own.size, np.nan), np.full(self.own.size, np.nan)
@@ -176,6 +211,15 @@ class _Run:
 
     def _rock(self, own: NDArray[np.intp], motions: FloatArray, time_step: float) -> tuple[BoolArray, FloatArray]:
         return rock_cases(self.cases, own, motions, time_step, self.threads, self.progress)
+
+    def _rock_draws(
+        self, own: NDArray[np.intp], motions: FloatArray, time_step: float, first: int
+    ) -> tuple[BoolArray, FloatArray]:
+        """Return what the cases did at the dispersion of the run and at each of `TRIED`, (1 + d, m, k)."""
+        return rock_draws(
+            self.cases, own, motions, time_step, first=first, dispersions=(self.cases.uncertainty.motion, *TRIED),
+            seed=self.settings.seed, threads=self.threads, progress=self.progress,
+        )  # fmt: skip
 
 
 def _examples(motions: Motions, count: int) -> list[tuple[NDArray[np.float32], float]]:
@@ -308,10 +352,10 @@ METHOD = Method(
     ),
     flags={
         "fell_in_record": "it overturns under the recorded motion itself, so its class is at least high",
-        "generic_spectrum": "the motions of this floor were made for a generic spectrum: simulation may raise a "
-        "class, never lower it",
-        "weak_motions": "the user's own motions are weaker than the floor's: simulation may raise a class, never "
-        "lower it",
+        "generic_spectrum": "no record of this floor is known: its motions were made for a generic spectrum",
+        "unknown_period": "neither T1 nor the building's height is known, so that the generic spectrum may be too weak "
+        "at long periods: simulation may raise a class, never lower it",
+        "weak_motions": "the motions are weaker than the floor's: simulation may raise a class, never lower it",
         "undecided": "after 5,000 motions its interval still reaches over more than one class",
         "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",
     },

@@ -1,8 +1,9 @@
-"""The adopted risk: that of the formula, or that of the simulation where it ran and its motions are reliable.
+"""The adopted risk: that of the simulation where it ran and its motions can be relied on, else that of the formula.
 
-A class that simulation lowers is marked. Where the motions follow a generic spectrum or are weaker than the floor's, or
-PFV is an estimate, simulation may raise a class, but not lower it. A piece that overturns under the record itself is at
-least high.
+A class that simulation lowers is marked. Where its motions may be too weak (a generic spectrum of a building of which
+neither T1 nor height is known, motions weaker than the floor's) simulation may raise a class, but not lower it: then
+the formula's class stands, unconfirmed. A piece that cannot start to rock is low whatever its motions are. A piece
+that overturns under the record itself is at least high.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,12 +15,18 @@ from numpy.typing import NDArray
 from assess.methods import Cases, Method, Outcome, adopted_formula, simulation
 from assess.methods._method import ALIKE, BoolArray, FloatArray
 from assess.model import Inventory
-from assess.pipeline.demand import Demand
+from assess.results import BASES
 from assess.risk import RiskClass, classify_all
 from assess.routes.chances import Falls
+from assess.settings import Settings
 from assess.units import GRAVITY
 
 IntArray = NDArray[np.int64]
+
+STILL = 0.85
+"""Share of the acceleration at which rocking starts [-] below which a piece is taken not to start: the peak of a motion
+may be somewhat above the floor's PFA, and the piece more slender than given."""
+FORMULA, SIMULATED, UNCONFIRMED = range(len(BASES))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,15 +38,17 @@ class Adoption:
     probability : (n,) array
         [-]
     low, high : (n,) arrays
-        The interval of a simulated risk [-]; NaN where the formula's is adopted.
+        The sampling interval of a simulated risk [-]; NaN where the formula's is adopted.
     risk, upper : (n,) integer arrays
         Class by the probability, and by the upper end of the interval.
-    verified : (n,) boolean array
-        Whether it is that of the simulation.
+    basis : (n,) integer array
+        Place in `assess.results.BASES`.
     doubtful : (n,) boolean array
         Where simulation may not lower a class.
-    not_lowered : (n,) boolean array
-        Where simulation gave a lower class, which is not adopted.
+    ideal_higher : (n,) boolean array
+        Where the class of the piece as given, under exactly this motion, is above the adopted one.
+    can_rock : (n,) boolean array
+        Where the strongest motion that may be drawn can start the piece rocking.
     """
 
     probability: FloatArray
@@ -47,33 +56,48 @@ class Adoption:
     high: FloatArray
     risk: IntArray
     upper: IntArray
-    verified: BoolArray
+    basis: NDArray[np.int8]
     doubtful: BoolArray
-    not_lowered: BoolArray
+    ideal_higher: BoolArray
+    can_rock: BoolArray
 
 
-def adopt(outcomes: Mapping[str, Outcome], cases: Cases) -> Adoption:
+def find_can_rock(cases: Cases, settings: Settings) -> BoolArray:
+    """Return where the strongest motion that may be drawn can start a piece rocking: PFA e^(3 beta) >= 0.85 g b/z."""
+    strongest = cases.pfa * (1.0 if settings.ideal else cases.uncertainty.largest)
+    return np.asarray(strongest >= STILL * GRAVITY * cases.threshold)
+
+
+def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> Adoption:
     """Adopt a risk for every case."""
     formula, simulated = outcomes[adopted_formula().key].value, outcomes[simulation().key]
-    value, low, high = (simulated.value, *(simulated.detail[end].astype(np.float64) for end in ("low", "high")))
-    doubtful = simulated.flags["generic_spectrum"] | simulated.flags["weak_motions"] | cases.pfv_estimated
-    has_run = ~np.isnan(value)
-    not_lowered = has_run & doubtful & (classify_all(value) < classify_all(formula))
-    verified = has_run & ~not_lowered
-    probability = np.where(verified, value, formula)
-    at_least = np.where(simulated.flags["fell_in_record"], int(RiskClass.HIGH), int(RiskClass.LOW))
+    ideal, raised = simulated.detail["ideal"].astype(np.float64), simulated.flags
+    names = ("ideal_low", "ideal_high") if settings.ideal else ("low", "high")
+    value, (low, high) = ideal if settings.ideal else simulated.value, (_numbers(simulated, name) for name in names)
+    has_run, can_rock = ~np.isnan(value), find_can_rock(cases, settings)
+    doubtful = (raised["unknown_period"] | raised["weak_motions"]) & can_rock
+    unconfirmed = has_run & doubtful & (classify_all(value) < classify_all(formula))
+    confirmed = has_run & ~unconfirmed
+    probability = np.where(confirmed, value, formula)
+    at_least = np.where(raised["fell_in_record"], int(RiskClass.HIGH), int(RiskClass.LOW))
     risk = np.maximum(classify_all(probability), at_least)
+    ideal_higher = has_run & (classify_all(ideal) > risk)
     upper = np.where(has_run, np.maximum(risk, classify_all(high)), risk)
     return Adoption(
         probability=probability,
-        low=np.where(verified, low, np.nan),
-        high=np.where(verified, high, np.nan),
+        low=np.where(confirmed, low, np.nan),
+        high=np.where(confirmed, high, np.nan),
         risk=risk,
-        upper=upper,
-        verified=verified,
+        upper=np.where(ideal_higher, np.maximum(upper, classify_all(ideal)), upper),
+        basis=np.where(unconfirmed, UNCONFIRMED, np.where(confirmed, SIMULATED, FORMULA)).astype(np.int8),
         doubtful=doubtful,
-        not_lowered=not_lowered,
+        ideal_higher=ideal_higher,
+        can_rock=can_rock,
     )
+
+
+def _numbers(outcome: Outcome, name: str) -> FloatArray:
+    return outcome.detail[name].astype(np.float64)
 
 
 def find_governing(probability: FloatArray, case_item: NDArray[np.intp], pfa: FloatArray) -> NDArray[np.intp]:
@@ -116,32 +140,28 @@ def build_falls(
     inventory: Inventory,
     adoption: Adoption,
     outcomes: Mapping[str, Outcome],
-    case_demand: Sequence[Demand],
     governing: NDArray[np.intp],
-    *,
-    is_suite: bool,
+    settings: Settings,
 ) -> Falls:
     """Return how the pieces of an inventory fall: a blank axis takes the outcomes of the governing one.
 
-    Motions from records, given peaks, interpolation and profiles are independent of each other; the user's own
-    (`is_suite`) are the same on every floor. A piece whose simulated class may not be adopted enters by its adopted
-    chance.
+    Draw k is one earthquake for the whole building: all simulated pieces share its scale, and on floors whose motions
+    were generated along one axis its phases. A piece whose simulated class may not be adopted is unconfirmed.
     """
-    simulated = outcomes[simulation().key]
-    sources: dict[str, int] = {}
-    rows = {int(case): (joint, row) for joint in simulated.joints for row, case in enumerate(joint.cases)}
-    group, fell = np.full(len(governing), -1, dtype=np.intp), {}
+    rows = {
+        int(case): (joint, row) for joint in outcomes[simulation().key].joints for row, case in enumerate(joint.cases)
+    }
+    fell = {}
     for at, case in enumerate(int(one) for one in governing):
-        if case in rows and adoption.verified[case]:
+        if case in rows and adoption.basis[case] == SIMULATED:
             joint, row = rows[case]
-            source = "" if is_suite else case_demand[case].source
-            group[at] = sources.setdefault(source, len(sources))
-            fell[at] = joint.fell[row, : joint.runs[row]]
+            fell[at] = (joint.ideal if settings.ideal else joint.fell)[row, : joint.runs[row]]
     return Falls(
         probability=adoption.probability[governing],
-        group=group,
+        group=np.where(np.isin(np.arange(len(governing)), list(fell)), 0, -1).astype(np.intp),
         fell=fell,
-        in_record=simulated.detail["record_overturned"].astype(np.float64)[governing],
+        unconfirmed=adoption.basis[governing] == UNCONFIRMED,
+        in_record=_numbers(outcomes[simulation().key], "record_overturned")[governing],
         anchored=np.array([item.anchored == "yes" for item in inventory.items], dtype=np.bool_),
         quantity=np.array([item.quantity for item in inventory.items], dtype=np.intp),
     )

@@ -32,8 +32,8 @@ class Assessment:
         Where the floor motion came from, one of `assess.settings.SCENARIOS`.
     suite : Suite, optional
         The user's own motions, where they stood in for generated ones.
-    demands : mapping of (floor, axis) to demands
-        How every floor shakes.
+    filled, demands : mappings of (floor, axis) to demands
+        How every floor shakes, as the workbook says and with the settings' factor on it.
     methods : tuple of Method
         The methods, in the order of reports.
     cases : Cases
@@ -56,6 +56,7 @@ class Assessment:
     settings: Settings
     scenario: str
     suite: "Suite | None"
+    filled: Mapping[tuple[str, Axis], tuple[Demand, ...]]
     demands: Mapping[tuple[str, Axis], tuple[Demand, ...]]
     methods: tuple[Method, ...]
     cases: Cases

@@ -47,6 +47,8 @@ class Demand:
         The code's profile, with its clause, the height ratio z/h and the amplification [-] that it gave.
     flags : tuple of str
         Keys of `assess.results.MOTION_FLAGS`.
+    scale : float
+        Factor by which all of this was multiplied [-].
     """
 
     floor: Floor
@@ -63,11 +65,22 @@ class Demand:
     height_ratio: float | None = None
     amplification: float | None = None
     flags: tuple[str, ...] = ()
+    scale: float = 1.0
 
     @property
     def loss(self) -> float:
         """Share of the file's own peak that treatment took away [-]; 0 where no record is."""
-        return 1 - self.pfa / self.record.file_pfa if self.record and self.record.file_pfa else 0.0
+        return 1 - self.pfa / (self.scale * self.record.file_pfa) if self.record and self.record.file_pfa else 0.0
+
+    def scaled(self, factor: float) -> "Demand":
+        """Return it with its motion multiplied by a factor [-]; the record stays as it is in its file."""
+        if factor == 1.0:
+            return self
+        motion = self.motion and replace(
+            self.motion, acceleration=factor * self.motion.acceleration, velocity=factor * self.motion.velocity,
+            displacement=factor * self.motion.displacement,
+        )  # fmt: skip
+        return replace(self, pfa=factor * self.pfa, pfv=factor * self.pfv, motion=motion, scale=factor * self.scale)
 
     @property
     def label(self) -> str:
@@ -170,6 +183,11 @@ def build_demands(
     if problems:
         raise WorkbookError([inventory.place(problem) for problem in problems])
     return demands
+
+
+def scale_demands(demands: Demands, factor: float) -> Demands:
+    """Return the demands with every motion multiplied by a factor [-]."""
+    return {place: tuple(one.scaled(factor) for one in parallel) for place, parallel in demands.items()}
 
 
 # ---------------------------------------------------------------- what a floor has of its own

@@ -2,8 +2,10 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from assess.model import Building
 from assess.motion.record import FloatArray
@@ -16,19 +18,20 @@ if TYPE_CHECKING:
     from assess.motion.target_fit import Fit, Spectra
 
 WEAK_PFA, WEAK_PFV = 0.9, 0.85
-"""Shares of the floor's PFA and PFV [-] below which the user's own motions may not lower a class."""
+"""Shares of the floor's PFA and PFV [-]: motions whose own are lower on average may not lower a class."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OpenMotions:
     """Motions that have been made ready: `make` returns those from a number on, and a count of them.
 
-    `fit` and `spectra` are those of the first 100 motions.
+    `fit` and `spectra` are those of the first 100 motions; `is_weak` tells whether they are weaker than the floor's.
     """
 
     make: Callable[[int, int], list[tuple[FloatArray, float]]]
     fit: "Fit | None" = None
     spectra: "Spectra | None" = None
+    is_weak: bool = False
 
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
@@ -63,9 +66,9 @@ class GeneratedEnsemble:
         return self.demand.motion is None
 
     @property
-    def is_weak(self) -> bool:
-        """They meet the floor's PFA by how they are made."""
-        return False
+    def is_unshaped(self) -> bool:
+        """Whether its generic spectrum rests on neither T1 nor the building's height."""
+        return self.is_generic and self.period is None and self.height is None
 
     @property
     def record(self) -> tuple[FloatArray, float] | None:
@@ -90,19 +93,23 @@ class GeneratedEnsemble:
             self.build_target(), self.grid, seed=self.seed, axis=self.demand.axis, threads=threads, progress=progress
         )
         step = self.grid.time_step
+        fit = generator.fit
+        is_weak = fit is not None and fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
         return OpenMotions(
-            lambda first, count: [(generator.realise(first, count), step)], generator.fit, generator.spectra
+            lambda first, count: [(generator.realise(first, count), step)], fit, generator.spectra, is_weak
         )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SuiteEnsemble:
-    """The user's own motions on one floor along one axis, scaled to its PFA where that is wanted."""
+    """The user's own motions on one floor along one axis, scaled to its PFA where that is wanted, else by a factor."""
 
     demand: Demand
     suite: "Suite"
     is_scaled: bool
+    factor: float = 1.0
     is_generic: bool = False
+    is_unshaped: bool = False
 
     @property
     def peaks(self) -> tuple[float, float]:
@@ -110,7 +117,7 @@ class SuiteEnsemble:
         from statistics import median
 
         motions = [motion for _, motion in self.suite.motions]
-        scales = [self.demand.pfa / motion.pfa if self.is_scaled else 1.0 for motion in motions]
+        scales = [self.demand.pfa / motion.pfa if self.is_scaled else self.factor for motion in motions]
         scaled = [(one.pfa * scale, one.pfv * scale) for one, scale in zip(motions, scales, strict=True)]
         return median(pfa for pfa, _ in scaled), median(pfv for _, pfv in scaled)
 
@@ -130,7 +137,14 @@ class SuiteEnsemble:
         """Take them as they are."""
         pfa = self.demand.pfa if self.is_scaled else None
         spectra = self.suite.scaled_spectra(pfa, progress=progress)
-        return OpenMotions(lambda first, count: self.suite.realise(first, count, pfa), spectra=spectra)
+        is_weak = self.is_weak
+        if self.is_scaled or self.factor == 1.0:
+            return OpenMotions(lambda first, count: self.suite.realise(first, count, pfa), None, spectra, is_weak)
+        spectra = replace(spectra, ordinates=spectra.ordinates * np.float32(self.factor))
+        return OpenMotions(self._realise_scaled, None, spectra, is_weak)
+
+    def _realise_scaled(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
+        return [(self.factor * batch, step) for batch, step in self.suite.realise(first, count)]
 
 
 FloorEnsemble = GeneratedEnsemble | SuiteEnsemble

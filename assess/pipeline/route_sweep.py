@@ -27,6 +27,7 @@ from assess.methods import (
     interval_width,
     make_batches,
     rock_cases,
+    rock_draws,
     run_side_by_side,
     simulation,
 )  # fmt: skip
@@ -37,7 +38,7 @@ from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import GeneratedEnsemble
 from assess.pipeline.verify import check_pairs, choose_motions, describe_work
 from assess.progress import SILENT, Progress, Stage
-from assess.rocking.block import STOCKY
+from assess.rocking.block import stocky_limit
 from assess.route_results import Chance
 from assess.routes.chances import Falls, Happens
 from assess.routes.network import build_course
@@ -137,7 +138,8 @@ def _find_fragility(assessment: Assessment, values: Sequence[float], jobs: int |
     scenes = [sweep.scene(at, fell, progress) for at in range(len(values))]
     made = [one for one in sweep.cases.ensembles if isinstance(one, GeneratedEnsemble)]
     generic = {one.demand.floor.floor for one in made if one.is_generic}
-    too_stocky = [one for at in beside if (one := inventory.items[at]).breadth / one.height >= STOCKY]
+    beside_them = [inventory.items[at] for at in beside]
+    too_stocky = [one for one in beside_them if one.breadth / one.height >= stocky_limit(one.centre_of_gravity)]
     return Fragility(
         values=tuple(values),
         runs=int(assessment.settings.runs),
@@ -176,7 +178,7 @@ def find_passing(values: Sequence[float], chances: Sequence[float], level: float
 
 def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
     """Return the cases with the motions under which the pieces `beside` routes are to be rocked."""
-    chosen = np.isin(assessment.case_item, beside) & (assessment.cases.breadth_to_height < STOCKY)
+    chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
     inventory, settings = assessment.inventory, assessment.settings
     return choose_motions(
         assessment.cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None
@@ -214,10 +216,21 @@ class _Sweep:
         scales = [_scale(value, self.assessment.case_demand[own[0]].pfa) for value in self.values]
         for at, batch, time_step in make_batches(motions, 0, runs, BATCH):
             for place, scale in enumerate(scales):
-                found, _ = rock_cases(self.cases, own, scale * batch, time_step, threads, progress)
-                fell[place, :, at : at + len(batch)] = found
+                fell[place, :, at : at + len(batch)] = self._rock(own, scale * batch, time_step, at, threads, progress)
             stage.at((at + len(batch)) / runs, number)
         return fell
+
+    def _rock(
+        self, own: NDArray[np.intp], motions: FloatArray, time_step: float, first: int, threads: int, progress: Progress
+    ) -> BoolArray:
+        settings = self.assessment.settings
+        if settings.ideal:
+            return rock_cases(self.cases, own, motions, time_step, threads, progress)[0]
+        fell, _ = rock_draws(
+            self.cases, own, motions, time_step, first=first, dispersions=(self.cases.uncertainty.motion,),
+            seed=settings.seed, threads=threads, progress=progress,
+        )  # fmt: skip
+        return np.asarray(fell[0])
 
     def scene(self, at: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]], progress: Progress) -> Scene:
         """Return the segments with how the pieces fall at value `at`."""
@@ -235,10 +248,9 @@ class _Sweep:
         )  # nothing is doubtful here: what was rocked is taken as it is
         formula = adopted_formula().evaluate(scaled, self.assessment.settings)
         outcomes = {adopted_formula().key: formula, simulation().key: _outcome(every.size, fell)}
-        adoption = adopt(outcomes, scaled)
+        adoption = adopt(outcomes, scaled, self.assessment.settings)
         governing = find_governing(adoption.probability, self.assessment.case_item, scaled.pfa)
-        inventory, demands = self.assessment.inventory, self.assessment.case_demand
-        return build_falls(inventory, adoption, outcomes, demands, governing, is_suite=False)
+        return build_falls(self.assessment.inventory, adoption, outcomes, governing, self.assessment.settings)
 
 
 def _scale(value: float, pfa: float) -> float:
@@ -253,12 +265,15 @@ def _outcome(count: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> 
     for number, (own, one) in enumerate(fell):
         value[own] = one.sum(axis=1) / one.shape[1]
         runs, rotation = np.full(own.size, one.shape[1]), np.zeros((0, 0), dtype=np.float32)
-        joints.append(Joint(ensemble=number, cases=own, runs=runs, fell=one, rotation=rotation, examples=(), fit=None))
+        joint = Joint(
+            ensemble=number, cases=own, runs=runs, fell=one, ideal=one, rotation=rotation, examples=(), fit=None
+        )
+        joints.append(joint)
     unknown, no = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
     return Outcome(
         value,
-        dict.fromkeys(("low", "high", "record_overturned"), unknown),
-        dict.fromkeys(("generic_spectrum", "weak_motions", "fell_in_record"), no),
+        {"ideal": value, **dict.fromkeys(("low", "high", "ideal_low", "ideal_high", "record_overturned"), unknown)},
+        dict.fromkeys(("unknown_period", "weak_motions", "fell_in_record"), no),
         tuple(joints),
     )
 

@@ -19,7 +19,7 @@ from assess.methods import Cases, Method, all_methods, simulation
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import Demand, Demands, build_demands
+from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
@@ -30,10 +30,11 @@ from assess.pipeline.tables import (
     build_provenance,
     list_demands,
 )
-from assess.pipeline.verify import choose_motions, remark_suite, verify
+from assess.pipeline.verify import choose_motions, find_uncertainty, remark_suite, verify
 from assess.pipeline.worked import choose_example, work_example
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
+from assess.rocking.draws import name_number
 from assess.route_results import RouteTables
 from assess.settings import SCENARIOS, Settings, change_settings
 
@@ -140,21 +141,23 @@ def _compute(
     progress: Progress,
 ) -> Assessment:
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
-    demands = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
+    filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
+    demands = scale_demands(filled, settings.scale)
     case_item, case_demand = _pair(inventory, demands)
     cases, obstructions = _cases(inventory, case_item, case_demand), _find_obstructions(inventory, progress)
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
     outcomes[simulation().key] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
-    adoption = adopt(outcomes, cases)
-    problems = [*remark(inventory, demands, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
+    adoption = adopt(outcomes, cases, settings)
+    problems = [*remark(inventory, filled, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
     problems += _route_problems(inventory, obstructions)
     return Assessment(
         inventory=inventory,
         settings=settings,
         scenario=scenario,
         suite=suite,
+        filled=filled,
         demands=demands,
         methods=every,
         cases=cases,
@@ -234,7 +237,7 @@ def _write_series(path: Path, arrays: Arrays, progress: Progress) -> None:
 def _list_underestimates(assessment: Assessment) -> tuple[str, ...]:
     """Return the warnings that more shaking is known than is used."""
     reduction = assessment.settings.ductility_reduction
-    found = list_too_low(assessment.inventory, assessment.demands, assessment.scenario, reduction)
+    found = list_too_low(assessment.inventory, assessment.filled, assessment.scenario, reduction)
     return tuple(problem.message for problem in found)
 
 
@@ -270,8 +273,8 @@ def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple
     def column(values: list[float | None]) -> NDArray[np.float64]:
         return np.array(values, dtype=np.float64)
 
-    items = [inventory.items[index] for index in case_item]
-    restitution = inventory.building.restitution
+    items, building = [inventory.items[index] for index in case_item], inventory.building
+    names = {item.item: name_number(item.item) for item in inventory.items}
     return Cases(
         breadth=column([item.breadth for item in items]),
         height=column([item.height for item in items]),
@@ -279,8 +282,11 @@ def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple
         pfv=column([demand.pfv for demand in case_demand]),
         friction=column([inventory.friction_of(item) for item in items]),
         pfv_estimated=np.array(["pfv_estimated" in demand.flags for demand in case_demand], dtype=np.bool_),
-        restitution=np.full(len(items), math.nan if restitution is None else restitution),
+        restitution=np.full(len(items), math.nan if building.restitution is None else building.restitution),
         ensemble=np.full(len(items), -1, dtype=np.intp),
+        centre=column([item.centre_of_gravity for item in items]),
+        name=np.array([names[item.item] for item in items], dtype=np.int64),
+        uncertainty=find_uncertainty(building),
     )
 
 
@@ -301,10 +307,7 @@ def _evaluate_routes(assessment: Assessment, progress: Progress) -> RouteTables:
         return RouteTables(risk=settings.route_risk)
     from assess.routes.evaluate import evaluate_routes
 
-    falls = build_falls(
-        inventory, assessment.adoption, assessment.outcomes, assessment.case_demand, assessment.governing,
-        is_suite=assessment.suite is not None,
-    )  # fmt: skip
+    falls = build_falls(inventory, assessment.adoption, assessment.outcomes, assessment.governing, settings)
     return evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
 
 

@@ -14,7 +14,7 @@ from assess.model import Building
 from assess.pipeline.demand import Demand, Demands
 from assess.pipeline.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
 from assess.progress import SILENT, Progress
-from assess.rocking.block import STOCKY
+from assess.rocking.draws import Uncertainty
 from assess.settings import AUTO, Settings, count_processors
 from assess.units import GRAVITY
 
@@ -24,6 +24,14 @@ if TYPE_CHECKING:
 
 MOST_PAIRS = 400_000_000
 """Results of one motion on one piece that are kept at most: they take five bytes each."""
+
+
+def find_uncertainty(building: Building) -> Uncertainty:
+    """Return what is taken to be uncertain: what the workbook says, else the defaults."""
+    default, motion, piece = Uncertainty(), building.motion_uncertainty, building.piece_uncertainty
+    return Uncertainty(
+        motion=default.motion if motion is None else motion, piece=default.piece if piece is None else piece
+    )
 
 
 def choose_motions(
@@ -36,13 +44,13 @@ def choose_motions(
     suite: "Suite | None",
 ) -> Cases:
     """Return the cases with the motions under which those `chosen` (n,) that can rock are to be integrated."""
-    chosen = chosen & (cases.breadth_to_height < STOCKY)
+    chosen = chosen & ~cases.is_stocky
     wanted = list(dict.fromkeys(demand for demand, one in zip(case_demand, chosen, strict=True) if one))
     ensembles: tuple[FloorEnsemble, ...]
     if suite is None:
         ensembles = build_ensembles(wanted, demands, building, seed=settings.seed) if wanted else ()
     else:
-        ensembles = tuple(SuiteEnsemble(demand, suite, settings.scale_motions) for demand in wanted)
+        ensembles = tuple(SuiteEnsemble(demand, suite, settings.scale_motions, settings.scale) for demand in wanted)
     place = {demand: at for at, demand in enumerate(wanted)}
     which = [place[demand] if one else -1 for demand, one in zip(case_demand, chosen, strict=True)]
     return replace(cases, ensemble=np.array(which, dtype=np.intp), ensembles=ensembles)

@@ -47,6 +47,8 @@ class Falls:
         whole building; -1 where a piece was not verified, or where its verified chance is not adopted.
     fell : mapping of int to (k,) boolean array
         For a piece with a group (by its index) whether it overturned, motion by motion.
+    unconfirmed : (n,) boolean array
+        Pieces whose adopted chance is the formula's, as a lower one was simulated that cannot be relied on.
     in_record : (n,) array
         1 where it overturns under the recorded motion itself, 0 where it does not, NaN where that is not known.
     anchored : (n,) boolean array
@@ -58,6 +60,7 @@ class Falls:
     probability: FloatArray
     group: NDArray[np.intp]
     fell: Mapping[int, BoolArray]
+    unconfirmed: BoolArray
     in_record: FloatArray
     anchored: BoolArray
     quantity: NDArray[np.intp]

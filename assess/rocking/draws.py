@@ -1,0 +1,140 @@
+"""What is not known of an earthquake and of a piece of furniture, drawn: one scale an earthquake, one body a piece.
+
+A simulation of one record's spectrum asks what would happen if exactly that motion recurred. The next earthquake of its
+kind will be stronger or weaker, and pieces differ from their nominal sizes. Draw k scales the motions of the whole
+building by one factor, exp(dispersion x a normal number), which is the real dependence between floors; each piece draws
+its base, height, centre of gravity and restitution. Draws come from the seed and the piece alone: neither other pieces
+nor their order nor the number of draws change them.
+
+The dispersions are assumed, not measured on furniture; normal distributions are cut at 3 standard deviations.
+"""
+
+import hashlib
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.rocking import block
+from assess.rocking.block import FloatArray
+
+MOTION = 0.4
+"""Assumed standard deviation of the natural logarithm of the motion's amplitude [-]."""
+TRIED = (0.2, 0.6)
+"""Other standard deviations, under which it is told how many classes would change [-]."""
+BASE = (0.97, 0.05)
+"""Mean and standard deviation of the base over the nominal one [-]: feet stand inside the plan rather than outside."""
+HEIGHT, CENTRE, RESTITUTION = 0.02, 0.05, 0.04
+"""Standard deviations of the height over the nominal one, of the centre of gravity as a share of the height, and of
+the restitution [-], about their nominal values."""
+CUT = 3.0
+"""Standard deviations beyond which nothing is drawn."""
+_EARTHQUAKE, _PIECE = 1, 2
+"""Streams of random numbers of a seed."""
+_AT_ONCE = 256
+"""Draws that have one generator, so that late ones do not wait for all before them."""
+_TINY = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertainty:
+    """What is taken to be uncertain.
+
+    Parameters
+    ----------
+    motion : float
+        Standard deviation of the natural logarithm of the motion's amplitude from one earthquake to the next [-].
+    piece : bool
+        Whether base, height, centre of gravity and restitution of a piece are drawn.
+    """
+
+    motion: float = MOTION
+    piece: bool = True
+
+    @property
+    def largest(self) -> float:
+        """Factor that no drawn motion exceeds [-]."""
+        return math.exp(CUT * self.motion)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawnBodies:
+    """Bodies of m pieces, one a draw, (m, k) each: sizes [m], centre of gravity [share of height] and restitution."""
+
+    breadth: FloatArray
+    height: FloatArray
+    centre: FloatArray
+    restitution: FloatArray
+
+
+def name_number(name: str) -> int:
+    """Return the number by which a piece of this name draws: the same wherever it stands."""
+    return int.from_bytes(hashlib.sha256(name.encode()).digest()[:7], "big")
+
+
+def draw_earthquakes(seed: int, first: int, count: int) -> FloatArray:
+    """Return the normal numbers of draws `first` to `first + count - 1`, (count,), cut at 3 standard deviations."""
+    return _normal(_uniform([seed, _EARTHQUAKE], first, count, 1)[:, 0], -CUT, CUT)
+
+
+def draw_bodies(
+    breadth: FloatArray,
+    height: FloatArray,
+    centre: FloatArray,
+    restitution: FloatArray,
+    names: Sequence[int] | NDArray[np.int64],
+    *,
+    seed: int,
+    first: int,
+    count: int,
+) -> DrawnBodies:
+    """Draw the bodies of m pieces.
+
+    Parameters
+    ----------
+    breadth, height : (m,) arrays
+        Nominal sizes [m].
+    centre : (m,) array
+        Nominal height of the centre of gravity as a share of the height [-].
+    restitution : (m,) array
+        Nominal [-]; NaN is that of the drawn body by equal angular momentum.
+    names : (m,) integers
+        From `name_number`; pieces of one name draw alike.
+    seed, first, count : int
+        Draws `first` to `first + count - 1`.
+
+    Returns
+    -------
+    DrawnBodies
+        (m, count) each. Where nearly every restitution would be negative, of a body about too stocky to rock, it is 0.
+    """
+    every, which = np.unique(np.asarray(names), return_inverse=True)
+    drawn = [_uniform([seed, _PIECE, int(one)], first, count, 4) for one in every]
+    u = np.stack(drawn)[which.ravel()]  # (m, count, 4)
+    b = breadth[:, None] * (BASE[0] + BASE[1] * _normal(u[..., 0], -CUT, CUT))
+    h = height[:, None] * (1 + HEIGHT * _normal(u[..., 1], -CUT, CUT))
+    z = np.clip(centre[:, None] + CENTRE * _normal(u[..., 2], -CUT, CUT), 0.01, 0.99)
+    mean = np.where(np.isnan(restitution)[:, None], block.restitution(b, h, z), restitution[:, None])
+    low, high = np.maximum(-CUT, (0 - mean) / RESTITUTION), np.minimum(CUT, (1 - mean) / RESTITUTION)
+    eta = mean + RESTITUTION * _normal(u[..., 3], np.minimum(low, high), high)
+    return DrawnBodies(b, h, z, np.clip(eta, _TINY, 1 - _TINY))
+
+
+def _uniform(stream: list[int], first: int, count: int, width: int) -> FloatArray:
+    """Return draws of a stream, (count, width), uniform from 0 to 1: the same whatever else is drawn."""
+    start = first // _AT_ONCE
+    blocks = [
+        np.random.default_rng([*stream, block]).random((_AT_ONCE, width))
+        for block in range(start, -(-(first + count) // _AT_ONCE))
+    ]
+    return np.concatenate(blocks)[first - start * _AT_ONCE :][:count]
+
+
+def _normal(uniform: FloatArray, low: FloatArray | float, high: FloatArray | float) -> FloatArray:
+    """Return normal numbers between `low` and `high` from numbers that are uniform from 0 to 1."""
+    from scipy.special import ndtr, ndtri
+
+    first, last = ndtr(low), ndtr(high)
+    return np.asarray(np.clip(ndtri(first + uniform * (last - first)), low, high))
