@@ -13,6 +13,7 @@ from assess.errors import Problem, RecordError
 from assess.i18n import fill, find_language
 from assess.motion.formats import parse_records, select
 from assess.motion.record import Record
+from assess.rocking.block import MIDDLE
 from assess.units import LENGTH, to_edge
 
 if TYPE_CHECKING:
@@ -22,9 +23,6 @@ Axis = Literal["X", "Y"]
 AXES: tuple[Axis, Axis] = ("X", "Y")
 ANCHORED = ("no", "yes", "partly", "unknown")
 IMPORTANCE = ("life safety", "function", "property")
-
-MID_HEIGHT = 0.5
-"""Height of the centre of gravity of a piece of which none is known, as a share of its height [-]."""
 
 NEAR_AXIS = 15.0
 """Up to this angle [deg] from an axis a piece, or a record, counts as lying along it."""
@@ -235,7 +233,7 @@ class Item:
     breadth: float
     width: float | None = None
     height: float
-    centre_of_gravity: float = MID_HEIGHT
+    centre_of_gravity: float = MIDDLE
     axis: Axis | None = None
     anchored: str = "unknown"
     friction: float | None = None

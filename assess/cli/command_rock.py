@@ -115,14 +115,16 @@ class Case:
     @property
     def threshold_g(self) -> float:
         """Acceleration above which the block starts to rock [g]: b/z_c, half base over centre of gravity."""
-        return self.breadth / (2 * self.centre * self.height)
+        from assess.rocking.block import threshold
+
+        return float(threshold(self.breadth, self.height, self.centre))
 
     @property
     def is_mid_height(self) -> bool:
         """Whether the centre of gravity is at mid-height, where b/z_c is B/H."""
-        from assess.model import MID_HEIGHT
+        from assess.rocking.block import MIDDLE
 
-        return self.centre == MID_HEIGHT
+        return self.centre == MIDDLE
 
     @property
     def threshold_name(self) -> str:
@@ -147,14 +149,12 @@ def read_case(
         If an option cannot be used; or if the record cannot be read, holds several channels and none is named, or is
         vertical.
     """
-    from assess.model import MID_HEIGHT
     from assess.motion.formats import read_channel
     from assess.motion.record import MOST_ACCELERATION, Baseline
 
     check_size("breadth", breadth_cm)
     check_size("height", height_cm)
-    if centre_percent is not None:
-        check_size("cg", centre_percent, "centre_of_gravity")
+    centre = _read_centre(centre_percent)
     most = MOST_ACCELERATION / GRAVITY
     if pfa_g is not None and not 0 < pfa_g <= most:
         raise InputError(f"--pfa is {pfa_g:g} g, expected above 0 and at most {most:g} g")
@@ -170,7 +170,7 @@ def read_case(
     return Case(
         breadth=breadth_cm * LENGTH["cm"],
         height=height_cm * LENGTH["cm"],
-        centre=MID_HEIGHT if centre_percent is None else centre_percent * SHARE["%"],
+        centre=centre,
         restitution=math.nan if restitution is None else restitution,
         channel=channel,
         baseline=cast("Baseline", baseline),
@@ -178,6 +178,16 @@ def read_case(
         factor=factor,
         pfa_g=own if pfa_g is None else pfa_g,
     )
+
+
+def _read_centre(percent: float | None) -> float:
+    """Return the height of the centre of gravity as a share of the block's [-], by the limits of the workbook."""
+    from assess.rocking.block import MIDDLE
+
+    if percent is None:
+        return MIDDLE
+    check_size("cg", percent, "centre_of_gravity")
+    return percent * SHARE["%"]
 
 
 def _scale(motion: "Motion", factor: float) -> "Motion":
