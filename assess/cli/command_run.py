@@ -98,7 +98,7 @@ def command(
     wanted = _read_formats(formats, verify, open_report)
     _check_motions(verify, runs, seed, motions, scale_motions)
     if ideal and verify == "none":
-        raise InputError("--ideal: without a simulation there is none to adopt; leave out --ideal or --verify none")
+        raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
     settings = read_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
         route_risk=route_risk,

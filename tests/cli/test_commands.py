@@ -138,7 +138,7 @@ def test_bad_input_writes_nothing(tmp_path):
         (["--scale", "0"], "--scale is 0.0, expected above 0 and at most 10"),
         (["--scale", "11"], "--scale is 11.0, expected above 0 and at most 10"),
         (["--scale", "nan"], "--scale is nan, expected above 0 and at most 10"),
-        (["--verify", "none", "--ideal"], "--ideal: without a simulation there is none to adopt; leave out --ideal or"),
+        (["--verify", "none", "--ideal"], "--ideal is about the simulation: leave out --ideal or --verify none"),
         (["--verify", "maybe"], "--verify is 'maybe', expected one of: none, high, all"),
         (["--runs", "0"], "--runs is '0', expected 1 to 100,000, or auto"),
         (["--runs", "9" * 5000], "--runs is '999"),
