@@ -60,7 +60,7 @@ SHOWN = 3
 
 def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage | None = None) -> Outcome:
     """Integrate the cases that have an ensemble, each of which is one part of `stage`; the others have no value."""
-    known = (cases.ensemble >= 0) & ~cases.is_stocky
+    known = (cases.ensemble >= 0) & ~cases.is_stocky & ~np.isnan(cases.threshold)
     found = _Found.empty(cases.breadth.size)
     owns = [(number, np.flatnonzero(known & (cases.ensemble == number))) for number in range(len(cases.ensembles))]
     owns = [(number, own) for number, own in owns if own.size]
@@ -78,27 +78,17 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
 
 
 def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[Joint]) -> Outcome:
-    done, runs = found.runs > 0, np.maximum(found.runs, 1)
-
-    def share(fallen: NDArray[np.int64]) -> FloatArray:
-        return np.where(done, fallen / runs, np.nan)
-
-    def ends(fallen: NDArray[np.int64]) -> list[FloatArray]:
-        return [np.where(done, end, np.nan) for end in wilson_interval(fallen, runs, interval_width(settings))]
-
-    low, high = ends(found.overturned)
-    ideal_low, ideal_high = ends(found.ideal)
-    open_low, open_high = (ideal_low, ideal_high) if settings.ideal else (low, high)
+    done = found.runs > 0
+    drawn, ideal = (_count(fallen, found.runs, settings) for fallen in (found.overturned, found.ideal))
+    open_low, open_high = (ideal if settings.ideal else drawn)[2:]
     detail = {
-        "runs": np.where(done, runs, np.nan),
-        "overturned": np.where(done, found.overturned, np.nan),
-        "low": low,
-        "high": high,
-        "ideal": share(found.ideal),
-        "ideal_overturned": np.where(done, found.ideal, np.nan),
-        "ideal_low": ideal_low,
-        "ideal_high": ideal_high,
-        **{f"dispersion_{one:g}": share(found.tried[at]) for at, one in enumerate(TRIED)},
+        "runs": np.where(done, found.runs, np.nan),
+        **dict(zip(("overturned", "low", "high"), (drawn[0], *drawn[2:]), strict=True)),
+        **dict(zip(("ideal_overturned", "ideal", "ideal_low", "ideal_high"), ideal, strict=True)),
+        **{
+            f"dispersion_{one:g}": _count(fallen, found.runs, settings)[1]
+            for one, fallen in zip(TRIED, found.tried, strict=True)
+        },
         "record_overturned": found.record_fell,
         "record_rotation": found.record_rotation,
     }
@@ -110,7 +100,14 @@ def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[J
         "undecided": done & (settings.runs == AUTO) & (classify_all(open_low) != classify_all(open_high)),
         "does_not_rock": cases.is_stocky,
     }
-    return Outcome(share(found.overturned), detail, flags, tuple(joints))
+    return Outcome(drawn[1], detail, flags, tuple(joints))
+
+
+def _count(fallen: NDArray[np.int64], runs: NDArray[np.int64], settings: Settings) -> tuple[FloatArray, ...]:
+    """Return how many draws overturn each case, their share, and its interval; NaN where there are none."""
+    done, some = runs > 0, np.maximum(runs, 1)
+    ends = wilson_interval(fallen, some, interval_width(settings))
+    return tuple(np.where(done, one, np.nan) for one in (fallen, fallen / some, *ends))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -299,6 +296,12 @@ METHOD = Method(
         Column("overturned", "Overturned", kind="count", format=",.0f"),
         Column("low", "Lower end of the interval"),
         Column("high", "Upper end of the interval"),
+        Column("ideal_overturned", "Overturned, if exactly this motion recurred", kind="count", format=",.0f"),
+        Column("ideal", "Chance if exactly this motion recurred"),
+        Column("ideal_low", "Lower end of its interval"),
+        Column("ideal_high", "Upper end of its interval"),
+        Column("dispersion_0.2", "Chance with a dispersion of the motion of 0.2"),
+        Column("dispersion_0.6", "Chance with a dispersion of the motion of 0.6"),
         Column("record_overturned", "Overturns under the record", kind="truth", format=".0f"),
         Column("record_rotation", "Largest rotation under the record over the critical angle", format=".2f"),
     ),

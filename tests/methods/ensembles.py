@@ -26,6 +26,7 @@ class MadeUp:
 
     seed: int
     is_generic: bool = False
+    is_unshaped: bool = False
     is_weak: bool = False
     has_record: bool = False
     fit: Fit | None = None

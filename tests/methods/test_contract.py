@@ -20,7 +20,7 @@ from tests.methods.ensembles import MadeUp
 
 SETTINGS = Settings()
 EXAMPLES = 60
-FIELDS = tuple(field.name for field in dataclasses.fields(Cases) if field.name != "ensembles")
+FIELDS = tuple(field.name for field in dataclasses.fields(Cases) if field.name not in ("ensembles", "uncertainty"))
 METHODS = pytest.mark.parametrize("method", all_methods(), ids=lambda method: method.key)
 SCREENING = pytest.mark.parametrize(
     "method", [method for method in all_methods() if method.tier == "screening"], ids=lambda method: method.key
@@ -53,6 +53,8 @@ def random_batch(n=400) -> Cases:
         friction=np.where(random.random(n) < 0.5, np.nan, random.uniform(0.1, 1.0, n)),
         pfv_estimated=random.random(n) < 0.3,
         restitution=np.where(random.random(n) < 0.7, np.nan, random.uniform(0.3, 1.0, n)),
+        centre=np.where(random.random(n) < 0.5, 0.5, random.uniform(0.3, 0.7, n)),
+        name=random.integers(0, 1000, n),
         ensemble=random.integers(-1, len(ENSEMBLES), n),
         ensembles=ENSEMBLES,
     )

@@ -39,7 +39,7 @@ class TestRun:
             *(one.key for one in all_methods()), "fitted_surface", "fitted_probit",
         ]  # fmt: skip
         assert with_it.outcomes["fitted_surface"].value.tolist() == [1.0] * len(with_it.case_item)
-        for name in ("probability", "risk", "upper", "verified"):
+        for name in ("probability", "risk", "upper", "basis"):
             np.testing.assert_array_equal(getattr(with_it.adoption, name), getattr(without.adoption, name))
         np.testing.assert_array_equal(with_it.governing, without.governing)
 

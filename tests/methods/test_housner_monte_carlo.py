@@ -16,6 +16,7 @@ from assess.methods.housner_monte_carlo import BATCH, METHOD, evaluate
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress, Report
 from assess.risk import classify_all, wilson_interval
+from assess.rocking.draws import MOTION, TRIED, Uncertainty, draw_bodies, draw_earthquakes
 from assess.rocking.ensemble import rock_blocks
 from assess.settings import Settings
 from tests.methods.ensembles import STEP, MadeUp, make_motion
@@ -32,6 +33,7 @@ class Pushes:
 
     levels: tuple[float, ...]
     is_generic: bool = False
+    is_unshaped: bool = False
     is_weak: bool = False
     record: tuple[FloatArray, float] | None = None
     fit: Fit | None = None
@@ -51,10 +53,21 @@ def _push() -> FloatArray:
     return np.concatenate([[0.0], np.ones(150), np.zeros(2)])
 
 
+CERTAIN = Uncertainty(motion=0.0, piece=False)
+"""Nothing is drawn: what is adopted is then what happens if exactly this motion recurs."""
+
+
 def _cases(
-    ensemble: ArrayLike, *ensembles: MadeUp | Pushes, breadth: ArrayLike = 0.3, height: ArrayLike = 1.8
+    ensemble: ArrayLike,
+    *ensembles: MadeUp | Pushes,
+    breadth: ArrayLike = 0.3,
+    height: ArrayLike = 1.8,
+    uncertainty: Uncertainty = CERTAIN,
+    **more: ArrayLike,
 ) -> Cases:
-    return Cases.of(breadth=breadth, height=height, ensemble=ensemble, ensembles=ensembles)
+    return Cases.of(
+        breadth=breadth, height=height, ensemble=ensemble, ensembles=ensembles, uncertainty=uncertainty, **more
+    )
 
 
 def _grid(ensembles: int, seed: int = 3, count: int = 24) -> Cases:
@@ -78,7 +91,7 @@ def _assert_equal(one: Outcome, other: Outcome) -> None:
             np.testing.assert_array_equal(values, getattr(other, name)[key], err_msg=key)
     for mine, its in zip(one.joints, other.joints, strict=True):
         assert mine.ensemble == its.ensemble
-        for key in ("cases", "runs", "fell", "rotation"):
+        for key in ("cases", "runs", "fell", "ideal", "rotation"):
             np.testing.assert_array_equal(getattr(mine, key), getattr(its, key), err_msg=key)
 
 
@@ -138,13 +151,14 @@ def test_without_a_record_nothing_is_known_of_it() -> None:
 
 
 def test_flags_and_pieces_without_motions_or_too_stocky() -> None:
-    ensembles = (MadeUp(0), MadeUp(1, is_generic=True))
+    ensembles = (MadeUp(0), MadeUp(1, is_generic=True, is_unshaped=True, is_weak=True))
     cases = _cases([0, 1, -1, 1, 0], *ensembles, breadth=[0.3, 0.3, 0.3, 1.41, 1.409], height=[1.8, 1.8, 1.8, 1.0, 1.0])
     outcome = evaluate(cases, Settings(runs=5))
     assert np.isnan(outcome.value).tolist() == [False, False, True, True, False]
     for name in ("runs", "overturned", "low", "high"):
         assert np.isnan(outcome.detail[name]).tolist() == [False, False, True, True, False], name
-    assert outcome.flags["generic_spectrum"].tolist() == [False, True, False, False, False]
+    for name in ("generic_spectrum", "unknown_period", "weak_motions"):
+        assert outcome.flags[name].tolist() == [False, True, False, False, False], name
     assert outcome.flags["does_not_rock"].tolist() == [False, False, False, True, False]
     assert not outcome.flags["undecided"].any(), "a fixed number is not a question"
 
@@ -153,6 +167,72 @@ def test_an_ensemble_without_pieces_that_rock_is_not_opened() -> None:
     idle, stocky = MadeUp(0), MadeUp(1)
     outcome = evaluate(_cases([1], idle, stocky, breadth=1.5, height=1.0), Settings(runs=5))
     assert (idle.opened, stocky.opened, list(outcome.joints)) == ([], [], [])
+
+
+# --- what is not known ---
+
+
+def test_draws_scale_the_motion_and_change_the_piece() -> None:
+    """Draw k is motion k, scaled by the earthquake's factor, on the body of that draw."""
+    cases = dataclasses.replace(_grid(1), uncertainty=Uncertainty(), name=np.arange(24) // 2)
+    outcome = evaluate(cases, Settings(runs=40, seed=7))
+    motions = np.stack([make_motion(0, number) for number in range(40)])
+    drawn = draw_bodies(
+        cases.breadth, cases.height, cases.centre, cases.restitution, cases.name, seed=7, first=0, count=40
+    )
+    for dispersion in (MOTION, *TRIED):
+        scale = np.exp(dispersion * draw_earthquakes(7, 0, 40))[None]
+        found = rock_blocks(
+            drawn.breadth, drawn.height, motions, STEP, restitution=drawn.restitution, centre=drawn.centre, scale=scale
+        )
+        share = outcome.value if dispersion == MOTION else outcome.detail[f"dispersion_{dispersion:g}"]
+        np.testing.assert_array_equal(share, found.overturned.mean(axis=1))
+    assert (outcome.value != outcome.detail["ideal"]).any()
+
+
+def test_ideal_is_the_piece_as_given_under_the_motions_themselves() -> None:
+    uncertain = dataclasses.replace(_grid(1), uncertainty=Uncertainty())
+    one, other = evaluate(_grid(1), Settings(runs=40)), evaluate(uncertain, Settings(runs=40))
+    np.testing.assert_array_equal(one.value, one.detail["ideal"])
+    np.testing.assert_array_equal(one.value, other.detail["ideal"])
+    for name in ("overturned", "low", "high"):
+        np.testing.assert_array_equal(one.detail[name], other.detail[f"ideal_{name}"])
+    np.testing.assert_array_equal(one.joints[0].ideal, other.joints[0].ideal)
+
+
+def test_a_draw_of_a_piece_is_its_own() -> None:
+    """Neither other pieces nor their order nor the number of draws change what a piece does in draw k."""
+    names = {"uncertainty": Uncertainty(), "name": np.arange(100, 124)}
+    cases, order = dataclasses.replace(_grid(1), **names), np.random.default_rng(1).permutation(24)
+    moved = {one: getattr(cases, one)[order] for one in ("breadth", "height", "centre", "restitution", "name")}
+    (all_of_them,) = evaluate(cases, Settings(runs=30)).joints
+    (shuffled,) = evaluate(dataclasses.replace(cases, **moved), Settings(runs=30)).joints
+    np.testing.assert_array_equal(shuffled.fell, all_of_them.fell[order])
+    (fewer,) = evaluate(cases, Settings(runs=12)).joints
+    np.testing.assert_array_equal(fewer.fell, all_of_them.fell[:, :12])
+
+
+def test_batches_go_on_with_the_draws() -> None:
+    """Draws beyond a batch are those that one batch of all would have had."""
+    cases = _cases(0, Pushes((3.0,)), uncertainty=Uncertainty(), name=5)
+    (joint,) = evaluate(cases, Settings(runs=BATCH + 40)).joints
+    late = draw_earthquakes(1, BATCH, 40)
+    np.testing.assert_array_equal(late, draw_earthquakes(1, 0, BATCH + 40)[BATCH:])
+    drawn = draw_bodies(*(np.array([one]) for one in (0.3, 1.8, 0.5, np.nan)), [5], seed=1, first=BATCH, count=40)
+    motions = np.repeat(3.0 * _push()[None], 40, axis=0)
+    found = rock_blocks(
+        drawn.breadth, drawn.height, motions, STEP, restitution=drawn.restitution, centre=drawn.centre,
+        scale=np.exp(MOTION * late)[None],
+    )  # fmt: skip
+    np.testing.assert_array_equal(joint.fell[:, BATCH:], found.overturned)
+    assert 0 < found.overturned.sum() < 40
+
+
+def test_a_centre_of_gravity_is_used() -> None:
+    outcomes = [evaluate(_cases(0, Pushes((1.7,)), centre=centre), Settings(runs=3)) for centre in (0.4, 0.6)]
+    assert [one.value[0] for one in outcomes] == [0.0, 1.0]
+    high = _cases([0, 0], Pushes((2.2,)), breadth=[1.5, 1.5], height=[1.0, 1.0], centre=[0.5, 0.7])
+    assert evaluate(high, Settings(runs=3)).flags["does_not_rock"].tolist() == [True, False]
 
 
 # --- motion by motion ---

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from assess.methods import Cases, Outcome, adopted_formula, all_methods, simulation
 from assess.pipeline.adopt import Adoption, adopt, choose_items, find_governing
+from assess.results import BASES
 from assess.risk import RiskClass, classify, wilson_interval
+from assess.settings import Settings
 from assess.units import GRAVITY
 
 LOW, MEDIUM, HIGH, VERY_HIGH = RiskClass
@@ -24,42 +26,58 @@ class Case:
     formula: float
     overturned: int = 0
     runs: int = 0
-    is_generic: bool = False
-    is_estimated: bool = False
+    is_unshaped: bool = False
     is_weak: bool = False
     fell: bool = False
+    ideal: int | None = None
+    pfa: float = 0.5
 
     @property
     def share(self) -> float:
         return self.overturned / self.runs if self.runs else math.nan
 
     @property
+    def ideal_share(self) -> float:
+        return self.share if self.ideal is None else self.ideal / self.runs
+
+    @property
+    def can_rock(self) -> bool:
+        """PFA times the largest factor that is drawn, against 0.85 B/H of a piece of 0.4 x 1.8 m."""
+        return self.pfa * math.exp(3 * 0.4) >= 0.85 * 0.4 / 1.8
+
+    @property
     def is_doubtful(self) -> bool:
-        return self.is_generic or self.is_estimated or self.is_weak
+        return (self.is_unshaped or self.is_weak) and self.can_rock
 
 
-def adopted(*given: Case) -> Adoption:
+def adopted(*given: Case, settings: Settings = Settings()) -> Adoption:  # noqa: B008
     ends = [wilson_interval(one.overturned, one.runs) if one.runs else (math.nan, math.nan) for one in given]
     low, high = (np.array([float(pair[at]) for pair in ends]) for at in (0, 1))
     flags = {
-        "generic_spectrum": np.array([one.is_generic for one in given], dtype=np.bool_),
+        "unknown_period": np.array([one.is_unshaped for one in given], dtype=np.bool_),
         "weak_motions": np.array([one.is_weak for one in given], dtype=np.bool_),
         "fell_in_record": np.array([one.fell for one in given], dtype=np.bool_),
     }
+    ideal = np.array([one.ideal_share for one in given])
+    detail = {"low": low, "high": high, "ideal": ideal, "ideal_low": 0.9 * ideal, "ideal_high": 0.9 * ideal + 0.1}
     outcomes = {
         FORMULA: Outcome(np.array([one.formula for one in given])),
-        SIMULATION: Outcome(np.array([one.share for one in given]), {"low": low, "high": high}, flags),
+        SIMULATION: Outcome(np.array([one.share for one in given]), detail, flags),
     }
-    cases = Cases.of(breadth=np.full(len(given), 0.4), height=1.8, pfv_estimated=[one.is_estimated for one in given])
-    return adopt(outcomes, cases)
+    cases = Cases.of(breadth=np.full(len(given), 0.4), height=1.8, pfa=[one.pfa * GRAVITY for one in given])
+    return adopt(outcomes, cases, settings)
+
+
+def basis_of(found: Adoption, at: int = 0) -> str:
+    return BASES[found.basis[at]]
 
 
 def one(case: Case) -> tuple[float, RiskClass, RiskClass, bool, bool]:
-    """Return probability, class, upper class, whether it is the verification's, and whether that was not lowered."""
+    """Return probability, class, upper class, whether it is the simulation's, and whether it is unconfirmed."""
     found = adopted(case)
     return (
         float(found.probability[0]), RiskClass(found.risk[0]), RiskClass(found.upper[0]),
-        bool(found.verified[0]), bool(found.not_lowered[0]),
+        basis_of(found) == "simulated", basis_of(found) == "unconfirmed",
     )  # fmt: skip
 
 
@@ -74,12 +92,12 @@ def test_verification_lowers_and_raises(overturned, risk):
     case = Case(0.5, overturned, 200)
     assert one(case)[:2] == (overturned / 200, risk)
     found = adopted(case)
-    assert found.verified[0]
+    assert basis_of(found) == "simulated"
     low, high = wilson_interval(overturned, 200)
     assert (found.low[0], found.high[0]) == (low, high)
 
 
-@pytest.mark.parametrize("doubt", ["is_generic", "is_estimated", "is_weak"])
+@pytest.mark.parametrize("doubt", ["is_unshaped", "is_weak"])
 def test_in_doubt_a_class_is_raised_but_not_lowered(doubt):
     assert one(Case(0.5, 20, 200, **{doubt: True})) == (0.5, HIGH, HIGH, False, True)
     assert one(Case(0.5, 160, 200, **{doubt: True}))[:2] == (0.8, VERY_HIGH)
@@ -88,10 +106,33 @@ def test_in_doubt_a_class_is_raised_but_not_lowered(doubt):
     assert np.isnan([found.low[0], found.high[0]]).all(), "the interval is of a risk that was not adopted"
 
 
+def test_a_piece_that_cannot_start_to_rock_is_low_whatever_its_motions_are():
+    """0.4 x 1.8 m starts at 0.222 g; with 3.32 times 0.056 g it stays below 0.85 of that, with 0.057 g it does not."""
+    assert one(Case(0.5, 0, 200, is_unshaped=True, pfa=0.056))[1:] == (LOW, LOW, True, False)
+    assert one(Case(0.5, 0, 200, is_unshaped=True, pfa=0.057))[1:] == (HIGH, HIGH, False, True)
+    assert adopted(Case(0.5, 0, 200, pfa=0.18)).can_rock[0]
+    assert not adopted(Case(0.5, 0, 200, pfa=0.18), settings=Settings(ideal=True)).can_rock[0], "nothing is scaled"
+
+
+def test_ideal_adopts_what_happens_if_exactly_this_motion_recurs():
+    case = Case(0.5, 100, 200, ideal=4)
+    found = adopted(case, settings=Settings(ideal=True))
+    assert (found.probability[0], RiskClass(found.risk[0]), RiskClass(found.upper[0])) == (0.02, LOW, MEDIUM)
+    assert (found.low[0], found.high[0]) == pytest.approx((0.018, 0.118))
+    assert adopted(case).probability[0] == 0.5
+
+
+def test_a_higher_class_of_the_ideal_raises_the_upper_class_alone():
+    found = adopted(Case(0.5, 130, 200, ideal=190))
+    assert (found.probability[0], RiskClass(found.risk[0]), RiskClass(found.upper[0])) == (0.65, HIGH, VERY_HIGH)
+    assert found.ideal_higher[0]
+    assert not adopted(Case(0.5, 130, 200, ideal=100)).ideal_higher[0]
+
+
 def test_a_piece_that_falls_in_the_record_is_at_least_high():
     assert one(Case(0.1, 2, 200, fell=True))[:3] == (0.01, HIGH, HIGH)
     assert one(Case(0.1, 150, 200, fell=True))[:2] == (0.75, VERY_HIGH)
-    assert one(Case(0.01, 0, 200, fell=True, is_estimated=True))[1] is HIGH
+    assert one(Case(0.01, 0, 200, fell=True, is_weak=True))[1] is HIGH
 
 
 def test_the_upper_class_is_that_of_the_intervals_end():
@@ -102,9 +143,9 @@ def test_the_upper_class_is_that_of_the_intervals_end():
 
 def test_where_the_formula_stands_the_interval_may_still_raise_the_upper_class():
     """The formula's medium stands; 5 of 20 may be as many as half."""
-    assert one(Case(0.299, 0, 20, is_generic=True))[1:] == (MEDIUM, MEDIUM, False, True)
-    assert one(Case(0.31, 5, 20, is_generic=True))[1:] == (HIGH, HIGH, False, True)
-    assert one(Case(0.1, 5, 20, is_generic=True))[1:3] == (MEDIUM, HIGH)
+    assert one(Case(0.299, 0, 20, is_unshaped=True))[1:] == (MEDIUM, MEDIUM, False, True)
+    assert one(Case(0.31, 5, 20, is_unshaped=True))[1:] == (HIGH, HIGH, False, True)
+    assert one(Case(0.1, 5, 20, is_unshaped=True))[1:3] == (MEDIUM, HIGH)
 
 
 probabilities = st.one_of(st.floats(0, 1), st.sampled_from([0.03, 0.3, 0.7]))
@@ -114,8 +155,10 @@ probabilities = st.one_of(st.floats(0, 1), st.sampled_from([0.03, 0.3, 0.7]))
 def any_case(draw):
     runs = draw(st.one_of(st.just(0), st.integers(1, 300)))
     overturned = draw(st.integers(0, runs))
-    doubts = {name: draw(st.booleans()) for name in ("is_generic", "is_estimated", "is_weak")}
-    return Case(draw(probabilities), overturned, runs, fell=bool(runs) and draw(st.booleans()), **doubts)
+    doubts = {name: draw(st.booleans()) for name in ("is_unshaped", "is_weak")}
+    ideal = draw(st.integers(0, runs)) if runs and draw(st.booleans()) else None
+    fell, pfa = bool(runs) and draw(st.booleans()), draw(st.sampled_from([0.01, 0.05, 0.5]))
+    return Case(draw(probabilities), overturned, runs, fell=fell, ideal=ideal, pfa=pfa, **doubts)
 
 
 @given(st.lists(any_case(), min_size=1, max_size=20))
@@ -124,17 +167,20 @@ def test_nothing_comes_out_lower_than_it_should(given):
     for at, case in enumerate(given):
         by_formula, risk, upper = classify(case.formula), found.risk[at], found.upper[at]
         assert upper >= risk >= classify(float(found.probability[at]))
-        assert found.probability[at] == (case.share if found.verified[at] else case.formula)
+        basis = basis_of(found, at)
+        assert found.probability[at] == (case.share if basis == "simulated" else case.formula)
         if not case.runs:
-            assert (risk, found.verified[at], found.not_lowered[at]) == (by_formula, False, False)
+            assert (risk, basis) == (by_formula, "formula")
             continue
-        assert found.verified[at] != found.not_lowered[at]
+        assert basis != "formula"
+        assert upper >= classify(case.ideal_share)
+        assert found.ideal_higher[at] == (classify(case.ideal_share) > risk)
         assert upper >= classify(float(wilson_interval(case.overturned, case.runs)[1]))
         if case.is_doubtful:
             assert risk >= by_formula
             assert risk >= classify(case.share), "in doubt the higher class of both"
         else:
-            assert found.verified[at]
+            assert basis == "simulated"
         if case.fell:
             assert risk >= HIGH
 
@@ -144,7 +190,7 @@ def test_cases_do_not_touch_each_other(given):
     together = adopted(*given)
     for at, case in enumerate(given):
         alone = adopted(case)
-        for name in ("probability", "low", "high", "risk", "upper", "verified", "not_lowered"):
+        for name in ("probability", "low", "high", "risk", "upper", "basis", "doubtful", "ideal_higher", "can_rock"):
             np.testing.assert_array_equal(getattr(alone, name)[0], getattr(together, name)[at])
 
 
