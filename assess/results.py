@@ -35,14 +35,17 @@ BASES = ("formula", "simulated", "unconfirmed")
 """What an adopted risk rests on: the formula, where nothing was simulated; the simulation; or the formula, where
 simulation gave a lower class that cannot be relied on. Lists, counts and sums do not mix them."""
 PIECE_FLAGS = (
-    "does_not_rock", "slides", "fell_in_record", "ideal_higher", "generic_spectrum", "unknown_period", "weak_motions",
-    "undecided", "unconfirmed",
+    "does_not_rock", "slides", "fell_in_record", "ideal_higher", "either_axis", "generic_spectrum", "unknown_period",
+    "weak_motions", "undecided", "unconfirmed",
 )  # fmt: skip
 """Flags that belong to a piece rather than to one method, in the order in which they are listed."""
 PIECE_FLAG_TEXTS: Mapping[str, str] = {
     "slides": fill("friction is below B/H: the piece slides before it rocks, which no method here takes into account"),
     "unconfirmed": fill(
         "simulation gave a lower class, which is not adopted, as its motions may be too weak: the formula's stands"
+    ),
+    "either_axis": fill(
+        "nearly square on plan, and its axis is blank: the chance is that of a fall along either axis in one earthquake"
     ),
     "ideal_higher": fill(
         "its class would be higher if exactly this motion recurred and the piece were exactly as given"
@@ -464,8 +467,8 @@ class CaseTable:
     outcomes : mapping of str to Outcome
         Every method's values, details and flags, (n,) each, by its key.
     adopted : mapping of str to (n,) array
-        probability, low, high [-]; risk, upper (classes); basis (place in `BASES`); doubtful, ideal_higher, can_rock
-        (boolean).
+        probability, low, high [-]; risk, upper (classes); basis (place in `BASES`); doubtful, ideal_higher, can_rock,
+        either_axis (boolean).
     """
 
     item: NDArray[np.int32]
@@ -536,7 +539,7 @@ class _CaseReader:
         raised = {flag for method in methods.values() for flag in method.flags}
         basis = BASES[adopted["basis"][case]]
         raised |= {"unconfirmed"} if basis == "unconfirmed" else set()
-        raised |= {"ideal_higher"} if adopted["ideal_higher"][case] else set()
+        raised |= {name for name in ("ideal_higher", "either_axis") if adopted[name][case]}
         piece = [flag for flag in PIECE_FLAGS if flag in raised] if raised else []
         return Adopted(
             method=self._simulation if basis == "simulated" else self._formula,

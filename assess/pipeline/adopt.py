@@ -49,6 +49,8 @@ class Adoption:
         Where the class of the piece as given, under exactly this motion, is above the adopted one.
     can_rock : (n,) boolean array
         Where the strongest motion that may be drawn can start the piece rocking.
+    either_axis : (n,) boolean array
+        Where it is the chance of a fall along either axis; see `assess.pipeline.either_axis`.
     """
 
     probability: FloatArray
@@ -60,6 +62,7 @@ class Adoption:
     doubtful: BoolArray
     ideal_higher: BoolArray
     can_rock: BoolArray
+    either_axis: BoolArray
 
 
 def find_can_rock(cases: Cases, settings: Settings) -> BoolArray:
@@ -93,6 +96,7 @@ def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> 
         doubtful=doubtful,
         ideal_higher=ideal_higher,
         can_rock=can_rock,
+        either_axis=np.zeros(value.size, dtype=np.bool_),
     )
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from assess.errors import Problem
 from assess.methods import Cases, Method, Outcome, simulation
-from assess.methods._method import Joint
+from assess.methods._method import BoolArray, Joint
 from assess.model import Axis, Inventory
 from assess.pipeline.adopt import Adoption
 from assess.pipeline.demand import Demand
@@ -44,6 +44,8 @@ class Assessment:
         What each method gives for all cases.
     adoption : Adoption
         The risk that is adopted for each case.
+    either_axis : mapping of item to (k,) boolean array
+        Of each piece that may topple along both axes, in which draws it does along either.
     governing : (items,) array
         Index of each item's governing case.
     obstructions : sequence of Obstructions
@@ -64,6 +66,7 @@ class Assessment:
     case_demand: tuple[Demand, ...]
     outcomes: Mapping[str, Outcome]
     adoption: Adoption
+    either_axis: Mapping[int, BoolArray]
     governing: NDArray[np.intp]
     obstructions: "Sequence[Obstructions]"
     problems: tuple[Problem, ...]

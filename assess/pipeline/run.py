@@ -20,6 +20,7 @@ from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
+from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
@@ -143,15 +144,15 @@ def _compute(
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     demands = scale_demands(filled, settings.scale)
-    case_item, case_demand = _pair(inventory, demands)
-    cases, obstructions = _cases(inventory, case_item, case_demand), _find_obstructions(inventory, progress)
+    (case_item, case_demand), obstructions = _pair(inventory, demands), _find_obstructions(inventory, progress)
+    cases = _cases(inventory, case_item, case_demand)
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
     outcomes[simulation().key] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
-    adoption = adopt(outcomes, cases, settings)
-    problems = [*remark(inventory, filled, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
-    problems += _route_problems(inventory, obstructions)
+    adopted = adopt(outcomes, cases, settings)
+    adoption, united = unite_axes(adopted, outcomes, inventory, case_item, case_demand, settings)
+    remarks = [*remark(inventory, filled, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
     return Assessment(
         inventory=inventory,
         settings=settings,
@@ -165,9 +166,10 @@ def _compute(
         case_demand=case_demand,
         outcomes=outcomes,
         adoption=adoption,
+        either_axis=united,
         governing=find_governing(adoption.probability, case_item, cases.pfa),
         obstructions=obstructions,
-        problems=(*inventory.problems, *map(inventory.place, problems)),
+        problems=(*inventory.problems, *map(inventory.place, (*remarks, *_route_problems(inventory, obstructions)))),
     )
 
 

@@ -1,0 +1,86 @@
+"""Pieces that are nearly square on plan and may topple along both axes: they fall in a draw if they fall along either.
+
+A piece whose axis is blank is integrated along both. Where its width is less than 1.3 times its breadth it is about as
+slender along one as along the other, so that the larger of its two chances is too low. Both axes of draw k are of one
+earthquake and one body, with phases of their own.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.methods import Outcome, interval_width, simulation
+from assess.methods._method import BoolArray
+from assess.model import AXES, Inventory, Item
+from assess.pipeline.adopt import SIMULATED, Adoption
+from assess.pipeline.demand import Demand
+from assess.risk import classify_all, wilson_interval
+from assess.settings import Settings
+
+SQUARE = 1.3
+"""Width over breadth [-] below which a piece counts as square on plan."""
+
+
+_CHANGED = ("probability", "low", "high", "risk", "upper", "either_axis")
+
+
+def is_square(item: Item) -> bool:
+    """Whether an item is nearly square on plan, and the workbook leaves open along which axis it topples."""
+    return item.axis is None and item.width is not None and item.width < SQUARE * item.breadth
+
+
+def unite_axes(
+    adoption: Adoption,
+    outcomes: Mapping[str, Outcome],
+    inventory: Inventory,
+    case_item: NDArray[np.intp],
+    case_demand: Sequence[Demand],
+    settings: Settings,
+) -> tuple[Adoption, Mapping[int, BoolArray]]:
+    """Return the adoption with the chance of a fall along either axis, and of each such item in which draws it falls.
+
+    Of parallel motions of an axis that with the larger chance counts. Only where both axes are simulated and adopted.
+    """
+    adoption = replace(adoption, **{name: getattr(adoption, name).copy() for name in _CHANGED})
+    verdicts = dict(_verdicts(outcomes[simulation().key], adoption, settings))
+    firsts = np.searchsorted(case_item, np.arange(len(inventory.items) + 1)).tolist()
+    united: dict[int, BoolArray] = {}
+    for index in (at for at, item in enumerate(inventory.items) if is_square(item)):
+        pair = _worst_of_each_axis(range(firsts[index], firsts[index + 1]), case_demand, adoption)
+        if len(pair) == len(AXES) and all(case in verdicts for case in pair):
+            count = min(verdicts[case].size for case in pair)
+            united[index] = np.any([verdicts[case][:count] for case in pair], axis=0)
+            _adopt_union(adoption, pair, united[index], interval_width(settings))
+    return adoption, united
+
+
+def _adopt_union(adoption: Adoption, pair: list[int], fell: BoolArray, z: float) -> None:
+    """Put the share of the draws in `fell` in place of both chances of a `pair`."""
+    low, high = wilson_interval(fell.sum(), fell.size, z)
+    changed = {
+        "probability": fell.mean(),
+        "low": low,
+        "high": high,
+        "risk": np.maximum(adoption.risk[pair], classify_all(fell.mean())),
+        "upper": np.maximum(adoption.upper[pair], classify_all(high)),
+        "either_axis": True,
+    }
+    for name, value in changed.items():
+        getattr(adoption, name)[pair] = value
+
+
+def _verdicts(outcome: Outcome, adoption: Adoption, settings: Settings) -> Iterator[tuple[int, BoolArray]]:
+    """Yield each case whose simulation is adopted, and in which of its draws it falls."""
+    for joint in outcome.joints:
+        every = joint.ideal if settings.ideal else joint.fell
+        for row, case in enumerate(joint.cases.tolist()):
+            if adoption.basis[case] == SIMULATED:
+                yield case, every[row, : joint.runs[row]]
+
+
+def _worst_of_each_axis(cases: Sequence[int], case_demand: Sequence[Demand], adoption: Adoption) -> list[int]:
+    """Return of each axis the case with the largest chance, the first of several."""
+    owns = [[case for case in cases if case_demand[case].axis == axis] for axis in AXES]
+    return [max(own, key=lambda case: adoption.probability[case]) for own in owns if own]

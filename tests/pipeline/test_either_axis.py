@@ -1,0 +1,87 @@
+"""Pieces that are nearly square on plan and may topple along both axes."""
+
+import numpy as np
+import pytest
+
+import assess
+from assess.pipeline.either_axis import is_square, unite_axes
+from assess.pipeline.run import compute
+from assess.risk import wilson_interval
+from assess.settings import Settings
+from tests.workbooks import write
+
+SIZES = {"breadth": 30, "height": 180}
+FLOORS = [{"floor": "1", "pfa_x": 0.21, "pfa_y": 0.2}]
+SETTINGS = Settings(runs=40)
+
+
+def read(folder, *items, floors=FLOORS, **building):
+    rows = [{"floor": "1", **SIZES, **item} for item in items]
+    return assess.read_inventory(write(folder / "w.xlsx", rows, floors, **({"period": 0.8} | building)))
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    items = {"item": "square", "width": 35}, {"item": "long", "width": 40}, {"item": "along", "width": 35, "axis": "X"}
+    return compute(read(tmp_path_factory.mktemp("square"), *items, {"item": "unknown"}), SETTINGS)
+
+
+def cases_of(assessment, index):
+    return np.flatnonzero(assessment.case_item == index).tolist()
+
+
+def verdicts(assessment, case):
+    joint = next(joint for joint in assessment.joints.values() if case in joint.cases)
+    return joint.fell[joint.cases.tolist().index(case)]
+
+
+def test_only_a_square_piece_of_unknown_axis_is_united(done):
+    assert [is_square(item) for item in done.inventory.items] == [True, False, False, False]
+    assert list(done.either_axis) == [0]
+    assert done.adoption.either_axis.tolist() == [at in cases_of(done, 0) for at in range(len(done.case_item))]
+
+
+def test_it_falls_in_a_draw_if_it_falls_along_either_axis(done):
+    along_x, along_y = (verdicts(done, case) for case in cases_of(done, 0))
+    np.testing.assert_array_equal(done.either_axis[0], along_x | along_y)
+    share = (along_x | along_y).mean()
+    assert share > max(along_x.mean(), along_y.mean()) > 0, "neither axis alone tells it"
+    low, high = wilson_interval((along_x | along_y).sum(), 40)
+    for case in cases_of(done, 0):
+        assert done.adoption.probability[case] == share
+        assert (done.adoption.low[case], done.adoption.high[case]) == (low, high)
+    assert done.governing[0] == cases_of(done, 0)[0], "of equal chances the larger PFA governs"
+
+
+def test_other_pieces_keep_what_they_have(done):
+    for index in (1, 3):
+        for case in cases_of(done, index):
+            assert done.adoption.probability[case] == verdicts(done, case).mean()
+
+
+def test_without_any_uncertainty_it_is_nearly_the_product(tmp_path):
+    """Phases of the two axes are independent: 1 - (1 - P_X)(1 - P_Y), where nothing is drawn."""
+    inventory = read(tmp_path, {"item": "a", "width": 35}, motion_uncertainty=0, piece_uncertainty="no")
+    found = compute(inventory, Settings(runs=400))
+    p_x, p_y = (verdicts(found, case).mean() for case in cases_of(found, 0))
+    expected = 1 - (1 - p_x) * (1 - p_y)
+    assert 0.05 < p_x < 0.95
+    assert found.adoption.probability[0] == pytest.approx(expected, abs=3 * np.sqrt(expected * (1 - expected) / 400))
+
+
+def test_where_an_axis_is_not_simulated_nothing_is_united(tmp_path):
+    inventory = read(tmp_path, {"item": "square", "width": 35})
+    assert compute(inventory, Settings(verify="none")).either_axis == {}
+
+
+def test_an_unconfirmed_axis_is_not_united(done):
+    adoption = done.adoption
+    unconfirmed = np.array([2 if at == 0 else one for at, one in enumerate(adoption.basis)], dtype=np.int8)
+    object.__setattr__(adoption, "basis", unconfirmed)
+    _, united = unite_axes(adoption, done.outcomes, done.inventory, done.case_item, done.case_demand, SETTINGS)
+    assert united == {}
+
+
+def test_results_say_so(tmp_path):
+    results = assess.run(read(tmp_path, {"item": "square", "width": 35}), SETTINGS, figures=False)
+    assert "either_axis" in results["square"].adopted.flags
