@@ -12,6 +12,7 @@ import typer
 
 from assess.cli.console import count, show_progress
 from assess.cli.options import AsJson, check_file, check_size, figure_kind, save_file
+from assess.cli.rock_extras import Extras, evaluate_extras
 from assess.errors import InputError
 from assess.units import GRAVITY, LENGTH, SHARE, VELOCITY
 
@@ -25,6 +26,7 @@ EXAMPLES = (
     "assess rock --breadth 40 --height 180 --record floor12.smc",
     "assess rock --breadth 40 --height 180 --record floor12.csv#east --pfa 0.5 --plot rocking.png",
     "assess rock --breadth 40 --height 180 --record floor12.smc --cg 60",
+    "assess rock --breadth 40 --height 180 --record floor12.csv#east --vertical floor12.csv#up --wall --friction 0.3",
 )
 
 LIMITS = "one rigid block in plane motion: no sliding, no vertical motion, nothing beside it"
@@ -52,6 +54,16 @@ def command(
         typer.Option(help="Ratio of angular velocity after an impact to that before it.", show_default="Housner 1963"),
     ] = None,
     baseline: Annotated[str, typer.Option(help="Treatment of an uncorrected record: standard, none.")] = "standard",
+    wall: Annotated[bool, typer.Option("--wall", help="Show what it does with a wall on either side.")] = False,
+    vertical: Annotated[
+        str | None,
+        typer.Option(
+            help="Vertical motion, scaled like the horizontal one: FILE or FILE#channel.", show_default="none"
+        ),
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option(help="Show how it starts to move, and how far it slides.", show_default="no sliding")
+    ] = None,
     as_json: AsJson = False,
     plot: Annotated[Path | None, typer.Option(help="Draw motion and rotation to this .png, .svg or .pdf.")] = None,
 ) -> None:
@@ -69,7 +81,9 @@ def command(
         except ValueError as error:  # the stockiest block that rocks is a limit of the integration
             named = "--breadth and --height" if case.is_mid_height else "--breadth, --height and --cg"
             raise InputError(f"{named}: {error}") from None
-    typer.echo(json.dumps(describe(case, response), indent=1) if as_json else "\n".join(list_lines(case, response)))
+        extras = evaluate_extras(case, response, wall=wall, vertical=vertical, friction=friction)
+    response, document = extras.response, describe(case, extras.response) | extras.document
+    typer.echo(json.dumps(document, indent=1) if as_json else "\n".join(list_lines(case, response, extras)))
     if plot is not None:
         write_figure(case, response, plot)
         typer.echo(f"wrote {plot}", err=True)
@@ -215,8 +229,8 @@ def describe(case: Case, response: "Response") -> dict[str, Any]:
     }
 
 
-def list_lines(case: Case, response: "Response") -> Iterator[str]:
-    """Yield the lines of text: the case and its outcome."""
+def list_lines(case: Case, response: "Response", extras: Extras | None = None) -> Iterator[str]:
+    """Yield the lines of text: the case, its outcome, and what else was asked for."""
     from assess.motion.record import treatment
 
     record = case.channel.record
@@ -237,7 +251,9 @@ def list_lines(case: Case, response: "Response") -> Iterator[str]:
     exceeds = "exceeded" if case.pfa_g > case.threshold_g else "not exceeded"
     yield f"Rocks    above g {case.threshold_name} = {case.threshold_g:.4f} g: {exceeds}"
     yield f"Outcome  {describe_outcome(case, response)}"
-    yield f"Limits   {LIMITS}"
+    if extras is not None:
+        yield from extras.lines
+    yield f"Limits   {LIMITS.replace(' no vertical motion,', '') if extras and extras.has_vertical else LIMITS}"
 
 
 def _size(case: Case, times: str) -> str:
