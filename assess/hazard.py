@@ -1,0 +1,335 @@
+"""A hazard curve: how often a year the ground's peak acceleration is exceeded at a site.
+
+Two kinds of files are read: a table with the columns ``pga_g,annual_rate``, and ``hazard_curve-mean-PGA.csv`` as the
+OpenQuake Engine writes it, with a row for each site.
+"""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import InputError
+from assess.i18n import Text, fill, join, nfill
+from assess.units import GRAVITY
+
+FloatArray = NDArray[np.float64]
+
+COLUMNS = ("pga_g", "annual_rate")
+LARGEST_FILE = 64_000_000
+"""Bytes; a curve takes some hundreds, a national map of sites some millions."""
+MOST_PGA = 50.0
+"""Peaks above this [g] are a slip in the unit."""
+FAR = 10_000.0
+"""Distance from the site of the curve [m] above which it is remarked on."""
+EARTH = 6_371_000.0
+"""Mean radius of the earth [m]."""
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_LEVEL = re.compile(r"poe-(\S+)", re.IGNORECASE)
+_TIME = re.compile(r"investigation_time\s*=\s*['\"]?([^,'\"\s]+)")
+_IMT = re.compile(r"\bimt\s*=\s*['\"]?([^,'\"]+)")
+_KIND = re.compile(r"\bkind\s*=\s*['\"]?([^,'\"]+)")
+
+Line = tuple[int, list[str]]
+"""The number of a line, from 1 on, and its cells."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class HazardCurve:
+    """Annual rates at which peak ground accelerations are exceeded at a site.
+
+    Parameters
+    ----------
+    file : str
+        As shown to people.
+    pga : (n,) array
+        Rising peak ground accelerations, above 0 [m/s2]; n is 2 or more.
+    rate : (n,) array
+        Annual rate of exceedance of each, above 0, nowhere rising [1/year].
+    latitude, longitude : float, optional
+        Of the site of the curve [deg], where the file tells.
+    distance : float, optional
+        From there to the building [m], where both are known.
+    notes : tuple of Text
+        What reading left out or found unusual.
+    """
+
+    file: str
+    pga: FloatArray
+    rate: FloatArray
+    latitude: float | None = None
+    longitude: float | None = None
+    distance: float | None = None
+    notes: tuple[Text, ...] = ()
+
+    @property
+    def is_far(self) -> bool:
+        """Whether its site is farther from the building than `FAR`."""
+        return self.distance is not None and self.distance > FAR
+
+
+def read_hazard(path: Path, *, latitude: float | None = None, longitude: float | None = None) -> HazardCurve:
+    """Read the hazard curve of a file, as `parse_hazard`.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or used; the message names the file, and the line where there is one.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:  # ValueError: a zero character in the name
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None
+    return parse_hazard(data, path.name, latitude=latitude, longitude=longitude)
+
+
+def parse_hazard(
+    data: bytes, name: str, *, latitude: float | None = None, longitude: float | None = None
+) -> HazardCurve:
+    """Read a hazard curve from the bytes of a file; `name` is how messages call it.
+
+    Of several sites the nearest to the building is taken. A chance P in T years becomes the rate -ln(1 - P)/T.
+
+    Parameters
+    ----------
+    data : bytes
+        ``pga_g,annual_rate`` and rows of numbers, or a table of OpenQuake; cells separated by commas, semicolons or
+        tabs, with the last two also with decimal commas.
+    name : str
+    latitude, longitude : float, optional
+        Of the building [deg].
+
+    Raises
+    ------
+    InputError
+        If it is no such file, a number is damaged or impossible, rates rise with PGA, fewer than two points remain, or
+        there are several sites and the building's place is not known; the message names the file and the line.
+    """
+    try:
+        lines = _decode(data).splitlines()
+        rows = list(_split(lines))
+        if not rows:
+            raise InputError(fill("there is no table. Its first row has to be: {columns}", columns=",".join(COLUMNS)))
+        heading = [cell.lower() for cell in rows[0][1]]
+        if {"lon", "lat"} <= set(heading):
+            comments = "\n".join(line for line in lines if _is_comment(line))
+            return _read_sites(name, heading, rows, comments, latitude, longitude)
+        return _read_table(name, heading, rows)
+    except InputError as error:
+        raise InputError(join(": ", (name, error.message))) from None
+
+
+def find_distance(latitude: float, longitude: float, latitudes: FloatArray, longitudes: FloatArray) -> FloatArray:
+    """Return great-circle distances [m] from a place to others [deg], (n,)."""
+    phi, others = math.radians(latitude), np.radians(latitudes)
+    half = np.sin((others - phi) / 2) ** 2
+    half += math.cos(phi) * np.cos(others) * np.sin(np.radians(longitudes - longitude) / 2) ** 2
+    return np.asarray(2 * EARTH * np.arcsin(np.sqrt(np.minimum(half, 1))))
+
+
+# ---------------------------------------------------------------- text
+
+
+def _decode(data: bytes) -> str:
+    if len(data) > LARGEST_FILE:
+        raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
+    if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
+        raise InputError(fill("the file is not plain text. Save it as CSV UTF-8"))
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def _is_comment(line: str) -> bool:
+    # A spreadsheet puts a comment that holds commas into quotes.
+    return line.lstrip(' \t"').startswith("#")
+
+
+def _split(lines: Sequence[str]) -> Iterator[Line]:
+    """Yield the cells of each line that is neither blank nor a comment; the first one's separator is that of all."""
+    separator = ""
+    for number, line in enumerate(lines, 1):
+        if _is_comment(line) or not line.strip(' \t,;"'):
+            continue
+        separator = separator or next((mark for mark in "\t;" if mark in line), ",")
+        cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]
+        if separator != ",":
+            cells = [cell.replace(",", ".") for cell in cells]
+        while cells and not cells[-1]:
+            cells.pop()
+        yield number, cells
+
+
+def _read_number(text: str, line: int, column: str) -> float:
+    """Return a number of a cell; InputError, which names line and column, if it is none."""
+    value = float(text) if _NUMBER.fullmatch(text) else math.nan
+    if not math.isfinite(value):
+        message = fill("line {line}: {column} is {text!r}, not a number", line=line, column=column, text=text[:40])
+        raise InputError(message)
+    return value
+
+
+# ---------------------------------------------------------------- two columns
+
+
+def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line]) -> HazardCurve:
+    if sorted(heading) != sorted(COLUMNS):
+        raise InputError(
+            fill(
+                "line {line}: the first row has to be {columns}, or that of hazard_curve-mean-PGA.csv of OpenQuake",
+                line=rows[0][0],
+                columns=",".join(COLUMNS),
+            )
+        )
+    places = [heading.index(column) for column in COLUMNS]
+    points = []
+    for line, cells in rows[1:]:
+        if len(cells) != len(COLUMNS):
+            raise InputError(fill("line {line}: the number of cells is {cells}, not 2", line=line, cells=len(cells)))
+        points.append([_read_number(cells[place], line, heading[place]) for place in places])
+    numbers = [line for line, _ in rows[1:]]
+    if len(points) < 2:
+        raise InputError(fill("the number of rows is {rows}: a curve needs two or more", rows=len(points)))
+    for line, (pga, rate) in zip(numbers, points, strict=True):
+        _check_point(line, pga, rate)
+    for line, (before, after) in zip(numbers[1:], pairwise(points), strict=True):
+        _check_order(line, *before, *after)
+    if points[0][1] == points[-1][1]:
+        raise InputError(fill("the annual rate is the same in every row: it has to fall as PGA rises"))
+    pga, rate = np.array(points).T
+    return HazardCurve(file=name, pga=pga * GRAVITY, rate=rate)
+
+
+def _check_point(line: int, pga: float, rate: float) -> None:
+    if not 0 < pga <= MOST_PGA:
+        message = "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}: is the unit g?"
+        raise InputError(fill(message, line=line, pga=pga, most=MOST_PGA))
+    if not rate > 0:
+        raise InputError(fill("line {line}: annual_rate is {rate:g}, expected above 0", line=line, rate=rate))
+
+
+def _check_order(line: int, pga_before: float, rate_before: float, pga: float, rate: float) -> None:
+    if not pga > pga_before:
+        message = "line {line}: pga_g {pga:g} does not rise from {before:g} in the row before"
+        raise InputError(fill(message, line=line, pga=pga, before=pga_before))
+    if rate > rate_before:
+        message = (
+            "line {line}: annual_rate rises from {before:g} to {rate:g}: it has to fall as PGA rises. Is it a return "
+            "period?"
+        )
+        raise InputError(fill(message, line=line, before=rate_before, rate=rate))
+
+
+# ---------------------------------------------------------------- OpenQuake
+
+
+def _read_sites(
+    name: str,
+    heading: Sequence[str],
+    rows: Sequence[Line],
+    comments: str,
+    latitude: float | None,
+    longitude: float | None,
+) -> HazardCurve:
+    years, notes = _read_comment(comments)
+    levels, places = _read_levels(heading, rows[0][0])
+    (line, cells), site, distance = _choose_site(heading, rows[1:], latitude, longitude)
+    chances = np.array([_read_number(cells[place], line, heading[place]) for place in places])
+    _check_chances(line, levels, chances)
+    known = (chances > 0) & (chances < 1)
+    left_out = int((~known).sum())
+    if known.sum() < 2:
+        raise InputError(fill("line {line}: fewer than two chances are between 0 and 1", line=line))
+    if left_out:
+        note = nfill(
+            "{n} level whose chance is 0 or 1 was left out", "{n} levels whose chance is 0 or 1 were left out", left_out
+        )
+        notes = (*notes, note)
+    return HazardCurve(
+        file=name,
+        pga=levels[known] * GRAVITY,
+        rate=-np.log1p(-chances[known]) / years,
+        latitude=site[0],
+        longitude=site[1],
+        distance=distance,
+        notes=notes,
+    )
+
+
+def _read_comment(comments: str) -> tuple[float, tuple[Text, ...]]:
+    """Return the years for which chances hold, and what is unusual about the curve."""
+    imt, time, kind = (pattern.search(comments) for pattern in (_IMT, _TIME, _KIND))
+    if imt is not None and imt[1].strip() != "PGA":
+        raise InputError(fill("the curve is of {imt}, expected PGA", imt=imt[1].strip()[:40]))
+    text = "" if time is None else time[1]
+    years = float(text) if _NUMBER.fullmatch(text) else math.nan
+    if not 0 < years < math.inf:
+        raise InputError(fill("the first line has no investigation_time above 0, in years"))
+    of = "mean" if kind is None else kind[1].strip()
+    return years, () if of == "mean" else (fill("the curve is {kind!r}, not the mean", kind=of[:40]),)
+
+
+def _read_levels(heading: Sequence[str], line: int) -> tuple[FloatArray, list[int]]:
+    """Return the levels [g] that are in the names of columns, and the places of those."""
+    found = [(place, _LEVEL.fullmatch(cell)) for place, cell in enumerate(heading)]
+    places = [place for place, match in found if match]
+    levels = np.array([_read_number(match[1], line, heading[place]) for place, match in found if match])
+    if levels.size < 2 or not (levels > 0).all() or not (np.diff(levels) > 0).all() or levels[-1] > MOST_PGA:
+        raise InputError(fill("line {line}: expected two or more columns poe-LEVEL with rising levels in g", line=line))
+    return levels, places
+
+
+def _choose_site(
+    heading: Sequence[str], rows: Sequence[Line], latitude: float | None, longitude: float | None
+) -> tuple[Line, tuple[float, float], float | None]:
+    """Return the row of the nearest site, its latitude and longitude, and its distance [m] where that is known."""
+    if not rows:
+        raise InputError(fill("there are no sites below the headings"))
+    sites = np.array([_read_site(heading, line, cells) for line, cells in rows])
+    if latitude is None or longitude is None:
+        if len(rows) > 1:
+            raise InputError(
+                fill("the file has {count} sites: the building's latitude and longitude are needed", count=len(rows))
+            )
+        return rows[0], (float(sites[0, 0]), float(sites[0, 1])), None
+    distances = find_distance(latitude, longitude, sites[:, 0], sites[:, 1])
+    nearest = int(distances.argmin())
+    return rows[nearest], (float(sites[nearest, 0]), float(sites[nearest, 1])), float(distances[nearest])
+
+
+def _read_site(heading: Sequence[str], line: int, cells: Sequence[str]) -> tuple[float, float]:
+    if len(cells) != len(heading):
+        raise InputError(
+            fill(
+                "line {line}: the number of cells is {cells}, but there are {headings} headings",
+                line=line,
+                cells=len(cells),
+                headings=len(heading),
+            )
+        )
+    lat, lon = (_read_number(cells[heading.index(column)], line, column) for column in ("lat", "lon"))
+    if abs(lat) > 90 or abs(lon) > 360:
+        message = "line {line}: lon {lon:g} and lat {lat:g} are no place on earth"
+        raise InputError(fill(message, line=line, lon=lon, lat=lat))
+    return lat, lon
+
+
+def _check_chances(line: int, levels: FloatArray, chances: FloatArray) -> None:
+    for level, chance in zip(levels, chances, strict=True):
+        if not 0 <= chance <= 1:
+            message = "line {line}: the chance of exceeding {level:g} g is {chance:g}, expected 0 to 1"
+            raise InputError(fill(message, line=line, level=float(level), chance=float(chance)))
+    rises = np.flatnonzero(np.diff(chances) > 0)
+    if rises.size:
+        level = float(levels[rises[0] + 1])
+        message = "line {line}: the chance of exceeding {level:g} g is larger than that of the level before"
+        raise InputError(fill(message, line=line, level=level))
