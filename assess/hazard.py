@@ -211,22 +211,38 @@ def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line]) -> Haza
 
 def _check_point(line: int, pga: float, rate: float) -> None:
     if not 0 < pga <= MOST_PGA:
-        message = "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}: is the unit g?"
-        raise InputError(fill(message, line=line, pga=pga, most=MOST_PGA))
+        raise InputError(
+            fill(
+                "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}: is the unit g?",
+                line=line,
+                pga=pga,
+                most=MOST_PGA,
+            )
+        )
     if not rate > 0:
         raise InputError(fill("line {line}: annual_rate is {rate:g}, expected above 0", line=line, rate=rate))
 
 
 def _check_order(line: int, pga_before: float, rate_before: float, pga: float, rate: float) -> None:
     if not pga > pga_before:
-        message = "line {line}: pga_g {pga:g} does not rise from {before:g} in the row before"
-        raise InputError(fill(message, line=line, pga=pga, before=pga_before))
-    if rate > rate_before:
-        message = (
-            "line {line}: annual_rate rises from {before:g} to {rate:g}: it has to fall as PGA rises. Is it a return "
-            "period?"
+        raise InputError(
+            fill(
+                "line {line}: pga_g {pga:g} does not rise from {before:g} in the row before",
+                line=line,
+                pga=pga,
+                before=pga_before,
+            )
         )
-        raise InputError(fill(message, line=line, before=rate_before, rate=rate))
+    if rate > rate_before:
+        raise InputError(
+            fill(
+                "line {line}: annual_rate rises from {before:g} to {rate:g}: it has to fall as PGA rises. Is it a "
+                "return period?",
+                line=line,
+                before=rate_before,
+                rate=rate,
+            )
+        )
 
 
 # ---------------------------------------------------------------- OpenQuake
@@ -318,18 +334,35 @@ def _read_site(heading: Sequence[str], line: int, cells: Sequence[str]) -> tuple
         )
     lat, lon = (_read_number(cells[heading.index(column)], line, column) for column in ("lat", "lon"))
     if abs(lat) > 90 or abs(lon) > 360:
-        message = "line {line}: lon {lon:g} and lat {lat:g} are no place on earth"
-        raise InputError(fill(message, line=line, lon=lon, lat=lat))
+        raise InputError(
+            fill(
+                "line {line}: lon {lon:g} and lat {lat:g} are no place on earth",
+                line=line,
+                lon=lon,
+                lat=lat,
+            )
+        )
     return lat, lon
 
 
 def _check_chances(line: int, levels: FloatArray, chances: FloatArray) -> None:
     for level, chance in zip(levels, chances, strict=True):
         if not 0 <= chance <= 1:
-            message = "line {line}: the chance of exceeding {level:g} g is {chance:g}, expected 0 to 1"
-            raise InputError(fill(message, line=line, level=float(level), chance=float(chance)))
+            raise InputError(
+                fill(
+                    "line {line}: the chance of exceeding {level:g} g is {chance:g}, expected 0 to 1",
+                    line=line,
+                    level=float(level),
+                    chance=float(chance),
+                )
+            )
     rises = np.flatnonzero(np.diff(chances) > 0)
     if rises.size:
         level = float(levels[rises[0] + 1])
-        message = "line {line}: the chance of exceeding {level:g} g is larger than that of the level before"
-        raise InputError(fill(message, line=line, level=level))
+        raise InputError(
+            fill(
+                "line {line}: the chance of exceeding {level:g} g is larger than that of the level before",
+                line=line,
+                level=level,
+            )
+        )
