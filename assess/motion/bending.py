@@ -1,51 +1,32 @@
 """Peaks under control: bent by one smooth rule, so that their mean over an ensemble is what it should be.
 
 Bending leaves small values alone and acts on the few samples about a peak; it is the same for all realisations, so that
-their peaks go on to scatter. After each step a constant is taken off that leaves no final velocity.
+their peaks go on to scatter: x becomes x (1 + b q/(1 + q)), with q = (x/P)^4 and P the peak that is wanted.
 """
 
-import math
-from dataclasses import dataclass
-
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.compiled import compiled
 from assess.motion.record import FloatArray
-from assess.motion.rows import run_rows
 from assess.motion.target import Grid
-from assess.progress import SILENT, Progress
 
-BENT = 2.0
-"""Share of the logarithm of a missing peak that is bent in one round [-]; a peak changes by half of its bending."""
+Single = NDArray[np.float32]
+
 TAPER = 1.0
 """Time over which velocity grows from zero and fades to it [s]."""
-
-MOST_BENT, MOST_SHARPENED = -0.5, 1.5
-"""Limits of the bending [-]; from -0.6 on, larger peaks would come out smaller than lesser ones."""
-PFA_FREE, PFV_FREE_ABOVE, PFV_FREE_BELOW = 0.01, 0.05, 0.10
-"""What mean peaks may differ before they are bent, in logarithms [-]. Sharpening PFV adds scatter: less is asked."""
+MOST_BENT = -0.5
+"""Limit of the bending [-]; from -0.6 on, larger peaks would come out smaller than lesser ones."""
 
 
-@dataclass(frozen=True, slots=True)
-class Bend:
-    """How peaks of velocity and acceleration are bent [-]: x becomes x (1 + b q/(1 + q)), with q = (x/PFV or PFA)^4."""
+def bend_to(peaks: FloatArray, wanted: float, most: float, low: float = 1.0, high: float = 1.0) -> float:
+    """Return the bending b [-] that brings the mean of `peaks` (k,) between two shares of `wanted`; at most `most`.
 
-    velocity: float = 0.0
-    acceleration: float = 0.0
-
-    def turned(self, pfv_error: float, pfa_error: float) -> "Bend":
-        """Return it turned towards what is missing of the mean peaks, as logarithms [-]."""
-        by_velocity = BENT * _beyond(pfv_error, PFV_FREE_BELOW if pfv_error > 0 else PFV_FREE_ABOVE)
-        by_acceleration = BENT * _beyond(pfa_error, PFA_FREE)
-        return Bend(_limited(self.velocity + by_velocity), _limited(self.acceleration + by_acceleration))
-
-
-def _beyond(error: float, free: float) -> float:
-    return math.copysign(max(0.0, abs(error) - free), error)
-
-
-def _limited(bend: float) -> float:
-    return min(max(bend, MOST_BENT), MOST_SHARPENED)
+    A mean that lies there already is left.
+    """
+    q = (peaks / wanted) ** 4
+    missing = wanted * np.clip(peaks.mean() / wanted, low, high) - peaks.mean()
+    return float(np.clip(missing / (peaks * q / (1 + q)).mean(), MOST_BENT, most))
 
 
 def build_taper(grid: Grid) -> tuple[FloatArray, FloatArray]:
@@ -56,58 +37,80 @@ def build_taper(grid: Grid) -> tuple[FloatArray, FloatArray]:
 
 
 @compiled
-def bend_row(
-    acceleration: FloatArray,
-    velocity: FloatArray,
-    taper: FloatArray,
-    slope: FloatArray,
+def shape_rows(
+    acceleration: Single,
+    taper: Single,
+    slope: Single,
     time_step: float,
-    pfa: float,
     pfv: float,
-    by_pfa: float,
     by_pfv: float,
-    motion: FloatArray,
+    motions: Single,
     peaks: FloatArray,
 ) -> None:  # pragma: no cover
-    """Fill `motion` (n,): velocity bent and tapered, its slope bent, less the constant that brings it to rest."""
-    count, area = motion.size, 0.0
-    for i in range(count):
-        x = (velocity[i] / pfv) ** 4
-        bent = velocity[i] * (1 + by_pfv * x / (1 + x))
-        rate = 1 + by_pfv * x / (1 + x) * (1 + 4 / (1 + x))
-        value = taper[i] * rate * acceleration[i] + slope[i] * bent
-        y = (value / pfa) ** 4
-        motion[i] = value * (1 + by_pfa * y / (1 + y))
-        area += motion[i]
-    settle(motion, area)
-    peaks[:] = 0.0
-    speed = 0.0
-    for i in range(count):
-        if i:
-            speed += (motion[i - 1] + motion[i]) * time_step / 2
-        peaks[0], peaks[1] = max(peaks[0], abs(motion[i])), max(peaks[1], abs(speed))
+    """Fill `motions` (k, n) with the slopes of velocities that are bent and tapered.
 
-
-def lift_peaks(motions: FloatArray, factors: FloatArray, threads: int, progress: Progress = SILENT) -> None:
-    """Multiply the PFA of each motion by its factor, in place; less of it, the smaller the acceleration is."""
-    run_rows(lambda row: _lift_row(motions[row], factors[row]), len(motions), threads, progress)
-
-
-@compiled
-def _lift_row(motion: FloatArray, factor: float) -> None:  # pragma: no cover
-    pfa, area = 0.0, 0.0
-    for i in range(motion.size):
-        pfa = max(pfa, abs(motion[i]))
-    for i in range(motion.size):
-        motion[i] *= 1 + (factor - 1) * (motion[i] / pfa) ** 4
-        area += motion[i]
-    settle(motion, area)
+    `acceleration` (k, f) holds the samples and what follows them until velocity has died away, by which it is made to
+    have no mean. `peaks` (k, 2) take PFV before it is bent, and PFA after.
+    """
+    count, length = taper.size, acceleration.shape[1]
+    one, four, inverse, bend = np.float32(1), np.float32(4), np.float32(1 / pfv), np.float32(by_pfv)
+    velocity = np.empty(length, np.float32)
+    for k in range(acceleration.shape[0]):
+        row, out = acceleration[k], motions[k]
+        total, speed = 0.0, 0.0
+        for i in range(length):
+            half = row[i] * (time_step / 2)
+            velocity[i] = speed + half
+            total += speed
+            speed += 2 * half
+        mean, pfa, fastest = np.float32(total / length), np.float32(0), np.float32(0)
+        for i in range(count):
+            v = velocity[i] - mean
+            fastest = max(fastest, abs(taper[i] * v))
+            x = (v * inverse) * (v * inverse)
+            y = one / (one + x * x)
+            z = bend * (one - y)
+            a = taper[i] * (one + z * (one + four * y)) * row[i] + slope[i] * v * (one + z)
+            out[i] = a
+            pfa = max(pfa, abs(a))
+        peaks[k, 0], peaks[k, 1] = fastest, pfa
 
 
 @compiled
-def settle(motion: FloatArray, area: float) -> None:  # pragma: no cover
-    """Take off the constant that leaves a final velocity; `area` is the sum of the samples."""
-    count = motion.size
-    offset = (area - (motion[0] + motion[count - 1]) / 2) / (count - 1)
-    for i in range(count):
-        motion[i] -= offset
+def bend_rows(motions: Single, pfa: float, by_pfa: float) -> None:  # pragma: no cover
+    """Bend the accelerations of motions (k, n) in place."""
+    one, inverse, bend = np.float32(1), np.float32(1 / pfa), np.float32(by_pfa)
+    for k in range(motions.shape[0]):
+        row = motions[k]
+        for i in range(row.size):
+            x = (row[i] * inverse) * (row[i] * inverse)
+            row[i] *= one + bend * (one - one / (one + x * x))
+
+
+@compiled
+def lift_rows(motions: Single, factor: float, scale: float) -> None:  # pragma: no cover
+    """Multiply PFA by `factor`, less of it the smaller the acceleration is, and all by `scale`; leave no velocity."""
+    one, by = np.float32(1), np.float32(factor - 1)
+    for k in range(motions.shape[0]):
+        row, pfa, area = motions[k], np.float32(0), 0.0
+        for i in range(row.size):
+            pfa = max(pfa, abs(row[i]))
+        inverse = one / pfa if pfa > 0 else one
+        for i in range(row.size):
+            x = (row[i] * inverse) * (row[i] * inverse)
+            row[i] *= np.float32(scale) * (one + by * x * x)
+            area += row[i]
+        offset = np.float32((area - (row[0] + row[row.size - 1]) / 2) / (row.size - 1))
+        for i in range(row.size):
+            row[i] -= offset
+
+
+@compiled
+def measure_rows(motions: Single, time_step: float, peaks: FloatArray) -> None:  # pragma: no cover
+    """Fill `peaks` (k, 3) with PFA [m/s2], PFV and the final velocity [m/s] of motions (k, n) that start at rest."""
+    for k in range(motions.shape[0]):
+        row, pfa, pfv, speed = motions[k], abs(motions[k, 0]), 0.0, 0.0
+        for i in range(1, row.size):
+            speed += (row[i - 1] + row[i]) * (time_step / 2)
+            pfa, pfv = max(pfa, abs(row[i])), max(pfv, abs(speed))
+        peaks[k, 0], peaks[k, 1], peaks[k, 2] = pfa, pfv, speed

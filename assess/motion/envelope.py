@@ -1,4 +1,4 @@
-"""How a generated motion grows and fades, and the random motions that do.
+"""How a generated motion grows and fades.
 
 A recorded motion has its low frequencies at other times than its high ones: a tall building's first mode goes on while
 the shaking of its higher modes has passed. One envelope for all makes the peaks of the modes meet, and PFV up to half
@@ -13,16 +13,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from assess.motion.record import FloatArray
-from assess.motion.rows import transform_rows
-from assess.progress import SILENT, Progress
 
 LOWEST, HIGHEST = 0.1, 25.6
 """Centres of the first and last octave [Hz]; the first reaches down to 0, the last up to the Nyquist frequency."""
 SMOOTHED, CYCLES = 0.5, 2.0
 """A Husid curve is smoothed over this time [s], and over this many cycles of its octave, whichever is longer."""
+REACH = 4.0
+"""Standard deviations to which that smoothing reaches [-]."""
 
 RISE, HOLD, DECAY = 5.0, 15.0, 10.0
 """Envelope of a floor without a record [s]: AC156's."""
@@ -34,8 +33,6 @@ STRETCH = 0.2
 duration of ground motion leave 0.4 and more unexplained from one earthquake to another."""
 PAD = 20.0
 """Zeros after the samples while motions are filtered [s], so that what is filtered does not come round."""
-
-_AXES = {"X": 0, "Y": 1}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,22 +61,30 @@ def split(frequencies: FloatArray, centres: FloatArray) -> FloatArray:
 
 def husid_envelopes(acceleration: FloatArray, time_step: float) -> Envelopes:
     """Return the envelopes of a motion (n,) [m/s2]: the root of the slope of its Husid curve in each octave."""
-    from scipy.fft import irfft, rfft
-    from scipy.ndimage import gaussian_filter1d
+    from scipy.fft import irfft, next_fast_len, rfft
 
     count, centres = acceleration.size, octaves()
-    length = filter_length(count, time_step)
-    weights = split(filter_frequencies(count, time_step), centres)
+    length = int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
+    weights = split(np.fft.rfftfreq(length, time_step), centres)
     bands = irfft(rfft(acceleration, length) * weights, length, axis=1)[:, :count]
     power = np.array(
         [
-            gaussian_filter1d(band**2, max(SMOOTHED, CYCLES / centre) / time_step, mode="constant")
+            _smooth(band**2, max(SMOOTHED, CYCLES / centre) / time_step)
             for band, centre in zip(bands, centres, strict=True)
         ]
     )
     passed = np.cumsum(acceleration**2)
     half = float(np.searchsorted(passed, passed[-1] / 2)) * time_step
     return Envelopes(centres, np.sqrt(power / np.maximum(power.mean(axis=1, keepdims=True), 1e-300)), half)
+
+
+def _smooth(values: FloatArray, width: float) -> FloatArray:
+    """Return values (n,) under a normal curve with a standard deviation of `width` samples; zeros beyond the ends."""
+    from scipy.fft import irfft, next_fast_len, rfft
+
+    length = int(next_fast_len(values.size + math.ceil(REACH * width), real=True))
+    curve = np.exp(-2 * (np.pi * width * np.fft.rfftfreq(length)) ** 2)
+    return np.maximum(irfft(rfft(values, length) * curve, length)[: values.size], 0.0)
 
 
 def hold_times(period: float | None) -> tuple[float, float, float]:
@@ -95,56 +100,3 @@ def hold_envelopes(count: int, time_step: float, period: float | None) -> Envelo
     corners = np.array([0.0, rise, rise + hold, rise + hold + decay])
     values = np.interp(np.arange(count) * time_step, corners, [0.0, 1.0, 1.0, 0.0])
     return Envelopes(np.array([LOWEST]), values[None], float(rise + hold / 2))
-
-
-def filter_length(count: int, time_step: float) -> int:
-    """Return the number of samples with which motions of `count` are transformed."""
-    from scipy.fft import next_fast_len
-
-    return int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
-
-
-def filter_frequencies(count: int, time_step: float) -> FloatArray:
-    """Return the frequencies of those transforms [Hz]."""
-    return np.asarray(np.fft.rfftfreq(filter_length(count, time_step), time_step), dtype=np.float64)
-
-
-def draw_noise(
-    envelopes: Envelopes,
-    time_step: float,
-    *,
-    seed: int,
-    axis: str,
-    first: int,
-    count: int,
-    threads: int,
-    progress: Progress = SILENT,
-) -> NDArray[np.complex128]:
-    """Return the transforms of realisations `first` to `first + count - 1` of white noise under the envelopes.
-
-    Phases and duration come from (seed, axis, number of the realisation) only: they are the same on every floor.
-
-    Returns
-    -------
-    (count, f) complex array
-        Fourier transforms, of motions of `filter_length` samples.
-    """
-    from scipy.fft import irfft, rfft
-
-    samples = envelopes.values.shape[1]
-    length = filter_length(samples, time_step)
-    frequencies = filter_frequencies(samples, time_step)
-    draws = [np.random.default_rng([seed, _AXES[axis], number]) for number in range(first, first + count)]
-    stretches = np.exp([STRETCH * draw.standard_normal() for draw in draws])
-    white = np.exp(1j * np.array([draw.uniform(0, 2 * np.pi, frequencies.size) for draw in draws]))
-    times = np.arange(samples) * time_step
-    noise = np.zeros((count, samples))
-    progress.check()
-    for weight, values in zip(split(frequencies, envelopes.centres), envelopes.values, strict=True):
-        progress.check()
-        band = transform_rows(irfft, white * weight, length, threads, progress)[:, :samples]
-        for row, stretch in enumerate(stretches):
-            progress.check()
-            at = envelopes.half_time + (times - envelopes.half_time) / stretch
-            noise[row] += band[row] * np.interp(at, times, values)
-    return transform_rows(rfft, noise, length, threads, progress)

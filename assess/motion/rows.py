@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from assess.progress import Progress
+
+GROUP = 20
+"""Generated motions are made in groups of as many, always whole, from multiples of it. A group stays in the processor's
+cache. Fourier transforms take rows a few at a time with vector instructions and the last ones without, and where one of
+the two fuses multiplications with additions (arm64) their last digits differ: in whole groups the row alone decides."""
 
 
 def run_rows(work: Callable[[int], object], count: int, threads: int, progress: Progress) -> None:
@@ -25,25 +26,7 @@ def run_rows(work: Callable[[int], object], count: int, threads: int, progress: 
         list(pool.map(run, range(count)))
 
 
-LANES = 4
-"""Rows that a Fourier transform takes at once."""
-
-
-def transform_rows(
-    transform: Callable[..., Any], rows: NDArray[Any], length: int, threads: int, progress: Progress
-) -> NDArray[Any]:
-    """Return `scipy.fft.rfft` or its like of every row: equal to the bit whatever the other rows and the threads are.
-
-    The library takes rows a few at a time with vector instructions and the last ones without: where one of the two
-    fuses multiplications with additions (arm64), their last digits differ. So every call takes equally many rows.
-    """
-    groups = -(-len(rows) // LANES)
-    parts: list[NDArray[Any]] = [rows[:0]] * groups
-
-    def run(group: int) -> None:
-        taken = rows[group * LANES : (group + 1) * LANES]
-        padded = np.concatenate([taken, np.zeros((LANES - len(taken), rows.shape[1]), dtype=rows.dtype)])
-        parts[group] = transform(padded, length, axis=1)[: len(taken)]
-
-    run_rows(run, groups, threads, progress)
-    return np.concatenate(parts)
+def run_groups(work: Callable[[slice], object], count: int, threads: int, progress: Progress) -> None:
+    """Call `work` with the rows of each group of `count` motions, in `threads` threads."""
+    groups = -(-count // GROUP)
+    run_rows(lambda at: work(slice(at * GROUP, min((at + 1) * GROUP, count))), groups, threads, progress)

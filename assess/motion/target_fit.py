@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from assess.motion.record import FloatArray
+from assess.motion.rows import run_groups
 from assess.motion.target import JUDGED_FROM, Target, matched_to
 from assess.progress import SILENT, Progress
 
@@ -72,36 +74,43 @@ class Spectra:
 def velocities(acceleration: FloatArray, time_step: float) -> FloatArray:
     """Return velocity [m/s] of motions (k, n) [m/s2] that start at rest."""
     steps = (acceleration[:, 1:] + acceleration[:, :-1]) * (time_step / 2)
-    return np.pad(np.cumsum(steps, axis=1), ((0, 0), (1, 0)))
+    return np.pad(np.cumsum(steps, axis=1, dtype=np.float64), ((0, 0), (1, 0)))
 
 
-def measure_fit(target: Target, acceleration: FloatArray, time_step: float, threads: int = 1) -> Fit:
+def measure_fit(target: Target, acceleration: NDArray[Any], time_step: float, threads: int = 1) -> Fit:
     """Return how motions (k, n) [m/s2] meet their target, at twice as many periods as they were matched at."""
     return measure_match(target, acceleration, time_step, threads)[0]
 
 
 def measure_match(
-    target: Target, acceleration: FloatArray, time_step: float, threads: int = 1, progress: Progress = SILENT
+    target: Target, acceleration: NDArray[Any], time_step: float, threads: int = 1, progress: Progress = SILENT
 ) -> tuple[Fit, Spectra]:
     """Return how motions (k, n) [m/s2] meet their target, and the spectra by which this was measured.
 
-    The periods are those from 0.05 s to where the match is judged, twice as many as they were matched at.
+    The periods are those from 0.05 s to where the match is judged, twice as many as they were matched at. Motions and
+    spectra are in single precision.
     """
-    from assess.motion.spectrum import pseudo_acceleration
+    from assess.motion.bending import measure_rows
+    from assess.motion.sweep import Sweep
 
     wanted_to = matched_to(target.periods, target.pseudo)
     between = np.sqrt(target.periods[1:] * target.periods[:-1])
     periods = np.sort(np.concatenate([target.periods, between]))
-    judged = (periods >= JUDGED_FROM) & (periods <= wanted_to)
-    periods = periods[judged]
-    pseudo = pseudo_acceleration(acceleration, time_step, periods, threads=threads, progress=progress)
-    wanted = target.ordinates(periods, time_step)
-    deviation = pseudo.mean(axis=0) / wanted - 1
+    periods = periods[(periods >= JUDGED_FROM) & (periods <= wanted_to)]
+    motions, sweep = np.asarray(acceleration, np.float32), Sweep.of(periods, time_step)
+    pseudo, peaks = np.empty((len(motions), periods.size), np.float32), np.empty((len(motions), 3))
+
+    def measure(rows: slice) -> None:
+        pseudo[rows] = sweep.spectra(motions[rows])
+        measure_rows(motions[rows], time_step, peaks[rows])
+
+    run_groups(measure, len(motions), threads, progress)
+    wanted, mean = target.ordinates(periods, time_step), pseudo.mean(axis=0, dtype=np.float64)
+    deviation = mean / wanted - 1
     worst = int(np.abs(deviation).argmax())
-    velocity = velocities(acceleration, time_step)
-    pfa, pfv = np.abs(acceleration).max(axis=1), np.abs(velocity).max(axis=1)
+    pfa, pfv, end = peaks.T
     fit = Fit(
-        count=len(acceleration),
+        count=len(motions),
         matched_to=wanted_to,
         mean_deviation=float(np.abs(deviation).mean()),
         worst_deviation=float(deviation[worst]),
@@ -110,7 +119,7 @@ def measure_match(
         pfa_scatter=float(pfa.std() / pfa.mean()),
         pfv_ratio=float(pfv.mean() / target.pfv) if target.pfv > 0 else math.nan,
         pfv_scatter=float(pfv.std() / pfv.mean()),
-        spectrum_scatter=float((pseudo.std(axis=0) / pseudo.mean(axis=0)).mean()),
-        drift=float((np.abs(velocity[:, -1]) / pfv).max()),
+        spectrum_scatter=float((pseudo.std(axis=0, dtype=np.float64) / mean).mean()),
+        drift=float((np.abs(end) / pfv).max()),
     )
-    return fit, Spectra(periods=periods, ordinates=pseudo.astype(np.float32), target=wanted)
+    return fit, Spectra(periods=periods, ordinates=pseudo, target=wanted)

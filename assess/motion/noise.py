@@ -1,0 +1,178 @@
+"""White noise in octaves, each at a sampling rate of its own, and its transforms under the envelopes of a floor.
+
+The noise of a realisation comes from (seed, axis, number) only: it is drawn once for all floors of a building along an
+axis, and kept while there is room.
+"""
+
+import math
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.compiled import compiled
+from assess.motion.envelope import PAD, STRETCH, Envelopes, octaves, split
+from assess.motion.record import FloatArray
+from assess.motion.rows import GROUP
+from assess.motion.target import Grid
+from assess.progress import Progress
+
+Single = NDArray[np.float32]
+Transforms = NDArray[np.complex64]
+
+DEEPEST = 64
+"""The lowest octaves are made of every 64th sample."""
+ROOM = 3.9
+"""The Nyquist frequency of an octave's own rate over its centre at least [-]: its weight ends at 2, and its envelope
+widens it."""
+PHASES = 4096
+"""Random phases are multiples of a turn over this number."""
+KEPT = 96_000_000
+"""Noise that is kept for further floors, in bytes: 200 motions of 12,000 samples on two axes are 55 million."""
+
+_AXES = {"X": 0, "Y": 1}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rates:
+    """How noise is made on a grid.
+
+    Parameters
+    ----------
+    length : int
+        Samples of the transforms: those of the grid and zeros, so that what is filtered does not come round.
+    frequencies : (f,) array
+        Of the transforms [Hz].
+    weights : (b, f) array
+        Of each octave [-].
+    depths : tuple of int
+        Each octave is made of every such sample.
+    """
+
+    length: int
+    frequencies: FloatArray
+    weights: Single
+    depths: tuple[int, ...]
+
+
+@lru_cache(maxsize=4)
+def find_rates(grid: Grid) -> Rates:
+    """Return how noise is made on a grid."""
+    from scipy.fft import next_fast_len
+
+    length = DEEPEST * next_fast_len(math.ceil((grid.count + PAD / grid.time_step) / DEEPEST), real=True)
+    frequencies = np.fft.rfftfreq(length, grid.time_step)
+    widest = np.log2(0.5 / grid.time_step / ROOM / octaves())
+    depths = tuple(int(2**depth) for depth in np.clip(np.floor(widest), 0, math.log2(DEEPEST)).astype(int))
+    return Rates(length, frequencies, split(frequencies, octaves()).astype(np.float32), depths)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bands:
+    """The noise of a group: the stretch of each motion's time [-], (GROUP,), and the octaves at their own rates."""
+
+    stretches: FloatArray
+    octaves: tuple[Single, ...]
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return sum(band.nbytes for band in self.octaves)
+
+
+@dataclass(slots=True)
+class _Store:
+    """Noise that has been drawn, the latest used last; what is over `KEPT` is dropped."""
+
+    held: OrderedDict[tuple[object, ...], Bands] = field(default_factory=OrderedDict)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def find(self, key: tuple[object, ...]) -> Bands | None:
+        with self.lock:
+            if key in self.held:
+                self.held.move_to_end(key)
+            return self.held.get(key)
+
+    def keep(self, key: tuple[object, ...], bands: Bands) -> None:
+        with self.lock:
+            self.held[key] = bands
+            while sum(one.size for one in self.held.values()) > KEPT:
+                self.held.popitem(last=False)
+
+
+_STORE = _Store()
+
+
+def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress) -> Bands:
+    """Return white noise of random phases, the same on all floors, and how the time of each motion is stretched.
+
+    Raises
+    ------
+    KeyError
+        If the axis is not "X" or "Y".
+    """
+    key = (grid, seed, _AXES[axis], group)
+    bands = _STORE.find(key)
+    if bands is None:
+        bands = _draw(grid, seed, _AXES[axis], group, progress)
+        _STORE.keep(key, bands)
+    return bands
+
+
+def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress) -> Bands:
+    from scipy.fft import irfft
+
+    rates = find_rates(grid)
+    turns = np.exp(2j * np.pi * np.arange(PHASES) / PHASES).astype(np.complex64)
+    white = np.empty((GROUP, rates.frequencies.size), np.complex64)
+    stretches = np.empty(GROUP)
+    for row in range(GROUP):
+        draw = np.random.default_rng([seed, axis, group * GROUP + row])
+        stretches[row] = math.exp(STRETCH * draw.standard_normal())
+        turns.take(draw.integers(0, PHASES, rates.frequencies.size, dtype=np.uint16), out=white[row], mode="wrap")
+    bands = []
+    for weights, depth in zip(rates.weights, rates.depths, strict=True):
+        progress.check()
+        length = rates.length // depth
+        bands.append(irfft(white[:, : length // 2 + 1] * weights[: length // 2 + 1], length, axis=1, overwrite_x=True))
+    return Bands(stretches, tuple(bands))
+
+
+def draw_noise(
+    envelopes: Envelopes, grid: Grid, *, seed: int, axis: str, group: int, progress: Progress
+) -> Transforms:
+    """Return the transforms of a group of white noise under the envelopes of a floor.
+
+    Returns
+    -------
+    (GROUP, f) complex array
+        Fourier transforms of realisations `group` x GROUP and following, at the frequencies of `find_rates`.
+    """
+    from scipy.fft import rfft
+
+    rates, bands = find_rates(grid), draw_bands(grid, seed, axis, group, progress)
+    noise = np.zeros((GROUP, rates.frequencies.size), np.complex64)
+    for number, (band, depth) in enumerate(zip(bands.octaves, rates.depths, strict=True)):
+        progress.check()
+        values = envelopes.values[min(number, len(envelopes.values) - 1)]
+        under = np.zeros_like(band)
+        _modulate(band, values, 1 / bands.stretches, envelopes.half_time / grid.time_step, depth, under)
+        transform = rfft(under, axis=1, overwrite_x=True)
+        noise[:, : transform.shape[1]] += transform
+    return noise
+
+
+@compiled
+def _modulate(
+    band: Single, values: FloatArray, rates: FloatArray, half: float, depth: int, under: Single
+) -> None:  # pragma: no cover
+    """Fill `under` with noise under an envelope (n,) whose time is stretched about sample `half`."""
+    last = values.size - 1
+    for k in range(band.shape[0]):
+        for i in range(last // depth + 1):
+            at = min(max(half + (i * depth - half) * rates[k], 0.0), last - 1e-9)
+            j = int(at)
+            under[k, i] = band[k, i] * np.float32(values[j] + (at - j) * (values[j + 1] - values[j]))

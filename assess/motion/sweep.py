@@ -1,0 +1,140 @@
+"""Peak responses of oscillators to many motions, in single precision: what spectra are matched with.
+
+An oscillator needs some samples in its period and no more: motions are halved again and again, and each octave of
+periods is watched on the longest step that gives it enough. The two-term recurrence is that of Nigam and Jennings, exact
+for motions that are linear between samples, with velocity eliminated. `assess.motion.spectrum` is the reference; the
+difference is below 1 % at any period and 0.2 % on average (tests/motion/test_sweep.py).
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.compiled import compiled
+from assess.motion.record import FloatArray
+from assess.motion.spectrum import oscillator_step
+
+Single = NDArray[np.float32]
+
+FEWEST = 20
+"""Samples in a period at least, where motions are halved [-]: a peak between samples is missed by 0.4 % on average."""
+DEEPEST = 3
+"""Times that motions are halved at most [-]."""
+BLOCK = 32
+"""Samples between the states that are kept on the way."""
+LANES = 8
+"""Oscillators are filled up to multiples of it: vector instructions take as many."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sweep:
+    """Oscillators of 5 % damping with `periods` (m,) [s], ascending, that watch motions of one time step.
+
+    `depths` tells how often motions are halved for each, and `steps` holds the coefficients (5, lanes) of each depth.
+    """
+
+    periods: FloatArray
+    depths: NDArray[np.int64]
+    steps: tuple[tuple[int, Single], ...]
+
+    @classmethod
+    def of(cls, periods: FloatArray, time_step: float) -> "Sweep":
+        """Return the sweep of these periods [s] under motions of this time step [s]."""
+        fewest = np.log2(np.maximum(periods / (FEWEST * time_step), 1.0))
+        depths = np.minimum(np.floor(fewest + 1e-9), DEEPEST).astype(np.int64)
+        steps = tuple((int(one), recurrence(periods[depths == one], time_step, int(one))) for one in np.unique(depths))
+        return cls(periods, depths, steps)
+
+    def peaks(self, motions: Single) -> tuple[Single, NDArray[np.int32]]:
+        """Return the peak pseudo-accelerations to motions (k, n), with sign, and the samples at which they come, (k, m).
+
+        They are in the units of the motions; oscillators start at rest.
+        """
+        found = np.empty((len(motions), self.periods.size), np.float32)
+        when = np.empty(found.shape, np.int32)
+        halved = 0
+        for depth, step in self.steps:
+            while halved < depth:
+                motions, halved = halve(motions), halved + 1
+            own, lanes = self.depths == depth, (len(motions), step.shape[1])
+            peak, at = np.empty(lanes, np.float32), np.empty(lanes, np.int32)
+            _sweep(motions, step, peak, at)
+            found[:, own], when[:, own] = peak[:, : own.sum()], at[:, : own.sum()] << depth
+        return found, when
+
+    def spectra(self, motions: Single) -> Single:
+        """Return the pseudo-accelerations of motions (k, n), (k, m)."""
+        return np.abs(self.peaks(motions)[0])
+
+
+def recurrence(periods: FloatArray, time_step: float, depth: int) -> Single:
+    """Return c (5, lanes) of u'' = c0 u' + c1 u + c2 a'' + c3 a' + c4 a, u in pseudo-acceleration.
+
+    Motions have been halved `depth` times.
+    """
+    step = time_step * 2**depth
+    r0, r1, r2, r3, r4, r5, r6, r7, _, squared = oscillator_step(periods, time_step * 2**depth)
+    forced = squared * np.array([r5, r4 + r1 * r7 - r3 * r5, r1 * r6 - r3 * r4])
+    made = np.concatenate([[r0 + r3, r1 * r2 - r0 * r3], forced])
+    return np.pad(made, ((0, 0), (0, -periods.size % LANES))).astype(np.float32)
+
+
+@compiled
+def halve(motions: Single) -> Single:  # pragma: no cover
+    """Return every second sample of motions (k, n) after the filter -1/8, 1/4, 3/4, 1/4, -1/8.
+
+    It has a double zero at the old Nyquist frequency, and gives back to second order what straight lines between half
+    as many samples take. The samples at the ends, where motions are at rest, are taken as they are.
+    """
+    rows, last = motions.shape[0], (motions.shape[1] - 1) // 2
+    half = np.empty((rows, last + 1), np.float32)
+    centre, near, far = np.float32(3 / 4), np.float32(1 / 4), np.float32(1 / 8)
+    for k in range(rows):
+        row, out = motions[k], half[k]
+        out[0], out[last] = row[0], row[2 * last]
+        for i in range(1, last):
+            at = 2 * i
+            out[i] = centre * row[at] + near * (row[at - 1] + row[at + 1]) - far * (row[at - 2] + row[at + 2])
+    return half
+
+
+@compiled
+def _sweep(motions: Single, step: Single, peaks: Single, when: NDArray[np.int32]) -> None:  # pragma: no cover
+    """Fill `peaks` (k, m), with sign, and `when`; inner loops run in vector lanes, four steps a turn.
+
+    A turn notes where the peak is to four samples. States are kept every `BLOCK` samples; from the one before it the
+    recurrence is followed once more to the sample.
+    """
+    lanes, count = step.shape[1], motions.shape[1]
+    c0, c1, c2, c3, c4 = step[0], step[1], step[2], step[3], step[4]
+    u, v, top, turn = np.empty_like(c0), np.empty_like(c0), np.empty_like(c0), np.empty(lanes, np.int32)
+    kept = np.empty((count // BLOCK + 1, 2, lanes), np.float32)
+    for k in range(motions.shape[0]):
+        row = motions[k]
+        u[:], v[:], top[:], turn[:] = np.float32(0), np.float32(0), np.float32(0), np.int32(1)
+        a0, a1 = row[0], row[0]
+        for i in range(1, count - 3, 4):
+            if i % BLOCK == 1:
+                kept[i // BLOCK, 0], kept[i // BLOCK, 1] = u, v
+            a2, a3, a4, a5, now = row[i], row[i + 1], row[i + 2], row[i + 3], np.int32(i)
+            for j in range(lanes):
+                w = (c2[j] * a2 + c3[j] * a1 + c4[j] * a0 + c1[j] * u[j]) + c0[j] * v[j]
+                x = (c2[j] * a3 + c3[j] * a2 + c4[j] * a1 + c1[j] * v[j]) + c0[j] * w
+                y = (c2[j] * a4 + c3[j] * a3 + c4[j] * a2 + c1[j] * w) + c0[j] * x
+                z = (c2[j] * a5 + c3[j] * a4 + c4[j] * a3 + c1[j] * x) + c0[j] * y
+                most = max(max(abs(w), abs(x)), max(abs(y), abs(z)))
+                turn[j] = now if most > top[j] else turn[j]
+                top[j] = max(top[j], most)
+                u[j], v[j] = y, z
+            a0, a1 = a4, a5
+        for j in range(lanes):
+            at = turn[j] // BLOCK
+            before, own, best = kept[at, 0, j], kept[at, 1, j], np.float32(0)
+            for i in range(1 + at * BLOCK, turn[j] + 4):
+                x = (c2[j] * row[i] + c3[j] * row[i - 1] + c4[j] * row[max(i - 2, 0)] + c1[j] * before) + c0[j] * own
+                if i >= turn[j] and abs(x) > abs(best):
+                    best, when[k, j] = x, i
+                before, own = own, x
+            peaks[k, j] = best
