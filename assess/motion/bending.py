@@ -4,6 +4,8 @@ Bending leaves small values alone and acts on the few samples about a peak; it i
 their peaks go on to scatter: x becomes x (1 + b q/(1 + q)), with q = (x/P)^4 and P the peak that is wanted.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,11 +31,13 @@ def bend_to(peaks: FloatArray, wanted: float, most: float, low: float = 1.0, hig
     return float(np.clip(missing / (peaks * q / (1 + q)).mean(), MOST_BENT, most))
 
 
-def build_taper(grid: Grid) -> tuple[FloatArray, FloatArray]:
+@lru_cache(maxsize=4)
+def build_taper(grid: Grid) -> tuple[Single, Single]:
     """Return the taper of velocity (n,) [-] and its slope [1/s]."""
     part = np.clip(np.arange(grid.count) * grid.time_step / TAPER, 0.0, 1.0)
     rise, steep = part * part * (3 - 2 * part), 6 * part * (1 - part) / TAPER
-    return rise * rise[::-1], steep * rise[::-1] - rise * steep[::-1]
+    taper, slope = rise * rise[::-1], steep * rise[::-1] - rise * steep[::-1]
+    return taper.astype(np.float32), slope.astype(np.float32)
 
 
 @compiled

@@ -17,12 +17,12 @@ from assess.motion.target import Target
 
 ROLL_OFF = 8
 """Order with which the filter falls off below the corner of the records' own treatment."""
-RIDGE = 0.005
-"""Damping of a step [-]."""
+RIDGE = 0.2
+"""Damping of a step [-]; less of it raises energy and duration without a better match."""
 MOST_OFF, MOST_STEP = 0.5, 2.0
 """Logarithms to which errors and steps of power are clipped [-]."""
-GUESSES, CYCLED = 6, 20.0
-"""Steps before a motion is made; the duration by which peak factors are guessed [s]."""
+GUESSES, GUESSED, CYCLED = 12, 0.8, 20.0
+"""Steps before a motion is made, the power of each, and the duration by which peak factors are guessed [s]."""
 FINE = 800
 """Frequencies by which variances are integrated."""
 
@@ -60,15 +60,17 @@ def improve(matrix: FloatArray, power: FloatArray, error: FloatArray, weight: Fl
     return np.asarray(power * np.exp(np.clip(2 * step, -MOST_STEP, MOST_STEP)))
 
 
-def guess_power(matrix: FloatArray, periods: FloatArray, wanted: FloatArray, weight: FloatArray) -> FloatArray:
-    """Return the power (m,) that random vibration alone gives for mean peaks `wanted` (m,)."""
+def guess_power(matrix: FloatArray, periods: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Return the power (m,) that random vibration alone gives for mean peaks `wanted` (m,).
+
+    Each part is corrected by what its own oscillator lacks: that keeps the filter smooth where spectra do not decide it.
+    """
     variance = wanted**2 / (2 * np.log(2.8 * np.maximum(CYCLED / periods, 1)))
     power = (wanted * periods) ** 2
     for _ in range(GUESSES):
-        error = np.log(variance / (matrix * power).sum(axis=1)) / 2
-        power = improve(matrix, power, error, weight)
-        power *= np.exp(np.median(np.log(variance / (matrix * power).sum(axis=1))))
-    return power
+        missing = variance / (matrix * power).sum(axis=1)
+        power *= missing**GUESSED
+    return np.asarray(power)
 
 
 def gains_of(power: FloatArray, periods: FloatArray, frequencies: FloatArray) -> NDArray[np.float32]:

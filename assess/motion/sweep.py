@@ -7,7 +7,6 @@ difference is below 1 % at any period and 0.2 % on average (tests/motion/test_sw
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +35,7 @@ class Sweep:
     """
 
     periods: FloatArray
+    time_step: float
     depths: NDArray[np.int64]
     steps: tuple[tuple[int, Single], ...]
 
@@ -45,7 +45,7 @@ class Sweep:
         fewest = np.log2(np.maximum(periods / (FEWEST * time_step), 1.0))
         depths = np.minimum(np.floor(fewest + 1e-9), DEEPEST).astype(np.int64)
         steps = tuple((int(one), recurrence(periods[depths == one], time_step, int(one))) for one in np.unique(depths))
-        return cls(periods, depths, steps)
+        return cls(periods, time_step, depths, steps)
 
     def peaks(self, motions: Single) -> tuple[Single, NDArray[np.int32]]:
         """Return the peak pseudo-accelerations to motions (k, n), with sign, and the samples at which they come, (k, m).

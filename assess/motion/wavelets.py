@@ -78,7 +78,11 @@ class Correction:
     shares: Single
     sweep: Sweep
 
-    def apply(self, motions: Single, peaks: Single, when: NDArray[np.int32]) -> None:
+    def apply(self, motions: Single) -> None:
+        """Change motions (k, n) in place, each at the peaks of its own response."""
+        self.add(motions, *self.sweep.peaks(motions))
+
+    def add(self, motions: Single, peaks: Single, when: NDArray[np.int32]) -> None:
         """Change motions (k, n) in place, whose oscillators have these peaks at these samples, (k, c) each.
 
         To first order the ordinates change by the shares. A wavelet that reaches beyond the ends is cut there.
