@@ -1,5 +1,6 @@
 """How the recipe of an ensemble is found on its first realisations: the filter, the bending and the wavelets."""
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -33,12 +34,10 @@ LEVELLED = 0.8
 FAINT = 0.1
 """Weight of ordinates far beyond the periods at which the match is judged [-]."""
 
-SHORT, LONG, BEND = "short", "long", "bend"
-STEPS = (
-    *(SHORT, SHORT, LONG, LONG, LONG, SHORT, SHORT, BEND),
-    *(LONG, LONG, SHORT, SHORT, SHORT, BEND),
-    *(LONG, LONG, SHORT, SHORT, LONG, LONG, SHORT, SHORT, BEND),
-)
+SHORT, LONG, REST, BEND = "short", "long", "rest", "bend"
+NEARER=1.04
+AROUND, LEFT = int(os.environ.get("AROUND","2")), float(os.environ.get("LEFT","0.05"))
+STEPS = tuple({"s":SHORT,"l":LONG,"b":BEND,"r":REST}[x] for x in os.environ.get("MEND","ssllssbllssbrrrrb"))
 """Rounds of wavelets at periods below and above `DIVIDED`, and of bending what they add to PFA."""
 DIVIDED = 0.5
 """[s]; long periods are watched in a fifth of the time."""
@@ -133,11 +132,12 @@ def find_filter(
     """
     work, level = Filtering.of(target, recipe), target.velocity_level
     power = guess_power(work.matrix, work.periods, work.wanted(level))
-    recipe = replace(recipe, gains=work.gains(power))
-    power = power * _level(work, recipe, noise, bench) ** 2
-    for size in ROUNDS:
+    for number, size in enumerate(ROUNDS):
         recipe = replace(recipe, gains=work.gains(power))
         motions, peaks = bench.shape(recipe, noise, size)
+        if number == 0:  # the level first: only then can peaks be judged, and nothing has been bent by them yet
+            ratio = float(np.median(work.wanted(level) / bench.mean(work.sweep, motions)))
+            motions, peaks, power = motions * np.float32(ratio), peaks * ratio, power * ratio**2
         _bend(motions, peaks[:, 1], target.pfa, MOST_PFA, bench)
         error = np.log(work.wanted(level) / bench.mean(work.sweep, motions))
         power = improve(work.matrix, power, error, work.weight)
@@ -153,12 +153,6 @@ def find_filter(
     return target, replace(recipe, steps=(bending,)), motions
 
 
-def _level(work: Filtering, recipe: Recipe, noise: Sequence[Transforms], bench: Bench) -> float:
-    """Return the factor by which motions of a first filter meet the spectrum: only then can peaks be judged by it."""
-    motions, _ = bench.shape(replace(recipe, by_pfv=0.0), noise, ROUNDS[0])
-    return float(np.median(work.wanted(work.target.velocity_level) / bench.mean(work.sweep, motions)))
-
-
 def _bend(motions: Single, peaks: FloatArray, pfa: float, most: float, bench: Bench) -> Bending:
     """Bend motions (k, n) with these PFA (k,) in place so that their mean is met; return how."""
     bending = Bending(pfa, bend_to(peaks, pfa, most))
@@ -166,55 +160,72 @@ def _bend(motions: Single, peaks: FloatArray, pfa: float, most: float, bench: Be
     return bending
 
 
+@dataclass(slots=True, eq=False)
+class Corrections:
+    """Rounds of wavelets on the first motions of an ensemble.
+
+    `errors` (m,) are the logarithms by which the mean spectrum was off when it was last watched; those of periods that
+    are not judged stay 0.
+    """
+
+    target: Target
+    time_step: float
+    bench: Bench
+    errors: FloatArray
+
+    def places(self, kind: str) -> NDArray[np.int64]:
+        """Return which periods a round watches."""
+        periods, farthest = self.target.periods, BEYOND * matched_to(self.target.periods, self.target.pseudo)
+        near = (periods > JUDGED_FROM / NEARER) & (periods < farthest)
+        if kind == REST:
+            return np.flatnonzero(near & (_widest(np.abs(self.errors), 2 * AROUND + 1) > LEFT))
+        return np.flatnonzero(near & ((periods < DIVIDED) == (kind == SHORT)))
+
+    def correct(self, motions: Single, places: NDArray[np.int64]) -> list[Correction]:
+        """Correct the ordinates of motions (k, n) that are most off among their neighbours, in place; none may be."""
+        sweep = Sweep.of(self.target.periods[places], self.time_step)
+        peaks, when = self.bench.watch(sweep, motions)
+        mean = np.abs(peaks).mean(axis=0, dtype=np.float64)
+        self.errors[places] = np.log(self.target.pseudo[places] / mean)
+        off = np.zeros(self.errors.size)
+        off[places] = np.abs(self.errors[places])
+        chosen = np.flatnonzero((off > WITHIN) & (off == _widest(off, APART)))
+        if not chosen.size:
+            return []
+        most, own = np.log(MOST_CORRECTED), np.searchsorted(places, chosen)
+        correction = Correction(
+            wavelets=build_wavelets(tuple(self.target.periods), self.time_step),
+            places=chosen,
+            shares=np.expm1(np.clip(CORRECTED * self.errors[chosen], -most, most)).astype(np.float32),
+            sweep=Sweep.of(self.target.periods[chosen], self.time_step),
+        )
+        self.bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
+        return [correction]
+
+
+def _widest(off: FloatArray, width: int) -> FloatArray:
+    """Return the largest value among `width` neighbours of each."""
+    from scipy.ndimage import maximum_filter1d
+
+    return np.asarray(maximum_filter1d(off, width))
+
+
 def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Bench) -> Recipe:
     """Correct the mean spectrum and PFA of `motions` (k, n), in place; return the recipe with what was done."""
-    farthest = BEYOND * matched_to(target.periods, target.pseudo)
-    near = (target.periods > JUDGED_FROM / BEYOND) & (target.periods < farthest)
-    is_short = target.periods < DIVIDED
-    places = {SHORT: np.flatnonzero(near & is_short), LONG: np.flatnonzero(near & ~is_short)}
-    step = recipe.grid.time_step
-    sweeps = {kind: Sweep.of(target.periods[own], step) for kind, own in places.items()}
+    work = Corrections(target, recipe.grid.time_step, bench, np.zeros(target.periods.size))
     found: list[Bending | Correction] = []
     for kind in STEPS:
         if kind == BEND:
             found.append(_bend(motions, _pfa(motions), target.pfa, LAST_PFA, bench))
-        else:
-            found.extend(_correct(target, places[kind], sweeps[kind], motions, bench))
+        elif (places := work.places(kind)).size:
+            found.extend(work.correct(motions, places))
     recipe = replace(recipe, steps=recipe.steps + tuple(found))
-    lift = target.pfa / float(_pfa(motions).mean())
-    if target.is_generic:
-        lift, scale = float(np.clip(lift, 1 - LIFTED, 1 + LIFTED)), lift / float(np.clip(lift, 1 - LIFTED, 1 + LIFTED))
-        recipe = replace(recipe, scale=scale)
-    recipe = replace(recipe, lift=lift)
+    wanted = target.pfa / float(_pfa(motions).mean())
+    lift = float(np.clip(wanted, 1 - LIFTED, 1 + LIFTED)) if target.is_generic else wanted
+    recipe = replace(recipe, lift=lift, scale=wanted / lift)
     bench.run(lambda rows: recipe.finish(motions[rows]), len(motions))
     return recipe
 
 
 def _pfa(motions: Single) -> FloatArray:
     return np.maximum(motions.max(axis=1), -motions.min(axis=1)).astype(np.float64)
-
-
-def _correct(
-    target: Target, places: NDArray[np.int64], sweep: Sweep, motions: Single, bench: Bench
-) -> list[Correction]:
-    """Correct the ordinates at `places` that are most off among their neighbours; none may be."""
-    peaks, when = bench.watch(sweep, motions)
-    errors = np.log(target.pseudo[places] / np.abs(peaks).mean(axis=0, dtype=np.float64))
-    chosen = _worst(errors)
-    if not chosen.size:
-        return []
-    most = np.log(MOST_CORRECTED)
-    shares = np.expm1(np.clip(CORRECTED * errors[chosen], -most, most)).astype(np.float32)
-    step = sweep.time_step
-    wavelets = build_wavelets(tuple(target.periods), step)
-    correction = Correction(wavelets, places[chosen], shares, Sweep.of(sweep.periods[chosen], step))
-    bench.run(lambda rows: correction.add(motions[rows], peaks[rows, chosen], when[rows, chosen]), len(motions))
-    return [correction]
-
-
-def _worst(errors: FloatArray) -> NDArray[np.int64]:
-    """Return where logarithms of ratios (m,) are most off among their neighbours."""
-    from scipy.ndimage import maximum_filter1d
-
-    off = np.abs(errors)
-    return np.flatnonzero((off > WITHIN) & (off == maximum_filter1d(off, APART)))

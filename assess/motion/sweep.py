@@ -74,7 +74,6 @@ def recurrence(periods: FloatArray, time_step: float, depth: int) -> Single:
 
     Motions have been halved `depth` times.
     """
-    step = time_step * 2**depth
     r0, r1, r2, r3, r4, r5, r6, r7, _, squared = oscillator_step(periods, time_step * 2**depth)
     forced = squared * np.array([r5, r4 + r1 * r7 - r3 * r5, r1 * r6 - r3 * r4])
     made = np.concatenate([[r0 + r3, r1 * r2 - r0 * r3], forced])

@@ -94,8 +94,7 @@ def measure_match(
     from assess.motion.sweep import Sweep
 
     wanted_to = matched_to(target.periods, target.pseudo)
-    between = np.sqrt(target.periods[1:] * target.periods[:-1])
-    periods = np.sort(np.concatenate([target.periods, between]))
+    periods = np.sqrt(target.periods[1:] * target.periods[:-1])
     periods = periods[(periods >= JUDGED_FROM) & (periods <= wanted_to)]
     motions, sweep = np.asarray(acceleration, np.float32), Sweep.of(periods, time_step)
     pseudo, peaks = np.empty((len(motions), periods.size), np.float32), np.empty((len(motions), 3))
