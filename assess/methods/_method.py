@@ -71,7 +71,7 @@ class Motions(Protocol):
         """Whether they are weaker than the floor's motion."""
         ...
 
-    def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
+    def realise(self, first: int, count: int) -> list[tuple[NDArray[Any], float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
         ...
 

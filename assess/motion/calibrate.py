@@ -1,6 +1,5 @@
 """How the recipe of an ensemble is found on its first realisations: the filter, the bending and the wavelets."""
 
-import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,8 +9,8 @@ from numpy.typing import NDArray
 from assess.motion.bending import bend_to
 from assess.motion.filtering import choose_periods, gains_of, guess_power, improve, response_matrix
 from assess.motion.noise import Transforms, find_rates
-from assess.motion.record import FloatArray
 from assess.motion.recipe import Bending, Recipe
+from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP, run_groups
 from assess.motion.sweep import Single, Sweep
 from assess.motion.target import JUDGED_FROM, Target, matched_to
@@ -23,32 +22,35 @@ ROUNDS = (40, 40, 40, 40, 100, 100)
 PFV_LOW, PFV_HIGH = 0.88, 1.01
 """Shares of PFV between which its mean is left [-]: sharpening adds scatter, and wavelets add 3 % where it is high."""
 MOST_SHARPENED, MOST_PFA = 1.2, 0.0
-"""Limits of the bending of velocity, and of acceleration in the rounds of filtering [-]: sharper peaks scatter more, and
-the filter would follow them."""
+"""Limits of the bending of velocity, and of acceleration in the rounds of filtering [-]: sharper peaks scatter more,
+and the filter would follow them."""
 LAST_PFA = 0.5
 """Limit of the bending of acceleration afterwards [-]."""
 TURNED = 0.7
 """Share of the bending of velocity that is changed in a round [-]."""
-LEVELLED = 0.8
-"""Share of the logarithm by which PFV is missed that the cap of a generic spectrum is changed by in a round [-]."""
 FAINT = 0.1
 """Weight of ordinates far beyond the periods at which the match is judged [-]."""
 
 SHORT, LONG, REST, BEND = "short", "long", "rest", "bend"
-NEARER=1.04
-AROUND, LEFT = int(os.environ.get("AROUND","2")), float(os.environ.get("LEFT","0.05"))
-STEPS = tuple({"s":SHORT,"l":LONG,"b":BEND,"r":REST}[x] for x in os.environ.get("MEND","ssllssbllssbrrrrb"))
-"""Rounds of wavelets at periods below and above `DIVIDED`, and of bending what they add to PFA."""
+STEPS = (
+    *(SHORT, SHORT, LONG, LONG, SHORT, SHORT, BEND, LONG, LONG, SHORT, SHORT, BEND),
+    *(REST, REST, REST, REST, BEND, REST, REST, REST, REST, BEND),
+)
+"""Rounds of wavelets at periods below and above `DIVIDED`, then only about what is left; and of bending what they add
+to PFA. Narrow dips take many rounds: a response that is lowered at its peak is what its next peak leaves."""
 DIVIDED = 0.5
-"""[s]; long periods are watched in a fifth of the time."""
+"""[s]; long periods are watched in a third of the time."""
+AROUND, LEFT = 3, 0.04
+"""What is left is what was off by more than the second, in logarithms, when it was last watched, and as many neighbours
+on each side."""
 CORRECTED, MOST_CORRECTED = 0.7, 1.4
 """Share of the logarithm of a ratio that is applied in one round, and the ratio up to which it is [-]."""
 APART = 9
 """A round takes the ordinate that is most off among this many neighbours: two would act on one cycle."""
 WITHIN = 0.02
 """Ordinates this close to the target [-] are not corrected."""
-BEYOND = 1.2
-"""Ordinates are corrected up to this ratio beyond the periods at which the match is judged [-]."""
+NEARER, BEYOND = 1.04, 1.2
+"""Ordinates are corrected from and up to these ratios beyond the periods at which the match is judged [-]."""
 LIFTED = 0.1
 """What the PFA of a generic floor is lifted at most [-]: its spectrum may not allow more."""
 
@@ -118,6 +120,14 @@ class Filtering:
         """Return the ordinates to match, with pseudo-velocity kept to `level` [m/s]."""
         return self.target.capped(level)[self.places]
 
+    def missing(self, level: float, error: FloatArray) -> float:
+        """Return the level that motions have over `level` where that caps; logarithms `error` (m,) are what they lack.
+
+        PFV goes with the level that motions have, which follows the one asked for a few rounds later.
+        """
+        is_capped = self.wanted(level) < self.target.pseudo[self.places]
+        return float(np.exp(-error[is_capped].mean())) if is_capped.any() else 1.0
+
     def gains(self, power: FloatArray) -> Single:
         """Return the filter of this power (m,)."""
         return gains_of(power, self.periods, self.frequencies)
@@ -142,7 +152,7 @@ def find_filter(
         error = np.log(work.wanted(level) / bench.mean(work.sweep, motions))
         power = improve(work.matrix, power, error, work.weight)
         if target.is_generic and target.pfv > 0:
-            level *= float(target.pfv / peaks[:, 0].mean()) ** LEVELLED
+            level *= work.missing(level, error) * target.pfv / float(peaks[:, 0].mean())
         elif target.pfv > 0:
             wanted = bend_to(peaks[:, 0], target.pfv, MOST_SHARPENED, PFV_LOW, PFV_HIGH)
             recipe = replace(recipe, by_pfv=recipe.by_pfv + TURNED * (wanted - recipe.by_pfv))
@@ -228,4 +238,4 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Ben
 
 
 def _pfa(motions: Single) -> FloatArray:
-    return np.maximum(motions.max(axis=1), -motions.min(axis=1)).astype(np.float64)
+    return np.asarray(np.maximum(motions.max(axis=1), -motions.min(axis=1)), np.float64)

@@ -65,7 +65,7 @@ def husid_envelopes(acceleration: FloatArray, time_step: float) -> Envelopes:
 
     count, centres = acceleration.size, octaves()
     length = int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
-    weights = split(np.fft.rfftfreq(length, time_step), centres)
+    weights = split(np.asarray(np.fft.rfftfreq(length, time_step), np.float64), centres)
     bands = irfft(rfft(acceleration, length) * weights, length, axis=1)[:, :count]
     power = np.array(
         [
@@ -84,7 +84,7 @@ def _smooth(values: FloatArray, width: float) -> FloatArray:
 
     length = int(next_fast_len(values.size + math.ceil(REACH * width), real=True))
     curve = np.exp(-2 * (np.pi * width * np.fft.rfftfreq(length)) ** 2)
-    return np.maximum(irfft(rfft(values, length) * curve, length)[: values.size], 0.0)
+    return np.asarray(np.maximum(irfft(rfft(values, length) * curve, length)[: values.size], 0.0))
 
 
 def hold_times(period: float | None) -> tuple[float, float, float]:

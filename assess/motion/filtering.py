@@ -27,17 +27,17 @@ FINE = 800
 """Frequencies by which variances are integrated."""
 
 
-def choose_periods(target: Target) -> FloatArray:
+def choose_periods(target: Target) -> NDArray[np.int64]:
     """Return places among the target's periods: of each two neighbours the one whose ordinate stands out more."""
     logs = np.pad(np.log(target.pseudo), 2, mode="edge")
     out = np.abs(logs[2:-2] - (logs[:-4] + logs[4:]) / 2)
     pairs = out[: out.size // 2 * 2].reshape(-1, 2)
-    return 2 * np.arange(len(pairs)) + (pairs[:, 1] > pairs[:, 0])
+    return np.asarray(2 * np.arange(len(pairs)) + (pairs[:, 1] > pairs[:, 0]), np.int64)
 
 
 def roll_off(frequencies: FloatArray) -> FloatArray:
     """Return the filter's power below the corner of the records' treatment [-], at frequencies [Hz] from 0 on."""
-    return np.where(frequencies > 0, 1 / (1 + (CORNER / np.maximum(frequencies, 1e-9)) ** ROLL_OFF), 0.0)
+    return np.asarray(np.where(frequencies > 0, 1 / (1 + (CORNER / np.maximum(frequencies, 1e-9)) ** ROLL_OFF), 0.0))
 
 
 def response_matrix(periods: FloatArray, time_step: float) -> FloatArray:
@@ -47,7 +47,8 @@ def response_matrix(periods: FloatArray, time_step: float) -> FloatArray:
     parts = np.maximum(0, 1 - np.abs(places[:, None] - np.arange(periods.size)))
     own = 1 / periods[:, None]
     gain = own**4 / ((own**2 - fine**2) ** 2 + (2 * DAMPING * own * fine) ** 2)
-    return np.einsum("ij,jk->ik", gain * fine * roll_off(fine), parts)  # no library that shares out sums to threads
+    # No matrix product: libraries share it out among threads of their own.
+    return np.asarray(np.einsum("ij,jk->ik", gain * fine * roll_off(fine), parts))
 
 
 def improve(matrix: FloatArray, power: FloatArray, error: FloatArray, weight: FloatArray) -> FloatArray:
@@ -63,7 +64,7 @@ def improve(matrix: FloatArray, power: FloatArray, error: FloatArray, weight: Fl
 def guess_power(matrix: FloatArray, periods: FloatArray, wanted: FloatArray) -> FloatArray:
     """Return the power (m,) that random vibration alone gives for mean peaks `wanted` (m,).
 
-    Each part is corrected by what its own oscillator lacks: that keeps the filter smooth where spectra do not decide it.
+    Each part is corrected by what its own oscillator lacks, which keeps the filter smooth where spectra leave it open.
     """
     variance = wanted**2 / (2 * np.log(2.8 * np.maximum(CYCLED / periods, 1)))
     power = (wanted * periods) ** 2

@@ -64,7 +64,7 @@ def find_rates(grid: Grid) -> Rates:
     from scipy.fft import next_fast_len
 
     length = DEEPEST * next_fast_len(math.ceil((grid.count + PAD / grid.time_step) / DEEPEST), real=True)
-    frequencies = np.fft.rfftfreq(length, grid.time_step)
+    frequencies = np.asarray(np.fft.rfftfreq(length, grid.time_step), np.float64)
     widest = np.log2(0.5 / grid.time_step / ROOM / octaves())
     depths = tuple(int(2**depth) for depth in np.clip(np.floor(widest), 0, math.log2(DEEPEST)).astype(int))
     return Rates(length, frequencies, split(frequencies, octaves()).astype(np.float32), depths)
@@ -141,9 +141,7 @@ def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress) -> B
     return Bands(stretches, tuple(bands))
 
 
-def draw_noise(
-    envelopes: Envelopes, grid: Grid, *, seed: int, axis: str, group: int, progress: Progress
-) -> Transforms:
+def draw_noise(envelopes: Envelopes, grid: Grid, *, seed: int, axis: str, group: int, progress: Progress) -> Transforms:
     """Return the transforms of a group of white noise under the envelopes of a floor.
 
     Returns

@@ -1,4 +1,4 @@
-"""What turns the noise of a realisation into its motion: the same steps, with the same numbers, for all realisations."""
+"""What turns the noise of a realisation into its motion: the same steps with the same numbers for all of them."""
 
 from dataclasses import dataclass
 

@@ -1,9 +1,9 @@
 """Peak responses of oscillators to many motions, in single precision: what spectra are matched with.
 
 An oscillator needs some samples in its period and no more: motions are halved again and again, and each octave of
-periods is watched on the longest step that gives it enough. The two-term recurrence is that of Nigam and Jennings, exact
-for motions that are linear between samples, with velocity eliminated. `assess.motion.spectrum` is the reference; the
-difference is below 1 % at any period and 0.2 % on average (tests/motion/test_sweep.py).
+periods is watched on the longest step that gives it enough. The recurrence is that of Nigam and Jennings, exact for
+motions that are linear between samples, with velocity eliminated. `assess.motion.spectrum` is the reference: means of
+an ensemble differ from it by 0.3 % on average, and by 2.5 % at most, at long periods where a spectrum holds little.
 """
 
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ class Sweep:
         return cls(periods, time_step, depths, steps)
 
     def peaks(self, motions: Single) -> tuple[Single, NDArray[np.int32]]:
-        """Return the peak pseudo-accelerations to motions (k, n), with sign, and the samples at which they come, (k, m).
+        """Return the peak pseudo-accelerations to motions (k, n), with sign, and the samples of the peaks, (k, m).
 
         They are in the units of the motions; oscillators start at rest.
         """
@@ -123,7 +123,7 @@ def _sweep(motions: Single, step: Single, peaks: Single, when: NDArray[np.int32]
                 x = (c2[j] * a3 + c3[j] * a2 + c4[j] * a1 + c1[j] * v[j]) + c0[j] * w
                 y = (c2[j] * a4 + c3[j] * a3 + c4[j] * a2 + c1[j] * w) + c0[j] * x
                 z = (c2[j] * a5 + c3[j] * a4 + c4[j] * a3 + c1[j] * x) + c0[j] * y
-                most = max(max(abs(w), abs(x)), max(abs(y), abs(z)))
+                most = max(max(abs(w), abs(x)), max(abs(y), abs(z)))  # noqa: PLW3301 - vector lanes need pairs
                 turn[j] = now if most > top[j] else turn[j]
                 top[j] = max(top[j], most)
                 u[j], v[j] = y, z

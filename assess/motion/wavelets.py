@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.compiled import compiled
-from assess.motion.record import FloatArray
 from assess.motion.sweep import Sweep
 
 Single = NDArray[np.float32]

@@ -3,9 +3,10 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.model import Building
 from assess.motion.record import FloatArray
@@ -28,12 +29,12 @@ class OpenMotions:
     `fit` and `spectra` are those of the first 100 motions; `is_weak` tells whether they are weaker than the floor's.
     """
 
-    make: Callable[[int, int], list[tuple[FloatArray, float]]]
+    make: Callable[[int, int], list[tuple[NDArray[Any], float]]]
     fit: "Fit | None" = None
     spectra: "Spectra | None" = None
     is_weak: bool = False
 
-    def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
+    def realise(self, first: int, count: int) -> list[tuple[NDArray[Any], float]]:
         """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
         return self.make(first, count)
 
@@ -86,7 +87,7 @@ class GeneratedEnsemble:
         return generic_target(demand.pfa, self.grid, pfv=pfv, period=self.period, height=self.height)
 
     def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
-        """Find the filter and the corrections that meet the target."""
+        """Find the filter and the corrections that meet the target; the motions are in single precision."""
         from assess.motion.generate import build_generator
 
         generator = build_generator(
