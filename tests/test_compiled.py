@@ -14,7 +14,7 @@ from tests.shaking import write_records
 from tests.workbooks import write
 
 PACKAGE = Path(assess.__file__).parent
-FIRST_USE = "import numpy as np\nfrom assess.motion.bending import settle\nsettle(np.ones(10), 1.0)\n"
+FIRST_USE = "import numpy as np\nfrom assess.motion.bending import bend_rows\nbend_rows(np.ones((1, 10), np.float32), 1.0, 0.1)\n"
 
 
 def _child(code, **changes):
@@ -38,7 +38,7 @@ def test_it_is_kept_in_the_users_folder(tmp_path):
     before = _kept(PACKAGE)
     _child(FIRST_USE, XDG_CACHE_HOME=tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["assess"]
-    assert [name for name in _kept(tmp_path / "assess") if name.startswith("settle-") or ".settle-" in name]
+    assert [name for name in _kept(tmp_path / "assess") if name.startswith("bend_rows-") or ".bend_rows-" in name]
     assert _kept(PACKAGE) == before, "nothing beside the code, which may be read-only or shared"
 
 

@@ -66,8 +66,9 @@ def find_rates(grid: Grid) -> Rates:
     length = DEEPEST * next_fast_len(math.ceil((grid.count + PAD / grid.time_step) / DEEPEST), real=True)
     frequencies = np.asarray(np.fft.rfftfreq(length, grid.time_step), np.float64)
     widest = np.log2(0.5 / grid.time_step / ROOM / octaves())
-    depths = tuple(int(2**depth) for depth in np.clip(np.floor(widest), 0, math.log2(DEEPEST)).astype(int))
-    return Rates(length, frequencies, split(frequencies, octaves()).astype(np.float32), depths)
+    depths = [int(2**depth) for depth in np.clip(np.floor(widest), 0, math.log2(DEEPEST))]
+    depths[-1] = 1  # it has all higher frequencies
+    return Rates(length, frequencies, split(frequencies, octaves()).astype(np.float32), tuple(depths))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

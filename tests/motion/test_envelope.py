@@ -1,14 +1,10 @@
-"""Envelopes, and noise that depends on nothing but seed, axis and number."""
+"""Envelopes of recorded floors and of others, and the octaves that they are of."""
 
 import numpy as np
 import pytest
 
 from assess.motion.envelope import (
-    STRETCH,
     Envelopes,
-    draw_noise,
-    filter_frequencies,
-    filter_length,
     hold_envelopes,
     hold_times,
     husid_envelopes,
@@ -19,16 +15,6 @@ from assess.motion.record import FloatArray
 from tests.motion.motions import read_motion
 
 STEP = 0.005
-FLAT = Envelopes(octaves(), np.ones((9, 2000)), 5.0)
-
-
-def draw(
-    envelopes: Envelopes, *, seed: int = 1, axis: str = "X", first: int = 0, count: int = 3, threads: int = 1
-) -> FloatArray:
-    samples = envelopes.values.shape[1]
-    noise = draw_noise(envelopes, STEP, seed=seed, axis=axis, first=first, count=count, threads=threads)
-    assert noise.shape == (count, filter_frequencies(samples, STEP).size)
-    return np.array([np.fft.irfft(row, filter_length(samples, STEP)) for row in noise])  # each as if it were alone
 
 
 # --- octaves ---
@@ -154,58 +140,3 @@ def test_they_are_of_mean_square_one_whatever_the_level() -> None:
 
 def test_a_silent_octave_is_no_division_by_zero() -> None:
     assert np.isfinite(husid_envelopes(np.eye(1, 500, 250)[0], STEP).values).all()
-
-
-# --- noise ---
-
-
-@pytest.mark.parametrize(
-    ("first", "count", "threads"), [(0, 1, 1), (4, 1, 1), (2, 3, 1), (0, 8, 2), (3, 5, 2), (1, 7, 3)]
-)
-def test_a_row_is_the_same_whatever_else_is_drawn(first: int, count: int, threads: int) -> None:
-    everything = draw(FLAT, count=8)
-    np.testing.assert_array_equal(
-        draw(FLAT, first=first, count=count, threads=threads), everything[first : first + count]
-    )
-
-
-def test_axes_and_seeds_and_numbers_differ() -> None:
-    x, y, other = draw(FLAT), draw(FLAT, axis="Y"), draw(FLAT, seed=2)
-    rows = np.concatenate([x, y, other])
-    correlation = np.corrcoef(rows) - np.eye(9)
-    assert np.abs(correlation).max() < 0.1
-
-
-def test_no_axis_but_x_and_y() -> None:
-    with pytest.raises(KeyError):
-        draw(FLAT, axis="Z")
-
-
-def test_floors_share_their_phases() -> None:
-    """Octaves or one band for all: where both are flat the noise is one."""
-    one = Envelopes(np.array([0.1]), np.ones((1, 2000)), 5.0)
-    np.testing.assert_allclose(draw(one), draw(FLAT), atol=1e-9 * np.abs(draw(FLAT)).max())
-
-
-def test_an_envelope_shapes_the_noise() -> None:
-    still = hold_envelopes(2000, STEP, None)
-    noise = draw(still, count=40)[:, :2000]
-    level = np.sqrt((noise**2).mean(axis=0))
-    near = [level[round(seconds / STEP) - 40 : round(seconds / STEP) + 40].mean() for seconds in (0.3, 4.5, 9.5)]
-    assert near[0] < 0.2 * near[1]
-    assert near[2] < near[1]
-
-
-def test_durations_scatter() -> None:
-    """The edge of a burst moves with the duration drawn for each realisation, by STRETCH in logarithms."""
-    envelope = np.zeros((1, 4000))
-    envelope[0, 1000:3000] = 1.0
-    noise = draw(Envelopes(np.array([0.1]), envelope, 10.0), count=200)[:, :4000]
-    lengths = np.log((np.abs(noise) > 1e-9 * np.abs(noise).max()).sum(axis=1) / 2000)
-    assert lengths.std() == pytest.approx(STRETCH, rel=0.2)
-    assert lengths.mean() == pytest.approx(0.0, abs=0.05)
-
-
-def test_the_filter_has_room_for_what_rings_on() -> None:
-    assert filter_length(2000, STEP) >= 2000 + 20 / STEP
-    assert filter_frequencies(2000, STEP)[-1] == pytest.approx(100.0, rel=1e-3)

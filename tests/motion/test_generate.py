@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from assess.errors import CancelledError
-from assess.motion import generate
+from assess.motion import noise
 from assess.motion.generate import CALIBRATED, Generator, build_generator
 from assess.motion.record import FloatArray, Motion
+from assess.motion.rows import GROUP
 from assess.motion.spectrum import response_spectrum
 from assess.motion.target import Grid, Target, build_grid, generic_target, matched_to, recorded_target
 from assess.motion.target_fit import Fit
@@ -67,26 +68,21 @@ def check_fit(fit: Fit | None, figures: Figures) -> None:
     """Assert that a fit agrees with the figures, which are of other periods."""
     assert fit is not None
     for name in ("pfa_ratio", "pfa_scatter", "pfv_scatter"):
-        assert getattr(fit, name) == pytest.approx(getattr(figures, name), rel=1e-9)
-    assert fit.pfv_ratio == pytest.approx(figures.pfv_ratio, rel=1e-9, nan_ok=True)
-    assert fit.mean_deviation == pytest.approx(figures.mean_deviation, abs=0.003)
-    assert abs(fit.worst_deviation) == pytest.approx(figures.worst_deviation, abs=0.015)
+        assert getattr(fit, name) == pytest.approx(getattr(figures, name), rel=1e-5)
+    assert fit.pfv_ratio == pytest.approx(figures.pfv_ratio, rel=1e-5, nan_ok=True)
+    assert fit.mean_deviation == pytest.approx(figures.mean_deviation, abs=0.005)
+    assert abs(fit.worst_deviation) == pytest.approx(figures.worst_deviation, abs=0.025)
     assert fit.spectrum_scatter == pytest.approx(figures.spectrum_scatter, rel=0.03)
-    assert fit.drift < 1e-9
+    assert fit.drift < 1e-5
 
 
-def build(motion: Motion, *, seed: int = 1, axis: str = "X", is_tight: bool = False, threads: int = 1) -> Generator:
+def build(motion: Motion, *, seed: int = 1, axis: str = "X", threads: int = 1) -> Generator:
     grid = build_grid([motion])
-    return build_generator(
-        recorded_target(motion, grid), grid, seed=seed, axis=axis, is_tight=is_tight, threads=threads
-    )
+    return build_generator(recorded_target(motion, grid), grid, seed=seed, axis=axis, threads=threads)
 
 
-@pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> int:
-    """Set everything by 20 realisations instead of 100, where the match of their mean is not what is looked at."""
-    monkeypatch.setattr(generate, "CALIBRATED", 20)
-    return 20
+NONE_MADE = np.empty((0, 0), np.float32)
+"""In place of the first motions, so that they are made once more."""
 
 
 # --- what is asked ---
@@ -104,11 +100,15 @@ def test_ensembles_match_their_record(name: str) -> None:
     assert figures.pfv_ratio == pytest.approx(1, abs=0.15)
     assert figures.pfa_scatter > 0.05
     assert figures.spectrum_scatter > 0.1
-    assert figures.drift < 0.01
+    assert figures.drift < 1e-5
     check_fit(generator.fit, figures)
     assert generator.fit is not None
     assert generator.fit.count == CALIBRATED == 100
-    assert generator.scale == 1.0
+    assert generator.recipe.scale == 1.0
+    further = measure(generator.target, generator.realise(0, 200))
+    assert further.worst_deviation < 0.12
+    assert further.mean_deviation < 0.03
+    assert further.pfa_ratio == pytest.approx(1, abs=0.05)
 
 
 @pytest.mark.slow
@@ -122,21 +122,6 @@ def test_so_they_do_with_other_draws(seed: int, axis: str) -> None:
     assert figures.pfv_ratio == pytest.approx(1, abs=0.15)
 
 
-@pytest.mark.parametrize(("name", "start", "end"), [(ROOF, 0, 20), (TWELFTH, 0, 15)])
-def test_tight_ones_hide_the_scatter(name: str, start: float, end: float) -> None:
-    """PFV is left as the wavelets of each motion make it."""
-    generator = build(cut(name, start, end), is_tight=True)
-    figures = measure(generator.target, generator.realise())
-    assert figures.worst_deviation < 0.12
-    assert figures.mean_deviation < 0.03
-    assert figures.pfa_ratio == pytest.approx(1, abs=1e-3)
-    assert figures.pfa_scatter < 1e-3
-    assert figures.pfv_ratio == pytest.approx(1, abs=0.2)
-    assert figures.spectrum_scatter < 0.1
-    assert figures.drift < 0.01
-    check_fit(generator.fit, figures)
-
-
 def test_realisations_beyond_those_calibrated_match_too() -> None:
     """Fifty others have a mean of their own: its standard error alone is 3 %."""
     generator = build(cut(TWELFTH, 0, 15))
@@ -147,47 +132,45 @@ def test_realisations_beyond_those_calibrated_match_too() -> None:
     assert figures.worst_deviation < 0.2
     assert figures.pfa_ratio == pytest.approx(1, abs=0.1)
     assert figures.pfv_ratio == pytest.approx(1, abs=0.2)
-    assert figures.drift < 0.01
+    assert figures.drift < 1e-5
     assert not np.isin(motions[:, 500], generator.realise()[:, 500]).any()
 
 
 # --- a realisation is one, whatever else is made ---
 
-SHORT = cut("b", 8, 13)
+SHORT, FEW = cut("b", 8, 13), 20
 GENERIC = generic_target(PFA, Grid(STEP, 1601), pfv=0.3, period=0.8)
 
 
-@pytest.mark.parametrize("is_tight", [False, True])
-def test_a_realisation_is_the_same_to_the_bit(few: int, is_tight: bool) -> None:
-    generator, again = (build(SHORT, is_tight=is_tight, threads=threads) for threads in (1, 2))
-    everything = generator.realise(0, few + 13)
-    np.testing.assert_array_equal(again.realise(0, few + 13), everything)
+def test_a_realisation_is_the_same_to_the_bit() -> None:
+    generator, again = (build(SHORT, threads=threads) for threads in (1, 2))
+    everything = generator.realise(0, CALIBRATED + 47)
+    assert everything.dtype == np.float32
+    np.testing.assert_array_equal(again.realise(0, CALIBRATED + 47), everything)
     assert again.fit == generator.fit
-    afresh = replace(again, made=None)
-    for first, count in [(0, few), (5, 1), (3, 2), (few - 2, 5), (1, few + 12)]:
+    np.testing.assert_array_equal(again.spectra.ordinates, generator.spectra.ordinates)
+    afresh = replace(again, made=NONE_MADE)
+    for first, count in [(0, CALIBRATED), (5, 1), (3, 2), (41, 1), (CALIBRATED - 2, 5), (1, 146), (120, 20), (139, 3)]:
         np.testing.assert_array_equal(afresh.realise(first, count), everything[first : first + count])
         np.testing.assert_array_equal(generator.realise(first, count), everything[first : first + count])
 
 
-def test_so_it_is_among_a_hundred() -> None:
-    generator = build(SHORT, threads=2)
-    everything = generator.realise()
-    assert len(everything) == CALIBRATED
-    afresh = replace(generator, made=None, threads=1)
-    np.testing.assert_array_equal(afresh.realise(97, 5)[:3], everything[97:])
-    np.testing.assert_array_equal(afresh.realise(41, 1), everything[41:42])
-
-
-def test_so_is_that_of_a_generic_target(few: int) -> None:
+def test_so_is_that_of_a_generic_target() -> None:
     generator, again = (
         build_generator(GENERIC, Grid(STEP, 1601), seed=1, axis="Y", threads=threads) for threads in (1, 2)
     )
-    assert generator.scale != 1.0
-    np.testing.assert_array_equal(generator.realise(0, few), again.realise(0, few))
-    np.testing.assert_array_equal(replace(generator, made=None).realise(7, 3), generator.realise(7, 3))
+    np.testing.assert_array_equal(generator.realise(), again.realise())
+    np.testing.assert_array_equal(replace(generator, made=NONE_MADE).realise(7, 3), generator.realise(7, 3))
 
 
-@pytest.mark.usefixtures("few")
+def test_it_does_not_depend_on_what_was_made_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The noise that is kept is that which would be drawn."""
+    first = build(SHORT).realise(0, 2)
+    build(cut("d", 8, 13), seed=7)
+    monkeypatch.setattr(noise, "KEPT", 0)
+    np.testing.assert_array_equal(build(SHORT).realise(0, 2), first)
+
+
 def test_what_is_handed_out_may_be_changed() -> None:
     generator = build(SHORT)
     first = generator.realise(0, 2)
@@ -196,7 +179,6 @@ def test_what_is_handed_out_may_be_changed() -> None:
     np.testing.assert_array_equal(generator.realise(0, 2), kept)
 
 
-@pytest.mark.usefixtures("few")
 def test_the_target_and_the_motion_are_left_alone() -> None:
     grid = build_grid([SHORT])
     target = recorded_target(SHORT, grid)
@@ -207,22 +189,22 @@ def test_the_target_and_the_motion_are_left_alone() -> None:
     np.testing.assert_array_equal(target.envelopes.values, envelopes)
 
 
-def test_floors_share_their_phases_and_axes_do_not(few: int) -> None:
+def test_floors_share_their_phases_and_axes_do_not() -> None:
     """42nd and 34th floor of 575 Market Street, azimuth 225."""
-    upper, lower = (build(cut(name, 5, 17)).realise(0, few) for name in "be")
-    correlation = np.corrcoef(upper, lower)[:few, few:]
-    same, different = np.diag(correlation), correlation[~np.eye(few, dtype=bool)]
+    upper, lower = (build(cut(name, 5, 17)).realise(0, FEW) for name in "be")
+    correlation = np.corrcoef(upper, lower)[:FEW, FEW:]
+    same, different = np.diag(correlation), correlation[~np.eye(FEW, dtype=bool)]
     assert same.min() > 0.3
     assert same.mean() > 0.6
     assert abs(different.mean()) < 0.05
-    across = np.diag(np.corrcoef(upper, build(cut("b", 5, 17), axis="Y").realise(0, few))[:few, few:])
+    across = np.diag(np.corrcoef(upper, build(cut("b", 5, 17), axis="Y").realise(0, FEW))[:FEW, FEW:])
     assert abs(across.mean()) < 0.15
     assert across.max() < same.mean()
 
 
-def test_seeds_differ(few: int) -> None:
-    one, other = (build(cut("b", 5, 17), seed=seed).realise(0, few) for seed in (1, 2))
-    assert abs(np.diag(np.corrcoef(one, other)[:few, few:]).mean()) < 0.15
+def test_seeds_differ() -> None:
+    one, other = (build(cut("b", 5, 17), seed=seed).realise(0, FEW) for seed in (1, 2))
+    assert abs(np.diag(np.corrcoef(one, other)[:FEW, FEW:]).mean()) < 0.15
 
 
 def test_no_axis_but_x_and_y() -> None:
@@ -244,22 +226,22 @@ def test_a_generic_spectrum_is_matched(period: float | None) -> None:
     figures = measure(generator.target, generator.realise())
     assert figures.mean_deviation < 0.05
     assert figures.worst_deviation < 0.10
-    assert figures.pfa_ratio == pytest.approx(1, rel=1e-9)
+    assert figures.pfa_ratio == pytest.approx(1, abs=0.005)
     assert figures.pfa_scatter > 0.05
     assert figures.spectrum_scatter > 0.1
-    assert figures.drift < 0.01
+    assert figures.drift < 1e-5
     check_fit(generator.fit, figures)
 
 
-def test_where_pfa_and_spectrum_cannot_both_be_had_pfa_takes_precedence_and_the_misfit_is_reported(few: int) -> None:
+def test_where_pfa_and_spectrum_cannot_both_be_had_pfa_takes_precedence_and_the_misfit_is_reported() -> None:
     """No motion has PSA/PFA of 4 at 6 s and at 1 s, and PSA falling with 24 PFA/T beyond."""
     generator = build_generic(period=6.0)
-    figures = measure(generator.target, generator.realise(0, few))
-    assert figures.pfa_ratio == pytest.approx(1, rel=1e-9)
-    assert figures.mean_deviation > 0.1
-    assert figures.drift < 0.01
+    figures = measure(generator.target, generator.realise())
+    assert figures.pfa_ratio == pytest.approx(1, rel=1e-3)
+    assert figures.mean_deviation < 0.06
+    assert figures.worst_deviation < 0.15
+    assert figures.drift < 1e-5
     check_fit(generator.fit, figures)
-    assert generator.scale < 0.95
 
 
 @pytest.mark.parametrize(
@@ -273,13 +255,12 @@ def test_where_pfa_and_spectrum_cannot_both_be_had_pfa_takes_precedence_and_the_
     ],
     ids=str,
 )
-def test_a_given_pfv_is_matched(monkeypatch: pytest.MonkeyPatch, known: dict[str, float]) -> None:
-    monkeypatch.setattr(generate, "CALIBRATED", 50)
+def test_a_given_pfv_is_matched(known: dict[str, float]) -> None:
     generator = build_generic(**known)
-    figures = measure(generator.target, generator.realise(0, 50))
-    assert figures.pfv_ratio == pytest.approx(1, abs=0.15)
-    assert figures.pfa_ratio == pytest.approx(1, rel=1e-9)
-    assert figures.drift < 0.01
+    figures = measure(generator.target, generator.realise())
+    assert figures.pfv_ratio == pytest.approx(1, abs=0.08)
+    assert figures.pfa_ratio == pytest.approx(1, abs=0.005)
+    assert figures.drift < 1e-5
     check_fit(generator.fit, figures)
 
 
@@ -325,11 +306,10 @@ def test_odd_records_still_give_sensible_motions(name: str) -> None:
     assert figures.worst_deviation < 0.35
     assert figures.pfa_ratio == pytest.approx(1, abs=0.05)
     assert 0.6 < figures.pfv_ratio < 1.3
-    assert figures.drift < 0.01
+    assert figures.drift < 1e-5
     check_fit(generator.fit, figures)
 
 
-@pytest.mark.usefixtures("few")
 def test_a_faint_record_is_matched_as_a_strong_one_is() -> None:
     motion = cut(TWELFTH, 0, 15)
     strong, faint = (build(make_motion(motion.acceleration * by, STEP)) for by in (1.0, 1e-4 * GRAVITY / motion.pfa))
@@ -341,41 +321,40 @@ def test_a_faint_record_is_matched_as_a_strong_one_is() -> None:
 
 
 @pytest.mark.slow
-def test_two_minutes_are_matched(few: int) -> None:
+def test_two_minutes_are_matched() -> None:
     motion = make_motion(np.tile(read_motion("a").acceleration, 3)[:24_001], STEP)
     generator = build(motion)
-    figures = measure(generator.target, generator.realise(0, few))
+    figures = measure(generator.target, generator.realise())
     assert figures.mean_deviation < 0.03
     assert figures.worst_deviation < 0.12
     assert figures.pfa_ratio == pytest.approx(1, abs=0.05)
     assert figures.pfv_ratio == pytest.approx(1, abs=0.15)
-    assert figures.drift < 0.01
+    assert figures.drift < 1e-5
 
 
-@pytest.mark.usefixtures("few")
 def test_no_pfv_is_bent_where_none_is_known() -> None:
     generator = build_generator(
         generic_target(PFA, Grid(STEP, 1601)), Grid(STEP, 1601), seed=1, axis="X"
     )  # fmt: skip
-    assert generator.bend.velocity == 0.0
+    assert generator.recipe.by_pfv == 0.0
     assert generator.fit is not None
     assert math.isnan(generator.fit.pfv_ratio)
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_a_cancel_is_obeyed_wherever_the_work_is(few: int, threads: int) -> None:
+def test_a_cancel_is_obeyed_wherever_the_work_is(threads: int) -> None:
     grid = build_grid([SHORT])
     target = recorded_target(SHORT, grid)
 
     def work(progress: Progress) -> None:
         generator = build_generator(target, grid, seed=1, axis="X", threads=threads, progress=progress)
-        generator.realise(few, 2)
+        generator.realise(CALIBRATED, 50)
 
     counted = StopsAt(10**9)
     work(counted)
-    assert counted.checks > 50 * few
+    assert counted.checks > 400
     for last in np.linspace(1, counted.checks, 12, dtype=int):
         stopping = StopsAt(int(last))
         with pytest.raises(CancelledError):
             work(stopping)
-        assert stopping.checks <= last + 2 * few  # the rows in hand, not another round of the work
+        assert stopping.checks <= last + CALIBRATED // GROUP  # the groups in hand, not another round of the work

