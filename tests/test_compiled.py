@@ -14,7 +14,10 @@ from tests.shaking import write_records
 from tests.workbooks import write
 
 PACKAGE = Path(assess.__file__).parent
-FIRST_USE = "import numpy as np\nfrom assess.motion.bending import bend_rows\nbend_rows(np.ones((1, 10), np.float32), 1.0, 0.1)\n"
+FIRST_USE = (
+    "import numpy as np\nfrom assess.motion.bending import bend_rows\n"
+    "bend_rows(np.ones((1, 10), np.float32), 1.0, 0.1)\n"
+)
 
 
 def _child(code, **changes):

@@ -21,11 +21,13 @@ ROUNDS = (40, 40, 40, 40, 100, 100)
 """Realisations made in each round of filtering: few are enough for the first steps."""
 PFV_LOW, PFV_HIGH = 0.88, 1.01
 """Shares of PFV between which its mean is left [-]: sharpening adds scatter, and wavelets add 3 % where it is high."""
-MOST_SHARPENED, MOST_PFA = 1.2, 0.0
-"""Limits of the bending of velocity, and of acceleration in the rounds of filtering [-]: sharper peaks scatter more,
-and the filter would follow them."""
+MOST_SHARPENED = 1.5
+"""Limit of the bending of velocity and of acceleration [-]."""
 LAST_PFA = 0.5
-"""Limit of the bending of acceleration afterwards [-]."""
+"""Sharpening of acceleration that is left to the end [-], where twice as much would do: in the rounds of filtering the
+filter follows it, and peaks scatter more."""
+LAST_BENT = 0.2
+"""Limit of sharpening between rounds of wavelets [-]."""
 TURNED = 0.7
 """Share of the bending of velocity that is changed in a round [-]."""
 FAINT = 0.1
@@ -33,16 +35,16 @@ FAINT = 0.1
 
 SHORT, LONG, REST, BEND = "short", "long", "rest", "bend"
 STEPS = (
-    *(SHORT, SHORT, LONG, LONG, SHORT, SHORT, BEND, LONG, LONG, SHORT, SHORT, BEND),
-    *(REST, REST, REST, REST, BEND, REST, REST, REST, REST, BEND),
+    *(SHORT, SHORT, LONG, LONG, SHORT, SHORT, BEND, LONG, LONG, SHORT, BEND),
+    *(REST, REST, REST, BEND, REST, REST, REST, BEND, REST, REST, REST, BEND, REST, REST, REST, BEND),
 )
 """Rounds of wavelets at periods below and above `DIVIDED`, then only about what is left; and of bending what they add
 to PFA. Narrow dips take many rounds: a response that is lowered at its peak is what its next peak leaves."""
 DIVIDED = 0.5
 """[s]; long periods are watched in a third of the time."""
-AROUND, LEFT = 3, 0.04
+AROUND, LEFT, ENOUGH = 2, 0.045, 0.065
 """What is left is what was off by more than the second, in logarithms, when it was last watched, and as many neighbours
-on each side."""
+on each side; nothing is where all is within the third."""
 CORRECTED, MOST_CORRECTED = 0.7, 1.4
 """Share of the logarithm of a ratio that is applied in one round, and the ratio up to which it is [-]."""
 APART = 9
@@ -148,7 +150,7 @@ def find_filter(
         if number == 0:  # the level first: only then can peaks be judged, and nothing has been bent by them yet
             ratio = float(np.median(work.wanted(level) / bench.mean(work.sweep, motions)))
             motions, peaks, power = motions * np.float32(ratio), peaks * ratio, power * ratio**2
-        _bend(motions, peaks[:, 1], target.pfa, MOST_PFA, bench)
+        _bend(motions, peaks[:, 1], target.pfa, bench, is_last=False)
         error = np.log(work.wanted(level) / bench.mean(work.sweep, motions))
         power = improve(work.matrix, power, error, work.weight)
         if target.is_generic and target.pfv > 0:
@@ -158,14 +160,19 @@ def find_filter(
             recipe = replace(recipe, by_pfv=recipe.by_pfv + TURNED * (wanted - recipe.by_pfv))
     recipe = replace(recipe, gains=work.gains(power))
     motions, peaks = bench.shape(recipe, noise, GROUP * len(noise))
-    bending = _bend(motions, peaks[:, 1], target.pfa, LAST_PFA, bench)
+    bending = _bend(motions, peaks[:, 1], target.pfa, bench)
     target = replace(target, pseudo=target.capped(level), velocity_level=level)
     return target, replace(recipe, steps=(bending,)), motions
 
 
-def _bend(motions: Single, peaks: FloatArray, pfa: float, most: float, bench: Bench) -> Bending:
+def _bend(
+    motions: Single, peaks: FloatArray, pfa: float, bench: Bench, *, most: float = MOST_SHARPENED, is_last: bool = True
+) -> Bending:
     """Bend motions (k, n) with these PFA (k,) in place so that their mean is met; return how."""
-    bending = Bending(pfa, bend_to(peaks, pfa, most))
+    by_pfa = bend_to(peaks, pfa, most)
+    if not is_last:
+        by_pfa = min(by_pfa, max(2 * (by_pfa - LAST_PFA), 0.0))
+    bending = Bending(pfa, by_pfa)
     bench.run(lambda rows: bending.apply(motions[rows]), len(motions))
     return bending
 
@@ -187,6 +194,8 @@ class Corrections:
         """Return which periods a round watches."""
         periods, farthest = self.target.periods, BEYOND * matched_to(self.target.periods, self.target.pseudo)
         near = (periods > JUDGED_FROM / NEARER) & (periods < farthest)
+        if kind == REST and np.abs(self.errors).max() < ENOUGH:
+            return np.empty(0, np.int64)
         if kind == REST:
             return np.flatnonzero(near & (_widest(np.abs(self.errors), 2 * AROUND + 1) > LEFT))
         return np.flatnonzero(near & ((periods < DIVIDED) == (kind == SHORT)))
@@ -226,7 +235,7 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Ben
     found: list[Bending | Correction] = []
     for kind in STEPS:
         if kind == BEND:
-            found.append(_bend(motions, _pfa(motions), target.pfa, LAST_PFA, bench))
+            found.append(_bend(motions, _pfa(motions), target.pfa, bench, most=LAST_BENT))
         elif (places := work.places(kind)).size:
             found.extend(work.correct(motions, places))
     recipe = replace(recipe, steps=recipe.steps + tuple(found))

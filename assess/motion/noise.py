@@ -107,6 +107,12 @@ class _Store:
 _STORE = _Store()
 
 
+def forget() -> None:
+    """Drop the noise that is kept."""
+    with _STORE.lock:
+        _STORE.held.clear()
+
+
 def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress) -> Bands:
     """Return white noise of random phases, the same on all floors, and how the time of each motion is stretched.
 

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.motion.generate import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
-from tests.benchmarks import cancel, report, rocking, routes, verified
+from tests.benchmarks import cancel, motions, report, rocking, routes, verified
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -73,7 +73,7 @@ def main() -> None:
     print(_spectrum())
     print(_ensemble())
     print()
-    for row in rocking.rows():
+    for row in (*motions.rows(), "", *rocking.rows()):
         print(row)
 
 
@@ -127,8 +127,8 @@ def _ensemble() -> str:
     ours = statistics.median(
         _timed(lambda: build_generator(target, grid, seed=1, axis="X", threads=2)) for _ in range(ROUNDS)
     )
-    motions = generator.realise()
-    theirs = _timed(lambda: [sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05) for motion in motions])
+    made = generator.realise()
+    theirs = _timed(lambda: [sdof.pseudo_response_spectra(motion, STEP, PERIODS, 0.05) for motion in made])
     name, rival = "100 realisations, two threads", "eqsig: the 100 spectra of these motions"
     return f"| {name} | {ours:.2f} | {rival} | {theirs:.1f} | {theirs / ours:.1f} | at most 2 s |"
 

@@ -107,7 +107,7 @@ def test_ensembles_match_their_record(name: str) -> None:
     assert generator.recipe.scale == 1.0
     further = measure(generator.target, generator.realise(0, 200))
     assert further.worst_deviation < 0.12
-    assert further.mean_deviation < 0.03
+    assert further.mean_deviation < 0.05
     assert further.pfa_ratio == pytest.approx(1, abs=0.05)
 
 
@@ -237,7 +237,7 @@ def test_where_pfa_and_spectrum_cannot_both_be_had_pfa_takes_precedence_and_the_
     """No motion has PSA/PFA of 4 at 6 s and at 1 s, and PSA falling with 24 PFA/T beyond."""
     generator = build_generic(period=6.0)
     figures = measure(generator.target, generator.realise())
-    assert figures.pfa_ratio == pytest.approx(1, rel=1e-3)
+    assert figures.pfa_ratio == pytest.approx(1, abs=0.01)
     assert figures.mean_deviation < 0.06
     assert figures.worst_deviation < 0.15
     assert figures.drift < 1e-5
