@@ -42,11 +42,12 @@ STEPS = (
 to PFA. Narrow dips take many rounds: a response that is lowered at its peak is what its next peak leaves."""
 DIVIDED = 0.5
 """[s]; long periods are watched in a third of the time."""
-AROUND, LEFT, ENOUGH = 2, 0.045, 0.065
+AROUND, LEFT, ENOUGH = 3, 0.045, 0.06
 """What is left is what was off by more than the second, in logarithms, when it was last watched, and as many neighbours
 on each side; nothing is where all is within the third."""
-CORRECTED, MOST_CORRECTED = 0.7, 1.4
-"""Share of the logarithm of a ratio that is applied in one round, and the ratio up to which it is [-]."""
+RAISED, LOWERED, MOST_CORRECTED = 0.2, 0.8, 1.4
+"""Shares of the logarithm of a ratio that are applied in one round, and the ratio up to which they are [-]: what is
+raised is raised, and raises its neighbours; what is lowered is what the next peak of the response leaves."""
 APART = 9
 """A round takes the ordinate that is most off among this many neighbours: two would act on one cycle."""
 WITHIN = 0.02
@@ -212,10 +213,11 @@ class Corrections:
         if not chosen.size:
             return []
         most, own = np.log(MOST_CORRECTED), np.searchsorted(places, chosen)
+        applied = np.where(self.errors[chosen] > 0, RAISED, LOWERED)
         correction = Correction(
             wavelets=build_wavelets(tuple(self.target.periods), self.time_step),
             places=chosen,
-            shares=np.expm1(np.clip(CORRECTED * self.errors[chosen], -most, most)).astype(np.float32),
+            shares=np.expm1(np.clip(applied * self.errors[chosen], -most, most)).astype(np.float32),
             sweep=Sweep.of(self.target.periods[chosen], self.time_step),
         )
         self.bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))

@@ -149,7 +149,7 @@ def _watch(
 
 
 @compiled_into
-def _locate(row: Single, c: Single, kept: Single, turn: int, count: int) -> tuple[float, int]:  # pragma: no cover
+def _locate(row: Single, c: Single, kept: Single, turn: int, count: int) -> tuple[np.float32, int]:  # pragma: no cover
     """Return the largest of four responses from sample `turn` on, with sign, and its sample."""
     block = (turn - 1) // BLOCK
     before, own, best, when = kept[block, 0], kept[block, 1], np.float32(0), turn

@@ -78,7 +78,7 @@ def velocities(acceleration: FloatArray, time_step: float) -> FloatArray:
 
 
 def measure_fit(target: Target, acceleration: NDArray[Any], time_step: float, threads: int = 1) -> Fit:
-    """Return how motions (k, n) [m/s2] meet their target, at twice as many periods as they were matched at."""
+    """Return how motions (k, n) [m/s2] meet their target, half-way between the periods that were matched."""
     return measure_match(target, acceleration, time_step, threads)[0]
 
 
@@ -87,7 +87,7 @@ def measure_match(
 ) -> tuple[Fit, Spectra]:
     """Return how motions (k, n) [m/s2] meet their target, and the spectra by which this was measured.
 
-    The periods are those from 0.05 s to where the match is judged, twice as many as they were matched at. Motions and
+    The periods lie half-way between those that were matched, from 0.05 s to where the match is judged. Motions and
     spectra are in single precision.
     """
     from assess.motion.bending import measure_rows
@@ -104,12 +104,25 @@ def measure_match(
         measure_rows(motions[rows], time_step, peaks[rows])
 
     run_groups(measure, len(motions), threads, progress)
-    wanted, mean = target.ordinates(periods, time_step), pseudo.mean(axis=0, dtype=np.float64)
-    deviation = mean / wanted - 1
-    worst = int(np.abs(deviation).argmax())
+    wanted = target.ordinates(periods, time_step)
+    deviation = pseudo.mean(axis=0, dtype=np.float64) / wanted - 1
+    fit = _summarise(target, wanted_to, periods, pseudo, deviation, peaks)
+    return fit, Spectra(periods=periods, ordinates=pseudo, target=wanted)
+
+
+def _summarise(
+    target: Target,
+    wanted_to: float,
+    periods: FloatArray,
+    pseudo: NDArray[np.float32],
+    deviation: FloatArray,
+    peaks: FloatArray,
+) -> Fit:
+    """Return the figures of spectra (k, p), whose mean deviates from the target's, and of peaks (k, 3)."""
+    worst, mean = int(np.abs(deviation).argmax()), pseudo.mean(axis=0, dtype=np.float64)
     pfa, pfv, end = peaks.T
-    fit = Fit(
-        count=len(motions),
+    return Fit(
+        count=len(pseudo),
         matched_to=wanted_to,
         mean_deviation=float(np.abs(deviation).mean()),
         worst_deviation=float(deviation[worst]),
@@ -121,4 +134,3 @@ def measure_match(
         spectrum_scatter=float((pseudo.std(axis=0, dtype=np.float64) / mean).mean()),
         drift=float((np.abs(end) / pfv).max()),
     )
-    return fit, Spectra(periods=periods, ordinates=pseudo, target=wanted)

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.motion.generate import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
-from tests.benchmarks import cancel, motions, report, rocking, routes, verified
+from tests.benchmarks import cancel, generating, report, rocking, routes, verified
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -73,7 +73,7 @@ def main() -> None:
     print(_spectrum())
     print(_ensemble())
     print()
-    for row in (*motions.rows(), "", *rocking.rows()):
+    for row in (*generating.rows(), "", *rocking.rows()):
         print(row)
 
 
