@@ -25,32 +25,43 @@ FLAGS: Mapping[str, str] = {
     "own_rooms": "placed pieces of other rooms do not count unless they name it",
     "no_plan": "its places have no positions: only pieces that name it count",
     "between_floors": "its places lie on different floors: only pieces that name it count",
+    "unconfirmed_period": "its lower simulated class is not confirmed, as neither T1 nor the height of the building is "
+    "known: it counts as standing and as fallen",
+    "unconfirmed_motions": "its lower simulated class is not confirmed, as the motions are weaker than the floor's: it "
+    "counts as standing and as fallen",
 }
 """What each flag of a piece beside a segment, or of a segment, means."""
 
+DOUBTS: Mapping[str, str] = {"unknown_period": "unconfirmed_period", "weak_motions": "unconfirmed_motions"}
+"""Flags of unconfirmed pieces, by the flag of the simulation that keeps a lower class from being adopted."""
+
 
 class RouteState(StrEnum):
-    """The state of a segment or of a route."""
+    """The state of a segment or of a route.
+
+    Not evaluated: nothing tells what can reach it. Not known: it depends on pieces whose class is not confirmed.
+    """
 
     NOT_EVALUATED = "not evaluated"
     OPEN = "open"
     REDUCED = "reduced"
+    NOT_KNOWN = "not known"
     BLOCKED = "blocked"
 
     @property
     def severity(self) -> int:
-        """Its place in rising order: 0 for open and for what is not evaluated, 1 reduced, 2 blocked."""
-        return {RouteState.REDUCED: 1, RouteState.BLOCKED: 2}.get(self, 0)
+        """Its place in rising order: 0 for open and for what is not evaluated, 1 reduced, 2 not known, 3 blocked."""
+        return {RouteState.REDUCED: 1, RouteState.NOT_KNOWN: 2, RouteState.BLOCKED: 3}.get(self, 0)
 
     @property
     def symbol(self) -> str:
         """A sign that shows the state without colour."""
-        return ("✓", "≈", "✕")[self.severity] if self != RouteState.NOT_EVALUATED else "–"
+        return ("✓", "≈", "?", "✕")[self.severity] if self != RouteState.NOT_EVALUATED else "–"
 
     @property
     def fill(self) -> str:
         """Colour on the plan: from light to dark, distinct without red and green."""
-        return ("#bfe3f2", "#f2b84b", "#8c1d3f")[self.severity]
+        return ("#bfe3f2", "#f2b84b", "#858585", "#8c1d3f")[self.severity]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,22 +71,25 @@ class Chance:
     Parameters
     ----------
     probability : float
-        From the joint outcomes where all the pieces were verified together; else the largest of `joint`,
+        From the joint outcomes where all the pieces were simulated in the same draws; else the largest of `joint`,
         `independent` and `correlated` [-].
     low, high : float
-        Joint: the interval of the number of motions. Else: the range of the three values, widened by that [-].
+        Joint: the sampling interval of the number of draws. Else: the range of the three values, widened by that [-].
     joint : float
-        Pieces that were verified together fall as they did motion by motion, all others independently [-].
+        Simulated pieces fall as they did draw by draw, one earthquake for the whole building; all others independently
+        [-].
     independent : float
         Every piece falls independently of the others [-].
     correlated : float
         Full correlation: the less likely piece falls only where the more likely one does [-].
     runs : int
-        Motions of the joint outcomes; 0 where no piece was verified.
+        Draws of the joint outcomes; 0 where no piece was simulated.
     is_joint : bool
-        Whether every piece that takes part was verified, and all of them under the motions of one source.
+        Whether every piece that takes part was simulated, and all of them in the same number of draws.
     pieces, unverified : int
         Pieces that take part, and those of them that enter by their adopted chance alone.
+    unconfirmed : int
+        Further pieces whose chance is not confirmed: all of them stand, or all of them fall, as the field says.
     """
 
     probability: float
@@ -88,6 +102,7 @@ class Chance:
     is_joint: bool
     pieces: int
     unverified: int
+    unconfirmed: int = 0
 
     @property
     def risk(self) -> RiskClass:
@@ -124,8 +139,9 @@ class BesideRow:
         measured across the route; the width left with this piece alone fallen [m].
     blocks_alone : bool
         Whether `left_m` is under the required width.
-    falls_while_blocked : float
-        Chance that it falls while the segment is blocked [-]; for an anchored piece, if anchors fail.
+    falls_while_blocked : float, optional
+        Chance that it falls while the segment is blocked [-]; for an anchored piece, if anchors fail. None where its
+        chance is not confirmed.
     flags : tuple of str
         Keys of `FLAGS`.
     """
@@ -138,7 +154,7 @@ class BesideRow:
     reach_m: float
     left_m: float
     blocks_alone: bool
-    falls_while_blocked: float = 0.0
+    falls_while_blocked: float | None = 0.0
     flags: tuple[str, ...] = ()
 
 
@@ -167,11 +183,17 @@ class SegmentRow:
     extends_start_m, extends_end_m : float
         How far it goes on beyond them, round a bend [m].
     state, state_upper : RouteState
-        Blocked or reduced where that chance, or the upper end of its interval, is at least the chosen risk.
+        Blocked or reduced where that chance is at least the chosen risk; not known where that differs between
+        unconfirmed pieces standing and fallen, unless it is blocked either way. The second: the worst state that is not
+        excluded, by the upper end of the interval and with unconfirmed pieces fallen.
     blocked, blocked_or_reduced : Chance, optional
-        If all anchors hold; None if not evaluated.
+        If all anchors hold, and with unconfirmed pieces standing; None if not evaluated.
+    blocked_if_unconfirmed_fall : Chance, optional
+        The first with unconfirmed pieces fallen; None where there are none.
     blocked_if_anchors_fail : Chance, optional
-        With anchored pieces taken as free-standing; None where there are none.
+        With anchored pieces taken as free-standing and unconfirmed ones fallen; None where none is anchored.
+    doubts : tuple of str
+        Keys of `FLAGS`: why its state is not known; empty where it is.
     under_record : RouteState, optional
         Its state under the recorded motion itself; None where no piece has one.
     most_likely_piece : PieceRef, optional
@@ -181,7 +203,8 @@ class SegmentRow:
     insufficient_for_occupants : bool
         Whether it is too narrow for its occupants with nothing fallen.
     insufficient_after_falls : Chance, optional
-        Of being too narrow for its occupants; None where their number is unknown, or if not evaluated.
+        Of being too narrow for its occupants, with unconfirmed pieces standing; None where their number is unknown, if
+        not evaluated, or where it depends on unconfirmed pieces whether the chance is at least the chosen risk.
     pieces : tuple of BesideRow
         The pieces that reach it, the one most likely to block it first.
     other_rooms : tuple of PieceRef
@@ -218,7 +241,9 @@ class SegmentRow:
     state_upper: RouteState
     blocked: Chance | None
     blocked_or_reduced: Chance | None
+    blocked_if_unconfirmed_fall: Chance | None
     blocked_if_anchors_fail: Chance | None
+    doubts: tuple[str, ...]
     under_record: RouteState | None
     most_likely_piece: PieceRef | None
     is_blocked_standing: bool
@@ -231,7 +256,10 @@ class SegmentRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RouteFixRow:
-    """One step of what to fix for a route: the piece, its gain, 0 where others must follow, and the chance left [-]."""
+    """One step of what to fix for a route: the piece, its gain, 0 where others must follow, and the chance left [-].
+
+    Unconfirmed pieces count as fallen in both until they are fixed.
+    """
 
     item: str
     row: int
@@ -246,7 +274,8 @@ class RouteRow:
 
     `state` to `most_likely_piece` are as in `SegmentRow`. `unevaluated_segments` names those of its segments that are
     not evaluated; `evaluated` is whether any is. `fixes` is the smallest set found that brings the route under the
-    chosen risk, and `is_fixed` whether one exists: not where it is blocked with nothing fallen.
+    chosen risk with unconfirmed pieces fallen, and `is_fixed` whether one exists: not where it is blocked with nothing
+    fallen.
     """
 
     route: str
@@ -258,7 +287,9 @@ class RouteRow:
     state_upper: RouteState
     blocked: Chance | None
     blocked_or_reduced: Chance | None
+    blocked_if_unconfirmed_fall: Chance | None
     blocked_if_anchors_fail: Chance | None
+    doubts: tuple[str, ...]
     under_record: RouteState | None
     most_likely_piece: PieceRef | None
     fixes: tuple[RouteFixRow, ...]
@@ -267,11 +298,17 @@ class RouteRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WayRow:
-    """A way out: its segments in order, its end, the chance of a blockage, and the segments shared with the safest."""
+    """A way out: its segments in order, its end, the chance of a blockage, and the segments shared with the safest.
+
+    `blocked` and `blocked_if_unconfirmed_fall` are as in `SegmentRow`. It is known where both are on one side of the
+    chosen risk.
+    """
 
     segment_indices: tuple[int, ...]
     end: str
     blocked: Chance
+    blocked_if_unconfirmed_fall: Chance | None
+    is_known: bool
     shared: tuple[str, ...] = ()
 
 
@@ -286,9 +323,15 @@ class RoomRow:
     exits : tuple of str
         The exits that can be reached; where there are none, `by_stairs`, the stairs, beyond which nothing is known.
     loses_every_exit : Chance
-        Of losing all of them, if all anchors hold.
+        Of losing all of them, if all anchors hold and with unconfirmed pieces standing.
+    loses_if_unconfirmed_fall : Chance, optional
+        The same with unconfirmed pieces fallen; None where there are none.
     loses_if_anchors_fail : Chance, optional
-        The same with anchored pieces taken as free-standing; None where there are none.
+        With anchored pieces taken as free-standing and unconfirmed ones fallen; None where none is anchored.
+    is_known : bool
+        Whether the chance is on the same side of the chosen risk with unconfirmed pieces standing and fallen.
+    doubts : tuple of str
+        Keys of `FLAGS`: why it is not known; empty where it is.
     most_likely_piece : PieceRef, optional
         The free-standing piece most likely to fall while the room loses every exit.
     unevaluated_segments : tuple of str
@@ -304,7 +347,10 @@ class RoomRow:
     exits: tuple[str, ...]
     by_stairs: bool
     loses_every_exit: Chance
+    loses_if_unconfirmed_fall: Chance | None
     loses_if_anchors_fail: Chance | None
+    is_known: bool
+    doubts: tuple[str, ...]
     most_likely_piece: PieceRef | None
     unevaluated_segments: tuple[str, ...]
     unevaluated_indices: tuple[int, ...]
@@ -315,17 +361,22 @@ class RoomRow:
 class FloorRoutesRow:
     """One floor: its segments, its routes (by those segments alone), its rooms, and the expected losses among them.
 
-    `any_room_cut_off` is the chance that at least one of its rooms loses every exit; None without rooms.
-    `uncounted_pieces` have neither a usable position nor a Route: whether they fall onto a segment is not known.
+    Expected losses are of those that are known; `unknown_segments`, `unknown_routes` and `unknown_rooms` count the
+    others, which depend on unconfirmed pieces. `any_room_cut_off` is the chance that at least one of its rooms loses
+    every exit; None without rooms, or where it depends on unconfirmed pieces. `uncounted_pieces` have neither a usable
+    position nor a Route: whether they fall onto a segment is not known.
     """
 
     floor: str
     segments: int
     blocked_segments_expected: float
+    unknown_segments: int
     routes: int
     blocked_routes_expected: float
+    unknown_routes: int
     rooms: int
     cut_off_rooms_expected: float
+    unknown_rooms: int
     any_room_cut_off: Chance | None
     uncounted_pieces: int
 
@@ -339,7 +390,9 @@ class RouteTables:
     risk : float
         The chosen risk [-]: states go by it, and fixes are sought down to it.
     blocked_routes_expected, cut_off_rooms_expected : float
-        Expected number of routes that are blocked, and of rooms that lose every exit.
+        Expected number of routes that are blocked, and of rooms that lose every exit, among those that are known.
+    unknown_routes, unknown_rooms : int
+        The others: what becomes of them depends on pieces whose chance is not confirmed.
     draws : int
         Draws that are made where all combinations of falling pieces are too many.
     uncounted_pieces : int
@@ -349,6 +402,8 @@ class RouteTables:
     risk: float
     blocked_routes_expected: float = 0.0
     cut_off_rooms_expected: float = 0.0
+    unknown_routes: int = 0
+    unknown_rooms: int = 0
     draws: int = 0
     uncounted_pieces: int = 0
     segments: tuple[SegmentRow, ...] = ()

@@ -17,6 +17,7 @@ from assess.methods._method import ALIKE, BoolArray, FloatArray
 from assess.model import Inventory
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all
+from assess.route_results import DOUBTS
 from assess.routes.chances import Falls
 from assess.settings import Settings
 from assess.units import GRAVITY
@@ -150,11 +151,11 @@ def build_falls(
     """Return how the pieces of an inventory fall: a blank axis takes the outcomes of the governing one.
 
     Draw k is one earthquake for the whole building: all simulated pieces share its scale, and on floors whose motions
-    were generated along one axis its phases. A piece whose simulated class may not be adopted is unconfirmed.
+    were generated along one axis its phases. A piece whose simulated class may not be adopted is unconfirmed. With
+    `settings.ideal` the verdicts are those of the pieces as given under the motions as they are.
     """
-    rows = {
-        int(case): (joint, row) for joint in outcomes[simulation().key].joints for row, case in enumerate(joint.cases)
-    }
+    found = outcomes[simulation().key]
+    rows = {int(case): (joint, row) for joint in found.joints for row, case in enumerate(joint.cases)}
     fell = {}
     for at, case in enumerate(int(one) for one in governing):
         if case in rows and adoption.basis[case] == SIMULATED:
@@ -162,10 +163,13 @@ def build_falls(
             fell[at] = (joint.ideal if settings.ideal else joint.fell)[row, : joint.runs[row]]
     return Falls(
         probability=adoption.probability[governing],
-        group=np.where(np.isin(np.arange(len(governing)), list(fell)), 0, -1).astype(np.intp),
         fell=fell,
-        unconfirmed=adoption.basis[governing] == UNCONFIRMED,
-        in_record=_numbers(outcomes[simulation().key], "record_overturned")[governing],
+        unconfirmed={
+            at: tuple(name for flag, name in DOUBTS.items() if found.flags[flag][case])
+            for at, case in enumerate(governing.tolist())
+            if adoption.basis[case] == UNCONFIRMED
+        },
+        in_record=_numbers(found, "record_overturned")[governing],
         anchored=np.array([item.anchored == "yes" for item in inventory.items], dtype=np.bool_),
         quantity=np.array([item.quantity for item in inventory.items], dtype=np.intp),
     )

@@ -1,11 +1,15 @@
-"""What falls together, and how likely that is: as the motions say, independently, or fully correlated.
+"""What falls together, and how likely that is: as the draws say, independently, or fully correlated.
+
+Draw k is one earthquake for the whole building: the simulated pieces of all floors and axes share its scale, and fall
+draw by draw. A piece that was not simulated falls independently of the others, at the chance of its formula. A piece
+whose chance is not confirmed has none here: all of them stand, or all of them fall.
 
 What happens in which of many draws is kept as one whole number, a set: bit k stands for draw k. Sets are joined by `|`,
 intersected by `&` and counted at once. The complement is `every & ~set`, of the set of all draws: no set is negative.
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, reduce
 from operator import or_
@@ -27,7 +31,7 @@ DRAWS = 2000
 """Draws where they are more: the 95 % interval of a chance of 0.5 is then 0.5 +- 0.022."""
 
 MOST_PATTERNS = 20_000
-"""Motions up to which pieces of different numbers of motions are repeated to a common multiple."""
+"""Draws up to which pieces of different numbers of draws are repeated to a common multiple."""
 ROUNDED = 12
 """Decimals that chances keep: the rest is rounding in sums of weights."""
 NONE, EVERY = 0b01, 0b10
@@ -42,13 +46,11 @@ class Falls:
     ----------
     probability : (n,) array
         Adopted chance of overturning [-].
-    group : (n,) integer array
-        Pieces of one group were integrated under the motions of one source, motion k of which is one earthquake for the
-        whole building; -1 where a piece was not verified, or where its verified chance is not adopted.
     fell : mapping of int to (k,) boolean array
-        For a piece with a group (by its index) whether it overturned, motion by motion.
-    unconfirmed : (n,) boolean array
-        Pieces whose adopted chance is the formula's, as a lower one was simulated that cannot be relied on.
+        For a simulated piece (by its index) whether it overturned, draw by draw.
+    unconfirmed : mapping of int to tuple of str
+        For a piece whose adopted chance is the formula's, as a lower one was simulated that cannot be relied on: why,
+        as keys of `assess.route_results.FLAGS`. It is not in `fell`.
     in_record : (n,) array
         1 where it overturns under the recorded motion itself, 0 where it does not, NaN where that is not known.
     anchored : (n,) boolean array
@@ -58,9 +60,8 @@ class Falls:
     """
 
     probability: FloatArray
-    group: NDArray[np.intp]
     fell: Mapping[int, BoolArray]
-    unconfirmed: BoolArray
+    unconfirmed: Mapping[int, tuple[str, ...]]
     in_record: FloatArray
     anchored: BoolArray
     quantity: NDArray[np.intp]
@@ -130,8 +131,9 @@ class Couplings:
     """The same pieces falling together in three ways.
 
     The draws may be of more pieces than `keys`: what depends on another piece must not be asked of them. `ends` are the
-    draws `NONE` and `EVERY`. `runs` is the least number of motions of a verified piece, 0 without one; `is_drawn`
-    whether any of the three was drawn rather than evaluated in full. `pieces` and `unverified` count pieces, not rows.
+    draws `NONE` and `EVERY`. `runs` is the least number of draws of a simulated piece, 0 without one; `is_joint` holds
+    where all were simulated, in the same draws; `is_drawn` tells whether any of the three was drawn rather than
+    evaluated in full. `pieces`, `unverified` and `unconfirmed` count pieces, not rows; the first leaves out the last.
     """
 
     keys: tuple[Key, ...]
@@ -144,6 +146,7 @@ class Couplings:
     is_drawn: bool
     pieces: int
     unverified: int
+    unconfirmed: int
 
     @property
     def decisive(self) -> tuple[Draws, ...]:
@@ -157,38 +160,45 @@ def build_couplings(
     seed: int,
     of_all: Callable[[], Couplings] | None = None,
     progress: Progress = SILENT,
+    *,
+    unconfirmed_fall: bool = False,
 ) -> Couplings:
     """Return how the pieces of `keys` fall together; draws depend on `seed` and on the piece alone.
 
     `of_all` returns the couplings of more pieces, whose draws are shared wherever the combinations of `keys` are drawn.
-    `progress` is checked for a cancel.
+    `progress` is checked for a cancel. Unconfirmed pieces stand in every draw, or fall in every one.
     """
     keys, whole = tuple(keys), of_all() if of_all else None
     columns: dict[int, list[int]] = {}
     for at, (item, _number) in enumerate(keys):
         columns.setdefault(item, []).append(at)
-    groups: dict[int, dict[int, list[int]]] = {}
-    for item, own in columns.items():
-        groups.setdefault(int(falls.group[item]), {})[item] = own
-    alone = list(groups.pop(-1, ()))
-    rows = {item: _row_unit(falls, item, own) for item, own in columns.items()}
+    known = [item for item in columns if item not in falls.unconfirmed]
+    fallen = frozenset(key for key in keys if unconfirmed_fall and key[0] in falls.unconfirmed)
+    simulated = {item: columns[item] for item in known if item in falls.fell}
+    alone = [item for item in known if item not in simulated]
+    rows = {item: _row_unit(falls, item, columns[item]) for item in known}
     lone = list(rows.values())
-    mixed = [*(_group_unit(falls, one, groups[one]) for one in sorted(groups)), *(rows[item] for item in alone)]
-    independent = whole.independent if whole and _is_drawn(lone) else _combine(lone, keys, seed, progress)
-    joint = (
-        whole.joint if whole and _is_drawn(mixed) else _combine(mixed, keys, seed, progress) if groups else independent
-    )
+    mixed = [*([_joint_unit(falls, simulated)] if simulated else []), *(rows[item] for item in alone)]
+
+    def combine(units: list[_Unit]) -> Draws:
+        return _combine(units, keys, fallen, seed, progress)
+
+    independent = whole.independent if whole and _is_drawn(lone) else combine(lone)
+    joint = whole.joint if whole and _is_drawn(mixed) else combine(mixed) if simulated else independent
+    sizes = {falls.fell[item].size for item in simulated}
+    is_joint = not alone and len(sizes) <= 1
     return Couplings(
         keys=keys,
         joint=joint,
         independent=independent,
-        correlated=whole.correlated if whole else _correlate(falls, keys),
-        ends=whole.ends if whole else Draws(dict.fromkeys(keys, EVERY), np.array([0.5, 0.5])),
-        is_joint=not alone and len(groups) <= 1,
-        runs=min((falls.fell[item].size for own in groups.values() for item in own), default=0),
-        is_drawn=bool(alone or len(groups) > 1) and (_is_drawn(mixed) or _is_drawn(lone)),
-        pieces=int(falls.quantity[list(columns)].sum()),
+        correlated=whole.correlated if whole else _correlate(falls, keys, fallen),
+        ends=whole.ends if whole else _find_ends(falls, keys, fallen),
+        is_joint=is_joint,
+        runs=min(sizes, default=0),
+        is_drawn=not is_joint and (_is_drawn(mixed) or _is_drawn(lone)),
+        pieces=int(falls.quantity[known].sum()),
         unverified=int(falls.quantity[alone].sum()),
+        unconfirmed=int(falls.quantity[[item for item in columns if item in falls.unconfirmed]].sum()),
     )
 
 
@@ -196,8 +206,8 @@ def build_couplings(
 class _Unit:
     """Pieces that fall together in a known way, independently of other units.
 
-    `key` identifies it in draws: the row and 0, or the group and 1. `columns` are those of its c pieces. `patterns`
-    returns which of them fall in each of `count` patterns (count, c), and the weights (count,).
+    `key` identifies it in draws: the row and 0, or for all simulated pieces 0 and 1. `columns` are those of its c
+    pieces. `patterns` returns which of them fall in each of `count` patterns (count, c), and the weights (count,).
     """
 
     key: tuple[int, int]
@@ -221,10 +231,10 @@ def _row_unit(falls: Falls, item: int, columns: list[int]) -> _Unit:
     return _Unit((item, 0), columns, 1 + len(columns), patterns)
 
 
-def _group_unit(falls: Falls, group: int, columns: Mapping[int, list[int]]) -> _Unit:
-    """Return verified pieces of one group, which fall motion by motion.
+def _joint_unit(falls: Falls, columns: Mapping[int, list[int]]) -> _Unit:
+    """Return the simulated pieces, which fall draw by draw.
 
-    The outcomes of a piece that was decided after fewer motions than another are repeated, so that its chance is kept.
+    The outcomes of a piece that was decided after fewer draws than another are repeated, so that its chance is kept.
     """
     sizes = {falls.fell[item].size for item in columns}
     common = math.lcm(*sizes)
@@ -234,17 +244,23 @@ def _group_unit(falls: Falls, group: int, columns: Mapping[int, list[int]]) -> _
         fell = [np.resize(falls.fell[item], runs) for item, own in columns.items() for _ in own]
         return np.column_stack(fell), np.full(runs, 1.0 / runs)
 
-    return _Unit((group, 1), [at for own in columns.values() for at in own], runs, patterns)
+    return _Unit((0, 1), [at for own in columns.values() for at in own], runs, patterns)
 
 
 def _is_drawn(units: Sequence[_Unit]) -> bool:
     return len(units) > 1 and math.prod(unit.count for unit in units) > EXACT
 
 
-def _combine(units: Sequence[_Unit], keys: tuple[Key, ...], seed: int, progress: Progress) -> Draws:
-    """Combine units that fall independently: every combination where they are few, else `DRAWS` of them."""
+def _combine(
+    units: Sequence[_Unit], keys: tuple[Key, ...], fallen: Collection[Key], seed: int, progress: Progress
+) -> Draws:
+    """Combine units that fall independently: every combination where they are few, else `DRAWS` of them.
+
+    Of pieces in no unit, those of `fallen` fall in each of them, and others stand.
+    """
+    always = np.array([key in fallen for key in keys], dtype=np.bool_)
     if not units:
-        return Draws.of(keys, np.zeros((1, 0), dtype=np.bool_), np.ones(1))
+        return Draws.of(keys, always[np.newaxis], np.ones(1))
     progress.check()
     patterns = [unit.patterns() for unit in units]
     progress.check()
@@ -254,7 +270,7 @@ def _combine(units: Sequence[_Unit], keys: tuple[Key, ...], seed: int, progress:
     else:
         at = np.indices([unit.count for unit in units]).reshape(len(units), -1)
         weight = np.prod([own[chosen] for (_, own), chosen in zip(patterns, at, strict=True)], axis=0)
-    fell = np.zeros((len(weight), len(keys)), dtype=np.bool_)
+    fell = np.repeat(always[np.newaxis], len(weight), axis=0)
     for unit, (pattern, _), chosen in zip(units, patterns, at, strict=True):
         progress.check()
         fell[:, unit.columns] = pattern[chosen]
@@ -267,17 +283,27 @@ def _draw(key: tuple[int, int], weight: FloatArray, seed: int) -> NDArray[np.int
 
 
 @lru_cache(maxsize=8192)
-def _levels(seed: int, name: int, is_group: int) -> FloatArray:
-    """Return the levels, from 0 to 1, that decide the draws of a row or of a group."""
-    return (np.random.default_rng([seed, name, is_group]).permutation(DRAWS) + 0.5) / DRAWS
+def _levels(seed: int, name: int, is_joint: int) -> FloatArray:
+    """Return the levels, from 0 to 1, that decide the draws of a row, or of the simulated pieces."""
+    return (np.random.default_rng([seed, name, is_joint]).permutation(DRAWS) + 0.5) / DRAWS
 
 
-def _correlate(falls: Falls, keys: tuple[Key, ...]) -> Draws:
+def _correlate(falls: Falls, keys: tuple[Key, ...], fallen: Collection[Key]) -> Draws:
     """Return the draws where one level decides for all: what falls at a chance falls at every higher one."""
-    chance = {key: float(falls.probability[key[0]]) for key in keys}
+
+    def find_chance(key: Key) -> float:
+        return float(key in fallen) if key[0] in falls.unconfirmed else float(falls.probability[key[0]])
+
+    chance = {key: find_chance(key) for key in keys}
     levels = sorted({0.0, 1.0, *chance.values()})
     under = {level: (1 << at) - 1 for at, level in enumerate(levels)}
     return Draws({key: under[level] for key, level in chance.items()}, np.diff(levels))
+
+
+def _find_ends(falls: Falls, keys: tuple[Key, ...], fallen: Collection[Key]) -> Draws:
+    """Return the draws where nothing falls, and where everything does, but for unconfirmed pieces."""
+    certain = {key: NONE | EVERY if key in fallen else 0 for key in keys if key[0] in falls.unconfirmed}
+    return Draws({**dict.fromkeys(keys, EVERY), **certain}, np.array([0.5, 0.5]))
 
 
 # ---------------------------------------------------------------- chances
@@ -308,5 +334,5 @@ def _chance(couplings: Couplings, shares: Sequence[float], z: float, *, is_certa
     return Chance(
         probability=max(values), low=min(low, max(values)), high=max(high, *values), joint=joint,
         independent=independent, correlated=correlated, runs=couplings.runs, is_joint=couplings.is_joint,
-        pieces=couplings.pieces, unverified=couplings.unverified,
+        pieces=couplings.pieces, unverified=couplings.unverified, unconfirmed=couplings.unconfirmed,
     )  # fmt: skip

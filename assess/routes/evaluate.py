@@ -16,6 +16,7 @@ from assess.route_results import (
     RoomRow,
     RouteFixRow,
     RouteRow,
+    RouteState,
     RouteTables,
     SegmentRow,
 )
@@ -80,9 +81,10 @@ def evaluate_routes(
 
         segments = tuple(step(_segment(scene, at)) for at in range(len(obstructions)))
         routes = tuple(step(_route(scene, name)) for name in names)
-        chance = {at: one.blocked.probability for at, one in enumerate(segments) if one.blocked}
+        known = {at: one.blocked for at, one in enumerate(segments) if one.state != RouteState.NOT_KNOWN}
+        chance = {at: one.probability for at, one in known.items() if one}
         rooms = tuple(step(evaluate_room(scene, place, part, chance)) for place, part in parts)
-        by_floor = [step(evaluate_floor(scene, floor, parts, chance, rooms)) for floor in floors]
+        by_floor = [step(evaluate_floor(scene, floor, parts, segments, rooms)) for floor in floors]
     return _join(settings.route_risk, segments, routes, rooms, by_floor)
 
 
@@ -94,17 +96,20 @@ def _join(
     by_floor: Sequence[FloorRoutesRow],
 ) -> RouteTables:
     """Return the tables with their sums; floors without segments and rooms are left out."""
-    known = tuple(one for one in by_floor if one.segments or one.rooms)
+    floors = tuple(one for one in by_floor if one.segments or one.rooms)
+    known = [one for one in routes if one.state != RouteState.NOT_KNOWN]
     return RouteTables(
         risk=risk,
-        blocked_routes_expected=sum(one.blocked.probability for one in routes if one.blocked),
-        cut_off_rooms_expected=sum(one.loses_every_exit.probability for one in rooms),
+        blocked_routes_expected=sum(one.blocked.probability for one in known if one.blocked),
+        cut_off_rooms_expected=sum(one.loses_every_exit.probability for one in rooms if one.is_known),
+        unknown_routes=len(routes) - len(known),
+        unknown_rooms=sum(not one.is_known for one in rooms),
         draws=DRAWS,
-        uncounted_pieces=sum(one.uncounted_pieces for one in known),
+        uncounted_pieces=sum(one.uncounted_pieces for one in floors),
         segments=segments,
         routes=routes,
         rooms=rooms,
-        floors=known,
+        floors=floors,
     )
 
 
@@ -175,8 +180,9 @@ def _least_width(scene: Scene, at: int) -> float:
     return gaps.residual(np.array([not scene.falls.anchored[item] for item, _ in gaps.keys], dtype=np.bool_))
 
 
-def _crowded(scene: Scene, at: int, needed: float) -> Chance:
-    return scene.chances([at], lambda draws: [scene.narrower(draws, at, needed)])[0]
+def _crowded(scene: Scene, at: int, needed: float) -> Chance | None:
+    (standing,), (fallen,) = scene.bounds([at], lambda draws: [scene.narrower(draws, at, needed)])
+    return standing if scene.is_known(standing, fallen) else None
 
 
 def _beside(scene: Scene, at: int) -> list[BesideRow]:
@@ -184,21 +190,27 @@ def _beside(scene: Scene, at: int) -> list[BesideRow]:
 
     That of an anchored piece is the one with anchored pieces taken as free-standing.
     """
-    found: dict[int, float] = {}
+    found: dict[int, float | None] = {}
     for fail in (True, False):
         together = scene.together([at], lambda draws: [scene.blocked(draws, [at])[at]], anchors_fail=fail)
         found |= {item: together.get(item, 0.0) for item, _ in scene.keys([at], anchors_fail=fail)}
     falls = scene.falls
-    return sorted(
-        (replace(one, falls_while_blocked=found.get(one.item_index, 0.0)) for one in scene.obstructions[at].pieces),
-        key=lambda one: (
-            bool(falls.anchored[one.item_index]),
-            -one.falls_while_blocked,
-            one.left_m,
-            -falls.probability[one.item_index],
-            one.item_index,
-        ),
-    )
+    found |= dict.fromkeys(falls.unconfirmed)
+    rows = [
+        replace(
+            one,
+            falls_while_blocked=found.get(one.item_index, 0.0),
+            flags=(*one.flags, *falls.unconfirmed.get(one.item_index, ())),
+        )
+        for one in scene.obstructions[at].pieces
+    ]
+
+    def place(one: BesideRow) -> tuple[Any, ...]:
+        index = one.item_index
+        order = bool(falls.anchored[index]), -(one.falls_while_blocked or 0.0)
+        return *order, one.left_m, -falls.probability[index], index
+
+    return sorted(rows, key=place)
 
 
 # ---------------------------------------------------------------- routes
@@ -210,7 +222,8 @@ def _route(scene: Scene, name: str) -> RouteRow:
     lanes = {at: scene.obstructions[at] for at in segments}
     unevaluated = name_unevaluated(scene, segments)
     is_evaluated = len(unevaluated) < len(segments)
-    steps, is_fixed = find_fixes(scene.couplings(segments), lanes, course.is_blocked, scene.risk, scene.progress)
+    couplings = scene.couplings(segments, unconfirmed_fall=True)
+    steps, is_fixed = find_fixes(couplings, lanes, course.is_blocked, scene.risk, scene.progress)
     pieces = [scene.piece(item) for item, _, _ in steps]
     return RouteRow(
         route=name,

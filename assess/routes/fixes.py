@@ -1,4 +1,7 @@
-"""The smallest set of pieces to anchor or move that brings a route under the chosen risk."""
+"""The smallest set of pieces to anchor or move that brings a route under the chosen risk.
+
+Pieces whose chance is not confirmed are taken as fallen in it, which is on the safe side.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 

@@ -1,6 +1,6 @@
 """What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypedDict
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
-from assess.route_results import Chance, PieceRef, RouteState
+from assess.route_results import DOUBTS, Chance, PieceRef, RouteState
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
 from assess.routes.network import Blocked
 from assess.routes.obstructions import Obstructions
@@ -21,7 +21,9 @@ class Outlook(TypedDict):
     state_upper: RouteState
     blocked: Chance | None
     blocked_or_reduced: Chance | None
+    blocked_if_unconfirmed_fall: Chance | None
     blocked_if_anchors_fail: Chance | None
+    doubts: tuple[str, ...]
     under_record: RouteState | None
     most_likely_piece: PieceRef | None
 
@@ -30,10 +32,12 @@ class Outlook(TypedDict):
 class Judgement:
     """The chances of several things if all anchors hold; of the first, also if anchors fail, and the likeliest piece.
 
-    `if_anchors_fail` is None where there are no anchored pieces.
+    `chances` are those with unconfirmed pieces standing, `at_most` those with them fallen: the same ones where there
+    are none. `if_anchors_fail` has them fallen; it is None where there are no anchored pieces.
     """
 
     chances: list[Chance]
+    at_most: list[Chance]
     if_anchors_fail: Chance | None
     most_likely_piece: PieceRef | None
 
@@ -52,9 +56,9 @@ class Scene:
     seed: int
     z: float
     progress: Progress = SILENT
-    _couplings: dict[tuple[Key, ...], Couplings] = field(default_factory=dict)
-    _of_all: dict[bool, Couplings] = field(default_factory=dict)
-    """Of all pieces, by whether anchors fail: those of fewer pieces share its draws."""
+    _couplings: dict[tuple[tuple[Key, ...], bool], Couplings] = field(default_factory=dict)
+    _of_all: dict[tuple[bool, bool], Couplings] = field(default_factory=dict)
+    """Of all pieces, by whether anchors fail and unconfirmed pieces fall: those of fewer pieces share its draws."""
 
     def segments_of(self, route: str) -> dict[int, Segment]:
         """Return the segments of a route by their number."""
@@ -69,22 +73,34 @@ class Scene:
         found = {key for at in segments for key in self.obstructions[at].keys}
         return tuple(sorted(key for key in found if anchors_fail or not self.falls.anchored[key[0]]))
 
-    def couplings(self, segments: Iterable[int], *, anchors_fail: bool = False) -> Couplings:
-        """Return how the pieces that reach any of some segments fall together."""
+    def find_doubts(self, segments: Iterable[int]) -> tuple[str, ...]:
+        """Return why pieces that reach some segments, and are not anchored, are unconfirmed, as keys of `FLAGS`."""
+        items = {item for item, _ in self.keys(segments)} & self.falls.unconfirmed.keys()
+        raised = {flag for item in items for flag in self.falls.unconfirmed[item]}
+        return tuple(flag for flag in DOUBTS.values() if flag in raised)
+
+    def couplings(
+        self, segments: Iterable[int], *, anchors_fail: bool = False, unconfirmed_fall: bool = False
+    ) -> Couplings:
+        """Return how the pieces that reach any of some segments fall together; unconfirmed ones stand by default."""
         keys = self.keys(segments, anchors_fail=anchors_fail)
-        if keys not in self._couplings:
+        fall = unconfirmed_fall and any(item in self.falls.unconfirmed for item, _ in keys)
+        if (keys, fall) not in self._couplings:
             self.progress.check()
             takes_anchored = any(self.falls.anchored[item] for item, _ in keys)  # the same pieces, the same couplings
-            self._couplings[keys] = build_couplings(
-                self.falls, keys, self.seed, lambda: self._all(takes_anchored), self.progress
-            )
-        return self._couplings[keys]
+            self._couplings[keys, fall] = build_couplings(
+                self.falls, keys, self.seed, lambda: self._all(takes_anchored, fall), self.progress,
+                unconfirmed_fall=fall,
+            )  # fmt: skip
+        return self._couplings[keys, fall]
 
-    def _all(self, anchors_fail: bool) -> Couplings:
-        if anchors_fail not in self._of_all:
+    def _all(self, anchors_fail: bool, fall: bool) -> Couplings:
+        if (anchors_fail, fall) not in self._of_all:
             keys = self.keys(range(len(self.obstructions)), anchors_fail=anchors_fail)
-            self._of_all[anchors_fail] = build_couplings(self.falls, keys, self.seed, progress=self.progress)
-        return self._of_all[anchors_fail]
+            self._of_all[anchors_fail, fall] = build_couplings(
+                self.falls, keys, self.seed, progress=self.progress, unconfirmed_fall=fall
+            )
+        return self._of_all[anchors_fail, fall]
 
     # ------------------------------------------------------------ what happens in draws
 
@@ -108,8 +124,11 @@ class Scene:
         return union(self.narrower(draws, at, self.obstructions[at].standing) for at in segments)
 
     def together(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> dict[int, float]:
-        """Return for each piece the chance that it falls while the first of what happens does, where there is any."""
-        couplings = self.couplings(segments, anchors_fail=anchors_fail)
+        """Return for each piece the chance that it falls while the first of what happens does, where there is any.
+
+        Unconfirmed pieces stand, or fall where anchors fail.
+        """
+        couplings = self.couplings(segments, anchors_fail=anchors_fail, unconfirmed_fall=anchors_fail)
         draws, happened = couplings.joint, happens(couplings.joint)[0]
         found: dict[int, float] = {}
         for key in couplings.keys:
@@ -118,20 +137,37 @@ class Scene:
 
     # ------------------------------------------------------------ chances
 
-    def chances(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> list[Chance]:
-        """Return the chances of what happens on some segments, by default if all anchors hold."""
-        return find_chances(self.couplings(segments, anchors_fail=anchors_fail), happens, self.z)
+    def bounds(self, segments: Collection[int], happens: Happens) -> tuple[list[Chance], list[Chance]]:
+        """Return the chances of what happens on some segments if all anchors hold.
+
+        With unconfirmed pieces standing, and with them fallen: the same list where there are none.
+        """
+        standing = self.couplings(segments)
+        chances = find_chances(standing, happens, self.z)
+        if not standing.unconfirmed:
+            return chances, chances
+        return chances, find_chances(self.couplings(segments, unconfirmed_fall=True), happens, self.z)
+
+    def is_known(self, standing: Chance, fallen: Chance) -> bool:
+        """Tell whether two chances, the second of which is the larger one, lie on one side of the chosen risk."""
+        return (standing.probability >= self.risk) == (fallen.probability >= self.risk)
 
     def judge(self, segments: Collection[int], happens: Happens) -> Judgement:
         """Return the chances of what happens on some segments, and what decides the first of them."""
         has_anchored = any(self.falls.anchored[item] for item, _ in self.keys(segments, anchors_fail=True))
         together = self.together(segments, happens)
         likeliest = max(together, key=lambda item: (together[item], -item), default=None)
+        chances, at_most = self.bounds(segments, happens)
         return Judgement(
-            chances=self.chances(segments, happens),
-            if_anchors_fail=self.chances(segments, happens, anchors_fail=True)[0] if has_anchored else None,
+            chances=chances,
+            at_most=at_most,
+            if_anchors_fail=self._if_anchors_fail(segments, happens) if has_anchored else None,
             most_likely_piece=None if likeliest is None else self.piece(likeliest),
         )
+
+    def _if_anchors_fail(self, segments: Collection[int], happens: Happens) -> Chance:
+        couplings = self.couplings(segments, anchors_fail=True, unconfirmed_fall=True)
+        return find_chances(couplings, happens, self.z)[0]
 
     def outlook(
         self, segments: Collection[int], is_blocked: Callable[[Blocked, int], int], *, is_evaluated: bool
@@ -150,19 +186,32 @@ class Scene:
         (blocked, either), record = found.chances, self._under_record(segments, happens)
         state, upper = RouteState.NOT_EVALUATED, RouteState.NOT_EVALUATED
         if is_evaluated:
-            state = self._state(blocked.probability, either.probability, record)
-            upper = self._state(blocked.high, either.high, record)
+            state = self.settle(found.chances, found.at_most, record)
+            upper = self._state(*(one.high for one in found.at_most), at_least=record)
         return Outlook(
             state=state,
             state_upper=upper,
             blocked=blocked if is_evaluated else None,
             blocked_or_reduced=either if is_evaluated else None,
+            blocked_if_unconfirmed_fall=found.at_most[0] if is_evaluated and blocked.unconfirmed else None,
             blocked_if_anchors_fail=found.if_anchors_fail,
+            doubts=self.find_doubts(segments) if state == RouteState.NOT_KNOWN else (),
             under_record=record,
             most_likely_piece=found.most_likely_piece,
         )
 
-    def _state(self, blocked: float, either: float, at_least: RouteState | None) -> RouteState:
+    def settle(
+        self, standing: Sequence[Chance], fallen: Sequence[Chance], at_least: RouteState | None = None
+    ) -> RouteState:
+        """Return the state by the chances of being blocked, and of being blocked or reduced, not better than another.
+
+        Not known where it differs between unconfirmed pieces standing and fallen; what is blocked if they stand is
+        blocked.
+        """
+        one, other = (self._state(*(each.probability for each in way), at_least=at_least) for way in (standing, fallen))
+        return one if one in (other, RouteState.BLOCKED) else RouteState.NOT_KNOWN
+
+    def _state(self, blocked: float, either: float, *, at_least: RouteState | None) -> RouteState:
         found = _worst(blocked >= self.risk, either >= self.risk)
         return max(found, at_least or RouteState.OPEN, key=lambda state: state.severity)
 

@@ -21,17 +21,20 @@ def make_falls(
     probability: Sequence[float],
     *,
     fell: Mapping[int, Sequence[bool]] | None = None,
-    group: Sequence[int] | None = None,
+    unconfirmed: Sequence[int] = (),
     in_record: Sequence[float] | None = None,
     anchored: Sequence[bool] | None = None,
     quantity: Sequence[int] | None = None,
 ) -> Falls:
-    """Return how pieces fall, from plain numbers; by default without outcomes, free-standing, one in each row."""
+    """Return how pieces fall, from plain numbers; by default without outcomes, free-standing, one in each row.
+
+    `unconfirmed` are the pieces whose chance is not confirmed, by their place.
+    """
     n, known = len(probability), {at: np.array(one, dtype=np.bool_) for at, one in (fell or {}).items()}
     return Falls(
         probability=np.array(probability, dtype=np.float64),
-        group=np.array(group or [0 if at in known else -1 for at in range(n)], dtype=np.intp),
         fell=known,
+        unconfirmed=dict.fromkeys(unconfirmed, ("unconfirmed_period",)),
         in_record=np.array(in_record or [np.nan] * n, dtype=np.float64),
         anchored=np.array(anchored or [False] * n, dtype=np.bool_),
         quantity=np.array(quantity or [1] * n, dtype=np.intp),

@@ -34,16 +34,17 @@ def pieces(draw, most=5):
         )
         count = draw(st.integers(0, RUNS))
         fell = np.random.default_rng(draw(st.integers(0, 99))).permutation(RUNS) < count
-        group = draw(st.sampled_from([-1, 0, 0, 1]))
-        found.append((item, fell, group, draw(st.sampled_from([1, 1, 2])), draw(st.sampled_from([False, False, True]))))
+        is_simulated = draw(st.sampled_from([False, True, True]))
+        found.append(
+            (item, fell, is_simulated, draw(st.sampled_from([1, 1, 2])), draw(st.sampled_from([False, False, True])))
+        )
     return found
 
 
 def falls_of(rows):
     return make_falls(
         [fell.mean() for _, fell, *_ in rows],
-        fell={at: fell for at, (_, fell, group, *_) in enumerate(rows) if group >= 0},
-        group=[group for _, _, group, *_ in rows],
+        fell={at: fell for at, (_, fell, is_simulated, *_) in enumerate(rows) if is_simulated},
         quantity=[quantity for *_, quantity, _ in rows],
         anchored=[anchored for *_, anchored in rows],
     )
@@ -171,7 +172,7 @@ def test_who_asks_first_changes_nothing(first):
     inventory = building(items, segments)
     scene = Scene(inventory, find_obstructions(inventory), falls, 0.03, 1, 1.96)
     scene.couplings([1], anchors_fail=first)
-    (chance,) = scene.chances([0], lambda draws: list(scene.blocked(draws, [0]).values()))
+    (chance,), _ = scene.bounds([0], lambda draws: list(scene.blocked(draws, [0]).values()))
     assert (chance.joint, chance.independent, chance.correlated, chance.high) == (0, 0, 0, 0)
     fails = scene.judge([0], lambda draws: list(scene.blocked(draws, [0]).values())).if_anchors_fail
     assert fails.probability == pytest.approx(0.9)

@@ -103,15 +103,14 @@ def test_one_piece_is_not_on_both_sides_at_once():
     (make_falls([0.1] * 3), 0.271, False, 0, 0.271, 0.1, 0.271),
     (told(*["1" + 9 * "0"] * 3), 0.1, True, 10, 0.1, LOW_TEN, HIGH_TEN),
     (told("1" + 9 * "0", "01" + 8 * "0", "001" + 7 * "0"), 0.3, True, 10, 0.3, 0.1078, 0.6032),
-    (told(*["1" + 9 * "0"] * 3, group=[0, 0, 1]), 0.19, False, 10, 0.271, LOW_TEN, 0.5772),
     (make_falls([0.1] * 3, fell=dict.fromkeys((0, 1), FIRST)), 0.19, False, 10, 0.271, LOW_TEN, 0.5772),
 ])  # fmt: skip
 def test_three_alike_in_risk_each_blocking_alone(falls, joint, is_joint, runs, probability, low, high):
     """p = 0.1 each. Independent: 1 - 0.9^3 = 0.271. Fully tied: 0.1.
 
     Not verified: the largest, 0.271, from 0.1 to 0.271. Verified and falling in the same motion of ten: 0.1, Wilson's
-    interval of 1 of 10. In three different motions: 0.3. Two of them in one motion, the third on its own (of another
-    source of motions, or not verified): 1 - 0.9 x 0.9 = 0.19, and the largest of the three is told, 0.271, with the
+    interval of 1 of 10. In three different motions: 0.3. Two of them in one motion, the third on its own (not
+    verified): 1 - 0.9 x 0.9 = 0.19, and the largest of the three is told, 0.271, with the
     interval from the low end for 0.1 to the high end for 0.271 of 10: centre (0.271 + 0.19207) / 1.38415 = 0.3346,
     half width 1.96 sqrt(0.271 x 0.729/10 + 0.0096037) / 1.38415 = 0.2426.
     """
