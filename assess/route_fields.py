@@ -48,7 +48,7 @@ _LABELS: Mapping[str, tuple[str, str]] = {
     "blocked_unverified": (fill("By the formula alone"), ""),
     "blocked_unconfirmed": (fill("Unconfirmed pieces"), ""),
     "blocked_if_unconfirmed_fall_probability": (fill("Blocked if unconfirmed pieces fall"), ""),
-    "doubts": (fill("Why it is not known"), ""),
+    "doubts": (fill("To settle what is not known"), ""),
     "blocked_is_joint": (fill("Basis"), fill("Bounds; rests on")),
     "blocked_or_reduced_probability": (fill("Chance blocked or reduced"), fill("Reduced or blocked")),
     "blocked_if_anchors_fail_probability": (fill("Blocked if anchors fail"), ""),

@@ -11,7 +11,7 @@ import pytest
 from assess.report.data import SCHEMA, write_json
 from assess.route_results import RouteState, RouteTables
 from assess.settings import Settings
-from tests.report.routed import PARTLY, ROUTES, assess_routed
+from tests.report.routed import KNOWN, PARTLY, ROUTES, assess_routed
 from tests.workbooks import assessed
 
 VERIFIED = Settings(verify="all", runs=20, route_risk=0.1)
@@ -20,7 +20,7 @@ VERIFIED = Settings(verify="all", runs=20, route_risk=0.1)
 @pytest.fixture(scope="module", params=["formulas", "verified"])
 def written(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("routes")
-    more = {"settings": VERIFIED} if request.param == "verified" else {}
+    more = {"settings": VERIFIED, **KNOWN} if request.param == "verified" else {}
     run = assess_routed(folder / "w.xlsx", **more)
     write_json(run, folder / "r.json")
     text = (folder / "r.json").read_text(encoding="utf-8")
@@ -96,6 +96,7 @@ def test_the_document_is_that_of_the_rows(written):
         assert row["most_likely_piece"] == (piece and {"item": piece.item, "row": piece.row})
     assert set(found["segments"][0]["blocked"]) == {
         "probability", "low", "high", "joint", "independent", "correlated", "runs", "is_joint", "pieces", "unverified",
+        "unconfirmed",
     }  # fmt: skip
 
 
@@ -129,7 +130,9 @@ def test_a_segment_on_the_plan_has_its_ends(written):
     assert (flight.start_x_m, flight.length_m) == (None, None)
 
 
-@pytest.mark.parametrize(("state", "severity"), [("not evaluated", 0), ("open", 0), ("reduced", 1), ("blocked", 2)])
+@pytest.mark.parametrize(
+    ("state", "severity"), [("not evaluated", 0), ("open", 0), ("reduced", 1), ("not known", 2), ("blocked", 3)]
+)
 def test_states_are_words_in_order(state, severity):
     assert RouteState(state).severity == severity
     assert json.dumps(RouteState(state)) == f'"{state}"'
@@ -197,6 +200,27 @@ def test_what_is_not_evaluated_counted_or_apart(tmp_path):
     assert (found["uncounted_pieces"], found["floors"][0]["uncounted_pieces"]) == (3, 3)
 
 
+def test_what_depends_on_unconfirmed_pieces_is_not_known(tmp_path):
+    """Neither T1 nor height is known: the simulated class of the bookcase is lower, and is not adopted."""
+    run = assess_routed(tmp_path / "w.xlsx", VERIFIED)
+    write_json(run, tmp_path / "r.json")
+    whole = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    jsonschema.validate(whole, _schema())
+    found = whole["routes"]
+    aisle, west = found["segments"][0], found["routes"][0]
+    for one in (aisle, west):
+        assert (one["state"], one["state_upper"], one["doubts"]) == ("not known", "blocked", ["unconfirmed_period"])
+        assert (one["blocked"]["probability"], one["blocked"]["pieces"], one["blocked"]["unconfirmed"]) == (0, 0, 1)
+        assert one["blocked_if_unconfirmed_fall"]["probability"] == 1
+    assert aisle["pieces"][0]["falls_while_blocked"] is None
+    assert "unconfirmed_period" in aisle["pieces"][0]["flags"]
+    assert [one["is_known"] for one in found["rooms"]] == [False, True]
+    assert found["rooms"][0]["loses_if_unconfirmed_fall"]["probability"] == 1
+    assert (found["unknown_routes"], found["unknown_rooms"], found["blocked_routes_expected"]) == (1, 1, 0)
+    assert [one["unknown_segments"] for one in found["floors"]] == [1, 0]
+    assert [(fix["item"], fix["left"]) for fix in west["fixes"]] == [("tall", 0)], "it counts as fallen"
+
+
 def test_rooms_and_floors(written):
     run, found = written
     rooms, floors = found["routes"]["rooms"], found["routes"]["floors"]
@@ -218,7 +242,8 @@ def test_rooms_and_floors(written):
 def test_without_routes_lists_are_empty(tmp_path):
     run = assessed(tmp_path / "w.xlsx")
     assert RouteTables(risk=0.03).to_record() == {
-        "risk": 0.03, "blocked_routes_expected": 0.0, "cut_off_rooms_expected": 0.0, "draws": 0,
+        "risk": 0.03, "blocked_routes_expected": 0.0, "cut_off_rooms_expected": 0.0, "unknown_routes": 0,
+        "unknown_rooms": 0, "draws": 0,
         "uncounted_pieces": 0, "segments": [], "routes": [], "rooms": [], "floors": [],
     }  # fmt: skip
     write_json(run, tmp_path / "r.json")

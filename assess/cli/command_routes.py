@@ -35,7 +35,9 @@ def command(
     pfa: Annotated[
         str, typer.Option(metavar="LOW:HIGH[:STEP]", help="PFA on the routes' floors [g]: both ends, steps of 0.05.")
     ] = "0.1:1.0",
-    runs: Annotated[str | None, typer.Option(help="Motions of each floor and axis.", show_default=str(RUNS))] = None,
+    runs: Annotated[
+        str | None, typer.Option(help="Draws: motions of each floor and axis.", show_default=str(RUNS))
+    ] = None,
     seed: Seed = None,
     scenario: Scenario = None,
     jobs: Jobs = None,
@@ -49,7 +51,9 @@ def command(
 
     The chance is given against the peak floor acceleration (PFA): at each value every floor of a route shakes with that
     PFA along both axes, by the floor's own motions, each scaled by value / the floor's PFA. The same motions serve at
-    every value; the spectrum keeps its shape, PFV scales along.
+    every value; the spectrum keeps its shape, PFV scales along. As in a run, each draw is one earthquake, stronger or
+    weaker by one factor on all floors, and each piece differs a little from what is filled in: Motion uncertainty and
+    Piece uncertainty in the sheet Building.
 
     Rocking is not monotone: a piece may stand in a stronger motion and overturn in a weaker one, so a chance may fall.
     """

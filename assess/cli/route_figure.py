@@ -119,10 +119,21 @@ def _dress(axes: Any, pfa_g: Sequence[float]) -> None:
     axes.legend(fontsize=7, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), handlelength=4)
 
 
+def _say_uncertain(fragility: Fragility) -> str:
+    found = fragility.uncertainty
+    if found is None:
+        return "PFA and pieces exact."
+    pieces = "pieces uncertain" if found.piece else "pieces exact"
+    return f"PFA uncertain by {found.motion:g} in ln, the same on all floors; {pieces}."
+
+
 def _notes(fragility: Fragility, wide: int) -> Iterator[str]:
     flat = [one for one in fragility.routes if max(chance.high for chance in one.blocked) == 0]
     free, unknown = ([one.route for one in flat if one.is_evaluated is known] for known in (True, False))
-    yield from textwrap.wrap(MEANING, wide)
+    yield from textwrap.wrap(f"{MEANING} {_say_uncertain(fragility)}", wide)
+    if doubtful := [one.route for one in fragility.routes if one.doubtful]:
+        named = words.name_first([label(name) for name in doubtful], MOST_NAMED)
+        yield from textwrap.wrap(f"Lower bounds, as motions of pieces beside them may be too weak: {named}.", wide)
     if free:
         named = words.name_first([label(name) for name in free], MOST_NAMED)
         yield from textwrap.wrap(f"Always 0 %, as no free-standing piece can block them: {named}.", wide)

@@ -6,7 +6,7 @@ import json
 import math
 import textwrap
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import asdict, astuple, dataclass
 from typing import Any
 
 from assess.cli.console import count
@@ -34,11 +34,11 @@ MEANING = (
     "Chance that an evacuation route is blocked if every floor of it shakes with the PFA along both axes; not a chance "
     "per year.",
     "Motions: the floor's own, each scaled by value / the floor's PFA, and the same at every value. The spectrum keeps "
-    "its shape, PFV scales along; the mean of their peaks is close to the value.",
+    "its shape, PFV scales along; the mean of their peaks is close to the value before anything is taken as uncertain.",
     "Rocking is not monotone: a piece may stand in a stronger motion and overturn in a weaker one. Sliding, castors "
     "and spilt contents are not modelled.",
-    "Range: the 95 % interval for the number of motions. Where not all pieces were rocked together, the chance is the "
-    "largest under three assumptions on their correlation, and the range covers all three.",
+    "Range: the 95 % sampling interval, for the number of draws only. Where not all pieces were rocked together, "
+    "the chance is the largest under three assumptions on their correlation, and the range covers all three.",
     "The PFA at which a chance reaches a level is interpolated linearly. Where the chance jumps by more than "
     f"{100 * JUMP:g} percentage points between two values, only these two are given (between_g, without pfa_g).",
 )
@@ -60,17 +60,38 @@ class Sweep:
     def cautions(self) -> Iterator[str]:
         """Yield what in this building makes the chances less certain."""
         if floors := self.fragility.generic:
-            named = words.name_first([repr(words.cut(floor, 20)) for floor in floors], 8)
-            yield (
-                f"Only peaks are known for {'floor' if len(floors) == 1 else 'floors'} {named}: the motions follow a "
-                "generic spectrum. Where the formula gives a piece a higher class, assess run keeps that class, and "
-                "its chances may be larger than these."
-            )
+            yield (f"Only peaks are known for {_name_floors(floors)}: the motions follow a generic spectrum.")
+        for floors, why, fix in (
+            (self.fragility.unshaped, "as neither T1 nor the building's height is known",
+             "Enter the Period T1 or the Height in the sheet Building."),
+            (self.fragility.weak, "as they are weaker than the floor's",
+             "assess run --motions takes motions of your own."),
+        ):  # fmt: skip
+            if floors:
+                yield (
+                    f"The motions of {_name_floors(floors)} may be too weak, {why}: chances that rest on them are "
+                    f"lower bounds, and assess run leaves such routes not known where it matters. {fix}"
+                )
         if stocky := self.fragility.stocky:
             yield (
                 f"{count(stocky, 'piece')} next to routes too stocky to rock (B/H of 1.41 or more): the formula's "
                 "chance at each PFA is used, with bounds on the correlation."
             )
+
+    def say_uncertain(self) -> str:
+        """Return what is taken as uncertain from one draw to the next."""
+        found = self.fragility.uncertainty
+        parts = []
+        if found is not None and found.motion > 0:
+            parts.append(
+                f"the strength of the earthquake, a factor on the motions of all floors (standard deviation of ln: "
+                f"{found.motion:g}), so that the PFA given is its median"
+            )
+        if found is not None and found.piece:
+            parts.append("base, height, centre of gravity and restitution of each piece")
+        if not parts:
+            return "Nothing is taken as uncertain but the phases of the motions: the PFA and every piece are exact."
+        return f"Taken as uncertain in each draw: {'; '.join(parts)}. All pieces of a draw share its earthquake."
 
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess routes --json`."""
@@ -78,11 +99,12 @@ class Sweep:
         return {
             "workbook": {"file": inventory.source.name, "sha256": inventory.sha256},
             "assess": {"version": __version__, "platform": dict(versions(has_rocked=True, has_routes=True))},
-            "meaning": " ".join(MEANING),
+            "meaning": " ".join((*MEANING, self.say_uncertain())),
             "cautions": list(self.cautions()),
             "scenario": self.assessment.scenario,
             "runs": fragility.runs,
             "seed": fragility.seed,
+            "uncertainty": None if fragility.uncertainty is None else asdict(fragility.uncertainty),
             "pfa_g": self.pfa_g,
             "routes": [self._describe(route) for route in fragility.routes],
         }
@@ -96,6 +118,7 @@ class Sweep:
             "floors": list(one.floors),
             "scenario_pfa_g": None if peaks is None else [_in_g(peak) for peak in peaks],
             "evaluated": one.is_evaluated,
+            "doubtful_pieces": one.doubtful,
             "chances": [{"pfa_g": pfa, **_chance(chance, fails)} for pfa, chance, fails in pairs if one.is_evaluated],
             "passes": [self._pass(one.blocked, level) for level in LEVELS if one.is_evaluated],
             "passes_if_anchors_fail": one.if_anchors_fail
@@ -146,7 +169,7 @@ class Sweep:
         fragility = self.fragility
         yield (
             f"{self.assessment.inventory.source.name}: scenario {self.assessment.scenario}, "
-            f"{count(fragility.runs, 'motion')} of each floor and axis, seed {fragility.seed}"
+            f"{count(fragility.runs, 'draw')}, seed {fragility.seed}"
         )
         for one in fragility.routes:
             yield ""
@@ -154,7 +177,7 @@ class Sweep:
         every = [way for one in fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
         if any(self._passing(way, level).is_jump for way in every for level in LEVELS):
             yield from ("", FINER)
-        for paragraph in (*self.cautions(), *MEANING):
+        for paragraph in (*self.cautions(), self.say_uncertain(), *MEANING):
             yield ""
             yield from textwrap.wrap(paragraph, WIDE)
 
@@ -207,7 +230,8 @@ def _describe_pieces(one: RouteFragility) -> str:
     if not one.is_evaluated:
         return "not evaluated: the workbook places no furniture there"
     if first.pieces:
-        return f"{count(first.pieces, 'piece')}; {say_basis(first)}"
+        doubtful = f"; at least, as the motions of {count(one.doubtful, 'piece')} may be too weak"
+        return f"{count(first.pieces, 'piece')}; {say_basis(first)}{doubtful if one.doubtful else ''}"
     if first.probability > 0:
         return "blocked before any shaking"
     return (
@@ -215,6 +239,11 @@ def _describe_pieces(one: RouteFragility) -> str:
         if one.if_anchors_fail is None
         else "0 % if the anchors hold: no other piece can obstruct it"
     )
+
+
+def _name_floors(floors: Sequence[str]) -> str:
+    named = words.name_first([repr(words.cut(floor, 20)) for floor in floors], 8)
+    return f"{'floor' if len(floors) == 1 else 'floors'} {named}"
 
 
 def _format_pfa(value: float, values: Sequence[float]) -> str:

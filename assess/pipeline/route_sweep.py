@@ -2,15 +2,17 @@
 
 At each value every floor of a route shakes with that PFA along both axes: by its own motions (those compatible with its
 record, or with its generic spectrum), each scaled by the value over the floor's PFA. The same motions serve at every
-value, so that motion k is one earthquake; the shape of the spectrum stays, and PFV scales along. Every piece that
-reaches a route is rocked under them; one that is too stocky to rock falls by the formula's chance at that PFA. A blank
-axis takes the worse one at each value.
+value; the shape of the spectrum stays, and PFV scales along. Draw k is one earthquake, as in a run: motion k scaled by
+one factor for the whole building, and every piece that reaches a route as it is in that draw, by the uncertainty of the
+workbook; with `settings.ideal` without either. A piece that is too stocky to rock falls by the formula's chance at that
+PFA. A blank axis takes the worse one at each value.
 
 Unlike in an assessment, the formula never stands in for what rocking gives: it gives chances with no shaking at all.
+Where the motions may be too weak, the chances are lower bounds, and those pieces are counted.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -31,7 +33,7 @@ from assess.methods import (
     run_side_by_side,
     simulation,
 )  # fmt: skip
-from assess.methods._method import BoolArray, FloatArray
+from assess.methods._method import BoolArray, Ensemble, FloatArray
 from assess.model import AXES
 from assess.pipeline.adopt import adopt, build_falls, find_governing
 from assess.pipeline.assessment import Assessment
@@ -39,6 +41,7 @@ from assess.pipeline.ensembles import GeneratedEnsemble
 from assess.pipeline.verify import check_pairs, choose_motions, describe_work
 from assess.progress import SILENT, Progress, Stage
 from assess.rocking.block import stocky_limit
+from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance
 from assess.routes.chances import Falls, Happens
 from assess.routes.network import build_course
@@ -70,6 +73,8 @@ class RouteFragility:
         The same with anchored pieces taken as free-standing; None where there are none.
     is_evaluated : bool
         Whether it is known of any of its segments what can reach it.
+    doubtful : int
+        Pieces that reach it whose motions may be too weak; anchored ones count.
     scenario_pfa : pair of float, optional
         The least and the largest PFA of the scenario on its floors [m/s2]; None where its segments name no floor.
     """
@@ -79,6 +84,7 @@ class RouteFragility:
     blocked: tuple[Chance, ...]
     if_anchors_fail: tuple[Chance, ...] | None
     is_evaluated: bool
+    doubtful: int
     scenario_pfa: tuple[float, float] | None
 
 
@@ -86,15 +92,20 @@ class RouteFragility:
 class Fragility:
     """How likely each route is blocked at each of `values` of PFA on its floors [m/s2].
 
-    `runs` is the number of motions of each floor and axis, from `seed`. `generic` names the floors whose motions follow
-    a generic spectrum, as far as pieces on them were rocked; `stocky` counts the pieces that are too stocky to rock.
+    `runs` is the number of draws, from `seed`; `uncertainty` is that of each, None where motions and pieces were taken
+    as they are. `generic` names the floors whose motions follow a generic spectrum, `unshaped` those of them for which
+    neither T1 nor the building's height is known, `weak` those whose motions are weaker than the floor's, as far as
+    pieces on them were rocked; `stocky` counts the pieces that are too stocky to rock.
     """
 
     values: tuple[float, ...]
     runs: int
     seed: int
+    uncertainty: Uncertainty | None
     routes: tuple[RouteFragility, ...]
     generic: tuple[str, ...]
+    unshaped: tuple[str, ...]
+    weak: tuple[str, ...]
     stocky: int
 
 
@@ -134,20 +145,29 @@ def _find_fragility(assessment: Assessment, values: Sequence[float], jobs: int |
     obstructions = find_obstructions(inventory, progress)
     beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
     sweep = _Sweep(assessment, obstructions, _choose(assessment, beside), tuple(values))
-    fell = sweep.rock(jobs or count_processors(), progress)
-    scenes = [sweep.scene(at, fell, progress) for at in range(len(values))]
-    made = [one for one in sweep.cases.ensembles if isinstance(one, GeneratedEnsemble)]
-    generic = {one.demand.floor.floor for one in made if one.is_generic}
+    rocked = sweep.rock(jobs or count_processors(), progress)
+    scenes = [sweep.scene(at, rocked, progress) for at in range(len(values))]
+    ensembles = list(zip(sweep.cases.ensembles, rocked, strict=True))
+    doubtful = {int(case) for made, one in ensembles if made.is_unshaped or one.is_weak for case in one.own}
+    items = frozenset(int(assessment.case_item[case]) for case in doubtful)
+
+    def name_floors(chosen: Iterable[Ensemble]) -> tuple[str, ...]:
+        names = {one.demand.floor.floor for one in chosen if isinstance(one, GeneratedEnsemble)}
+        return tuple(floor.floor for floor in inventory.floors if floor.floor in names)
+
     beside_them = [inventory.items[at] for at in beside]
     too_stocky = [one for one in beside_them if one.breadth / one.height >= stocky_limit(one.centre_of_gravity)]
     return Fragility(
         values=tuple(values),
         runs=int(assessment.settings.runs),
         seed=assessment.settings.seed,
+        uncertainty=None if assessment.settings.ideal else sweep.cases.uncertainty,
         routes=tuple(
-            _route(assessment, scenes, name) for name in dict.fromkeys(one.segment.route for one in obstructions)
+            _route(assessment, scenes, name, items) for name in dict.fromkeys(one.segment.route for one in obstructions)
         ),
-        generic=tuple(floor.floor for floor in inventory.floors if floor.floor in generic),
+        generic=name_floors(made for made, _ in ensembles if made.is_generic),
+        unshaped=name_floors(made for made, _ in ensembles if made.is_unshaped),
+        weak=name_floors(made for made, one in ensembles if one.is_weak),
         stocky=sum(one.quantity for one in too_stocky),
     )
 
@@ -186,6 +206,15 @@ def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class _Rocked:
+    """The cases `own` (m,) of an ensemble, whether they overturn (values, m, runs), and whether it is too weak."""
+
+    own: NDArray[np.intp]
+    fell: BoolArray
+    is_weak: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class _Sweep:
     """The cases of an assessment with their motions, at several values of PFA."""
 
@@ -194,8 +223,8 @@ class _Sweep:
     cases: Cases
     values: tuple[float, ...]
 
-    def rock(self, threads: int, progress: Progress) -> list[tuple[NDArray[np.intp], BoolArray]]:
-        """Return for each ensemble its cases (m,), and whether they overturn at each value (values, m, runs)."""
+    def rock(self, threads: int, progress: Progress) -> list[_Rocked]:
+        """Return what the cases of each ensemble do at each value."""
         owns = [np.flatnonzero(self.cases.ensemble == number) for number in range(len(self.cases.ensembles))]
         check_pairs(sum(map(len, owns)), self.assessment.settings, len(self.values))
         side_by_side = max(1, min(threads, len(owns)))
@@ -203,12 +232,12 @@ class _Sweep:
         floors = {self.assessment.case_demand[own[0]].floor.floor for own in owns}
         with progress.stage("rocking", describe_work(len(pieces), len(floors)), len(owns)) as stage:
 
-            def work(number: int, own: NDArray[np.intp]) -> BoolArray:
+            def work(number: int, own: NDArray[np.intp]) -> _Rocked:
                 return self._rock_one(number, own, max(1, threads // side_by_side), stage)
 
-            return list(zip(owns, run_side_by_side(work, list(enumerate(owns)), side_by_side), strict=True))
+            return list(run_side_by_side(work, list(enumerate(owns)), side_by_side))
 
-    def _rock_one(self, number: int, own: NDArray[np.intp], threads: int, stage: Stage) -> BoolArray:
+    def _rock_one(self, number: int, own: NDArray[np.intp], threads: int, stage: Stage) -> _Rocked:
         """Rock the cases `own` under one ensemble: its motions are made once, and scaled."""
         progress = stage.progress
         runs, motions = int(self.assessment.settings.runs), self.cases.ensembles[number].open(threads, progress)
@@ -218,11 +247,12 @@ class _Sweep:
             for place, scale in enumerate(scales):
                 fell[place, :, at : at + len(batch)] = self._rock(own, scale * batch, time_step, at, threads, progress)
             stage.at((at + len(batch)) / runs, number)
-        return fell
+        return _Rocked(own, fell, motions.is_weak)
 
     def _rock(
         self, own: NDArray[np.intp], motions: FloatArray, time_step: float, first: int, threads: int, progress: Progress
     ) -> BoolArray:
+        """Return whether each of the cases `own` overturns in draws `first` and further ones, as in a run."""
         settings = self.assessment.settings
         if settings.ideal:
             return rock_cases(self.cases, own, motions, time_step, threads, progress)[0]
@@ -232,10 +262,10 @@ class _Sweep:
         )  # fmt: skip
         return np.asarray(fell[0])
 
-    def scene(self, at: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]], progress: Progress) -> Scene:
+    def scene(self, at: int, rocked: Sequence[_Rocked], progress: Progress) -> Scene:
         """Return the segments with how the pieces fall at value `at`."""
         settings, value = self.assessment.settings, self.values[at]
-        falls = self._falls(value, [(own, every[at]) for own, every in fell])
+        falls = self._falls(value, [(one.own, one.fell[at]) for one in rocked])
         z = interval_width(settings)
         return Scene(
             self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed, z, progress
@@ -281,7 +311,7 @@ def _outcome(count: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> 
 # ---------------------------------------------------------------- the routes
 
 
-def _route(assessment: Assessment, scenes: Sequence[Scene], name: str) -> RouteFragility:
+def _route(assessment: Assessment, scenes: Sequence[Scene], name: str, doubtful: frozenset[int]) -> RouteFragility:
     segments = scenes[0].segments_of(name)
     course = build_course(segments, kinds_of(assessment.inventory.places))
     floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))
@@ -290,6 +320,7 @@ def _route(assessment: Assessment, scenes: Sequence[Scene], name: str) -> RouteF
     def happens(scene: Scene) -> Happens:
         return lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)]
 
+    reaching = {item for item, _ in scenes[0].keys(segments, anchors_fail=True)}
     judged = [scene.judge(segments, happens(scene)) for scene in scenes]
     return RouteFragility(
         route=name,
@@ -297,5 +328,6 @@ def _route(assessment: Assessment, scenes: Sequence[Scene], name: str) -> RouteF
         blocked=tuple(one.chances[0] for one in judged),
         if_anchors_fail=tuple(one.if_anchors_fail for one in judged if one.if_anchors_fail) or None,
         is_evaluated=any(scenes[0].obstructions[at].is_evaluated for at in segments),
+        doubtful=sum(assessment.inventory.items[item].quantity for item in reaching & doubtful),
         scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
     )

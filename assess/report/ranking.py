@@ -19,7 +19,8 @@ class RouteStep:
     """One step of what to fix for a route: step `place` of `steps`, the first of which is 1.
 
     `item_index` is the index of the piece. The chance [-] that the route is blocked is `before` before this step,
-    `after` once this step and those before it are taken, `at_last` once all are.
+    `after` once this step and those before it are taken, `at_last` once all are; at most, where `is_bound`, as
+    unconfirmed pieces count as fallen.
     """
 
     route: str
@@ -29,12 +30,22 @@ class RouteStep:
     before: float
     after: float
     at_last: float
+    is_bound: bool = False
 
 
 def list_steps(routes: RouteTables) -> list[RouteStep]:
     """Return what to fix for every route, step by step."""
     return [
-        RouteStep(one.route, fix.item_index, place, len(one.fixes), fix.left + fix.gain, fix.left, one.fixes[-1].left)
+        RouteStep(
+            one.route,
+            fix.item_index,
+            place,
+            len(one.fixes),
+            fix.left + fix.gain,
+            fix.left,
+            one.fixes[-1].left,
+            is_bound=one.blocked_if_unconfirmed_fall is not None,
+        )
         for one in routes.routes
         for place, fix in enumerate(one.fixes, 1)
     ]
@@ -45,12 +56,17 @@ def say_step(step: RouteStep) -> str:
 
     Where pieces that fall together must all be fixed before there is any effect, it is that of all steps.
     """
-    route, before, after = words.cut(step.route, 30), words.percent(step.before), words.percent(step.after)
+    route, before, after = words.cut(step.route, 30), _say_left(step, step.before), _say_left(step, step.after)
     if before != after:
         return _("route {route}: {before} → {after} (step {place:,} of {steps:,})",
                  route=route, before=before, after=after, place=step.place, steps=step.steps)  # fmt: skip
     return _("route {route}: {before} → {after} (with all {steps:,} steps)",
-             route=route, before=before, after=words.percent(step.at_last), steps=step.steps)  # fmt: skip
+             route=route, before=before, after=_say_left(step, step.at_last), steps=step.steps)  # fmt: skip
+
+
+def _say_left(step: RouteStep, chance: float) -> str:
+    said = words.percent(chance)
+    return _("up to {chance}", chance=said) if step.is_bound and chance > 0 else said
 
 
 @dataclass(frozen=True, slots=True)

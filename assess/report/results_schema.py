@@ -190,7 +190,7 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     **{(row, "row"): ROW for row in (rows.PieceRef, rows.BesideRow, rows.RouteFixRow)},
     (rows.RouteTables, "risk"): INSIDE,
     (rows.SegmentRow, "other_rooms"): _list(TEXT),
-    (rows.BesideRow, "falls_while_blocked"): SHARE,
+    (rows.BesideRow, "falls_while_blocked"): {"oneOf": [SHARE, {"type": "null"}]},
     (rows.RouteFixRow, "gain"): SHARE,
     (rows.RouteFixRow, "left"): SHARE,
     (Settings, "scenario"): {"enum": list(SCENARIOS)},

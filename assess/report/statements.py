@@ -105,10 +105,9 @@ def _list_couplings(routes: RouteTables, seed: int) -> Lines:
         lines.append((_("Routes: pieces that enter by the formula's chance alone"),
                       _("fall independently of all others; the largest of the joint, the independent and the fully "
                         "correlated chance counts")))  # fmt: skip
-    if any(chance.pieces > chance.unverified and not chance.is_joint for chance in chances):
-        lines.append((_("Routes: pieces on floors whose motions come from different sources"),
-                      _("fall independently of each other; the largest of the joint, the independent and the fully "
-                        "correlated chance counts")))  # fmt: skip
+    if any(not chance.unverified and not chance.is_joint for chance in chances):
+        largest = _("the largest of the joint, the independent and the fully correlated chance counts")
+        lines.append((_("Routes: pieces that were decided after different numbers of draws"), largest))
     return lines
 
 

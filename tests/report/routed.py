@@ -39,6 +39,8 @@ ITEMS: list[dict[str, Any]] = [
     {"item": "=apart", "floor": "1", "breadth": 28, "height": 210, "anchored": "no", "description": "=cmd()"},
 ]  # fmt: skip
 
+KNOWN: dict[str, Any] = {"Building": [{"building": "Routed hall", "period": 1.0}]}
+"""The same building with its period known, so that simulated classes are confirmed."""
 PARTLY: dict[str, list[dict[str, Any]]] = {
     "Places": [
         {"place": "Lab", "floor": "G", "x": 0.0, "y": 0.0, "kind": "room"},

@@ -301,8 +301,8 @@ def test_states_are_told_by_colour_line_and_sign(routed):
         "<i>aisle</i>": "blocked", "hall": "reduced", "gap": "standing", "lane": "open"
     }  # fmt: skip
     styles = list(list_styles().values())
-    assert len({(one.symbol, one.ground) for one in styles}) == len({(one.dash, one.width) for one in styles}) == 4
-    assert len({one.dash for one in styles}) == 3
+    assert len({(one.symbol, one.ground) for one in styles}) == len({(one.dash, one.width) for one in styles}) == 5
+    assert len({one.dash for one in styles}) == 4
     assert {one.fill for one in styles} == {state.fill for state in RouteState}
     greys = sorted(sum(int(fill[at : at + 2], 16) for at in (1, 3, 5)) for fill in {state.fill for state in RouteState})
     assert all(darker + 90 < lighter for darker, lighter in itertools.pairwise(greys))

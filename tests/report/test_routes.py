@@ -65,6 +65,12 @@ def assessment(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def verified(tmp_path_factory):
+    return _assess(tmp_path_factory.mktemp("routes") / "w.xlsx", assess.Settings(runs=20), Building=[{"period": 1.0}])
+
+
+@pytest.fixture(scope="module")
+def unconfirmed(tmp_path_factory):
+    """Neither T1 nor height is known: lower simulated classes are not confirmed."""
     return _assess(tmp_path_factory.mktemp("routes") / "w.xlsx", assess.Settings(runs=20))
 
 
@@ -95,6 +101,10 @@ def _chance(chance):
     return "–" if chance is None else said.say_chance(chance).replace(words.NO_BREAK, " ")
 
 
+def _flat(text):
+    return text.replace(words.NO_BREAK, " ")
+
+
 def _bounds(chance):
     return said.say_bounds(chance).replace(words.NO_BREAK, " ")
 
@@ -112,7 +122,10 @@ def test_the_building_has_every_state(assessment):
     assert yard.blocked_if_anchors_fail.probability > 0.1
 
 
-@pytest.mark.parametrize("name", ["assessment", "verified"])
+EACH = pytest.mark.parametrize("name", ["assessment", "verified", "unconfirmed"])
+
+
+@EACH
 def test_every_number_of_a_route_is_shown(name, request):
     assessment = request.getfixturevalue(name)
     rows = _rows(render(assessment), "routes")
@@ -121,15 +134,17 @@ def test_every_number_of_a_route_is_shown(name, request):
         route, _floors, state, *numbers, rests, unanchored, piece = row
         assert route == one.route
         assert said.say_route_state(one, assessment.route_tables.risk) in state
-        assert numbers == [_chance(one.blocked), _chance(one.blocked_or_reduced)]
-        bounds = f"{_bounds(one.blocked)} " if one.blocked.pieces else ""
+        assert numbers == [_flat(said.say_blocked(one)), _flat(said.say_taken(one))]
+        is_known = one.state != RouteState.NOT_KNOWN
+        assert not is_known or numbers == [_chance(one.blocked), _chance(one.blocked_or_reduced)]
+        bounds = f"{_bounds(one.blocked)} " if one.blocked.pieces and is_known else ""
         left_out = f"; {said.say_left_out(one.unevaluated_segments)}" if one.unevaluated_segments else ""
         assert rests == f"{bounds}{said.say_basis(one.blocked)}{left_out}"
         assert unanchored == _chance(one.blocked_if_anchors_fail)
         assert piece == _item(one.most_likely_piece)
 
 
-WEST = "20 motions, all together; 2 segments not evaluated"
+WEST = "20 draws, all together; 2 segments not evaluated"
 
 
 def test_a_verified_route_rests_on_its_motions(verified):
@@ -137,6 +152,25 @@ def test_a_verified_route_rests_on_its_motions(verified):
     assert row[5] == f"{_bounds(verified.route_tables.routes[0].blocked)} {WEST}"
     assert re.fullmatch(r"[\d.]+ % \([\d.]+ to [\d.]+ %\)", row[3])
     assert verified.route_tables.routes[0].blocked.is_joint
+
+
+def test_what_is_not_known_says_what_settles_it(unconfirmed):
+    west, *_others = unconfirmed.route_tables.routes
+    assert west.state == RouteState.NOT_KNOWN
+    html = render(unconfirmed)
+    (row, *_more) = _rows(html, "routes")
+    assert row[2:5] == ["? not known, not excluded: ✕ may be blocked", "not known (0.0 to 100.0 %)", "not known"]
+    assert row[5] == "1 unconfirmed piece taken as standing; 2 segments not evaluated"
+    assert row[7] == "–", "no piece of a known chance blocks it"
+    text, unknown = _text(_section(html)), [one for one in unconfirmed.route_tables.routes if one.doubts]
+    count = f"{len(unknown)} route is" if len(unknown) == 1 else f"{len(unknown)} routes are"
+    assert f"{count} not known: " in text
+    assert "To settle this: enter the Period T1 or the Height in the sheet Building." in text
+    assert "count as fallen in these chances, which is on the safe side." in text
+    assert "A piece whose lower simulated class is not confirmed counts as standing and as fallen." in text
+    (office, *_rooms) = _rows(html, "rooms")
+    assert unconfirmed.route_tables.rooms[0].is_known == ("not known" not in office[3])
+    assert sum(one.unknown_routes for one in unconfirmed.route_tables.floors) >= 1
 
 
 def test_what_is_blocked_as_it_stands_is_told_from_what_may_be(html, assessment):
@@ -152,7 +186,7 @@ def test_what_is_blocked_as_it_stands_is_told_from_what_may_be(html, assessment)
     assert said.say_route_state(certain) == "✕ blocked"
 
 
-@pytest.mark.parametrize("name", ["assessment", "verified"])
+@EACH
 def test_every_number_of_a_segment_is_shown(name, request):
     assessment = request.getfixturevalue(name)
     rows = _rows(render(assessment), "segments")
@@ -169,7 +203,8 @@ def test_every_number_of_a_segment_is_shown(name, request):
             assert row[6:11] == ["–", "– not evaluated", "–", "–", "–"]
             continue
         assert row[6] == words.in_m(one.least_width_m)
-        assert row[8:11] == [_chance(one.blocked), _bounds(one.blocked), _chance(one.blocked_or_reduced)]
+        bounds = "–" if one.state == RouteState.NOT_KNOWN else _bounds(one.blocked)
+        assert row[8:11] == [_flat(said.say_blocked(one)), bounds, _flat(said.say_taken(one))]
         for flag in one.flags:
             assert flag.replace("_", " ") in row[11]
         if one.blocked_if_anchors_fail:
@@ -185,7 +220,7 @@ def test_a_segment_that_is_too_narrow_for_its_occupants_says_so(html, assessment
     assert "<i>wet</i>" in aisle[11]
 
 
-@pytest.mark.parametrize("name", ["assessment", "verified"])
+@EACH
 def test_every_piece_beside_a_segment_is_shown(name, request):
     assessment = request.getfixturevalue(name)
     found = [(one, near) for one, near in route_rows.list_beside(assessment.route_tables) if near]
@@ -218,14 +253,14 @@ def test_marks_are_explained_where_they_occur(html, assessment):
         assert (f"{flag.replace('_', ' ')} {meaning}" in text) == (flag in told)
 
 
-@pytest.mark.parametrize("name", ["assessment", "verified"])
+@EACH
 def test_every_room_says_how_it_may_lose_its_exits_and_its_ways(name, request):
     assessment = request.getfixturevalue(name)
     rows, rooms = _rows(render(assessment), "rooms"), assessment.route_tables.rooms
     assert [row[0] for row in rows] == [one.room for one in rooms] == ["Office <1>", "Archive"]
     for row, one in zip(rows, rooms, strict=True):
         assert row[2] == ", ".join(one.exits)
-        assert row[3:5] == [_chance(one.loses_every_exit), _chance(one.loses_if_anchors_fail)]
+        assert row[3:5] == [_flat(said.say_lost(one)), _chance(one.loses_if_anchors_fail)]
         assert row[5] == _item(one.most_likely_piece)
         assert one.ways[0].end in row[6]
         for way in one.ways:
@@ -260,7 +295,7 @@ def test_the_lead_counts_routes_and_rooms(html, assessment):
     assert "not evaluated by this version" not in text
 
 
-@pytest.mark.parametrize("name", ["assessment", "verified"])
+@EACH
 def test_every_step_of_what_to_fix_is_shown(name, request):
     assessment = request.getfixturevalue(name)
     steps = route_rows.list_steps(assessment.route_tables)

@@ -7,20 +7,21 @@ import pytest
 
 from assess.i18n import Catalogue, load_catalogue, speaking
 from assess.report.findings import at_risk
-from assess.report.findings.route_words import say_basis, say_segment_state
+from assess.report.findings.route_words import say_basis, say_segment_state, say_to_settle
 from assess.report.summary import ROUTES as MOST
 from assess.route_results import RouteState
 from assess.settings import Settings
 from tests.recalculate import compare_formulas, write_report
-from tests.report.routed import ITEMS, PARTLY, assess_routed
+from tests.report.routed import ITEMS, KNOWN, PARTLY, assess_routed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
-@pytest.fixture(scope="module", params=["formulas", "verified"])
+@pytest.fixture(scope="module", params=["formulas", "verified", "unconfirmed"])
 def written(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("routes")
-    more = {"settings": Settings(verify="all", runs=20)} if request.param == "verified" else {}
+    simulated = {"settings": Settings(verify="all", runs=20)}
+    more = {"formulas": {}, "verified": {**simulated, **KNOWN}, "unconfirmed": simulated}[request.param]
     results = assess_routed(folder / "w.xlsx", **more)
     write_report(results, folder / "r.xlsx")
     return results, openpyxl.load_workbook(folder / "r.xlsx"), folder / "r.xlsx"
@@ -62,7 +63,12 @@ def test_a_row_a_segment(written):
         assert row["State"] == say_segment_state(one, results.route_tables.risk)
         if not one.evaluated:
             continue
-        blocked = one.blocked
+        blocked, at_most = one.blocked, one.blocked_if_unconfirmed_fall
+        assert row["Blocked if unconfirmed pieces fall"] == _is(at_most and at_most.probability)
+        assert row["To settle what is not known"] == (say_to_settle(one.doubts) or None)
+        if one.state == RouteState.NOT_KNOWN:
+            assert {value for name, value in row.items() if name.startswith(("Chance b", "Interval"))} == {None}
+            continue
         for name, value in {
             "Chance blocked": blocked.probability, "Interval low": blocked.low, "Interval high": blocked.high,
             "Chance blocked or reduced": one.blocked_or_reduced.probability,
@@ -89,13 +95,16 @@ def test_routes_and_floors_below(written):
     tables = _tables(book["Routes"])
     for row, one in zip(tables["Routes"], results.route_tables.routes, strict=True):
         assert (row["Route"], row["Segments"]) == (one.route, len(one.segment_indices))
-        assert row["Chance blocked"] == _is(one.blocked.probability)
+        is_known = one.state != RouteState.NOT_KNOWN
+        assert row["Chance blocked"] == _is(one.blocked.probability if is_known else None)
         fixed = ", ".join(results.item_rows[fix.item_index].item for fix in one.fixes)
         assert row["Pieces to anchor or move"] == (fixed or None)
         assert row["Chance left then"] == _is(one.fixes[-1].left if one.fixes else None)
     for row, floor in zip(tables["To be expected floor by floor"], results.route_tables.floors, strict=True):
         assert row["Blocked routes expected"] == _is(floor.blocked_routes_expected)
         assert row["Rooms expected to lose every exit"] == _is(floor.cut_off_rooms_expected)
+        assert row["Routes not known"] == floor.unknown_routes
+        assert row["Rooms not known"] == floor.unknown_rooms
         assert row["Pieces not counted"] == floor.uncounted_pieces
         assert row["Chance that any room does"] == _is(
             floor.any_room_cut_off.probability if floor.any_room_cut_off else None
@@ -131,12 +140,12 @@ def test_rooms_with_their_ways(written):
     rows = _tables(book["Route rooms"])[""]
     for row, one in zip(rows, results.route_tables.rooms, strict=True):
         assert (row["Room"], row["Exits that can be reached"]) == (one.room, "Street")
-        assert row["Chance of losing every exit"] == _is(one.loses_every_exit.probability)
-        assert (row["Interval low"], row["Interval high"]) == (
-            _is(one.loses_every_exit.low),
-            _is(one.loses_every_exit.high),
-        )
-        assert row["Safest way: chance of a blockage"] == _is(one.ways[0].blocked.probability)
+        lost = one.loses_every_exit
+        values = (lost.probability, lost.low, lost.high) if one.is_known else (None,) * 3
+        names = ("Chance of losing every exit", "Interval low", "Interval high")
+        assert [row[name] for name in names] == [_is(value) for value in values]
+        way = one.ways[0]
+        assert row["Safest way: chance of a blockage"] == _is(way.blocked.probability if way.is_known else None)
         assert row["Ways out"] == 1
     assert rows[0]["Safest way: by"] == "West: aisle, West: flight, West: hall"
     assert rows[0].get("Alternative: to") is None
@@ -211,8 +220,8 @@ def test_states_have_sign_and_colour(written):
 
 def test_the_sheets_are_set_up(written):
     _, book, _ = written
-    for name, frozen, area in (("Routes", "C2", "A1:AD6"), ("Route pieces", "A2", "A1:O4"),
-                               ("Route rooms", "B2", "A1:T3")):  # fmt: skip
+    for name, frozen, area in (("Routes", "C2", "A1:AF6"), ("Route pieces", "A2", "A1:O4"),
+                               ("Route rooms", "B2", "A1:V3")):  # fmt: skip
         sheet = book[name]
         assert sheet.freeze_panes == frozen
         assert sheet.auto_filter.ref == area
@@ -220,7 +229,7 @@ def test_the_sheets_are_set_up(written):
         assert sheet.page_setup.orientation == "landscape"
         assert sheet["A1"].fill.fgColor.rgb == "FF1F3A4D"
     assert book["Routes"]["G2"].number_format == "0.0%"
-    assert book["Routes"]["S2"].number_format == "0.00"
+    assert book["Routes"]["U2"].number_format == "0.00"
 
 
 def test_no_text_is_a_formula(written):
@@ -228,7 +237,7 @@ def test_no_text_is_a_formula(written):
     for name in ("Routes", "Route pieces", "Route rooms", "Fix first"):
         for row in book[name].iter_rows():
             assert all(cell.data_type != "f" and cell.hyperlink is None for cell in row)
-    assert book["Routes"]["AD2"].value == "=1+1"
+    assert book["Routes"]["AF2"].value == "=1+1"
     assert not [sheet for sheet in book for row in sheet.iter_rows(values_only=True) for cell in row
                 if "not evaluated by this version" in str(cell)]  # fmt: skip
     assert compare_formulas(path) > len(ITEMS)
@@ -272,4 +281,4 @@ def test_headings_in_another_language_stay_apart(written, language, tmp_path):
         heads = [cell.value for cell in sheet[1] if cell.value]
         assert len(heads) == len(set(heads)), sheet.title
     widths = {len([cell for cell in sheet[1] if cell.value]) for sheet in book.worksheets}
-    assert {30, 15, 20} <= widths
+    assert {32, 15, 22} <= widths

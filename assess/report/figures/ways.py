@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.figures.labels import LINE, Bounds, Corners, Label, Point, overlap, place_labels
-from assess.report.findings.route_words import is_held, say_chance, say_segment, say_segment_state
+from assess.report.findings.route_words import is_held, say_blocked, say_segment, say_segment_state
 from assess.route_results import RouteState, RouteTables, SegmentRow
 
 NAMED = 20
@@ -70,6 +70,7 @@ def list_styles() -> dict[str, Style]:
     drawn = (
         ("open", _("open"), RouteState.OPEN, white, dark, "", 0.8),
         ("reduced", _("may be reduced"), RouteState.REDUCED, white, dark, "8 3", 1.2),
+        ("unknown", _("not known"), RouteState.NOT_KNOWN, white, dark, "8 3 2 3", 1.6),
         ("blocked", _("may be blocked"), RouteState.BLOCKED, white, dark, "2 2.5", 2.0),
         ("standing", _("blocked as it stands"), RouteState.BLOCKED, dark, white, "", 2.6),
     )
@@ -97,13 +98,13 @@ def _stretch(number: int, one: SegmentRow, risk: float, styles: Mapping[str, Sty
             "{segment}: {state}; chance of blockage {chance}",
             segment=say_segment(one),
             state=say_segment_state(one, risk),
-            chance=say_chance(one.blocked) if one.blocked else words.DASH,
+            chance=say_blocked(one),
         ),
         style=styles[_style_name(one)],
         start=(one.start_x_m or 0.0, one.start_y_m or 0.0),
         end=(one.end_x_m or 0.0, one.end_y_m or 0.0),
         corners=_outline(one),
-        may_be=one.state_upper.severity > one.state.severity,
+        may_be=one.state != RouteState.NOT_KNOWN and one.state_upper.severity > one.state.severity,
         is_held=is_held(one, risk),
     )
 
@@ -111,6 +112,8 @@ def _stretch(number: int, one: SegmentRow, risk: float, styles: Mapping[str, Sty
 def _style_name(one: SegmentRow) -> str:
     if one.is_blocked_standing:
         return "standing"
+    if one.state == RouteState.NOT_KNOWN:
+        return "unknown"
     return str(one.state) if one.evaluated else "open"
 
 

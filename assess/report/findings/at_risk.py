@@ -5,18 +5,19 @@ from dataclasses import dataclass
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
-from assess.report.findings.route_rows import say_uncounted, say_unknown
+from assess.report.findings.route_rows import say_not_counted, say_uncounted, say_unknown
 from assess.report.findings.route_words import (
     find_chance,
     is_blocked_standing,
     is_held,
     name_few,
+    say_blocked,
     say_chance,
     say_risk,
     say_route_state,
 )
 from assess.results import ItemResult, Results
-from assess.route_results import RoomRow, RouteRow, RouteTables
+from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,11 +50,11 @@ class RouteAtRisk:
     @property
     def chance(self) -> str:
         """The chance that it is blocked, with its interval."""
-        return say_chance(self.result.blocked) if self.result.blocked else words.DASH
+        return say_blocked(self.result)
 
 
 def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
-    """Return the routes that may be blocked or reduced, or of which that is not excluded, the worst first."""
+    """Return the routes that may be blocked or reduced, or of which that is not excluded or known, the worst first."""
     routes = results.route_tables
     found = [one for one in routes.routes if max(one.state.severity, one.state_upper.severity)]
     found.sort(key=lambda one: (-one.state.severity, -find_chance(one), one.route.casefold()))
@@ -92,7 +93,7 @@ def describe_at_risk(one: RouteAtRisk) -> str:
 
 def list_rooms_at_risk(routes: RouteTables) -> list[RoomRow]:
     """Return the rooms that may lose every exit, or of which that is not excluded, the worst first."""
-    found = [one for one in routes.rooms if one.loses_every_exit.high >= routes.risk]
+    found = [one for one in routes.rooms if one.is_known and one.loses_every_exit.high >= routes.risk]
     return sorted(
         found, key=lambda one: (-one.loses_every_exit.probability, -one.loses_every_exit.high, one.room.casefold())
     )
@@ -106,18 +107,20 @@ def say_routes(results: Results) -> list[str]:
     routes = results.route_tables
     if not results.has_routes:
         return []
-    at_risk = list_routes_at_risk(results)
+    at_risk = [one for one in list_routes_at_risk(results) if one.result.state != RouteState.NOT_KNOWN]
     return [
         *_say_at_risk(routes, len(at_risk)),
         *say_unknown(routes),
         _say_expected(routes),
+        *say_not_counted(routes),
         *_say_rooms(routes),
         *_say_beside(routes),
     ]
 
 
 def _say_at_risk(routes: RouteTables, at_risk: int) -> list[str]:
-    risk, found = say_risk(routes.risk), [one for one in routes.routes if one.evaluated]
+    known = [one for one in routes.routes if one.state != RouteState.NOT_KNOWN]
+    risk, found = say_risk(routes.risk), [one for one in known if one.evaluated]
     if not found:
         return []
     if not at_risk:
@@ -151,6 +154,8 @@ def _say_rooms(routes: RouteTables) -> list[str]:
         return [_("No room has a way out in the workbook, so none is evaluated.")]
     found = list_rooms_at_risk(routes)
     if not found:
+        if routes.unknown_rooms:
+            return [_("No room of which it is known reaches that risk of losing all exits.")]
         return [_("No room reaches that risk of losing all exits.")]
     worst, chance = found[0].room, found[0].loses_every_exit
     return [_("Rooms that may lose all exits: {n:,} of {all:,}, the worst {room} with {chance}.",

@@ -6,8 +6,18 @@ from typing import TypeVar
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
-from assess.report.findings.route_words import find_chance, say_risk
-from assess.route_results import FLAGS, BesideRow, RoomRow, RouteFixRow, RouteRow, RouteState, RouteTables, SegmentRow
+from assess.report.findings.route_words import find_chance, name_few, say_risk, say_to_settle
+from assess.route_results import (
+    DOUBTS,
+    FLAGS,
+    BesideRow,
+    RoomRow,
+    RouteFixRow,
+    RouteRow,
+    RouteState,
+    RouteTables,
+    SegmentRow,
+)
 
 Row = TypeVar("Row")
 QUIET = ("own_rooms", "walls_unknown", "required_assumed")
@@ -30,13 +40,14 @@ def describe_routes(routes: RouteTables) -> list[str]:
         )
         if routes.rooms
         else _("No room has a way out in the workbook, so none is evaluated."),
+        *say_not_counted(routes),
         _("These are chances in this scenario, not per year."),
         _("Routes count as blocked or reduced from a chance of {risk}.", risk=say_risk(routes.risk)),
     ]
 
 
 def _count_states(routes: RouteTables) -> list[str]:
-    states = [one.state for one in routes.routes if one.evaluated]
+    states = [one.state for one in routes.routes if one.evaluated and one.state != RouteState.NOT_KNOWN]
     blocked, reduced = states.count(RouteState.BLOCKED), states.count(RouteState.REDUCED)
     texts = []
     if states:
@@ -52,8 +63,8 @@ def _count_states(routes: RouteTables) -> list[str]:
 
 
 def say_unknown(routes: RouteTables) -> list[str]:
-    """Return how many routes and segments could not be evaluated; nothing where all were."""
-    texts = []
+    """Return how many routes and rooms are not known, and could not be evaluated; nothing where all are."""
+    texts = _say_not_known(routes)
     if whole := sum(not one.evaluated for one in routes.routes):
         texts.append(ngettext("{n:,} route could not be evaluated: the workbook places no furniture there.",
                               "{n:,} routes could not be evaluated: the workbook places no furniture there.",
@@ -63,6 +74,46 @@ def say_unknown(routes: RouteTables) -> list[str]:
                               "{n:,} segments of the other routes could not be evaluated.",
                               parts))  # fmt: skip
     return texts
+
+
+def _say_not_known(routes: RouteTables) -> list[str]:
+    """Return which routes and rooms depend on unconfirmed pieces, and what to fill in to settle it."""
+    texts = []
+    if routes.unknown_routes:
+        texts.append(ngettext("{n:,} route is not known: it depends on pieces whose class is not confirmed ({pieces}).",
+                              "{n:,} routes are not known: they depend on pieces whose class is not confirmed "
+                              "({pieces}).", routes.unknown_routes,
+                              pieces=name_few(_list_deciding(routes))))  # fmt: skip
+    if routes.unknown_rooms:
+        texts.append(ngettext("For {n:,} room it is not known whether it could lose all exits.",
+                              "For {n:,} rooms it is not known whether they could lose all exits.",
+                              routes.unknown_rooms))  # fmt: skip
+    raised = {flag for row in (routes.routes, routes.rooms) for one in row for flag in one.doubts}
+    if fix := say_to_settle([flag for flag in DOUBTS.values() if flag in raised]):
+        texts.append(_("To settle this: {fix}.", fix=fix))
+    return texts
+
+
+def _list_deciding(routes: RouteTables) -> list[str]:
+    """Return the names of the unconfirmed pieces that reach a route that is not known, each once."""
+    unknown = [at for one in routes.routes if one.state == RouteState.NOT_KNOWN for at in one.segment_indices]
+    near = [piece for at in unknown for piece in routes.segments[at].pieces]
+    return list(dict.fromkeys(one.item for one in near if set(one.flags) & set(DOUBTS.values())))
+
+
+def say_not_counted(routes: RouteTables) -> list[str]:
+    """Return how many routes and rooms expected numbers leave out; nothing where all are known."""
+    if not routes.unknown_routes and not routes.unknown_rooms:
+        return []
+    return [_("Left out of these averages, as not known: routes {routes:,}, rooms {rooms:,}.",
+              routes=routes.unknown_routes, rooms=routes.unknown_rooms)]  # fmt: skip
+
+
+def say_fixes_bound(routes: RouteTables) -> str:
+    """Return that unconfirmed pieces count as fallen in what to fix; nothing where none does."""
+    if not any(one.fixes and one.blocked_if_unconfirmed_fall for one in routes.routes):
+        return ""
+    return _("Pieces whose class is not confirmed count as fallen in these chances, which is on the safe side.")
 
 
 def say_uncounted(routes: RouteTables) -> str:

@@ -8,7 +8,7 @@ from assess.i18n import ngettext, number
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.results import ItemResult
-from assess.route_results import Chance, RouteRow, RouteState, RouteTables, SegmentRow, WayRow
+from assess.route_results import DOUBTS, Chance, RoomRow, RouteRow, RouteState, RouteTables, SegmentRow, WayRow
 from assess.routes.widths import LEVEL, RULES, STAIR
 from assess.units import LENGTH
 from assess.workbook.schema import DEFAULT_WIDTH
@@ -23,6 +23,7 @@ def say_state(state: RouteState) -> str:
         RouteState.NOT_EVALUATED: _("not evaluated"),
         RouteState.OPEN: _("open"),
         RouteState.REDUCED: _("may be reduced"),
+        RouteState.NOT_KNOWN: _("not known"),
         RouteState.BLOCKED: _("may be blocked"),
     }
     return f"{state.symbol} {said[state]}"
@@ -53,8 +54,8 @@ def _say_held(state: RouteState) -> str:
 
 def is_held(one: SegmentRow | RouteRow, risk: float) -> bool:
     """Tell whether anchors alone keep something from being blocked, by the chosen risk."""
-    fails = one.blocked_if_anchors_fail
-    return one.state != RouteState.BLOCKED and fails is not None and fails.probability >= risk
+    fails, others = one.blocked_if_anchors_fail, (RouteState.BLOCKED, RouteState.NOT_KNOWN)
+    return one.state not in others and fails is not None and fails.probability >= risk
 
 
 def say_unevaluated() -> str:
@@ -97,12 +98,47 @@ def say_chance(chance: Chance) -> str:
     return f"{shown} {interval.replace(' ', words.NO_BREAK)}"
 
 
+def say_blocked(one: SegmentRow | RouteRow) -> str:
+    """Return the chance of a blockage; what it depends on where it is not known, a dash where it is not evaluated."""
+    if one.blocked is None:
+        return words.DASH
+    return say_between(one.blocked, one.blocked_if_unconfirmed_fall, is_known=one.state != RouteState.NOT_KNOWN)
+
+
+def say_taken(one: SegmentRow | RouteRow) -> str:
+    """Return the chance of a blockage or a reduction, as far as it is known."""
+    if one.blocked_or_reduced is None:
+        return words.DASH
+    return _("not known") if one.state == RouteState.NOT_KNOWN else say_chance(one.blocked_or_reduced)
+
+
+def say_lost(one: RoomRow) -> str:
+    """Return the chance that a room loses every exit; what it depends on where it is not known."""
+    return say_between(one.loses_every_exit, one.loses_if_unconfirmed_fall, is_known=one.is_known)
+
+
+def say_between(standing: Chance, fallen: Chance | None, *, is_known: bool) -> str:
+    """Return a chance; where it is not known, those with unconfirmed pieces standing and fallen."""
+    low, high = (words.in_percent(one.probability) for one in (standing, fallen or standing))
+    if is_known or low == high:
+        return say_chance(standing)
+    return _("not known ({low} to {high} %)", low=low, high=high).replace(" ", words.NO_BREAK)
+
+
 def say_basis(chance: Chance) -> str:
-    """Return what a chance rests on: the motions of a joint outcome, or the pieces that enter by their bounds."""
+    """Return what a chance rests on: the draws of a joint outcome, or the pieces that enter by their bounds."""
+    if not chance.unconfirmed:
+        return _say_known_basis(chance)
+    left = ngettext("{n:,} unconfirmed piece taken as standing", "{n:,} unconfirmed pieces taken as standing",
+                    chance.unconfirmed)  # fmt: skip
+    return f"{_say_known_basis(chance)}; {left}" if chance.pieces else left
+
+
+def _say_known_basis(chance: Chance) -> str:
     if not chance.pieces:
         return _("no free-standing piece reaches it")
     if chance.is_joint:
-        return ngettext("{n:,} motion, all together", "{n:,} motions, all together", chance.runs)
+        return ngettext("{n:,} draw, all together", "{n:,} draws, all together", chance.runs)
     if chance.unverified:
         return ngettext(
             "bounds: {n:,} of {pieces:,} pieces by the formula's chance alone",
@@ -110,7 +146,7 @@ def say_basis(chance: Chance) -> str:
             chance.unverified,
             pieces=chance.pieces,
         )
-    return _("bounds: the floors' motions come from different sources")
+    return _("bounds: the pieces were decided after different numbers of draws")
 
 
 def say_recorded(one: SegmentRow | RouteRow) -> str:
@@ -121,8 +157,12 @@ def say_recorded(one: SegmentRow | RouteRow) -> str:
 
 
 def find_chance(one: SegmentRow | RouteRow) -> float:
-    """Return the chance of a blockage for putting rows in order: 0 where it is not evaluated."""
-    return one.blocked.probability if one.blocked else 0.0
+    """Return the chance of a blockage for putting rows in order: 0 where it is not evaluated.
+
+    Where it is not known, that with unconfirmed pieces fallen.
+    """
+    found = one.blocked_if_unconfirmed_fall if one.state == RouteState.NOT_KNOWN else one.blocked
+    return found.probability if found else 0.0
 
 
 def say_segment(one: SegmentRow) -> str:
@@ -146,7 +186,7 @@ def say_bounds(chance: Chance) -> str:
 
 def list_cautions(routes: RouteTables) -> list[str]:
     """Return the assumptions of the evaluation of routes, and what it leaves out."""
-    return [*_of_pieces(), *_of_states(), *_of_chances(routes)]
+    return [*_of_pieces(), *_of_states(), *_of_chances(routes), *(_of_doubts() if list_doubts(routes) else ())]
 
 
 def _of_pieces() -> tuple[str, ...]:
@@ -187,14 +227,29 @@ def _of_states() -> tuple[str, ...]:
 def _of_chances(routes: RouteTables) -> tuple[str, ...]:
     return (
         _(
-            "Chances assume that all anchors hold. Simulated pieces fall as they did motion by motion, others "
-            "independently; the results for full independence and full correlation are given as well, as equal pieces "
-            "fall together."
+            "Chances assume that all anchors hold. Simulated pieces fall as they did draw by draw: a draw is one "
+            "earthquake, stronger or weaker by the same factor on all floors. Others fall independently. The results "
+            "for full independence and full correlation are given as well, as equal pieces fall together."
         ),
         _(
-            "Where not all pieces of a route were simulated together, its chance is the largest of the three, with "
-            "their range in brackets. Where there are too many outcomes to evaluate all, {n:,} are drawn at random.",
+            "Where not all pieces of a route were simulated in the same draws, its chance is the largest of the three, "
+            "with their range in brackets. Where there are too many outcomes to evaluate all, {n:,} are drawn at "
+            "random.",
             n=routes.draws,
+        ),
+    )
+
+
+def _of_doubts() -> tuple[str, ...]:
+    return (
+        _(
+            "A piece whose lower simulated class is not confirmed counts as standing and as fallen. A segment, route "
+            "or room whose state differs between the two is not known, and is left out of expected numbers; what is "
+            "blocked with such pieces standing is blocked."
+        ),
+        _(
+            "What to fix, and the chances if anchors fail, count unconfirmed pieces as fallen, which is on the safe "
+            "side."
         ),
     )
 
@@ -206,9 +261,29 @@ def say_occupants(one: SegmentRow) -> str:
     needed = words.in_m(one.needed_width_m)
     if one.insufficient_for_occupants:
         return _("{width} m: insufficient for occupants", width=needed)
+    if one.insufficient_after_falls is None and one.evaluated:
+        return _("{width} m: not known whether less is left", width=needed)
     if one.insufficient_after_falls is None or one.insufficient_after_falls.high == 0:
         return _("{width} m", width=needed)
     return _("{width} m: less in {chance}", width=needed, chance=say_chance(one.insufficient_after_falls))
+
+
+# ---------------------------------------------------------------- what is not known
+
+
+def list_doubts(routes: RouteTables) -> list[str]:
+    """Return why pieces that reach routes are unconfirmed, as flags, each once."""
+    raised = {flag for one in routes.segments for near in one.pieces for flag in near.flags}
+    return [flag for flag in DOUBTS.values() if flag in raised]
+
+
+def say_to_settle(doubts: Sequence[str]) -> str:
+    """Return what is to be filled in to settle what is not known; nothing where nothing is."""
+    settles = {
+        "unconfirmed_period": _("enter the Period T1 or the Height in the sheet Building"),
+        "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
+    }
+    return "; ".join(settles[flag] for flag in doubts)
 
 
 # ---------------------------------------------------------------- lists
@@ -235,12 +310,16 @@ def say_way(way: WayRow, routes: RouteTables) -> str:
         "{end} by {segments}: {chance}",
         end=words.cut(way.end, 40),
         segments=_name_segments([one.segment for one in segments]),
-        chance=say_chance(way.blocked) if any(one.evaluated for one in segments) else _("not evaluated"),
+        chance=_say_way_blocked(way) if any(one.evaluated for one in segments) else _("not evaluated"),
     )
     if not way.shared:
         return said
     shared = _name_segments(way.shared)
     return _("{way}; shares {segments} with the first", way=said, segments=shared)
+
+
+def _say_way_blocked(way: WayRow) -> str:
+    return say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=way.is_known)
 
 
 def _name_segments(names: Sequence[str]) -> str:

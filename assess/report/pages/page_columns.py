@@ -243,8 +243,9 @@ ROUTE_TABLES: Mapping[str, tuple[type, tuple[str, ...]]] = {
         "most_likely_piece", "ways",
     )),
     "floors": (FloorRoutesRow, (
-        "floor", "segments", "blocked_segments_expected", "routes", "blocked_routes_expected", "rooms",
-        "cut_off_rooms_expected", "any_room_cut_off_probability", "uncounted_pieces",
+        "floor", "segments", "blocked_segments_expected", "unknown_segments", "routes", "blocked_routes_expected",
+        "unknown_routes", "rooms", "cut_off_rooms_expected", "unknown_rooms", "any_room_cut_off_probability",
+        "uncounted_pieces",
     )),
     "segments": (SegmentRow, (
         "segment", "floor", "from_place", "clear_width_used_m", "required_width_used_m", "standing_width_m",
@@ -260,13 +261,16 @@ SENTENCES = frozenset(("needed_width_m",))
 """Numbers that stand in a sentence with others."""
 ANCHORS = frozenset(("blocked_if_anchors_fail_probability", "loses_if_anchors_fail_probability"))
 """Left out where no piece is anchored."""
+DOUBTFUL = frozenset(("unknown_segments", "unknown_routes", "unknown_rooms"))
+"""Left out where all is known."""
 
 
-def route_columns(*, has_anchors: bool) -> dict[str, tuple[PageColumn, ...]]:
+def route_columns(*, has_anchors: bool, has_unknown: bool = False) -> dict[str, tuple[PageColumn, ...]]:
     """Return the columns of every table on evacuation routes; the captions give the unit of widths."""
+    left_out = (frozenset() if has_anchors else ANCHORS) | (frozenset() if has_unknown else DOUBTFUL)
     tables = {}
     for name, (row, keys) in ROUTE_TABLES.items():
-        found = [route_fields(row)[key] for key in keys if has_anchors or key not in ANCHORS]
+        found = [route_fields(row)[key] for key in keys if key not in left_out]
         tables[name] = tuple(
             of_field(one, heading=_(one.short or one.label), is_number=one.kind in NUMBERS and one.key not in SENTENCES)
             for one in found

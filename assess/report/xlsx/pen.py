@@ -39,7 +39,10 @@ LOOKS: Mapping[str, Mapping[str, Any]] = {
     "plain": {"valign": "top"},
 }  # fmt: skip
 """The looks of cells."""
-_INKS = {RouteState.OPEN: "#1a1a1a", RouteState.REDUCED: "#1a1a1a", RouteState.BLOCKED: "#ffffff"}
+_INKS = {
+    RouteState.OPEN: "#1a1a1a", RouteState.REDUCED: "#1a1a1a", RouteState.NOT_KNOWN: "#000000",
+    RouteState.BLOCKED: "#ffffff",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,17 @@ from assess.report.xlsx.item_formulas import ANCHORED
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, of_field
 from assess.results import ItemResult
 from assess.route_fields import route_fields
-from assess.route_results import FLAGS, BesideRow, FloorRoutesRow, RoomRow, RouteRow, RouteTables, SegmentRow, WayRow
+from assess.route_results import (
+    FLAGS,
+    BesideRow,
+    FloorRoutesRow,
+    RoomRow,
+    RouteRow,
+    RouteState,
+    RouteTables,
+    SegmentRow,
+    WayRow,
+)
 from assess.workbook.formulas import say_class
 
 Read = Callable[[Any], Any]
@@ -35,6 +45,12 @@ def _said(row: type, key: str, width: int, read: Read) -> Column:
 def _chances(row: type, name: str, width: int) -> list[Column]:
     """Return a chance with the ends of its interval, each a column; blank where there is no chance."""
     return _of(row, *(f"{name}_{part}" for part in ("probability", "low", "high")), width=width)
+
+
+def _known(row: type, key: str, width: int, is_known: Callable[[Any], bool]) -> Column:
+    """Return the column of a number that is blank where it is not known."""
+    field = route_fields(row)[key]
+    return of_field(field, width=width, read=lambda one: field.read(one) if is_known(one) else None)
 
 
 def _yes_or_no(holds: bool) -> str:
@@ -103,14 +119,20 @@ def _say_insufficient(one: SegmentRow) -> str:
 
 
 def _outlook(row: type) -> list[Column]:
-    """Return the chances of a segment or a route; blank where it is not evaluated: a 0 would say more than is known."""
+    """Return the chances of a segment or a route; blank where it is not evaluated: a 0 would say more than is known.
+
+    Where it is not known, only the chance with unconfirmed pieces fallen is there, and what settles it.
+    """
 
     def of(read: Read) -> Read:
         return lambda one: None if one.blocked is None else read(one)
 
+    names = ("blocked_probability", "blocked_low", "blocked_high", "blocked_or_reduced_probability",
+             "blocked_independent", "blocked_correlated")  # fmt: skip
     return [
-        *_chances(row, "blocked", 11),
-        *_of(row, "blocked_or_reduced_probability", "blocked_independent", "blocked_correlated", width=11),
+        *(_known(row, name, 11, lambda one: one.state != RouteState.NOT_KNOWN) for name in names),
+        *_of(row, "blocked_if_unconfirmed_fall_probability", width=13),
+        _said(row, "doubts", 30, lambda one: say.say_to_settle(one.doubts)),
         *_of(row, "blocked_if_anchors_fail_probability", width=11),
         _said(row, "under_record", 13, of(lambda one: say.say_recorded(one) if one.under_record is not None else "")),
         _said(row, "most_likely_piece", 14, of(_name_piece)),
@@ -135,8 +157,9 @@ def _route_columns(routes: RouteTables) -> list[Column]:
 
 def _floor_columns() -> list[Column]:
     return [
-        *_of(FloorRoutesRow, "floor", "segments", "blocked_segments_expected", "routes", "blocked_routes_expected"),
-        *_of(FloorRoutesRow, "rooms", "cut_off_rooms_expected"),
+        *_of(FloorRoutesRow, "floor", "segments", "blocked_segments_expected", "unknown_segments"),
+        *_of(FloorRoutesRow, "routes", "blocked_routes_expected", "unknown_routes"),
+        *_of(FloorRoutesRow, "rooms", "cut_off_rooms_expected", "unknown_rooms"),
         *_chances(FloorRoutesRow, "any_room_cut_off", 0),
         *_of(FloorRoutesRow, "uncounted_pieces"),
     ]
@@ -274,10 +297,12 @@ def _room_columns(routes: RouteTables) -> list[Column]:
         *_of(RoomRow, "room", width=22),
         *_of(RoomRow, "floor", width=8),
         _said(RoomRow, "exits", 26, _say_exits),
-        *_of(RoomRow, "loses_every_exit_probability", width=11),
-        *_of(RoomRow, "loses_every_exit_low", "loses_every_exit_high", width=9),
-        *_of(RoomRow, "loses_every_exit_independent", width=12),
-        *_of(RoomRow, "loses_every_exit_correlated", width=10),
+        *(
+            _known(RoomRow, f"loses_every_exit_{part}", width, lambda one: one.is_known)
+            for part, width in (("probability", 11), ("low", 9), ("high", 9), ("independent", 12), ("correlated", 10))
+        ),
+        *_of(RoomRow, "loses_if_unconfirmed_fall_probability", width=12),
+        _said(RoomRow, "doubts", 30, lambda one: say.say_to_settle(one.doubts)),
         *_of(RoomRow, "loses_if_anchors_fail_probability", width=9),
         _said(RoomRow, "most_likely_piece", 14, _name_piece),
         _said(RoomRow, "loses_every_exit_is_joint", 30, lambda one: say.say_basis(one.loses_every_exit)),
@@ -295,7 +320,7 @@ def _way_columns(routes: RouteTables, place: int, labels: tuple[str, str, str]) 
 
     def chance(way: WayRow) -> float | None:
         is_known = any(routes.segments[at].evaluated for at in way.segment_indices)
-        return way.blocked.probability if is_known else None
+        return way.blocked.probability if is_known and way.is_known else None
 
     return [
         Column(labels[0], 16, of(lambda way: way.end)),
