@@ -11,7 +11,7 @@ import pytest
 from assess.report.data import SCHEMA, write_json
 from assess.route_results import RouteState, RouteTables
 from assess.settings import Settings
-from tests.report.routed import KNOWN, PARTLY, ROUTES, assess_routed
+from tests.report.routed import DOUBTED, KNOWN, PARTLY, ROUTES, assess_routed
 from tests.workbooks import assessed
 
 VERIFIED = Settings(verify="all", runs=20, route_risk=0.1)
@@ -202,7 +202,7 @@ def test_what_is_not_evaluated_counted_or_apart(tmp_path):
 
 def test_what_depends_on_unconfirmed_pieces_is_not_known(tmp_path):
     """Neither T1 nor height is known: the simulated class of the bookcase is lower, and is not adopted."""
-    run = assess_routed(tmp_path / "w.xlsx", VERIFIED)
+    run = assess_routed(tmp_path / "w.xlsx", VERIFIED, **DOUBTED)
     write_json(run, tmp_path / "r.json")
     whole = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
     jsonschema.validate(whole, _schema())
@@ -214,10 +214,11 @@ def test_what_depends_on_unconfirmed_pieces_is_not_known(tmp_path):
         assert one["blocked_if_unconfirmed_fall"]["probability"] == 1
     assert aisle["pieces"][0]["falls_while_blocked"] is None
     assert "unconfirmed_period" in aisle["pieces"][0]["flags"]
-    assert [one["is_known"] for one in found["rooms"]] == [False, True]
+    assert [one["is_known"] for one in found["rooms"]] == [False, False]
     assert found["rooms"][0]["loses_if_unconfirmed_fall"]["probability"] == 1
-    assert (found["unknown_routes"], found["unknown_rooms"], found["blocked_routes_expected"]) == (1, 1, 0)
-    assert [one["unknown_segments"] for one in found["floors"]] == [1, 0]
+    assert (found["unknown_routes"], found["unknown_rooms"], found["blocked_routes_expected"]) == (2, 2, 0)
+    assert [one["unknown_segments"] for one in found["floors"]] == [2, 0]
+    assert [one["state"] for one in found["routes"]] == ["not known", "not known", "open"]
     assert [(fix["item"], fix["left"]) for fix in west["fixes"]] == [("tall", 0)], "it counts as fallen"
 
 

@@ -22,6 +22,7 @@ from assess.cli.command_routes import read_pfa
 from assess.cli.route_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
 from assess.cli.route_output import Sweep
 from assess.pipeline.route_sweep import Fragility, RouteFragility
+from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance
 from assess.units import GRAVITY
 from assess.workbook.template import Content, write_workbook
@@ -40,15 +41,15 @@ ITEMS = [
     {"item": "a2", "floor": "1", "breadth": 30, "height": 170, "route": "Aula", "anchored": "yes", **SHAPE},
     {"item": "b1", "floor": "2", "breadth": 50, "height": 180, "route": "=Bar", "quantity": 2, **SHAPE},
 ]
-FLOORS = [{"floor": "1", "record_x": "pulse.csv"}, {"floor": "2", "pfa_x": 0.5}]
+FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.5}]
 SWEEP = ("--pfa", "0.1:0.9:0.2", "--runs", "20", "--seed", "3")
 HEADS = "route,floors,pfa_g,blocked,low,high,independent,correlated,if_anchors_fail,pieces,unverified,runs"
 
 
 def write(folder: Path, **rows: Any) -> Path:
-    write_records(folder, "pulse")
+    write_records(folder, "slow")
     path = folder / "w.xlsx"
-    content = {"Building": [{}], "Floors": FLOORS, "Items": ITEMS, "Routes": ROUTES, **rows}
+    content = {"Building": [{"period": 1.0}], "Floors": FLOORS, "Items": ITEMS, "Routes": ROUTES, **rows}
     write_workbook(path, Content(rows=content), "si")
     return path
 
@@ -74,7 +75,7 @@ def swept(tmp_path_factory):
     assert done.stderr.splitlines()[-2:] == [f"wrote {table}", f"wrote {plot}"]
     text = run("routes", path, *SWEEP)
     assert text.exit_code == 0
-    assert sorted(one.name for one in folder.iterdir()) == ["f.png", "pulse.csv", "t.csv", "w.xlsx"]
+    assert sorted(one.name for one in folder.iterdir()) == ["f.png", "slow.csv", "t.csv", "w.xlsx"]
     return folder, json.loads(done.stdout), text.stdout
 
 
@@ -103,7 +104,10 @@ def test_the_document(swept):
     assert [at["if_anchors_fail"] for at in bar["chances"]] == [None] * 5
     assert (aula["chances"][0]["pieces"], bar["chances"][0]["pieces"]) == (1, 2)
     (caution,) = document["cautions"]
-    assert caution.startswith("Only peaks are known for floor '2': the motions follow a generic spectrum.")
+    assert caution == "Only peaks are known for floor '2': the motions follow a generic spectrum."
+    assert document["uncertainty"] == {"motion": 0.4, "piece": True}
+    assert "a factor on the motions of all floors (standard deviation of ln: 0.4)" in document["meaning"]
+    assert [one["doubtful_pieces"] for one in document["routes"]] == [0, 0, 0]
 
 
 def test_the_pfa_at_which_levels_are_passed(swept):
@@ -140,10 +144,13 @@ def swept_with(chances: list[float], spread: float, anchors: list[float] | None 
 
     route = RouteFragility(
         route="A", floors=(), blocked=tuple(map(chance, chances)), scenario_pfa=(1.5, 2.5), is_evaluated=True,
-        if_anchors_fail=anchors and tuple(map(chance, anchors)),
+        if_anchors_fail=anchors and tuple(map(chance, anchors)), doubtful=0,
     )  # fmt: skip
     values = tuple(GRAVITY * (1 + at) / 10 for at in range(len(chances)))
-    found = Fragility(values=values, runs=100, seed=1, routes=(route,), generic=(), stocky=0)
+    found = Fragility(
+        values=values, runs=100, seed=1, uncertainty=Uncertainty(), routes=(route,), generic=(), unshaped=(), weak=(),
+        stocky=0,
+    )  # fmt: skip
     inventory = SimpleNamespace(source=Path("w.xlsx"), sha256="")
     return Sweep(cast("Any", SimpleNamespace(inventory=inventory, scenario="as filled")), found)
 
@@ -207,13 +214,13 @@ def test_the_csv_is_the_document(swept):
 
 def test_the_text_is_the_document(swept):
     _, document, text = swept
-    assert text.startswith("w.xlsx: scenario as filled, 20 motions of each floor and axis, seed 3\n\nAula (floor 1): ")
+    assert text.startswith("w.xlsx: scenario as filled, 20 draws, seed 3\n\nAula (floor 1): ")
     assert (
         "\n\nChance that an evacuation route is blocked if every floor of it shakes with the PFA along both axes"
         in text
     )
-    assert "\nAula (floor 1): 1 piece; 20 motions, all together\n" in text
-    assert "\n=Bar (floor 2): 2 pieces; 20 motions, all together\n" in text
+    assert "\nAula (floor 1): 1 piece; 20 draws, all together\n" in text
+    assert "\n=Bar (floor 2): 2 pieces; 20 draws, all together\n" in text
     assert "\nCloset (floor 2): not evaluated: the workbook places no furniture there\n" in text
     blocks = {block.split(" (")[0]: block for block in text.split("\n\n")[1:]}
     for one in document["routes"][:2]:
@@ -227,7 +234,7 @@ def test_the_text_is_the_document(swept):
 
 def test_it_is_what_a_run_finds_at_the_floors_own_pfa(swept):
     folder, _, _ = swept
-    path, settings = folder / "w.xlsx", assess.Settings(verify="high", runs=20, seed=3)
+    path, settings = folder / "w.xlsx", assess.Settings(verify="all", runs=20, seed=3)
     ran = assess.run(assess.read_inventory(path), settings)
     pfa = ran.motions_of("1", "X")[0].pfa_g
     done = run("routes", path, "--pfa", f"{pfa:.12f}:{pfa:.12f}", "--runs", 20, "--seed", 3, "--json")
@@ -263,7 +270,13 @@ def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
             unverified=0,
         )  # fmt: skip
         return RouteFragility(
-            route=name, floors=(), blocked=(chance,), if_anchors_fail=None, is_evaluated=True, scenario_pfa=None
+            route=name,
+            floors=(),
+            blocked=(chance,),
+            if_anchors_fail=None,
+            is_evaluated=True,
+            scenario_pfa=None,
+            doubtful=0,
         )
 
     live, still = [route(str(at), 0.1) for at in range(70)], [route("still", 0.0)]
@@ -354,7 +367,7 @@ def test_a_file_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
     assert done.exit_code == 1
     assert "t.csv could not be written: Permission denied. Name another file." in done.stderr
     assert len(json.loads(done.stdout)["routes"]) == 3
-    assert sorted(one.name for one in tmp_path.iterdir()) == ["pulse.csv", "w.xlsx"]
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["slow.csv", "w.xlsx"]
 
 
 # --- the option of assess run, and the help ---

@@ -31,16 +31,26 @@ CABINET = {
 """It leaves nothing of the corridor once it has fallen."""
 
 
+EXACT = {"motion_uncertainty": 0, "piece_uncertainty": "no"}
+"""Nothing is uncertain but the phases of the motions."""
+SLOW = {"record_x": "slow.csv"}
+"""A record that motions made for its spectrum match: its simulated classes are confirmed."""
+
+
 def assessed(
-    folder: Path, *items: dict[str, Any], settings: Settings = SETTINGS, floor: dict[str, Any] | None = None
+    folder: Path,
+    *items: dict[str, Any],
+    settings: Settings = SETTINGS,
+    floor: dict[str, Any] | None = None,
+    building: dict[str, Any] | None = None,
 ) -> Assessment:
     rows = {
-        "Building": [{}],
+        "Building": [building or {}],
         "Floors": [{"floor": "1", **(floor or {"record_x": "pulse.csv"})}],
         "Items": list(items) or [CABINET],
         "Routes": [CORRIDOR, {**CORRIDOR, "route": "B"}],
     }
-    write_records(folder, "pulse")
+    write_records(folder, "pulse", "slow")
     path = folder / "w.xlsx"
     write_workbook(path, Content(rows=rows), "si")
     return compute(assess.read_inventory(path), settings)
@@ -56,7 +66,7 @@ def chances(found, route: str = "A") -> list[float]:
 
 
 def share(assessment: Assessment, pfa_g: float) -> list[float]:
-    """Rock every piece alone, under the motions of each axis scaled to a PFA: the shares that overturn."""
+    """Rock every piece as it is given, alone, under the motions of each axis scaled to a PFA: the shares that fall."""
     every = np.ones(len(assessment.case_item), dtype=np.bool_)
     building, settings = assessment.inventory.building, assessment.settings
     cases = choose_motions(
@@ -74,27 +84,28 @@ def share(assessment: Assessment, pfa_g: float) -> list[float]:
 
 
 def test_one_piece_falls_as_often_as_it_does_alone(tmp_path):
-    assessment = assessed(tmp_path, floor={"pfa_x": 0.3, "pfa_y": 0.2})
+    assessment = assessed(tmp_path, floor={"pfa_x": 0.3, "pfa_y": 0.2}, building=EXACT)
     found = fragility(assessment, 0.2, 0.3, 0.9)
     assert chances(found) == [pytest.approx(share(assessment, pfa)[0]) for pfa in (0.2, 0.3, 0.9)]
     assert 0 < chances(found)[1] < 1
     one = found.routes[0].blocked[0]
     assert (one.pieces, one.unverified, one.runs, one.is_joint) == (1, 0, RUNS, True)
     assert chances(found, "B") == [0, 0, 0]
-    assert found.generic == ("1",)
+    assert (found.generic, found.unshaped, found.weak) == (("1",), ("1",), ())
+    assert [one.doubtful for one in found.routes] == [1, 0]
     assert found.routes[0].scenario_pfa == (pytest.approx(0.2 * GRAVITY), pytest.approx(0.3 * GRAVITY))
     assert found.routes[0].floors == ("1",)
 
 
 def test_below_the_threshold_of_every_piece_nothing_falls(tmp_path):
-    """It rocks above B/H = 0.22 g; the peaks of the motions scatter, by less than 2."""
-    found = fragility(assessed(tmp_path), 0.05, 0.11)
+    """It rocks above B/H = 0.22 g; the peaks of the motions scatter, by less than 2, and so does the earthquake."""
+    found = fragility(assessed(tmp_path), 0.02, 0.03)
     assert chances(found) == [0, 0]
     assert found.routes[0].blocked[0].high > 0, "as only so many motions were tried"
 
 
 def test_a_blank_axis_takes_the_worse_at_each_value(tmp_path):
-    assessment = assessed(tmp_path, {**CABINET, "axis": None})
+    assessment = assessed(tmp_path, {**CABINET, "axis": None}, building=EXACT)
     values = (0.3, 0.4, 0.5, 0.6)
     along = [share(assessment, pfa) for pfa in values]
     assert chances(fragility(assessment, *values)) == [pytest.approx(max(both)) for both in along]
@@ -129,17 +140,45 @@ ITEMS = [
 ]
 
 
-def test_at_the_workbooks_own_pfa_it_is_what_a_run_finds(tmp_path):
-    ran = assessed(tmp_path, *ITEMS, settings=replace(SETTINGS, verify="high"))
+@pytest.mark.parametrize(
+    ("building", "ideal"), [({}, False), ({}, True), ({"motion_uncertainty": 0.6, "piece_uncertainty": "no"}, False)]
+)
+def test_at_the_workbooks_own_pfa_it_is_what_a_run_finds(tmp_path, building, ideal):
+    settings = replace(SETTINGS, verify="all", ideal=ideal)
+    ran = assessed(tmp_path, *ITEMS, settings=settings, floor=SLOW, building=building)
     (pfa,) = {demand.pfa for demand in ran.case_demand}
     found = find_fragility(ran, [pfa])
     routes = build_results(ran).route_tables.routes
     for one, other in zip(found.routes, routes, strict=True):
         assert one.blocked == (other.blocked,) or not other.evaluated
         assert (one.if_anchors_fail or (None,)) == (other.blocked_if_anchors_fail,)
+        assert other.blocked is None or other.blocked.unconfirmed == one.doubtful == 0
     assert 0 < chances(found)[0] < 1
-    assert found.generic == ()
-    assert found == find_fragility(assessed(tmp_path, *ITEMS), [pfa]), "verified or not"
+    assert (found.generic, found.unshaped, found.weak) == ((), (), ())
+    assert found.uncertainty == (None if ideal else ran.cases.uncertainty)
+    blind = assessed(tmp_path, *ITEMS, settings=replace(SETTINGS, ideal=ideal), floor=SLOW, building=building)
+    assert found == find_fragility(blind, [pfa]), "simulated or not"
+
+
+def test_where_the_motions_may_be_too_weak_a_run_does_not_know(tmp_path):
+    """Motions made for one long pulse are weaker than it: the sweep gives what they do and counts the pieces."""
+    ran = assessed(tmp_path, *ITEMS, settings=replace(SETTINGS, verify="all"))
+    (pfa,) = {demand.pfa for demand in ran.case_demand}
+    found = find_fragility(ran, [pfa])
+    assert (found.weak, found.unshaped, [one.doubtful for one in found.routes]) == (("1",), (), [6, 0])
+    run = build_results(ran).route_tables.routes[0].blocked
+    assert run is not None
+    assert run.unconfirmed > 0
+    assert run.pieces < found.routes[0].blocked[0].pieces
+
+
+def test_the_uncertainty_of_the_workbook_counts(tmp_path):
+    """At a PFA at which no motion fells the piece as given, it falls where the earthquake is stronger or it thinner."""
+    exact, uncertain = (fragility(assessed(tmp_path, building=one, floor=SLOW), 0.2) for one in (EXACT, {}))
+    assert chances(exact)[0] <= 0.05
+    assert chances(uncertain)[0] > chances(exact)[0] + 0.05
+    assert exact.uncertainty is not None
+    assert (exact.uncertainty.motion, exact.uncertainty.piece) == (0, False)
 
 
 def test_values_and_threads_change_nothing(tmp_path):

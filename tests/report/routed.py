@@ -41,6 +41,8 @@ ITEMS: list[dict[str, Any]] = [
 
 KNOWN: dict[str, Any] = {"Building": [{"building": "Routed hall", "period": 1.0}]}
 """The same building with its period known, so that simulated classes are confirmed."""
+DOUBTED: dict[str, Any] = {"Floors": [FLOORS[0] | {"pfv_y": 8.0}, FLOORS[1]]}
+"""The same with a weaker motion of which neither T1 nor height tells the shape: no lower class is confirmed."""
 PARTLY: dict[str, list[dict[str, Any]]] = {
     "Places": [
         {"place": "Lab", "floor": "G", "x": 0.0, "y": 0.0, "kind": "room"},

@@ -12,7 +12,7 @@ from assess.report.summary import ROUTES as MOST
 from assess.route_results import RouteState
 from assess.settings import Settings
 from tests.recalculate import compare_formulas, write_report
-from tests.report.routed import ITEMS, KNOWN, PARTLY, assess_routed
+from tests.report.routed import DOUBTED, ITEMS, KNOWN, PARTLY, assess_routed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def written(request, tmp_path_factory):
     folder = tmp_path_factory.mktemp("routes")
     simulated = {"settings": Settings(verify="all", runs=20)}
-    more = {"formulas": {}, "verified": {**simulated, **KNOWN}, "unconfirmed": simulated}[request.param]
+    more = {"formulas": {}, "verified": {**simulated, **KNOWN}, "unconfirmed": {**simulated, **DOUBTED}}[request.param]
     results = assess_routed(folder / "w.xlsx", **more)
     write_report(results, folder / "r.xlsx")
     return results, openpyxl.load_workbook(folder / "r.xlsx"), folder / "r.xlsx"
@@ -215,7 +215,9 @@ def test_states_have_sign_and_colour(written):
             continue
         assert cell.value.startswith(f"{one.state.symbol} ")
         assert cell.fill.fgColor.rgb == _colour(one.state)
-    assert _colour(RouteState.BLOCKED) in {cell.fill.fgColor.rgb for row in book["Routes"].iter_rows() for cell in row}
+    worst = max((one.state for one in results.route_tables.segments), key=lambda state: state.severity)
+    assert worst in (RouteState.BLOCKED, RouteState.NOT_KNOWN)
+    assert _colour(worst) in {cell.fill.fgColor.rgb for row in book["Routes"].iter_rows() for cell in row}
 
 
 def test_the_sheets_are_set_up(written):
@@ -256,9 +258,11 @@ def test_the_summary_sheet_says_what_the_page_says(written):
 def test_what_to_fix_first_says_for_which_route(written):
     results, book, _ = written
     rows = {row[1]: row for row in book["Fix first"].iter_rows(min_row=2, values_only=True)}
-    before = results.route_tables.routes[0].blocked.probability
+    west = results.route_tables.routes[0]
+    at_most = west.blocked_if_unconfirmed_fall
+    before = f"{100 * west.blocked.probability:.1f} %" if at_most is None else "up to 100.0 %"
     assert book["Fix first"]["N1"].comment.text.startswith("Sorted by class (upper estimate)")
-    assert rows["tall"][13] == f"route West: {100 * before:.1f} % → 0.0 % (step 1 of 1)"
+    assert rows["tall"][13] == f"route West: {before} → 0.0 % (step 1 of 1)"
 
 
 def test_methods_tell_the_rule_and_the_widths_that_codes_ask_for(written):
