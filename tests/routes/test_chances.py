@@ -157,7 +157,10 @@ def test_what_depends_on_pieces_of_different_runs_is_no_less_than_each_alone():
     items = [piece(1.5, 0.0, route="Way", segment=one) for one in "ab"]
     routes = evaluated(make_falls([0.05, 0.01], fell=fell), items, segments)
     assert [one.blocked.probability for one in routes.segments] == pytest.approx([0.05, 0.01])
-    assert routes.routes[0].blocked.probability >= 0.05 - 1e-12
+    both = routes.routes[0].blocked
+    assert both.probability >= 0.05 - 1e-12
+    assert (both.is_joint, both.runs, both.unverified) == (False, 200, 0), "draws that only one had are not joint"
+    assert both.probability == max(both.joint, both.independent, both.correlated)
 
 
 @pytest.mark.parametrize("first", [True, False])
