@@ -18,15 +18,13 @@ from assess.model import Inventory
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all
 from assess.route_results import DOUBTS
+from assess.rocking.draws import STILL
 from assess.routes.chances import Falls
 from assess.settings import Settings
 from assess.units import GRAVITY
 
 IntArray = NDArray[np.int64]
 
-STILL = 0.85
-"""Share of the acceleration at which rocking starts [-] below which a piece is taken not to start: the peak of a motion
-may be somewhat above the floor's PFA, and the piece more slender than given."""
 FORMULA, SIMULATED, UNCONFIRMED = range(len(BASES))
 
 

@@ -14,14 +14,16 @@ from assess.i18n import gettext
 from assess.methods import Cases, adopted_formula
 from assess.methods._method import ALIKE
 from assess.model import AXES, Inventory, Item
+from assess.pipeline.adopt import find_can_rock
 from assess.pipeline.demand import Demand, Demands, build_demands
+from assess.pipeline.verify import find_uncertainty
 from assess.risk import classify
 from assess.settings import SCENARIOS, Settings
 from assess.units import GRAVITY
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import RUN_ASSESS
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CATALOGUE, SHEETS, Sheet
+from assess.workbook.schema import CATALOGUE, NO, SHEETS, YES, Sheet
 from assess.workbook.template import Content, Units, read_catalogue
 
 
@@ -44,12 +46,16 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
         height=np.array([item.height for item in inventory.items], dtype=np.float64),
         pfa=np.array([np.nan if one is None else one.pfa for one in governing], dtype=np.float64),
         pfv=np.array([np.nan if one is None else one.pfv for one in governing], dtype=np.float64),
+        centre=np.array([item.centre_of_gravity for item in inventory.items], dtype=np.float64),
+        uncertainty=find_uncertainty(inventory.building),
     )
     outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}
     formula = outcomes[adopted_formula().key]
     values = zip(*(outcome.value.tolist() for outcome in outcomes.values()), strict=True)
     outside = formula.flags["extrapolated"].tolist()
-    rows = zip(cases.breadth_to_height.tolist(), governing, values, formula.value.tolist(), outside, strict=True)
+    classes = [_say_class(*one) for one in zip(formula.value.tolist(), outside, strict=True)]
+    rocks = [gettext(YES if one else NO) for one in find_can_rock(cases, settings)]
+    rows = zip(cases.breadth_to_height.tolist(), governing, values, classes, rocks, strict=True)
     return [_write_row(*row) for row in rows]
 
 
@@ -61,14 +67,17 @@ def _find_governing(item: Item, demands: Demands) -> Demand | None:
     return max(every, key=lambda one: round(one.pfa / GRAVITY, ALIKE))
 
 
+def _say_class(adopted: float, is_outside: bool) -> str:
+    risk = classify(adopted)
+    return "" if risk is None else say_class(risk) + OUTSIDE * is_outside
+
+
 def _write_row(
-    ratio: float, governing: Demand | None, values: Sequence[float], adopted: float, is_outside: bool
+    ratio: float, governing: Demand | None, values: Sequence[float], label: str, rocks: str
 ) -> list[float | str]:
     if governing is None:
-        return [ratio, *[gettext(RUN_ASSESS)] * (len(values) + 2)]
-    risk = classify(adopted)
-    label = "" if risk is None else say_class(risk) + OUTSIDE * is_outside
-    return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), label]
+        return [ratio, *[gettext(RUN_ASSESS)] * (len(values) + 3)]
+    return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), label, rocks]
 
 
 def with_live(content: Content, units: Units = "si", folder: Path | None = None) -> Content:

@@ -31,6 +31,9 @@ HEIGHT, CENTRE, RESTITUTION = 0.02, 0.05, 0.04
 the restitution [-], about their nominal values."""
 CUT = 3.0
 """Standard deviations beyond which nothing is drawn."""
+STILL = 0.85
+"""Share of the acceleration at which rocking starts [-] below which a piece is taken not to start: the peak of a motion
+may be somewhat above the floor's PFA, and the piece more slender than given."""
 _EARTHQUAKE, _PIECE = 1, 2
 """Streams of random numbers of a seed."""
 _AT_ONCE = 256

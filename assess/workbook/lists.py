@@ -12,6 +12,7 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
 from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY
+from assess.rocking.draws import CUT, Uncertainty
 from assess.units import ALIASES, GRAVITY, QUANTITIES
 from assess.workbook import formulas as live
 from assess.workbook.schema import BUILDING, LISTS, SHEETS
@@ -33,12 +34,13 @@ known, and of every floor where a code's profile is chosen."""
 NO_UNIT = "unit?"
 """What they say where the bracket of a header holds no unit that is known."""
 
-LISTED = ("length", "acceleration", "velocity", "time")
+LISTED = ("length", "acceleration", "velocity", "time", "share")
 """Quantities of which the sheet holds the units."""
 
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
     ("Floors", "pfa_x"), ("Floors", "pfa_y"), ("Floors", "pfv_x"), ("Floors", "pfv_y"), ("Building", "period"),
+    ("Items", "centre_of_gravity"), ("Catalogue", "centre_of_gravity"),
 )  # fmt: skip
 
 _OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "given"}
@@ -114,8 +116,16 @@ class ListsWriter:
         sizes = (f"unit_{sheet}_{name}" for sheet in ("items", "catalogue") for name in ("breadth", "height"))
         formula = f'=IF(OR({",".join(f"ISTEXT({size})" for size in sizes)}),"{gettext(NO_UNIT)}","")'
         self._define("sizes_unit", at, row, gettext("unknown unit of a size"), formula, "")
-        self._write_scenario(row + 1, at)
+        self._write_strongest(row + 1, at)
+        self._write_scenario(row + 2, at)
         return at + 2
+
+    def _write_strongest(self, row: int, at: int) -> None:
+        """Write the factor on a floor's motion that no drawn earthquake exceeds."""
+        default = Uncertainty()
+        uncertainty = f"{gettext(BUILDING.name)}!$B${_line('motion_uncertainty')}"
+        formula = f'=EXP({CUT!r}*IF({uncertainty}="",{default.motion!r},{uncertainty}))'
+        self._define("strongest", at, row, gettext("largest factor on the motion"), formula, default.largest)
 
     def _write_scenario(self, row: int, at: int) -> None:
         """Write the kind of scenario as choices are compared, and whether floors' own values serve it."""

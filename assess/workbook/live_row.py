@@ -8,10 +8,12 @@ from xlsxwriter.utility import xl_col_to_name
 from assess.i18n import gettext
 from assess.methods import Method, adopted_formula
 from assess.model import NEAR_AXIS
+from assess.rocking.block import MIDDLE
+from assess.rocking.draws import STILL
 from assess.settings import Settings
 from assess.workbook import formulas as live
-from assess.workbook.lists import LETTERS
-from assess.workbook.schema import ITEMS, LIVE, WORKINGS
+from assess.workbook.lists import LETTERS, NO_UNIT
+from assess.workbook.schema import ITEMS, LIVE, NO, WORKINGS, YES
 
 FIRST = len(ITEMS.columns)
 """Place of the first live column, right of the columns to fill in."""
@@ -32,7 +34,7 @@ class LiveRow:
     def formulas(self) -> list[str]:
         """Return a formula for each of `schema.LIVE` and `schema.WORKINGS`, with `ROW` for the number of the row."""
         cells = [f"${xl_col_to_name(FIRST + at)}{ROW}" for at in range(len(LIVE) + len(WORKINGS))]
-        ratio, pfa, *risks, _, axis, pfv, height = cells
+        ratio, pfa, *risks, _, _, axis, pfv, height = cells
         no_floor, no_axis, wrong = (f'"{gettext(hint)}"' for hint in (NO_FLOOR, NO_AXIS, WRONG))
         served = f'IF({axis}={no_floor},{axis},IF({axis}="","",{no_axis}))'
         breadth = self._size("breadth")
@@ -44,6 +46,7 @@ class LiveRow:
             self._unless_blank(self._on(axis, "pfa", served)),
             *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
             f"=IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa)},{risk})",
+            _ready(ratio, pfa, self._can_rock(ratio, pfa)),
             self._unless_blank(f"IFERROR({self._axis()},{no_floor})"),
             self._unless_blank(self._on(axis, "pfv", '""')),
             self._unless_blank(f"IFERROR({self._size('height')}*100,{wrong})"),
@@ -61,6 +64,22 @@ class LiveRow:
         sheet = gettext("Catalogue")
         listed = f"INDEX({sheet}!${column}$2:${column}${last},MATCH({self._own('type')},list_catalogue,0))"
         return f'IF({own}="",IFERROR({listed}*unit_catalogue_{name},0),{own}*unit_items_{name})'
+
+    def _can_rock(self, ratio: str, pfa: str) -> str:
+        """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 beta) >= 0.85 g b/z."""
+        units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
+        yes, no, no_unit, wrong = (f'"{gettext(hint)}"' for hint in (YES, NO, NO_UNIT, WRONG))
+        starts = f"{pfa}*strongest>={STILL!r}*{ratio}/(2*{self._centre(*units)})"
+        fault = f"IF(OR({','.join(f'ISTEXT({unit})' for unit in units)}),{no_unit},{wrong})"
+        return f"IFERROR(IF({starts},{yes},{no}),{fault})"
+
+    def _centre(self, own_unit: str, listed_unit: str) -> str:
+        """Expression for the height of the centre of gravity [-]: the row's own, else its type's, else the middle."""
+        own, column = self._own("centre_of_gravity"), LETTERS["Catalogue", "centre_of_gravity"]
+        place = f"MATCH({self._own('type')},list_catalogue,0)"
+        listed = f"INDEX({gettext('Catalogue')}!${column}$2:${column}${self.last['Catalogue']},{place})"
+        of_type = f'IF(ISNUMBER({place}),IF({listed}="",{MIDDLE!r},{listed}*{listed_unit}),{MIDDLE!r})'
+        return f'IF({own}="",{of_type},{own}*{own_unit})'
 
     def _axis(self) -> str:
         """Expression for the axis that governs: the row's own, else its angle's, else the worse of the floor's."""

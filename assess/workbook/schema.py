@@ -278,7 +278,7 @@ SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE)
 HELP, LISTS = "Help", "Lists"
 """Sheets of the empty workbook that hold no data; reading leaves them out."""
 
-LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)")
+LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)", "Can rock")
 """Columns at the right of Items that Excel computes; reading leaves them out."""
 
 WORKINGS = ("Axis used", "PFV used [cm/s]", "Height used [cm]")

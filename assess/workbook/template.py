@@ -56,8 +56,16 @@ CLASS_NOTE = (
     "by tests."
 )
 
+ROCK_NOTE = (
+    "Whether the piece can start to rock in an earthquake like this one, if it is as strong as is taken into account "
+    "(Motion uncertainty in Building). no: simulation will find the class low, whatever the formula gives here."
+)
+
 FOOTER = "&C&A, page &P of &N"
 """In the spreadsheet program's own signs: centred, the sheet's name, its page and the number of pages."""
+
+CLASS = LIVE.index("Class (formula)")
+"""Place of the class among the live columns; after it stands whether a piece can rock."""
 
 CREATED = datetime(2000, 1, 1)
 """Date in the properties of every workbook: the same content gives the same bytes."""
@@ -128,7 +136,7 @@ class _Writer:
                                           "text_wrap": True, "valign": "top", "border": 1})  # fmt: skip
         self.text = book.add_format({"num_format": "@"})
         self.live_formats = [book.add_format({"num_format": code, "bg_color": "#f1f3f5"}) for code in
-                             ("0.000", "0.000", "0.00", "0.00", "General", "General", "0.0", "0.0")]  # fmt: skip
+                             ("0.000", "0.000", "0.00", "0.00", "General", "General", "General", "0.0", "0.0")]  # fmt: skip
         self.title = book.add_format({"bold": True, "font_size": 14})
         self.wrap = book.add_format({"text_wrap": True, "valign": "top"})
         self.bold = book.add_format({"bold": True, "valign": "top"})
@@ -217,8 +225,9 @@ class _Writer:
     def _write_live(self, page: Any) -> None:
         for at, label in enumerate((*LIVE, *WORKINGS)):
             page.write_string(0, FIRST + at, say_live(label), self.live_head)
-            page.set_column(FIRST + at, FIRST + at, 16 if at == len(LIVE) - 1 else 10)
-        page.write_comment(0, FIRST + 4, gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 2})
+            page.set_column(FIRST + at, FIRST + at, 16 if at == CLASS else 10)
+        page.write_comment(0, FIRST + CLASS, gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 2})
+        page.write_comment(0, FIRST + CLASS + 1, gettext(ROCK_NOTE), {"x_scale": 2})
         last = self.last[ITEMS.name]
         row_formulas = LiveRow(self.last).formulas()
         for row in range(2, last + 1):
@@ -230,7 +239,7 @@ class _Writer:
 
     def _colour(self, page: Any, last: int) -> None:
         """Colour the classes, and what is plainly wrong: an item that is there twice, or has no floor."""
-        column = xl_col_to_name(FIRST + 4)
+        column = xl_col_to_name(FIRST + CLASS)
         for risk in reversed(RiskClass):
             form = self.book.add_format({"bg_color": risk.fill, "font_color": risk.ink, "bold": risk >= RiskClass.HIGH})
             page.conditional_format(

@@ -33,7 +33,7 @@ CONTENT = Content(
 def test_a_record_on_any_axis_of_a_piece_asks_for_a_run(tmp_path):
     (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
     along_x, along_y, both, anchored = with_live(CONTENT, folder=tmp_path).live
-    assert along_x[1:] == both[1:] == [RUN_ASSESS] * 4
+    assert along_x[1:] == both[1:] == [RUN_ASSESS] * 5
     assert along_x[0] == along_y[0] == pytest.approx(40 / 180)
     assert along_y[1] == pytest.approx(0.4)
     assert along_y[4] == "■ very high"
@@ -63,7 +63,7 @@ def test_what_no_formula_knows_asks_for_a_run(tmp_path):
     content = Content({"Floors": floors, "Items": ITEMS, "Building": [{"ground_pga": 0.2}]})
     assert [row[1] for row in with_live(content).live] == [pytest.approx(0.4)] * 3 + [RUN_ASSESS]
     by_code = replace(content, rows={**content.rows, "Building": [{"ground_pga": 0.2, "scenario_kind": "NTC 2018"}]})
-    assert [row[1:] for row in with_live(by_code).live] == [[RUN_ASSESS] * 4] * 4
+    assert [row[1:] for row in with_live(by_code).live] == [[RUN_ASSESS] * 5] * 4
 
 
 def test_they_are_the_results_of_the_run(tmp_path):
@@ -74,5 +74,6 @@ def test_they_are_the_results_of_the_run(tmp_path):
     run = compute(inventory, Settings(verify="none"))
     for one, values in zip(run.governing, live_values(inventory), strict=True):
         assert values[1] == run.cases.pfa[one] / GRAVITY
-        assert values[2:-1] == [run.outcomes[method.key].value[one] for method in LIVE_METHODS]
-        assert values[-1].startswith(say_class(RiskClass(run.adoption.risk[one])))
+        assert values[2:-2] == [run.outcomes[method.key].value[one] for method in LIVE_METHODS]
+        assert values[-1] == ("yes" if run.adoption.can_rock[one] else "no")
+        assert values[-2].startswith(say_class(RiskClass(run.adoption.risk[one])))

@@ -53,7 +53,8 @@ SIZES: Rows = [
     {"breadth": 75, "height": 150},
     {"breadth": 150, "height": 100},
     {"type": "Bookcase 5 shelves"},
-    {"type": "bookcase 6 shelves", "breadth": 55},
+    {"type": "bookcase 6 shelves", "breadth": 55, "centre_of_gravity": 30},
+    {"breadth": 90, "height": 180, "centre_of_gravity": 75},
 ]
 DIRECTIONS: Rows = [
     {}, {"axis": "X"}, {"axis": "Y"}, {"angle_deg": 15}, {"angle_deg": 45}, {"angle_deg": -80},
@@ -79,13 +80,14 @@ RETYPED: Mapping[str, Mapping[tuple[str, str], str]] = {
 
 
 def fill(
-    path: Path, items: Rows, floors: Rows, building: dict[str, Any], units: Units = "si", spare: int | None = 5
-) -> Path:
+    path: Path, items: Rows, floors: Rows, building: dict[str, Any], units: Units = "si", spare: int | None = 5,
+    catalogue: Rows | None = None,
+) -> Path:  # fmt: skip
     """Write a workbook whose values mean the same in any units: they are given in cm, g and cm/s.
 
     It has `spare` prepared rows a table in place of hundreds, which take long to recalculate; None leaves them.
     """
-    rows = {"Items": items, "Floors": floors, "Building": [building]}
+    rows = {"Items": items, "Floors": floors, "Building": [building], "Catalogue": catalogue or []}
     if units == "imperial":
         rows = {sheet: [_convert(sheet, row, units) for row in given] for sheet, given in rows.items()}
     with pytest.MonkeyPatch.context() as patch:
@@ -176,13 +178,16 @@ def check(path: Path, engine: Engine) -> None:
 def differences(path: Path, engine: Engine) -> Iterator[str]:
     shown = engine(poison(path))
     inventory = read_inventory(path)
-    for item, (*wanted, word) in zip(inventory.items, live_values(inventory), strict=True):
-        *numbers, label = shown[item.row]
-        if label != word or not np.allclose(np.array(numbers, float), np.array(wanted, float), rtol=0, atol=AGREEMENT):
-            yield f"{item.item} {item}: {numbers} {label}, expected {wanted} {word}"
+    for item, (*wanted, word, rocks) in zip(inventory.items, live_values(inventory), strict=True):
+        *numbers, label, can_rock = shown[item.row]
+        is_same = np.allclose(np.array(numbers, float), np.array(wanted, float), rtol=0, atol=AGREEMENT)
+        if (label, can_rock) != (word, rocks) or not is_same:
+            yield f"{item.item} {item}: {shown[item.row]}, expected {wanted} {word} {rocks}"
 
 
-BUILDINGS = [{}, {"period": 0.4}, {"period": 1.7, "scenario_kind": "given"}]
+BUILDINGS = [
+    {"motion_uncertainty": 0}, {"period": 0.4}, {"period": 1.7, "scenario_kind": "given", "motion_uncertainty": 0.15},
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("building", BUILDINGS, ids=["no T1", "short T1", "long T1"])
@@ -233,10 +238,10 @@ def test_live_columns_of_an_italian_workbook_equal_the_program(tmp_path: Path, u
 
 
 ITALIAN_WORDS = [
-    ({"floor": "9"}, {}, ["piano?"] * 4), ({"axis": "Z"}, {}, ["asse?"] * 4),
-    ({}, {"scenario_kind": " REGISTRATO"}, ["eseguire assess"] * 4), ({}, {"scenario_kind": "Assegnato"}, None),
+    ({"floor": "9"}, {}, ["piano?"] * 5), ({"axis": "Z"}, {}, ["asse?"] * 5),
+    ({}, {"scenario_kind": " REGISTRATO"}, ["eseguire assess"] * 5), ({}, {"scenario_kind": "Assegnato"}, None),
     ({}, {"scenario_kind": "given"}, None), ({}, {"scenario_kind": "come-compilato"}, None), ({}, {}, None),
-    ({}, {"scenario_kind": "as filled"}, None), ({}, {"scenario_kind": "NTC 2018"}, ["eseguire assess"] * 4),
+    ({}, {"scenario_kind": "as filled"}, None), ({}, {"scenario_kind": "NTC 2018"}, ["eseguire assess"] * 5),
 ]  # fmt: skip
 
 
@@ -255,24 +260,26 @@ def test_an_unreadable_unit_of_an_italian_workbook(tmp_path: Path) -> None:
         book = openpyxl.load_workbook(path)
         book["Arredi"]["I1"] = "Altezza"
         book.save(path)
-        assert by_formualizer(poison(path))[2][2:] == ["unità?"] * 3
+        assert by_formualizer(poison(path))[2][2:] == ["unità?"] * 4
 
 
 # ---------------------------------------------------------------- words in place of numbers
 
 
-def shown_of(folder: Path, item: dict[str, Any], floors: Rows | None = None, **building: Any) -> Live:
+def shown_of(
+    folder: Path, item: dict[str, Any], floors: Rows | None = None, catalogue: Rows | None = None, **building: Any
+) -> Live:
     row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180} | item
-    path = fill(folder / "book.xlsx", [row], floors or [{"floor": "1", "pfa_x": 0.5}], building)
+    path = fill(folder / "book.xlsx", [row], floors or [{"floor": "1", "pfa_x": 0.5}], building, catalogue=catalogue)
     return by_formualizer(poison(path))[2]
 
 
 def test_blank_rows_show_nothing(tmp_path: Path) -> None:
     path = poison(fill(tmp_path / "book.xlsx", GRID[:1], FLOORS, {}, spare=None))
     shown = by_formualizer(path)
-    assert shown[2] != [""] * 5
+    assert shown[2] != [""] * 6
     assert len(shown) == 500
-    assert all(shown[row] == [""] * 5 for row in range(3, 502))
+    assert all(shown[row] == [""] * 6 for row in range(3, 502))
 
 
 @pytest.mark.libreoffice
@@ -283,20 +290,20 @@ def test_blank_rows_show_nothing_in_libreoffice(tmp_path: Path) -> None:
 
 
 def test_no_such_floor(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"floor": "9"})[1:] == ["floor?"] * 4
+    assert shown_of(tmp_path, {"floor": "9"})[1:] == ["floor?"] * 5
 
 
 def test_no_floor_yet(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"floor": None})[1:] == ["floor?"] * 4
+    assert shown_of(tmp_path, {"floor": None})[1:] == ["floor?"] * 5
 
 
 def test_no_sizes_yet(tmp_path: Path) -> None:
     ratio, pfa, *rest = shown_of(tmp_path, {"breadth": None})
-    assert (ratio, pfa, rest) == ("", 0.5, [""] * 3)
+    assert (ratio, pfa, rest) == ("", 0.5, [""] * 4)
 
 
 def test_no_such_type(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"breadth": None, "height": None, "type": "none such"})[2:] == [""] * 3
+    assert shown_of(tmp_path, {"breadth": None, "height": None, "type": "none such"})[2:] == [""] * 4
 
 
 def test_own_sizes_need_no_type(tmp_path: Path) -> None:
@@ -309,14 +316,14 @@ def test_axis_as_typed(tmp_path: Path, axis: str, pfa: float | str) -> None:
     shown = shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.5}])
     assert shown[1] == pfa
     if isinstance(pfa, str):
-        assert shown[2:] == [pfa] * 3
+        assert shown[2:] == [pfa] * 4
 
 
 FLOORS_WITH_RECORDS = [
-    ({"record_x": "roof.csv"}, {}, ["run assess"] * 4),
-    ({"record_x": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 4),
-    ({"record_x": "roof.csv", "pfa_y": 0.5}, {}, ["run assess"] * 4),
-    ({"record_y": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 4),
+    ({"record_x": "roof.csv"}, {}, ["run assess"] * 5),
+    ({"record_x": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 5),
+    ({"record_x": "roof.csv", "pfa_y": 0.5}, {}, ["run assess"] * 5),
+    ({"record_y": "roof.csv", "pfa_x": 0.5}, {}, ["run assess"] * 5),
     ({"record_y": "roof.csv", "pfa_x": 0.5}, {"axis": "X"}, None),
     ({"record_y": "  ", "pfa_x": 0.5}, {}, None),
 ]
@@ -346,26 +353,52 @@ def test_scenario_kind(tmp_path: Path, kind: str, pfa: Any) -> None:
 
 def test_recorded_floors_without_a_record_show_no_class(tmp_path: Path) -> None:
     """They may be interpolated, which is the program's task."""
-    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["run assess"] * 4
+    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["run assess"] * 5
 
 
 @pytest.mark.parametrize("kind", [None, "as filled", "given", "recorded", "NTC 2018"])
 def test_a_floor_with_nothing_of_its_own_shows_no_class(tmp_path: Path, kind: str | None) -> None:
     shown = shown_of(tmp_path, {}, [{"floor": "1", "elevation": 4}], scenario_kind=kind, ground_pga=0.2)
-    assert shown[1:] == ["run assess"] * 4
+    assert shown[1:] == ["run assess"] * 5
 
 
 @pytest.mark.parametrize("axis", [None, "X", "Y"])
 @pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
 def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str, axis: str | None) -> None:
     assert (
-        shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.5}], scenario_kind=kind)[1:] == ["run assess"] * 4
+        shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.5}], scenario_kind=kind)[1:] == ["run assess"] * 5
     )
 
 
 def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -> None:
     floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "pfa_x": 0.5, "elevation": 4}]
     assert shown_of(tmp_path, {}, floors, ground_pga=0.2)[1] == 0.5
+
+
+ROCKING = [  # PFA e^(3 beta) against 0.85 g b/z
+    ({}, {}, "yes"), ({"breadth": 150}, {}, "yes"), ({"breadth": 150}, {"motion_uncertainty": 0.1}, "no"),
+    ({"breadth": 150, "centre_of_gravity": 80}, {"motion_uncertainty": 0.1}, "yes"),
+    ({"breadth": 150, "type": "heavy"}, {"motion_uncertainty": 0.1}, "yes"),
+    ({"breadth": 150, "type": "heavy", "centre_of_gravity": 50}, {"motion_uncertainty": 0.1}, "no"),
+    ({"breadth": 150, "type": "plain"}, {"motion_uncertainty": 0.1}, "no"),
+    ({"breadth": 106}, {"motion_uncertainty": 0}, "no"), ({"breadth": 105}, {"motion_uncertainty": 0}, "yes"),
+    ({}, {"motion_uncertainty": "much"}, "check"), ({"centre_of_gravity": "top"}, {}, "check"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("item", "building", "said"), ROCKING)
+def test_whether_a_piece_can_rock(tmp_path: Path, item: dict[str, Any], building: dict[str, Any], said: str) -> None:
+    catalogue = [{"type": "heavy", "centre_of_gravity": 80}, {"type": "plain"}]
+    assert shown_of(tmp_path, item, catalogue=catalogue, **building)[5] == said
+
+
+def test_an_unreadable_unit_of_the_centre_of_gravity(tmp_path: Path) -> None:
+    path = fill(tmp_path / "book.xlsx", [GRID[0] | {"centre_of_gravity": 60}], FLOORS, {})
+    book = openpyxl.load_workbook(path)
+    places = {str(cell.value).split(" [")[0]: cell for cell in book["Items"][1]}
+    places["Centre of gravity"].value = "Centre of gravity"
+    book.save(path)
+    assert by_formualizer(poison(path))[2][5] == "unit?"
 
 
 UNREADABLE = [
@@ -383,7 +416,7 @@ def test_unreadable_units(tmp_path: Path, sheet: str, header: str, at: int, word
     book.save(path)
     ratio, pfa, *rest = by_formualizer(poison(path))[2]
     assert "unit?" in (ratio, pfa)
-    assert rest == words * 3
+    assert rest == words * 4
 
 
 def test_a_pfv_with_an_unreadable_unit_falls_back_to_the_bound(tmp_path: Path) -> None:
@@ -403,4 +436,10 @@ def test_sorting_floors_and_inserting_rows_moves_no_reference(tmp_path: Path) ->
 
 
 def test_every_live_method_has_its_column() -> None:
-    assert ("B/H", "PFA used [g]", *(method.short_title for method in LIVE_METHODS), "Class (formula)") == LIVE
+    assert (
+        "B/H",
+        "PFA used [g]",
+        *(method.short_title for method in LIVE_METHODS),
+        "Class (formula)",
+        "Can rock",
+    ) == LIVE
