@@ -136,7 +136,7 @@ class _Writer:
                                           "text_wrap": True, "valign": "top", "border": 1})  # fmt: skip
         self.text = book.add_format({"num_format": "@"})
         self.live_formats = [book.add_format({"num_format": code, "bg_color": "#f1f3f5"}) for code in
-                             ("0.000", "0.000", "0.00", "0.00", "General", "General", "General", "0.0", "0.0")]  # fmt: skip
+                             ("0.000", "0.000", "0.00", "0.00", *["General"] * 3, "0.0", "0.0")]  # fmt: skip
         self.title = book.add_format({"bold": True, "font_size": 14})
         self.wrap = book.add_format({"text_wrap": True, "valign": "top"})
         self.bold = book.add_format({"bold": True, "valign": "top"})

@@ -1,6 +1,6 @@
 """The Excel report: live formulas, so that an edited PFA, size or class limit recomputes classes and counts.
 
-A simulated class holds until one of its inputs is edited; then it is shown as void.
+A simulated class holds until one of its inputs is edited; then the row says that assess is to be run again.
 
 Sheets are written row by row and in little memory. Every text of the workbook goes in as text. Names of sheets,
 headings and the words that formulas compare are in the language in use; formulas find columns by keys.
@@ -77,5 +77,5 @@ def _write_sheets(book: xlsxwriter.Workbook, content: Content, progress: Progres
     for page, name, (_title, write) in zip(pages, pen.sheets.values(), there, strict=True):
         progress.check()
         write_plainly(page)
-        set_print(page, content.title, name)
+        set_print(page, content.title, name, content.run.settings)
         write(pen, page, content)

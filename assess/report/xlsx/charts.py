@@ -35,18 +35,25 @@ def fill(risk: RiskClass, *, outlined: bool = True) -> dict[str, Any]:
     return look | {"fill": {"color": risk.fill}}
 
 
-def add_classes(pen: Pen, page: Any, cell: Cell, top: int) -> None:
-    """Draw the pieces of each class; `top` is the row of the classes, below which are the counts."""
+def add_classes(pen: Pen, page: Any, cell: Cell, top: int, basis: str) -> None:
+    """Draw the pieces of each class; `top` is the row of the classes, below which are the counts of the basis."""
     series = {"name": _("Pieces"), "points": [fill(risk) for risk in RiskClass], "data_labels": {"value": True}}
     chart = pen.book.add_chart({"type": "column"})
     _add(chart, pen.sheets["Summary"], (top, 1, top, len(RiskClass)), (top + 1, 1, top + 1, len(RiskClass)),
          {"gap": 60, **series})  # fmt: skip
     chart.set_y_axis({"visible": False, "major_gridlines": {"visible": False}, "min": 0})
-    _place(page, cell, chart, _("Pieces by class"), (470, 280), _("Pieces of each class in the whole building"))
+    _place(
+        page,
+        cell,
+        chart,
+        _("Pieces by class: {basis}", basis=basis),
+        (470, 280),
+        _("Pieces of each class in the whole building"),
+    )
     chart.set_legend({"none": True})
 
 
-def add_highest(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Cell) -> None:
+def add_highest(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Cell, basis: str) -> None:
     """Draw the highest chances, in the colour of their class.
 
     `rows` are the first and the last, `columns` those of the names and of the chances of the lowest class.
@@ -60,10 +67,10 @@ def add_highest(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Cell) -> N
     chart.set_y_axis({"reverse": True, "num_font": {"size": 8}, "label_position": "low"})
     chart.show_hidden_data()
     description = _("Chances of the pieces most likely to fall, as in the table below")
-    _place(page, cell, chart, _("Highest chances"), (715, 280), description)
+    _place(page, cell, chart, _("Highest chances: {basis}", basis=basis), (715, 280), description)
 
 
-def add_floors(pen: Pen, page: Any, cell: Cell, rows: Cell) -> None:
+def add_floors(pen: Pen, page: Any, cell: Cell, rows: Cell, basis: str) -> None:
     """Draw the pieces of each class on every floor; `rows` are those of the first and the last floor."""
     sheet, (first, last) = pen.sheets["Summary"], rows
     chart, floors = pen.book.add_chart({"type": "bar", "subtype": "stacked"}), last - first + 1
@@ -74,7 +81,7 @@ def add_floors(pen: Pen, page: Any, cell: Cell, rows: Cell) -> None:
     every = math.ceil(floors * LABEL_HEIGHT / (height - AROUND))
     chart.set_y_axis({"reverse": True, "interval_unit": every, "num_font": {"size": 8}})
     description = _("Pieces of each class on every floor, as in the table above")
-    _place(page, cell, chart, _("Pieces by class and floor"), (1185, height), description)
+    _place(page, cell, chart, _("Pieces by class and floor: {basis}", basis=basis), (1185, height), description)
 
 
 def _height(floors: int) -> int:

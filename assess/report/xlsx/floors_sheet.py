@@ -38,7 +38,7 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
         for motion in motions:
             _write_motion(pen, page, row, motion)
             if run.has_simulated:
-                _write_as_run(pen, page, row, motion, counts_pfv=run.provenance.suite is None)
+                _write_as_run(pen, page, row, motion)
         pen.put(page, row, FLOOR_AT["elevation"], floor.elevation_m, pen.style("plain"))
     _dress(page, rows, len(keys))
     charts.add_motion(pen, page, (HEAD + rows + 1, 0), (HEAD, HEAD + rows - 1), {a: FLOOR_AT[f"pfa_{a}"] for a in AXES})
@@ -55,9 +55,10 @@ def _heads() -> list[str]:
 
 def _comment(page: Any) -> None:
     edit_here = _(
-        "Edit the PFA and PFV here: Items and Summary follow. Where several records serve an axis, the one with the "
-        "largest PFA stands here; the sheet Motions lists all. Interpolated floors and those of a code's profile hold "
-        "numbers as run: they do not follow when another floor is edited."
+        "Edit the PFA and PFV here: rows that were not simulated follow; simulated rows on the floor say 'run again' "
+        "and leave all counts. Where several records serve an axis, the one with the largest PFA stands here; the "
+        "sheet Motions lists all. Interpolated floors and those of a code's profile hold numbers as run: they do not "
+        "follow when another floor is edited."
     )
     page.write_comment(0, FLOOR_AT["pfa_X"], edit_here, {"x_scale": 2, "y_scale": 1.5})
 
@@ -93,14 +94,13 @@ def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
     pen.put(page, row, FLOOR_AT[f"source_{axis}"], _source(motion), pen.style("text"))
 
 
-def _write_as_run(pen: Pen, page: Any, row: int, motion: MotionRow, *, counts_pfv: bool) -> None:
-    """Write the motion of an axis as run, and whether it was edited since; PFV matters where no record is known."""
+def _write_as_run(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
+    """Write the motion of an axis as run, and whether it was edited since."""
     axis, pfv = motion.axis, motion.pfv_cm_s
     pen.put(page, row, FLOOR_AT[f"pfa_run_{axis}"], motion.pfa_g)
     pen.put(page, row, FLOOR_AT[f"pfv_run_{axis}"], pfv)
     cells = {name: _cell(f"{name}_{axis}", row) for name in ("pfa", "pfv", "pfa_run", "pfv_run")}
-    counts = counts_pfv and not motion.has_record
-    formula = edited_motion(pen.terms, cells, counts_pfv=counts, had_pfv=pfv is not None)
+    formula = edited_motion(pen.terms, cells, had_pfv=pfv is not None)
     page.write_formula(row, FLOOR_AT[f"edited_{axis}"], formula, pen.style("warning"), "")
 
 

@@ -1,7 +1,8 @@
 """The live formulas of Items, and those that show there and in Floors that an input was edited since the run.
 
-A simulated class holds for the inputs that were integrated. Where one of them is edited it is void, and the class of
-the formula is in force again until assess is run anew. What formulas write and compare is in the report's language.
+A class that rests on a simulation holds for the inputs that were integrated. Where one of them is edited the row says
+that assess is to be run again, and leaves every count, list and chart: it never falls back to the formula. What
+formulas write and compare is in the report's language.
 """
 
 import string
@@ -25,6 +26,12 @@ ROW = "\x00"
 """Stands for the number of the row in a formula."""
 CLASS_WEIGHT, ROW_WEIGHT = 10, "1E-9"
 """In the order of the pieces a class weighs more than any chance; of equal chances the upper row comes first."""
+SAME = ("breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "friction")
+"""Numbers of a row that a simulated class holds for; a blank one must stay blank."""
+SAME_WORDS = ("floor", "axis_given")
+"""Texts of a row that a simulated class holds for."""
+AT_RUN = ("chance", "low", "high", "beside")
+"""What simulation found: shown while the row is as run."""
 FLOOR_KEYS = (
     "floor", "name", "pfa_X", "pfv_X", "source_X", "pfa_Y", "pfv_Y", "source_Y", "elevation", "edited_X", "edited_Y",
     "pfa_run_X", "pfv_run_X", "pfa_run_Y", "pfv_run_Y",
@@ -57,8 +64,8 @@ class Terms:
     yes: str
     edited: str
     check: str
-    not_simulated: str
-    void: str
+    again: str
+    bases: Mapping[str, str]
     labels: tuple[str, ...]
 
     def label(self, rank: str) -> str:
@@ -72,8 +79,12 @@ def build_terms() -> Terms:
         yes=_("yes"),
         edited=_("edited"),
         check=_("check"),
-        not_simulated=_("not verified"),
-        void=_("void: inputs changed"),
+        again=_("run again"),
+        bases={
+            "simulated": _("simulated"),
+            "formula": _("formula (not simulated)"),
+            "unconfirmed": _("unconfirmed"),
+        },
         labels=tuple(say_class(risk) for risk in RiskClass),
     )
 
@@ -81,15 +92,15 @@ def build_terms() -> Terms:
 # ---------------------------------------------------------------- Floors
 
 
-def edited_motion(terms: Terms, cells: Mapping[str, str], *, counts_pfv: bool, had_pfv: bool) -> str:
+def edited_motion(terms: Terms, cells: Mapping[str, str], *, had_pfv: bool) -> str:
     """Return the formula that shows whether a floor's motion along an axis differs from the one as run.
 
-    `cells` holds pfa and pfv, and both as run. PFV counts where the motions were made for it; where it was blank as
-    run, any value differs.
+    `cells` holds pfa and pfv, and both as run; where PFV was blank as run, any value differs.
     """
-    tests = [_differs(cells["pfa"], cells["pfa_run"])]
-    if counts_pfv:
-        tests.append(_differs(cells["pfv"], cells["pfv_run"]) if had_pfv else f'{cells["pfv"]}<>""')
+    tests = [
+        _differs(cells["pfa"], cells["pfa_run"]),
+        _differs(cells["pfv"], cells["pfv_run"]) if had_pfv else f'{cells["pfv"]}<>""',
+    ]
     return f'=IF(IFERROR(OR({",".join(tests)}),TRUE),{literal(terms.edited)},"")'
 
 
@@ -120,27 +131,38 @@ class ItemFormulas:
     terms: Terms
     formula: str
 
-    def of_simulated(self) -> dict[str, str]:
-        """Return the formulas of a row that was simulated, by the keys of their columns."""
-        cells, risk, rank = self.cells, self.cells[self.formula], self.cells["rank"]
-        upper = f"IF(ISNUMBER({rank}),{cells['rank_upper']},{_rank(risk)})"
-        found = self._of_any() | {
-            "class_simulated": self._simulated_class(),
-            "class": f"IF(ISNUMBER({rank}),{self._mark()}&{self.terms.label(rank)},{cells['class_formula']})",
-            "chance": f"IF(ISNUMBER({rank}),{cells['chance_run']},{risk})",
-            "edited": self._edited(),
-            "rank": self._simulated_rank(),
-            "rank_upper": f"MAX({rank},{_rank(cells['upper_end'])})",
-            "rank_formula": f'IF(ISNUMBER({risk}),{_rank(risk)},"")',
-            "order": self._order(upper),
-        }
+    def of(self, basis: str) -> dict[str, str]:
+        """Return the formulas of a row whose class rests on one of `assess.results.BASES`, by keys of columns."""
+        found = self._of_any() | (self._of_formula() if basis == "formula" else self._of_run(basis))
         return {key: f"={one}" for key, one in found.items()}
 
-    def of_others(self) -> dict[str, str]:
-        """Return the formulas of a row that was not simulated: what is in force there is the formula's."""
-        cells, risk = self.cells, self.cells[self.formula]
-        own = {"class": cells["class_formula"], "chance": risk, "order": self._order(_rank(risk))}
-        return {key: f"={one}" for key, one in (self._of_any() | own).items()}
+    def _of_formula(self) -> dict[str, str]:
+        risk = self.cells[self.formula]
+        return {"class": self.cells["class_formula"], "order_formula": self._order(risk, _rank(risk), risk)}
+
+    def _of_run(self, basis: str) -> dict[str, str]:
+        """Return the formulas of a row whose class holds while its inputs are as run."""
+        cells, rank, upper = self.cells, self.cells["rank"], self.cells["rank_upper"]
+        own, again = literal(self.terms.bases[basis]), literal(self.terms.again)
+        found = {
+            "edited": self._edited(),
+            "rank": self._rank_as_run(),
+            "rank_upper": self._while_as_run(f"MAX({rank},{_rank(cells['upper_end'])})"),
+            "basis": self._while_as_run(own, again),
+            "class": self._while_as_run(f"{self._mark()}&{self.terms.label(rank)}", again),
+            "class_upper": self._while_as_run(f"{self._mark()}&{self.terms.label(upper)}"),
+        }
+        if basis == "unconfirmed":
+            return found | {
+                "class_notes": self._while_as_run(cells["settle"]),
+                "order_unconfirmed": self._order(rank, upper, cells[self.formula]),
+            }
+        return found | {
+            **{key: self._while_as_run(cells[f"{key}_run"]) for key in AT_RUN},
+            "rank_formula": f'IF(ISNUMBER({cells[self.formula]}),{_rank(cells[self.formula])},"")',
+            "class_notes": self._while_as_run(self._notes()),
+            "order_simulated": self._order(rank, upper, cells["chance"]),
+        }
 
     def _of_any(self) -> dict[str, str]:
         cells, check = self.cells, literal(self.terms.check)
@@ -176,36 +198,43 @@ class ItemFormulas:
     def _mark(self) -> str:
         return f'IF({self.cells["anchored"]}={literal(self.terms.yes)},{literal(ANCHORED)},"")'
 
+    def _while_as_run(self, value: str, edited: str = '""') -> str:
+        return f"IF(ISNUMBER({self.cells['rank']}),{value},{edited})"
+
     def _edited(self) -> str:
-        """Return whether the size, the floor, the axis or the motion along it differs from the one as run."""
+        """Return whether the piece, its floor, its axis or the motion along it differs from the one as run."""
         cells, edited = self.cells, literal(self.terms.edited)
         axis = cells["axis_given"]
         tests = [
-            *(_differs(cells[key], cells[f"{key}_run"]) for key in ("breadth_cm", "height_cm")),
-            *(f"{cells[key]}<>{cells[f'{key}_run']}" for key in ("floor", "axis_given")),
+            *(_differs(cells[key], cells[f"{key}_run"]) for key in SAME),
+            *(f"{cells[key]}<>{cells[f'{key}_run']}" for key in SAME_WORDS),
             *(f'IF({axis}="{other}",FALSE,{self._floor(f"edited_{own}")}={edited})' for own, other in ("XY", "YX")),
         ]
         return f'IF(IFERROR(OR({",".join(tests)}),TRUE),{edited},"")'
 
-    def _simulated_rank(self) -> str:
+    def _rank_as_run(self) -> str:
         cells = self.cells
         at_least = f"IF({cells['fell']}=1,{int(RiskClass.HIGH)},0)"
         edited = literal(self.terms.edited)
         return f'IF({cells["edited"]}={edited},"",MAX({_rank(cells["behind"])},{at_least}))'
 
-    def _order(self, rank: str) -> str:
-        """Return the number by which pieces stand in order of their class and chance; nothing for anchored ones."""
-        cells = self.cells
-        free = f"AND({cells['anchored']}<>{literal(self.terms.yes)},ISNUMBER({cells['chance']}))"
-        return f'IF({free},{CLASS_WEIGHT}*{rank}+{cells["chance"]}-ROW()*{ROW_WEIGHT},"")'
+    def _order(self, known: str, rank: str, chance: str) -> str:
+        """Return the number by which pieces stand in order of their class and chance; nothing for anchored ones.
 
-    def _simulated_class(self) -> str:
+        There is none either where `known` is no number.
+        """
+        free = f"AND({self.cells['anchored']}<>{literal(self.terms.yes)},ISNUMBER({known}))"
+        return f'IF({free},{CLASS_WEIGHT}*{rank}+{chance}-ROW()*{ROW_WEIGHT},"")'
+
+    def _notes(self) -> str:
+        """Return what is to be said of a simulated class."""
         rank, upper, formula = (self.cells[key] for key in ("rank", "rank_upper", "rank_formula"))
-        label = self.terms.label
-        could_be = sentence(", " + _("could be {risk}"), risk=label(upper))
-        lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=label(formula))
-        notes = f'IF({upper}>{rank},{could_be},"")&IF({formula}>{rank},{lowered},"")'
-        return f"IF(ISNUMBER({rank}),{self._mark()}&{label(rank)}&{notes},{literal(self.terms.void)})"
+        could_be = sentence(", " + _("could be {risk}"), risk=self.terms.label(upper))
+        lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=self.terms.label(formula))
+        fell = literal(", " + _("as it overturns under the record itself"))
+        notes = [(f"{upper}>{rank}", could_be), (f"{formula}>{rank}", lowered), (f"{self.cells['fell']}=1", fell)]
+        each = "&".join(f'IF({test},{text},"")' for test, text in notes)
+        return f"MID({each},3,300)"
 
 
 def live_formulas(cells: Mapping[str, str]) -> dict[str, str]:

@@ -1,23 +1,34 @@
 """The sheet Items: every row of furniture, with live formulas for axis, PFA, chances and class.
 
 Its columns are the fields of `assess.fields` that Excel shows, with what is live, what simulation found, and, hidden at
-the far right, the inputs as run.
+the far right, the inputs as run. `item_values` tells what a row holds.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.fields import Field, item_fields
 from assess.i18n import gettext as _
-from assess.report import words
 from assess.report.content import Content
-from assess.report.xlsx.item_formulas import ANCHORED, CLASS_WEIGHT, ROW, ItemFormulas, live_formulas
+from assess.report.xlsx.item_formulas import AT_RUN, ROW, ItemFormulas, build_terms, live_formulas
+from assess.report.xlsx.item_values import (
+    chance_behind,
+    class_by_formula,
+    class_in_force,
+    class_notes,
+    is_as_run,
+    list_simulated,
+    order_number,
+    say_unsettled,
+    under_record,
+    upper_class,
+    upper_end,
+)
 from assess.report.xlsx.pen import CHANCE, COUNT, LINE, LOOKS, Column, Pen, count_lines, of_field, with_unit
-from assess.results import CaseRow, ItemResult, Results
-from assess.risk import RiskClass, classify
-from assess.workbook.formulas import OUTSIDE, say_class
+from assess.results import BASES, ItemResult, Results
 from assess.workbook.schema import ITEMS
 
 if TYPE_CHECKING:
@@ -28,14 +39,22 @@ HEAD = 1
 MOST_LINES = 6
 """Lines of a row: a longer text is cut by its cell, and whole in it."""
 
+Read = Callable[[ItemResult], Any]
+
 FRONT = (
-    "item", "floor", "room", "description", "type", "quantity", "breadth_cm", "width_cm", "height_cm", "axis_given",
-    "anchored",
+    "item", "floor", "room", "description", "type", "quantity", "breadth_cm", "width_cm", "height_cm",
+    "centre_of_gravity", "axis_given", "anchored", "friction",
 )  # fmt: skip
 """The fields that the sheet begins with."""
-INPUTS = ("quantity", "breadth_cm", "width_cm", "height_cm", "axis_given", "anchored")
+INPUTS = (
+    "quantity", "breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "axis_given", "anchored", "friction",
+)  # fmt: skip
 """Those to edit."""
 _PLACED = (*FRONT, "breadth_to_height", "axis", "pfa_g", "pfv_cm_s")
+NUMBERS = ("breadth_cm", "width_cm", "height_cm", "friction")
+CLASSES = ("class_formula", "class", "class_upper")
+ORDERS = tuple(f"order_{basis}" for basis in BASES)
+"""Columns that hold the order of the pieces: each basis has its own list."""
 
 
 # ---------------------------------------------------------------- columns
@@ -45,15 +64,21 @@ def item_columns(results: Results) -> list[Column]:
     """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
     known = {one.key: one for one in item_fields(results)}
     shown = [
-        *(_given(known[key]) for key in FRONT),
+        *(_centre_column() if key == "centre_of_gravity" else _given(known[key]) for key in FRONT),
         *_live(known, results),
-        *_simulated(is_hidden=not results.has_simulated),
+        *_in_force(results),
         *(_as_run(one) for one in results.methods if not one.is_live),
         Column(_("Marks (as run)"), 60, _marks, key="adopted_flags"),
         *(_given(one) for key, one in known.items() if "excel" in one.shows and key not in _PLACED),
     ]
-    workings = list(_workings())
+    workings = list(_workings(results))
     return [*shown, *_own(results, {column.label for column in (*shown, *workings)}), *workings]
+
+
+def _centre_column() -> Column:
+    """Return the height of the centre of gravity in percent of the piece's, as in the workbook."""
+    field = ITEMS.column("centre_of_gravity")
+    return Column(with_unit(_(field.label), field.unit), 9, _centre, "0.#", field.name, "input")
 
 
 def _given(field: Field) -> Column:
@@ -86,7 +111,7 @@ def _live(known: Mapping[str, Field], results: Results) -> Iterator[Column]:
         yield of_field(
             known[method.key], label=_(method.short_title), read=_value(method.key), look="plain", is_live=True
         )
-    yield Column(_("Class (formula)"), 16, _class_by_formula, key="class_formula", look="live", is_live=True)
+    yield Column(_("Class (formula)"), 16, class_by_formula, key="class_formula", look="live", is_live=True)
 
 
 def _detail(method: str, name: str) -> Callable[[ItemResult], Any]:
@@ -97,22 +122,33 @@ def _value(method: str) -> Callable[[ItemResult], Any]:
     return lambda one: one.by_formula.methods[method].value
 
 
-def _simulated(*, is_hidden: bool) -> Iterator[Column]:
-    """Yield what simulation found, and what is in force; columns as run are for the axis named last."""
+def _in_force(results: Results) -> Iterator[Column]:
+    """Yield what the class rests on, what simulation found, and the class."""
+    is_hidden, is_ideal, bases = not results.has_simulated, results.settings.ideal, build_terms().bases
 
-    def column(key: str, label: str, width: int, read: Callable[[ItemResult], Any], code: str = "") -> Column:
-        return Column(label, width, read, code, key, "plain" if code else "text", is_hidden=is_hidden)
+    def column(key: str, label: str, width: int, read: Read, **more: Any) -> Column:
+        chosen: dict[str, Any] = {"is_hidden": is_hidden, "look": "text", **more}
+        return Column(label, width, read, key=key, **chosen)
 
-    yield column("simulated_chance", _("Verified chance"), 9, _simulated_chance, CHANCE)
-    yield column("low", _("Interval low"), 9, lambda one: one.adopted.low, CHANCE)
-    yield column("high", _("Interval high"), 9, lambda one: one.adopted.high, CHANCE)
-    yield column("runs", _("Runs"), 7, _runs, COUNT)
+    yield column("basis", _("Basis"), 15, lambda one: bases[one.adopted.basis], is_live=True, is_hidden=False)
+    for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
+        yield column(key, label, 12, _found(at, is_ideal=is_ideal), format=CHANCE, look="plain", is_live=True)
+    yield column("class", _("Class"), 16, class_in_force, look="live", is_live=True, is_hidden=False)
+    yield column("class_upper", _("Upper class"), 16, upper_class, look="live", is_live=True)
+    yield column("class_notes", _("Notes on the class"), 40, class_notes, is_live=True)
+    yield column("runs", _("Runs"), 7, _runs, format=COUNT, look="plain")
     yield column("under_record", _("Under the record"), 20, under_record)
-    yield Column(_("Class (verified)"), 40, class_simulated, key="class_simulated", look="text", is_live=True,
-                 needs_simulation=True, is_hidden=is_hidden)  # fmt: skip
-    yield Column(_("Chance"), 9, chance_in_force, CHANCE, "chance", "plain", is_live=True)
-    yield Column(_("Class"), 16, class_in_force, key="class", look="live", is_live=True)
     yield column("axis_run", _("Axis (as run)"), 10, lambda one: one.governing.motion.axis)
+
+
+def name_found(*, is_ideal: bool) -> tuple[str, str, str, str]:
+    """Return the headings of `AT_RUN`: the adopted chance, its interval, and the chance to compare it with."""
+    like, ideal = _("Chance in an earthquake like this one"), _("Chance if exactly this motion recurred")
+    return ideal if is_ideal else like, _("Interval low"), _("Interval high"), like if is_ideal else ideal
+
+
+def _found(at: int, *, is_ideal: bool) -> Read:
+    return lambda one: list_simulated(one, is_ideal=is_ideal)[at]
 
 
 def _as_run(method: "MethodInfo") -> Column:
@@ -146,114 +182,59 @@ def _extra(at: int) -> Callable[[ItemResult], str]:
     return lambda one: one.item.extra[at] if at < len(one.item.extra) else ""
 
 
-def _workings() -> Iterator[Column]:
+def _workings(results: Results) -> Iterator[Column]:
     """Yield what is hidden at the far right: the inputs as run, and the classes as numbers from 0, low, to 3."""
+    is_ideal = results.settings.ideal
 
-    def column(key: str, label: str, read: Callable[[ItemResult], Any], **more: Any) -> Column:
+    def column(key: str, label: str, read: Read, **more: Any) -> Column:
         return Column(label, 24, read, key=key, is_hidden=True, **more)
 
-    formula = {"is_live": True, "needs_simulation": True}
-    yield column("breadth_cm_run", with_unit(_("Breadth as run"), "cm"), _if_simulated(lambda one: one.item.breadth_cm))
-    yield column("height_cm_run", with_unit(_("Height as run"), "cm"), _if_simulated(lambda one: one.item.height_cm))
-    yield column("floor_run", _("Floor as run"), _if_simulated(lambda one: one.item.floor))
-    yield column("axis_given_run", _("Axis given as run"), _if_simulated(lambda one: one.item.axis_given))
-    yield column("chance_run", _("Chance as run"), _if_simulated(lambda one: one.adopted.probability))
-    yield column("edited", _("Edited"), lambda one: "", **formula)
-    yield column("fell", _("Fell under the record"), lambda one: 1 if one.fell_in_record else "")
-    yield column("behind", _("Chance behind the class"), _chance_behind)
-    yield column("upper_end", _("Upper end as run"), _upper_end)
-    yield column("rank", _("Rank"), _if_simulated(lambda one: int(one.adopted.risk)), **formula)
-    yield column("rank_upper", _("Rank, upper"), _if_simulated(lambda one: int(one.adopted.upper)), **formula)
-    yield column("rank_formula", _("Rank, formula"), _if_simulated(lambda one: int(one.formula_class)), **formula)
-    yield column("order", _("Order"), lambda one: None, is_live=True)
+    for key, label, read in _inputs():
+        yield column(f"{key}_run", label, _if_as_run(read))
+    for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
+        yield column(f"{key}_run", _("{what} (as run)", what=label), _found(at, is_ideal=is_ideal))
+    yield column("edited", _("Edited"), lambda one: "", is_live=True)
+    yield column("fell", _("Fell under the record"), _if_as_run(lambda one: 1 if one.fell_in_record else ""))
+    yield column("behind", _("Chance behind the class"), partial(chance_behind, is_ideal=is_ideal))
+    yield column("upper_end", _("Upper end as run"), partial(upper_end, is_ideal=is_ideal))
+    yield column("settle", _("How to settle the class"), _settle)
+    yield column("rank", _("Rank"), _if_as_run(lambda one: int(one.adopted.risk)), is_live=True)
+    yield column("rank_upper", _("Rank, upper"), _if_as_run(lambda one: int(one.adopted.upper)), is_live=True)
+    yield column("rank_formula", _("Rank, formula"), _formula_rank, is_live=True)
+    for key, name in zip(ORDERS, map(build_terms().bases.__getitem__, BASES), strict=True):
+        yield column(key, _("Order: {basis}", basis=name), lambda one: None, is_live=True)
 
 
-# ---------------------------------------------------------------- what a row holds
+def _inputs() -> Iterator[tuple[str, str, Read]]:
+    """Yield the inputs that a simulated class holds for: key, heading as run, and how each is read."""
+    yield "breadth_cm", with_unit(_("Breadth as run"), "cm"), lambda one: one.item.breadth_cm
+    yield "width_cm", with_unit(_("Width as run"), "cm"), lambda one: one.item.width_cm
+    yield "height_cm", with_unit(_("Height as run"), "cm"), lambda one: one.item.height_cm
+    yield "centre_of_gravity", with_unit(_("Centre of gravity as run"), "%"), _centre
+    yield "friction", _("Friction as run"), lambda one: one.item.friction
+    yield "floor", _("Floor as run"), lambda one: one.item.floor
+    yield "axis_given", _("Axis given as run"), lambda one: one.item.axis_given
 
 
-def _if_simulated(read: Callable[[ItemResult], Any]) -> Callable[[ItemResult], Any]:
-    """Return what reads a row that was simulated; the others hold nothing."""
-    return lambda one: read(one) if one.is_simulated else None
+def _centre(one: ItemResult) -> float:
+    return 100 * one.item.centre_of_gravity
 
 
-def chance_in_force(one: ItemResult) -> float | None:
-    """Return the chance that counts: the adopted one where it was simulated, else that of the formula."""
-    return one.adopted.probability if one.is_simulated else one.formula.value
+def _settle(one: ItemResult) -> str:
+    return say_unsettled(one) if one.adopted.is_unconfirmed else ""
 
 
-def class_in_force(one: ItemResult) -> str:
-    """Return the class that counts, as the sheet shows it."""
-    return _mark(one) + say_class(one.adopted.risk) if one.is_simulated else _class_by_formula(one)
+def _formula_rank(one: ItemResult) -> int | None:
+    return int(one.formula_class) if one.adopted.is_simulated else None
 
 
-def _mark(one: ItemResult) -> str:
-    return ANCHORED if one.is_anchored else ""
-
-
-def _class_by_formula(one: ItemResult) -> str:
-    return _mark(one) + say_class(one.formula_class) + (OUTSIDE if "extrapolated" in one.formula.flags else "")
-
-
-def class_simulated(one: ItemResult) -> str:
-    """Return its class by simulation, with its notes."""
-    if not one.is_simulated:
-        return _("not verified")
-    adopted, texts = one.adopted, [_mark(one) + say_class(one.adopted.risk)]
-    if adopted.upper > adopted.risk:
-        texts.append(words.could_be(say_class(adopted.upper)))
-    if adopted.lowered_from is not None:
-        texts.append(words.was_lowered(say_class(adopted.lowered_from)))
-    return ", ".join(texts)
-
-
-def _simulated_chance(one: ItemResult) -> float | None:
-    return one.adopted.probability if one.adopted.method != one.formula_key else None
+def _if_as_run(read: Read) -> Read:
+    """Return what reads a row whose class rests on a simulation; the others hold nothing."""
+    return lambda one: read(one) if is_as_run(one) else None
 
 
 def _runs(one: ItemResult) -> int | None:
     return one.governing.simulation.runs if one.governing.simulation else None
-
-
-def _chance_behind(one: ItemResult) -> float | None:
-    """Return the chance by which it is classed, whatever the limits: None where it was not simulated.
-
-    It is the largest under any of its motions. Where simulation may not lower a class, a larger chance of the formula
-    counts, so that other limits do not lower it either.
-    """
-
-    def chance(case: CaseRow) -> float:
-        formula = case.methods[one.formula_key].value or 0.0
-        simulated = case.simulation.probability if case.simulation else 0.0
-        return max(formula, simulated) if case.adopted.is_doubtful else simulated
-
-    return max(map(chance, one.cases)) if one.is_simulated else None
-
-
-def _upper_end(one: ItemResult) -> float | None:
-    """Return the highest upper end of its intervals, whether or not the chance is adopted."""
-    return max((case.simulation.high for case in one.cases if case.simulation), default=None)
-
-
-def under_record(one: ItemResult) -> str:
-    """Return its response to the recorded motion itself, the worst of several; "" where no record is known."""
-    ratios = {
-        case.motion.axis: (found.record_overturned, found.record_max_rotation_ratio or 0.0)
-        for case in one.cases
-        if (found := case.simulation) is not None and found.record_overturned is not None
-    }
-    if not ratios:
-        return ""
-    worst, text = max(ratios, key=lambda axis: ratios[axis]), words.under_record(one)
-    return text if worst == one.governing.motion.axis else _("{what} (along {axis})", what=text, axis=worst)
-
-
-def order_number(one: ItemResult, row: int) -> float | None:
-    """Return the number by which pieces stand in order, as the formula of its row has it; None for anchored ones."""
-    chance = chance_in_force(one)
-    if one.is_anchored or chance is None:
-        return None
-    upper = one.adopted.upper if one.is_simulated else classify(chance)
-    return CLASS_WEIGHT * int(upper or RiskClass.LOW) + chance - (row + 1) * 1e-9
 
 
 # ---------------------------------------------------------------- the sheet
@@ -267,7 +248,7 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
     cells = {column.key: f"${xl_col_to_name(at)}{ROW}" for at, column in enumerate(columns)}
     last = HEAD + len(content.floors)
     formulas = ItemFormulas(cells, pen.refer("Floors"), last, pen.terms, content.run.formula.key)
-    by_simulation = {True: formulas.of_simulated(), False: formulas.of_others()}
+    by_basis = {basis: formulas.of(basis) for basis in BASES}
     plan = [(at, column, _style(pen, column)) for at, column in enumerate(columns)]
     texts = [(column.read, column.width) for column in columns if column.look == "text" and not column.is_hidden]
     for row, one in enumerate(content.results, HEAD):
@@ -275,7 +256,7 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
         lines = max(count_lines(read(one), width, MOST_LINES) for read, width in texts)
         if lines > 1:
             page.set_row(row, LINE * lines)
-        _write_row(pen, page, row, one, plan, by_simulation[one.is_simulated])
+        _write_row(pen, page, row, one, plan, by_basis[one.adopted.basis])
     _dress(pen, page, columns, HEAD + max(1, len(content.results)))
 
 
@@ -285,10 +266,10 @@ def _write_row(
 ) -> None:  # fmt: skip
     number = str(row + 1)
     for at, column, form in plan:
-        value = order_number(one, row) if column.key == "order" else column.read(one)
-        if column.is_live and (one.is_simulated or not column.needs_simulation):
-            formula = formulas[column.key].replace(ROW, number)
-            page.write_formula(row, at, formula, form, "" if value is None else value)
+        formula = formulas.get(column.key)
+        value = order_number(one, row) if formula and column.key in ORDERS else column.read(one)
+        if formula:
+            page.write_formula(row, at, formula.replace(ROW, number), form, "" if value is None else value)
         elif column.look == "input" or not (value is None or value == ""):
             pen.put(page, row, at, value, form)
 
@@ -313,13 +294,13 @@ def _dress(pen: Pen, page: Any, columns: Sequence[Column], last: int) -> None:
     for at, column in enumerate(columns):
         if column.is_hidden:
             page.set_column(at, at, column.width, None, {"hidden": True})
-        if column.key.startswith("class"):
+        if column.key in CLASSES:
             pen.colour(page, f"{letters[column.key]}2:{letters[column.key]}{last}")
-        elif column.format == CHANCE and (column.is_live or column.key == "simulated_chance"):
+        elif column.format == CHANCE and column.is_live:
             pen.bar(page, f"{letters[column.key]}2:{letters[column.key]}{last}")
-    area = f"{letters['class_simulated']}2:{letters['class_simulated']}{last}"
-    void = {"type": "text", "criteria": "begins with", "value": pen.terms.void, "format": pen.style("warning")}
-    page.conditional_format(area, void)
+    again = {"type": "text", "criteria": "begins with", "value": pen.terms.again, "format": pen.style("warning")}
+    for key in ("basis", "class"):
+        page.conditional_format(f"{letters[key]}2:{letters[key]}{last}", again)
     _validate(page, letters, last)
     _print(page, columns, last)
 
@@ -327,23 +308,29 @@ def _dress(pen: Pen, page: Any, columns: Sequence[Column], last: int) -> None:
 def _comment(page: Any, columns: Sequence[Column]) -> None:
     comments = {
         "breadth_cm": _(
-            "Edit the coloured cells: chance, class, counts and charts follow. The columns as run hold what was run."
+            "Edit the coloured cells. Quantity and Anchored change the counts at once. A row that was simulated says "
+            "'run again' once its size, centre of gravity, friction, axis, floor or the floor's motion is edited: it "
+            "then leaves all counts, lists and charts. A row that was not simulated follows by the formula."
         ),
         "class_formula": _(
             "By the limits in Assumptions. * behind a class: outside the range in which the formula was checked by "
             "tests. ⚓ before it: anchored, so its risk depends on its anchor; the class is that of the piece without "
             "it."
         ),
-        "class_simulated": _(
-            "The class of the simulated chance by the limits in Assumptions; at least high where the piece overturns "
-            "under the record itself; where its motions are generic or PFV is estimated, never below the class of the "
-            "formula. Where a size, the floor, the axis or the motion of the floor was edited since the run it is "
-            "void: the column Class then shows the class of the formula until assess is run again."
+        "basis": _(
+            "What the class rests on. simulated: the chance found by simulation. formula (not simulated): the "
+            "published formula, as nothing was simulated. unconfirmed: the formula, as simulation gave a lower class "
+            "under motions that may be too weak. The three are never added up."
+        ),
+        "beside": _(
+            "For comparison. In an earthquake like this one: motion and piece differ from draw to draw. If exactly "
+            "this motion recurred: the piece exactly as given, under motions with the spectrum of this one."
         ),
         "class": _(
-            "Chance and class in force: by simulation where there is one and it holds, else by the formula. Columns "
-            "to the right are not printed."
+            "The class in force, by the limits in Assumptions; at least high where the piece overturns under the "
+            "record itself. Columns to the right of the notes are not printed."
         ),
+        "class_upper": _("By the upper end of the interval, and at least that of the chance to compare with."),
     }
     for at, column in enumerate(columns):
         if column.key in comments:
@@ -357,18 +344,18 @@ def _validate(page: Any, letters: Mapping[str, str], last: int) -> None:
         "quantity": {"validate": "integer", "criteria": ">=", "value": 1},
         "axis_given": {"validate": "list", "source": ["X", "Y"]},
         "anchored": {"validate": "list", "source": choices},
-        **{
-            key: {"validate": "decimal", "criteria": ">", "value": 0} for key in ("breadth_cm", "width_cm", "height_cm")
-        },
+        **{key: {"validate": "decimal", "criteria": ">", "value": 0} for key in NUMBERS},
+        "centre_of_gravity": {"validate": "decimal", "criteria": "between", "minimum": 5, "maximum": 95},
     }
     for key, rule in rules.items():
         page.data_validation(f"{letters[key]}2:{letters[key]}{last}", rule)
 
 
 def _print(page: Any, columns: Sequence[Column], last: int) -> None:
-    """Print up to the class in force: on one page across, on two where the columns of the simulation are shown."""
+    """Print up to the class: on one page across, on two where the columns of the simulation are shown."""
     page.repeat_rows(0)
     page.repeat_columns(0)
     at = {column.key: place for place, column in enumerate(columns)}
-    page.print_area(0, 0, last - 1, at["class"])
-    page.fit_to_pages(1 if columns[at["class_simulated"]].is_hidden else 2, 0)
+    is_short = columns[at["class_notes"]].is_hidden
+    page.print_area(0, 0, last - 1, at["class" if is_short else "class_notes"])
+    page.fit_to_pages(1 if is_short else 2, 0)

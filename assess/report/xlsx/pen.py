@@ -14,6 +14,7 @@ from assess.report.findings.verified import SCENARIO
 from assess.report.xlsx.item_formulas import Terms, build_terms
 from assess.risk import RiskClass
 from assess.route_results import RouteState
+from assess.settings import Settings
 
 LONGEST = 32_000
 """Characters of a text that are kept; a cell holds 32,767."""
@@ -63,9 +64,9 @@ class Column:
         Its name in formulas, in the sheet Items.
     look : str
         One of `LOOKS`; "" goes by the value.
-    is_live, needs_simulation, is_hidden : bool
-        In Items: whether it holds a formula, of which `read` gives the result; whether it does so in simulated rows
-        only, and holds the value in the others; whether it is hidden.
+    is_live, is_hidden : bool
+        In Items: whether it holds a formula, of which `read` gives the result, in those rows that have one for it;
+        whether it is hidden.
     align : str
         "center" or "".
     """
@@ -77,7 +78,6 @@ class Column:
     key: str = ""
     look: str = ""
     is_live: bool = False
-    needs_simulation: bool = False
     is_hidden: bool = False
     align: str = ""
 
@@ -233,14 +233,38 @@ def _unlike(name: str, taken: Iterable[str]) -> str:
     return found
 
 
-def set_print(page: Any, title: str, sheet: str) -> None:
+def say_conditions(settings: Settings) -> list[str]:
+    """Return what is to be known of every number of the report: the factor on the motion, and what was adopted."""
+    texts = []
+    if settings.scale != 1:
+        texts.append(_("The motion of every floor is multiplied by {scale:g}.", scale=settings.scale))
+    if settings.ideal:
+        texts.append(
+            _("Chances are those if exactly this motion recurred and every piece were exactly as filled in: the "
+              "uncertainty of the earthquake and of the pieces is left out.")
+        )  # fmt: skip
+    return texts
+
+
+def _say_conditions_shortly(settings: Settings) -> str:
+    texts = []
+    if settings.scale != 1:
+        texts.append(_("motion × {scale:g}", scale=settings.scale))
+    if settings.ideal:
+        texts.append(_("if exactly this motion recurred"))
+    return ", ".join(texts)
+
+
+def set_print(page: Any, title: str, sheet: str, settings: Settings) -> None:
     """Set up the printed pages of a sheet: A4 across, fit to the width, with headers; a sheet may set more itself."""
     page.set_landscape()
     page.set_paper(A4)
     page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
     page.fit_to_pages(1, 0)
     pages = _plain(_("Page {page} of {pages}", page="\x01", pages="\x02"))
-    page.set_header(f"&L&8 {_plain(words.cut(title, 80))}&R&8 {_plain(sheet)}")
+    conditions = _plain(_say_conditions_shortly(settings))
+    middle = f"&C&8 {conditions}" if conditions else ""
+    page.set_header(f"&L&8 {_plain(words.cut(title, 80))}{middle}&R&8 {_plain(sheet)}")
     page.set_footer(f"&L&8 {_plain(_(SCENARIO).rstrip('.'))}&R&8 {pages}".replace("\x01", "&P").replace("\x02", "&N"))
 
 

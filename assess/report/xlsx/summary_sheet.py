@@ -1,10 +1,11 @@
 """The sheets Summary and Fix first: counts by class and floor, the pieces most likely to fall, what to fix first.
 
-All of the summary but the sentences on routes is live; the list of what to fix first is as run.
+All of the summary but the sentences on routes is live; the list of what to fix first is as run. What was simulated,
+what was not, and what is unconfirmed stand apart in every count, list and chart. `worst_pieces` writes the lists.
 """
 
-import heapq
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
@@ -18,31 +19,51 @@ from assess.report.findings.verified import INTERVAL, SCENARIO
 from assess.report.summary import ROUTES
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import literal, sentence
-from assess.report.xlsx.items_sheet import (
-    HEAD,
-    chance_in_force,
-    class_in_force,
-    class_simulated,
-    item_areas,
-    order_number,
-)
-from assess.report.xlsx.pen import CHANCE, LINE, Column, Pen, count_lines, row_height
+from assess.report.xlsx.item_values import list_bases, list_simulated, say_inputs_that_settle
+from assess.report.xlsx.items_sheet import HEAD, item_areas, name_found
+from assess.report.xlsx.pen import CHANCE, LINE, Column, Pen, count_lines, row_height, say_conditions
+from assess.report.xlsx.worst_pieces import CHANCES, LAST, WIDTHS, WorstList, find_worst
 from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE
 
-WIDTHS = (34, 15, 15, 15, 15, 15, 15, 40)
-"""Of the columns that are printed: of names, of counts, and of classes."""
-LAST = len(WIDTHS) - 1
 CHART_ROWS = 15
 """Rows of the charts below the counts."""
 MOST_FLOORS = 12
 """Floors up to which the summary is printed on one page."""
-LISTED = 10
-"""Pieces in the list."""
-PLACE, CHANCES = LAST + 1, LAST + 2
-"""Hidden columns: the row of the piece in Items, and its chance in the column of its class."""
-_LONGEST = 80
+SUM = 1 + len(RiskClass)
+"""Column of the pieces of a basis: after those of its classes."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """What the summary has, and where: `bases` that there are, and the rows of its tables.
+
+    `top` is the row of the counts of the building, `lists` the first row of each list, `tables` of each table by floor.
+    """
+
+    pen: Pen
+    page: Any
+    content: Content
+    areas: Mapping[str, str]
+    bases: Sequence[str]
+    top: int
+    lists: Mapping[str, int]
+    tables: Mapping[str, int]
+
+    @property
+    def floors(self) -> int:
+        """Number of floors."""
+        return len(self.content.floors)
+
+    def total(self, basis: str) -> int:
+        """Row of the sums of a table by floor."""
+        return self.tables[basis] + 2 + self.floors
+
+    @property
+    def charts(self) -> int:
+        """Row of the charts by floor."""
+        return self.total(self.bases[-1]) + 2 if self.bases else self.top + 6
 
 
 def write_summary(pen: Pen, page: Any, content: Content) -> None:
@@ -51,64 +72,108 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
         page.set_column(at, at, width)
     title = _("Furniture in earthquakes: {title}", title=words.cut(content.title, 100))
     page.write_string(0, 0, title, pen.style("title"))
-    areas, worst = item_areas(pen, content), _find_worst(content)
-    top = _write_lines(pen, page, content, areas) + 1
-    listed = top + 3 + CHART_ROWS
-    counted = listed + 3 + len(worst)
-    bottom = counted + 2 + len(content.floors)
-    _write_building(pen, page, content, top, bottom)
-    _write_worst(pen, page, areas, listed, worst)
-    _write_counts(pen, page, content, areas, counted)
-    charts.add_classes(pen, page, (top + 3, 0), top)
-    if worst:
-        charts.add_highest(pen, page, (top + 3, 3), (listed + 2, listed + 1 + len(worst)), (0, CHANCES))
-    charts.add_floors(pen, page, (bottom + 2, 0), (counted + 2, bottom - 1))
-    page.print_area(0, 0, bottom + 2 + charts.count_rows(len(content.floors)), LAST)
-    is_short = len(content.floors) <= MOST_FLOORS
+    areas, bases = item_areas(pen, content), list_bases(content.run)
+    worst = {basis: find_worst(content.results, basis) for basis in bases}
+    top = 2 + len(_list_lines(pen, content, areas, bases))
+    row = first = top + 3 + len(bases) + len(_list_apart(content)) + CHART_ROWS
+    lists, tables = {}, {}
+    for basis, found in worst.items():
+        lists[basis], row = row, row + 3 + len(found)
+    for basis in bases:
+        tables[basis], row = row, row + 4 + len(content.floors)
+    plan = _Plan(pen, page, content, areas, bases, top, lists, tables)
+    _write_lines(plan)
+    _write_building(plan)
+    for basis, found in worst.items():  # rows are written from the top: what is above the last one is left out
+        WorstList(pen, page, content.run, areas, basis, lists[basis]).write(found)
+    for basis in bases:
+        _write_floors(plan, basis)
+    _draw(plan, first - CHART_ROWS, worst)
+    _set_pages(plan)
+
+
+def _draw(plan: _Plan, row: int, worst: Mapping[str, Sequence[Any]]) -> None:
+    """Draw the charts: each shows what rests on one basis alone."""
+    pen, page = plan.pen, plan.page
+    if not plan.bases:
+        return
+    basis = plan.bases[0]
+    charts.add_classes(pen, page, (row, 0), plan.top, pen.terms.bases[basis])
+    if worst[basis]:
+        rows = (plan.lists[basis] + 2, plan.lists[basis] + 1 + len(worst[basis]))
+        charts.add_highest(pen, page, (row, 3), rows, (0, CHANCES), pen.terms.bases[basis])
+    for at, one in enumerate(plan.bases):
+        place, top = plan.charts + at * charts.count_rows(plan.floors), plan.tables[one] + 2
+        charts.add_floors(pen, page, (place, 0), (top, top + plan.floors - 1), pen.terms.bases[one])
+
+
+def _set_pages(plan: _Plan) -> None:
+    page, is_short = plan.page, plan.floors * len(plan.bases) <= MOST_FLOORS
+    page.print_area(0, 0, plan.charts + len(plan.bases) * charts.count_rows(plan.floors), LAST)
     page.fit_to_pages(1, 1 if is_short else 0)
     if not is_short:
-        page.repeat_rows(counted + 1)
-        page.set_h_pagebreaks([bottom + 2])
+        page.set_h_pagebreaks([*plan.tables.values(), plan.charts])
 
 
 # ---------------------------------------------------------------- sentences
 
 
-def _write_lines(pen: Pen, page: Any, content: Content, areas: Mapping[str, str]) -> int:
-    """Write the sentences below the title and return the row below them."""
-    others = ((text, "") for text in (*content.cautions, *_say_routes(content)))
-    lines = [*_lines(pen, content, areas), *others]
-    for row, (text, formula) in enumerate(lines, 1):
+def _list_lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the sentences below the title, each with its formula or ""."""
+    plain = (*content.cautions, *_say_routes(content))
+    return [*_lines(pen, content, areas, bases), *((text, "") for text in plain)]
+
+
+def _write_lines(plan: _Plan) -> None:
+    """Write the sentences below the title."""
+    pen, page = plan.pen, plan.page
+    for row, (text, formula) in enumerate(_list_lines(pen, plan.content, plan.areas, plan.bases), 1):
         page.merge_range(row, 0, row, LAST, "", pen.style("text"))
         page.set_row(row, LINE * count_lines(text, sum(WIDTHS)))
         if formula:
             page.write_formula(row, 0, f"={formula}", pen.style("text"), text)
         else:
             pen.put(page, row, 0, text, pen.style("text"))
-    return len(lines) + 1
 
 
-def _lines(pen: Pen, content: Content, areas: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Yield the sentences, each with its formula where it has one."""
+def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
     scenario, verified = content.run.building.scenario, content.verified
-    follow = _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited.")
     if scenario:
         yield _("Scenario: {scenario}", scenario=words.cut(scenario, 300)), ""
-    if not verified.done:
+    yield from ((text, "") for text in say_conditions(content.run.settings))
+    if not content.run.has_simulated:
         status, meaning = verified.status
         yield _(SCENARIO), ""
         yield f"{status}: {meaning}.", ""
-        yield follow, ""
-        return
-    yield f"{_(SCENARIO)} {_(INTERVAL)[0].upper()}{_(INTERVAL)[1:]}.", ""
-    yield verified.sentence, ""
+    else:
+        yield f"{_(SCENARIO)} {_(INTERVAL)[0].upper()}{_(INTERVAL)[1:]}.", ""
+        yield verified.sentence, ""
+        if len(bases) > 1:
+            yield _("What was simulated, what was not, and what is unconfirmed are counted apart."), ""
+        yield from _follow(pen, content, areas, bases)
+    yield _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited."), ""
+
+
+def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield the sentences with numbers that follow an edit."""
+    free = f"({areas['anchored']}<>{literal(pen.terms.yes)})"
+    if "unconfirmed" in bases:
+        own = [one for one in content.results if one.adopted.is_unconfirmed]
+        ways = "; ".join(dict.fromkeys(map(say_inputs_that_settle, own)))
+        text = _("Unconfirmed pieces: {n}. They hold the class of the formula, as simulation may not lower it here; to "
+                 "settle them: {ways}.")  # fmt: skip
+        n = sum(one.item.quantity for one in own if not one.is_anchored)
+        is_own = f"({areas['basis']}={literal(pen.terms.bases['unconfirmed'])})"
+        counted = f"SUMPRODUCT({is_own}*{free},{areas['quantity']})"
+        yield text.format(n=n, ways=ways), sentence(text, n=counted, ways=literal(ways))
     rank = areas["rank"]
     lowered = f'SUMPRODUCT(({rank}<>"")*({rank}<{areas["rank_formula"]}))'
-    void = f"COUNTIF({areas['class_simulated']},{literal(pen.terms.void)})"
-    changed = _("Rows whose class simulation lowers: {lowered}; void, as an input was edited: {void}.")
-    yield changed.format(lowered=len(verified.lowered), void=0), sentence(changed, lowered=lowered, void=void)
-    yield _("Void rows fall back to the class of the formula until assess is run again."), ""
-    yield follow, ""
+    text = _("Rows whose class simulation lowers: {n}.")
+    yield text.format(n=sum(one.adopted.lowered_from is not None for one in content.results)), sentence(text, n=lowered)
+    again = f"COUNTIF({areas['basis']},{literal(pen.terms.again)})"
+    text = _("Rows to be run again, as an input was edited: {n}. They are in no count by class, list or chart until "
+             "assess is run with the edited workbook.")  # fmt: skip
+    yield text.format(n=0), sentence(text, n=again)
 
 
 def _say_routes(content: Content) -> Iterator[str]:
@@ -130,136 +195,135 @@ def _say_routes(content: Content) -> Iterator[str]:
 # ---------------------------------------------------------------- counts
 
 
-def _write_building(pen: Pen, page: Any, content: Content, top: int, bottom: int) -> None:
-    """Write the counts of the building, which stand in the row `bottom` too."""
-    _write_heads(pen, page, top, _("Building"))
-    formulas = [f"={xl_col_to_name(at)}{bottom + 1}" for at in range(1, LAST)]
-    _write_row_of_totals(pen, page, content, top + 1, formulas)
+def _list_apart(content: Content) -> list[str]:
+    """Return what is counted without a class: rows to be run again, anchored pieces, and all pieces."""
+    again = [_("run again")] if content.run.has_simulated else []
+    return [*again, _("anchored"), _("all")]
 
 
-def _write_counts(pen: Pen, page: Any, content: Content, areas: Mapping[str, str], top: int) -> None:
-    """Write the counts by floor, and below them those of the building."""
-    page.write_string(top, 0, _("Pieces by class and floor"), pen.style("heading"))
-    _write_heads(pen, page, top + 1, _("Floor"))
-    for number, floor_page in enumerate(content.floors, HEAD + 1):
-        row, counts = top + number, floor_page.counts
-        pen.put(page, row, 0, floor_page.title, pen.style("text"))
-        page.set_row(row, row_height([floor_page.title], WIDTHS))
-        formulas = [*_count(pen, areas, f"{pen.refer('Floors')}$A${number}"), f"=SUM(B{row + 1}:F{row + 1})"]
-        values = (*counts.by_class.values(), counts.anchored, counts.total)
+def _write_building(plan: _Plan) -> None:
+    """Write the counts of the building: a row a basis, then what has no class."""
+    pen, page, row = plan.pen, plan.page, plan.top
+    _write_heads(plan, row, _("Building"), [_("pieces")])
+    for row, basis in enumerate(plan.bases, plan.top + 1):
+        page.write_string(row, 0, pen.terms.bases[basis], pen.style("total"))
+        for at, value in enumerate(_count_as_run(plan.content.results, basis), 1):
+            formula = f"={xl_col_to_name(at)}{plan.total(basis) + 1}"
+            page.write_formula(row, at, formula, pen.style("total"), value)
+    if not plan.bases:
+        return
+    values = _count_apart(plan.content, plan.content.results)
+    total = plan.total(plan.bases[0]) + 1
+    for at, (label, value) in enumerate(zip(_list_apart(plan.content), values, strict=True), 1):
+        page.write_string(row + at, 0, label, pen.style("total"))
+        page.write_formula(row + at, SUM, f"={xl_col_to_name(SUM + at)}{total}", pen.style("total"), value)
+
+
+def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
+    """Return the free-standing pieces of a basis by class, and their sum."""
+    own = [one for one in results if one.adopted.basis == basis and not one.is_anchored]
+    counts = [sum(one.item.quantity for one in own if one.adopted.risk == risk) for risk in RiskClass]
+    return [*counts, sum(counts)]
+
+
+def _count_apart(content: Content, results: Sequence[ItemResult]) -> list[int]:
+    """Return the numbers of `_list_apart` as run, when no row is to be run again."""
+    anchored = sum(one.item.quantity for one in results if one.is_anchored)
+    counts = [anchored, sum(one.item.quantity for one in results)]
+    return [0, *counts] if content.run.has_simulated else counts
+
+
+def _write_floors(plan: _Plan, basis: str) -> None:
+    """Write the counts of a basis by floor, and below them those of the building."""
+    pen, page, content, top = plan.pen, plan.page, plan.content, plan.tables[basis]
+    title = _("Pieces by class and floor: {basis}", basis=pen.terms.bases[basis])
+    page.write_string(top, 0, title, pen.style("heading"))
+    is_first = basis == plan.bases[0]
+    _write_heads(plan, top + 1, _("Floor"), [_("pieces"), *(_list_apart(content) if is_first else ())])
+    for number, floor in enumerate(content.floors, 1):
+        row = top + 1 + number
+        pen.put(page, row, 0, floor.title, pen.style("text"))
+        page.set_row(row, row_height([floor.title], WIDTHS))
+        values = _count_as_run(floor.results, basis) + (_count_apart(content, floor.results) if is_first else [])
+        formulas = _count(plan, basis, number, row + 1)
         for at, (formula, count) in enumerate(zip(formulas, values, strict=True), 1):
             page.write_formula(row, at, formula, pen.style("live"), count)
-    total = top + 2 + len(content.floors)
-    letters = (xl_col_to_name(at) for at in range(1, LAST))
-    _write_row_of_totals(pen, page, content, total, [f"=SUM({one}{top + 3}:{one}{total})" for one in letters])
+    values = _count_as_run(content.results, basis)
+    values += _count_apart(content, content.results) if is_first else []
+    page.write_string(plan.total(basis), 0, _("All floors"), pen.style("total"))
+    for at, value in enumerate(values, 1):
+        letter = xl_col_to_name(at)
+        formula = f"=SUM({letter}{top + 3}:{letter}{plan.total(basis)})"
+        page.write_formula(plan.total(basis), at, formula, pen.style("total"), value)
 
 
-def _write_row_of_totals(pen: Pen, page: Any, content: Content, row: int, formulas: Sequence[str]) -> None:
-    page.write_string(row, 0, _("All floors"), pen.style("total"))
-    values = (*content.total.by_class.values(), content.total.anchored, content.total.total)
-    for at, (formula, value) in enumerate(zip(formulas, values, strict=True), 1):
-        page.write_formula(row, at, formula, pen.style("total"), value)
-
-
-def _write_heads(pen: Pen, page: Any, row: int, label: str) -> None:
+def _write_heads(plan: _Plan, row: int, label: str, more: Sequence[str]) -> None:
+    pen, page = plan.pen, plan.page
     page.write_string(row, 0, label, pen.style("head"))
     for at, risk in enumerate(RiskClass, 1):
         page.write_string(row, at, pen.terms.labels[risk], pen.classes[risk])
-    for at, text in enumerate((_("anchored"), _("all")), 1 + len(RiskClass)):
+    for at, text in enumerate(more, SUM):
         page.write_string(row, at, text, pen.style("head"))
 
 
-def _count(pen: Pen, areas: Mapping[str, str], at_floor: str) -> list[str]:
-    """Return the formulas that count the pieces of a floor: of each class, and those that are anchored."""
-    on_floor = f"({areas['floor']}={at_floor})"  # SUMIFS would read names as criteria
-    yes, quantity = literal(pen.terms.yes), areas["quantity"]
+def _count(plan: _Plan, basis: str, number: int, row: int) -> list[str]:
+    """Return the formulas that count the pieces of a floor, the `number`-th, in the row `row` of its table."""
+    areas, terms, quantity = plan.areas, plan.pen.terms, plan.areas["quantity"]
+    on_floor = f"({areas['floor']}={plan.pen.refer('Floors')}$A${HEAD + number})"  # SUMIFS would read names as criteria
+    anchored = f"({areas['anchored']}={literal(terms.yes)})"
+    free = f"{on_floor}*(1-{anchored})*({areas['basis']}={literal(terms.bases[basis])})"
     formulas = []
-    for label in pen.terms.labels:
-        classed = f"(({areas['class']}={literal(label)})+({areas['class']}={literal(label + OUTSIDE)}))"
-        formulas.append(f"=SUMPRODUCT({on_floor}*{classed}*({areas['anchored']}<>{yes}),{quantity})")
-    return [*formulas, f"=SUMPRODUCT({on_floor}*({areas['anchored']}={yes}),{quantity})"]
+    for label in terms.labels:
+        classed = f"({areas['class']}={literal(label)})"
+        if basis == "formula":
+            classed = f"({classed}+({areas['class']}={literal(label + OUTSIDE)}))"
+        formulas.append(f"=SUMPRODUCT({free}*{classed},{quantity})")
+    formulas.append(f"=SUM(B{row}:{xl_col_to_name(SUM - 1)}{row})")
+    return [*formulas, *_count_others(plan, on_floor, anchored, number, row)] if basis == plan.bases[0] else formulas
 
 
-# ---------------------------------------------------------------- the pieces most likely to fall
-
-
-def _find_worst(content: Content) -> list[tuple[int, ItemResult]]:
-    """Return the pieces of highest class and chance with their places in Items, 1 for the first."""
-    numbers = ((order_number(one, row), row, one) for row, one in enumerate(content.results, HEAD))
-    known = ((number, row, one) for number, row, one in numbers if number is not None)
-    return [(row, one) for _number, row, one in heapq.nlargest(LISTED, known, key=lambda entry: entry[0])]
-
-
-def _write_worst(
-    pen: Pen, page: Any, areas: Mapping[str, str], row: int, found: Sequence[tuple[int, ItemResult]]
-) -> None:
-    """Write the pieces of highest class and chance."""
-    page.write_string(row, 0, _("The pieces most likely to fall"), pen.style("heading"))
-    heads = (_("Item"), _("Floor"), _("Room"), _("Pieces"), _("Chance"), _("Interval low"), _("Interval high"),
-             _("Class"))  # fmt: skip
-    pen.heads(page, heads, WIDTHS, row + 1)
-    for number, (place, one) in enumerate(found, 1):
-        _write_piece(pen, page, areas, row + 1 + number, number, place, one)
-    last = row + 1 + len(found)
-    if found:
-        pen.colour(page, f"H{row + 3}:H{last + 1}")
-        pen.bar(page, f"E{row + 3}:E{last + 1}")
-    page.set_column(PLACE, CHANCES + len(RiskClass) - 1, 10, None, {"hidden": True})
-
-
-def _write_piece(
-    pen: Pen, page: Any, areas: Mapping[str, str], row: int, number: int, place: int, one: ItemResult
-) -> None:
-    """Write one piece of the list, the `number`-th; it is in the row `place` of Items."""
-    values = _values(one)
-    page.set_row(row, row_height(values, WIDTHS))
-    order, cell = areas["order"], f"${xl_col_to_name(PLACE)}{row + 1}"
-    page.write_formula(row, PLACE, f'=IFERROR(MATCH(LARGE({order},{number}),{order},0),"")', None, place)
-    text, live, chance = pen.style("text"), pen.style("live"), pen.style("plain", CHANCE)
-    looks = (text, text, text, live, chance, chance, chance, text)
-    for column, (formula, value, look) in enumerate(zip(_formulas(areas, cell), values, looks, strict=True)):
-        page.write_formula(row, column, f'=IF({cell}="","",{formula})', look, "" if value is None else value)
-    for risk, label in zip(RiskClass, pen.terms.labels, strict=True):
-        is_it = f"LEFT(INDEX({areas['class']},{cell}),{len(label)})={literal(label)}"
-        formula = f'=IF({cell}="","",IF({is_it},$E{row + 1},""))'
-        is_own = class_in_force(one).startswith(label)
-        page.write_formula(row, CHANCES + risk, formula, None, chance_in_force(one) if is_own else "")
-
-
-def _values(one: ItemResult) -> tuple[Any, ...]:
-    risk = class_simulated(one) if one.is_simulated else class_in_force(one)
-    low, high = (one.adopted.low, one.adopted.high) if one.is_simulated else (None, None)
-    text = one.item.description or one.item.type
-    name = (one.item.item + (f": {text}" if text else ""))[:_LONGEST]
-    return name, one.item.floor, one.item.room, one.item.quantity, chance_in_force(one), low, high, risk
-
-
-def _formulas(areas: Mapping[str, str], cell: str) -> list[str]:
-    """Return the formulas of a row of the list by the cell that holds the place of its piece."""
-
-    def of(key: str) -> str:
-        return f"INDEX({areas[key]},{cell})"
-
-    text = f'IF({of("description")}<>"",": "&{of("description")},IF({of("type")}<>"",": "&{of("type")},""))'
-    simulated = f"ISNUMBER({of('rank')})"
-    intervals = [f'IF({simulated},IF({of(key)}="","",{of(key)}),"")' for key in ("low", "high")]
-    return [
-        f"LEFT({of('item')}&{text},{_LONGEST})",
-        of("floor"),
-        f'{of("room")}&""',
-        of("quantity"),
-        of("chance"),
-        *intervals,
-        f"IF({simulated},{of('class_simulated')},{of('class')})",
-    ]
+def _count_others(plan: _Plan, on_floor: str, anchored: str, number: int, row: int) -> list[str]:
+    """Return the formulas that count what has no class on a floor, and all pieces."""
+    areas, letter = plan.areas, xl_col_to_name(SUM)
+    again = f"({areas['basis']}={literal(plan.pen.terms.again)})"
+    each = [f"{on_floor}*(1-{again})*{anchored}"]
+    if plan.content.run.has_simulated:
+        each = [f"{on_floor}*{again}", *each]
+    sums = [f"{letter}{plan.tables[basis] + 2 + number}" for basis in plan.bases]
+    own = [f"{xl_col_to_name(SUM + at)}{row}" for at in range(1, 1 + len(each))]
+    return [*(f"=SUMPRODUCT({one},{areas['quantity']})" for one in each), f"={'+'.join(sums + own)}"]
 
 
 # ---------------------------------------------------------------- what to fix first
 
 
 def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
-    """Write the pieces of at least medium class and those that a route needs fixed, what to fix first at the top."""
-    columns = [
+    """Write the pieces of at least medium class and those that a route needs fixed, what to fix first at the top.
+
+    What was simulated comes first; what was not, and what is unconfirmed, have tables of their own below.
+    """
+    columns = _fix_columns(pen, content)
+    order = _(
+        "Sorted by class (upper estimate): high and very high first; within that life safety and routes, then the "
+        "class, then chance times number. After a route: the chance that it is blocked, before and after."
+    )
+    page.write_comment(0, len(columns) - 1, order, {"x_scale": 3, "y_scale": 2})  # now, as the rows below follow
+    fixes = content.summary.fixes
+    there = {basis: own for basis in list_bases(content.run)
+             if (own := [fix for fix in fixes if fix.result.adopted.basis == basis])}  # fmt: skip
+    first, *others = there or {"": []}
+    below = pen.listing(page, columns, there.get(first, []))
+    for basis in others:
+        widths = [one.width for one in columns]
+        below = pen.below(page, below + 1, pen.terms.bases[basis], columns, widths, there[basis])
+    if fixes:
+        pen.bar(page, f"J2:J{below}")
+
+
+def _fix_columns(pen: Pen, content: Content) -> list[Column]:
+    is_ideal = content.run.settings.ideal
+    chance, *_interval, beside = name_found(is_ideal=is_ideal)
+    return [
         Column(_("No."), 6, lambda fix: fix.place),
         Column(_("Item"), 12, lambda fix: fix.result.item.item),
         Column(_("Floor"), 9, lambda fix: fix.result.item.floor),
@@ -267,22 +331,18 @@ def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
         Column(_("Description"), 36, lambda fix: fix.result.item.description or fix.result.item.type),
         Column(_("Importance"), 13, lambda fix: _(fix.result.item.importance) if fix.result.item.importance else ""),
         Column(_("Route"), 12, lambda fix: ", ".join(fix.result.routes)),
+        Column(_("Basis"), 12, lambda fix: pen.terms.bases[fix.result.adopted.basis]),
         Column(_("Class (as run)"), 36, lambda fix: class_as_run(fix.result)),
-        Column(_("Chance"), 10, lambda fix: fix.result.adopted.probability, CHANCE),
+        Column(
+            chance if content.run.has_simulated else _("Chance"), 12, lambda fix: fix.result.adopted.probability, CHANCE
+        ),
         Column(_("Interval low"), 10, lambda fix: fix.result.adopted.low, CHANCE),
         Column(_("Interval high"), 10, lambda fix: fix.result.adopted.high, CHANCE),
+        Column(beside, 12, lambda fix: list_simulated(fix.result, is_ideal=is_ideal)[3], CHANCE),
         Column(_("Pieces"), 8, lambda fix: fix.result.item.quantity),
         Column(_("Expected falls avoided if the anchors hold"), 16, lambda fix: fix.saved, "0.000"),
         Column(_("Why first"), 60, lambda fix: fix.reason),
     ]
-    order = _(
-        "Sorted by class (upper estimate): high and very high first; within that life safety and routes, then the "
-        "class, then chance times number. After a route: the chance that it is blocked, before and after."
-    )
-    page.write_comment(0, len(columns) - 1, order, {"x_scale": 3, "y_scale": 2})  # now, as the rows below follow
-    below = pen.listing(page, columns, content.summary.fixes)
-    if content.summary.fixes:
-        pen.bar(page, f"I2:I{below}")
 
 
 def class_as_run(one: ItemResult) -> str:

@@ -1,0 +1,150 @@
+"""What a row of the sheet Items holds: chance, class and notes as run, and the number by which pieces stand in order.
+
+The formulas of `item_formulas` compute the same from the cells.
+"""
+
+from assess.i18n import gettext as _
+from assess.report import words
+from assess.report.xlsx.item_formulas import ANCHORED, CLASS_WEIGHT
+from assess.results import CaseRow, ItemResult, Results
+from assess.risk import RiskClass, classify
+from assess.workbook.formulas import OUTSIDE, say_class
+from assess.workbook.schema import BUILDING
+
+
+def is_as_run(one: ItemResult) -> bool:
+    """Tell whether its class rests on what a simulation found, so that it holds for the inputs as run alone."""
+    return one.adopted.basis != "formula"
+
+
+def say_inputs_that_settle(one: ItemResult) -> str:
+    """Return what is to be filled in or changed so that the class of an unconfirmed piece rests on simulation."""
+    building = {name: _(BUILDING.column(name).label) for name in ("period", "height")}
+    texts = {
+        "unknown_period": _("fill in {period} or {height} in {sheet}", sheet=_(BUILDING.name), **building),
+        "weak_motions": _("use stronger motions"),
+    }
+    return ", ".join(text for flag, text in texts.items() if flag in one.adopted.flags)
+
+
+def say_unsettled(one: ItemResult) -> str:
+    """Return how to settle the class of an unconfirmed piece."""
+    return _("to settle it, {how}", how=say_inputs_that_settle(one))
+
+
+# ---------------------------------------------------------------- chances
+
+
+def list_simulated(one: ItemResult, *, is_ideal: bool) -> tuple[float | None, ...]:
+    """Return the adopted chance of a simulated piece, its interval, and the chance to compare it with.
+
+    That is the chance if exactly this motion recurred; with `is_ideal`, where this one is adopted, the chance in an
+    earthquake like it.
+    """
+    adopted, found = one.adopted, one.governing.simulation
+    if not adopted.is_simulated or found is None:
+        return (None,) * 4
+    beside = found.probability if is_ideal else found.ideal.probability
+    return adopted.probability, adopted.low, adopted.high, beside
+
+
+def listed_chance(one: ItemResult) -> float | None:
+    """Return the chance by which it stands in the list of its basis: the simulated one, else that of the formula."""
+    return one.adopted.probability if one.adopted.is_simulated else one.formula.value
+
+
+def chance_behind(one: ItemResult, *, is_ideal: bool) -> float | None:
+    """Return the chance by which it is classed, whatever the limits: None where nothing was simulated.
+
+    It is the largest under any of its motions. Where simulation may not lower a class, a larger chance of the formula
+    counts, so that other limits do not lower it either.
+    """
+
+    def chance(case: CaseRow) -> float:
+        formula, found = case.methods[one.formula_key].value or 0.0, case.simulation
+        if found is None:
+            return formula
+        simulated = found.ideal.probability if is_ideal else found.probability
+        return max(formula, simulated) if case.adopted.is_doubtful else simulated
+
+    return max(map(chance, one.cases)) if is_as_run(one) else None
+
+
+def upper_end(one: ItemResult, *, is_ideal: bool) -> float | None:
+    """Return the chance behind the upper class: the highest upper end of its intervals, or a higher ideal chance."""
+    found = [case.simulation for case in one.cases if case.simulation]
+    ends = [found.ideal.high if is_ideal else max(found.high, found.ideal.probability) for found in found]
+    return max(ends, default=None)
+
+
+def under_record(one: ItemResult) -> str:
+    """Return its response to the recorded motion itself, the worst of several; "" where no record is known."""
+    ratios = {
+        case.motion.axis: (found.record_overturned, found.record_max_rotation_ratio or 0.0)
+        for case in one.cases
+        if (found := case.simulation) is not None and found.record_overturned is not None
+    }
+    if not ratios:
+        return ""
+    worst, text = max(ratios, key=lambda axis: ratios[axis]), words.under_record(one)
+    return text if worst == one.governing.motion.axis else _("{what} (along {axis})", what=text, axis=worst)
+
+
+# ---------------------------------------------------------------- classes
+
+
+def _mark(one: ItemResult) -> str:
+    return ANCHORED if one.is_anchored else ""
+
+
+def class_by_formula(one: ItemResult) -> str:
+    """Return its class by the formula, marked where the formula was not checked."""
+    return _mark(one) + say_class(one.formula_class) + (OUTSIDE if "extrapolated" in one.formula.flags else "")
+
+
+def class_in_force(one: ItemResult) -> str:
+    """Return the class that counts, as the sheet shows it."""
+    return _mark(one) + say_class(one.adopted.risk) if is_as_run(one) else class_by_formula(one)
+
+
+def upper_class(one: ItemResult) -> str:
+    """Return the class by the upper end of the interval; "" where nothing was simulated."""
+    return _mark(one) + say_class(one.adopted.upper) if is_as_run(one) else ""
+
+
+def class_notes(one: ItemResult) -> str:
+    """Return what is to be said of the class."""
+    adopted = one.adopted
+    if adopted.is_unconfirmed:
+        return say_unsettled(one)
+    texts = []
+    if adopted.upper > adopted.risk:
+        texts.append(words.could_be(say_class(adopted.upper)))
+    if adopted.lowered_from is not None:
+        texts.append(words.was_lowered(say_class(adopted.lowered_from)))
+    if is_as_run(one) and one.fell_in_record:
+        texts.append(_("as it overturns under the record itself"))
+    return ", ".join(texts)
+
+
+def say_listed_class(one: ItemResult) -> str:
+    """Return the class with its notes, as the lists of the summary have it."""
+    return ", ".join(filter(None, (class_in_force(one), class_notes(one))))
+
+
+# ---------------------------------------------------------------- order
+
+
+def list_bases(results: Results) -> list[str]:
+    """Return what the classes of a run rest on: `assess.results.BASES` that there are, the simulated first."""
+    there = {one.adopted.basis for one in results}
+    return [basis for basis in ("simulated", "formula", "unconfirmed") if basis in there]
+
+
+def order_number(one: ItemResult, row: int) -> float | None:
+    """Return the number by which pieces stand in order, as the formula of its row has it; None for anchored ones."""
+    chance = listed_chance(one)
+    if one.is_anchored or chance is None:
+        return None
+    upper = one.adopted.upper if is_as_run(one) else classify(chance)
+    return CLASS_WEIGHT * int(upper or RiskClass.LOW) + chance - (row + 1) * 1e-9
