@@ -4,6 +4,7 @@ import formualizer
 import openpyxl
 import pytest
 
+from assess.risk import RiskClass
 from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells, write_report
 from tests.workbooks import ITEMS, UNVERIFIED, assessed
 
@@ -95,14 +96,13 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
         )
         found = book.get_value("Items", row, _column(sheet, "Kaneko-Hayashi"))
         assert found == pytest.approx(methods["kaneko_hayashi"].value, abs=1e-9)
-    from assess.report.content import build_content
-
-    content = build_content(again)
     summary = openpyxl.load_workbook(path)["Summary"]
     top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
-    for row, counts in enumerate(content.by_floor, top + 1):
-        found = [book.get_value("Summary", row, column) for column in range(2, 8)]
-        assert found == [*counts.by_class.values(), counts.anchored, counts.total]
+    for row, floor in enumerate(floors, top + 1):
+        own = [one for one in again if one.item.floor == floor["floor"]]
+        by_class = [sum(one.adopted.risk == risk for one in own) for risk in RiskClass]
+        found = [book.get_value("Summary", row, column) for column in range(2, 9)]
+        assert found == [*by_class, len(own), 0, len(own)], "by class, their sum, anchored, all"
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -173,7 +173,7 @@ def test_a_size_that_is_cleared_shows_check_and_leaves_the_counts_alive(report):
         assert book.get_value("Items", 2, _column(sheet, label)) == "check"
     summary = openpyxl.load_workbook(path)["Summary"]
     top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
-    assert book.get_value("Summary", top + 1, 7) == 7
+    assert book.get_value("Summary", top + 1, 8) == 7
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -192,9 +192,9 @@ def test_without_verification_the_class_is_that_of_the_formula(report):
     _, path = report
     book = openpyxl.load_workbook(path, data_only=True)
     sheet = book["Items"]
-    by_formula, verified, shown = (_column(sheet, label) for label in ("Class (formula)", "Class (verified)", "Class"))
+    by_formula, basis, shown = (_column(sheet, label) for label in ("Class (formula)", "Basis", "Class"))
     for row in sheet.iter_rows(min_row=2, values_only=True):
-        assert row[verified - 1] == "not verified"
+        assert row[basis - 1] == "formula (not simulated)"
         assert row[shown - 1] == row[by_formula - 1]
     assert "Verification" not in book.sheetnames
     lines = [str(row[0]) for row in book["Summary"].iter_rows(values_only=True)]

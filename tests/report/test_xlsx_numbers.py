@@ -27,14 +27,20 @@ ITEMS = [
 ]
 
 
-@pytest.fixture(scope="module", params=["formula", "verified"])
-def run(request, tmp_path_factory):
-    """Return the stored Items by key, the other sheets, and results.json."""
-    folder = tmp_path_factory.mktemp(request.param)
+@pytest.fixture(scope="module", params=["formula", "unconfirmed", "simulated"])
+def made(request, tmp_path_factory):
+    """Return results of each kind."""
     if request.param == "formula":
-        results = assess.run(assess.read_inventory(STREET), UNVERIFIED)
-    else:
-        results = assessed(folder / "w.xlsx", ITEMS, FLOORS, settings=Settings(verify="all", runs=20))
+        return assess.run(assess.read_inventory(STREET), UNVERIFIED)
+    period = {"period": 0.9} if request.param == "simulated" else {}
+    path = tmp_path_factory.mktemp("made") / "w.xlsx"
+    return assessed(path, ITEMS, FLOORS, settings=Settings(verify="all", runs=20), **period)
+
+
+@pytest.fixture(scope="module")
+def run(made, tmp_path_factory):
+    """Return the stored Items by key, the other sheets, and results.json."""
+    folder, results = tmp_path_factory.mktemp("run"), made
     written = write_reports(results, folder / "out", ["xlsx", "json"])
     book = openpyxl.load_workbook(written["xlsx"], data_only=True)
     keys = [column.key for column in item_columns(results)]
@@ -81,27 +87,32 @@ def test_chances_of_the_formulas_are_those_of_the_results(run):
             assert row[key] == ("not evaluated" if value is None else _is(value))
 
 
-def test_what_verification_found_is_that_of_the_results(run):
+def test_what_verification_found_is_that_of_the_results(run, made):
     rows, _, results = run
-    for row, one in zip(rows, results["items"], strict=True):
+    for row, one, result in zip(rows, results["items"], made, strict=True):
         found, adopted = one["verification"], one["adopted"]
         assert row["runs"] == (found and found["runs"])
         is_adopted = adopted["method"] == "housner_monte_carlo"
-        assert row["simulated_chance"] == (_is(adopted["probability"]) if is_adopted else None)
+        assert row["basis"].split(" ")[0] == result.adopted.basis
+        assert row["chance"] == (_is(adopted["probability"]) if is_adopted else None)
         assert (row["low"], row["high"]) == (_is(adopted["low"]), _is(adopted["high"]))
-        assert row["chance"] == _is(adopted["probability"])
+        assert row["beside"] == (_is(result.governing.simulation.ideal.probability) if is_adopted else None)
         shown = row["class"].removeprefix("⚓ ").removesuffix("*")
         assert shown == _label(adopted["class"])
         if found:
-            assert row["class_simulated"].removeprefix("⚓ ").startswith(_label(adopted["class"]))
-            assert ("could be " in row["class_simulated"]) == (adopted["class_upper"] != adopted["class"])
+            assert row["class_upper"].removeprefix("⚓ ") == _label(adopted["class_upper"])
+        if is_adopted:
+            assert ("could be " in (row["class_notes"] or "")) == (adopted["class_upper"] != adopted["class"])
 
 
-def _counts(items):
-    free = [one for one in items if one["anchored"] != "yes"]
-    by_class = [sum(one["quantity"] for one in free if one["adopted"]["class"] == risk.word) for risk in RiskClass]
-    anchored = sum(one["quantity"] for one in items if one["anchored"] == "yes")
-    return [*by_class, anchored, sum(by_class) + anchored]
+BASES = {"formula": "formula (not simulated)", "simulated": "simulated", "unconfirmed": "unconfirmed"}
+
+
+def _counts(results, basis):
+    """Return the free-standing pieces of a basis by class, and their sum."""
+    own = [one for one in results if one.adopted.basis == basis and not one.is_anchored]
+    by_class = [sum(one.item.quantity for one in own if one.adopted.risk == risk) for risk in RiskClass]
+    return [*by_class, sum(by_class)]
 
 
 def test_a_new_field_shows_without_a_change_to_the_report(tmp_path, monkeypatch):
@@ -116,25 +127,51 @@ def test_a_new_field_shows_without_a_change_to_the_report(tmp_path, monkeypatch)
     assert "weight_kg" in written["csv"].read_text(encoding="utf-8-sig").splitlines()[0].split(",")
 
 
-def test_counts_are_those_of_the_results(run):
+def test_counts_are_those_of_the_results(run, made):
+    """Each basis has a table of its own, by floor; what has no class stands beside the first."""
     _, book, results = run
-    rows = [list(row) for row in book["Summary"].iter_rows(max_col=7, values_only=True)]
+    rows = [list(row) for row in book["Summary"].iter_rows(max_col=9, values_only=True)]
+    there = [basis for basis in ("simulated", "formula", "unconfirmed") if any(_counts(made, basis))]
     heads = [at for at, row in enumerate(rows) if row[0] == "Floor"]
-    for at, floor in enumerate(results["floors"], heads[0] + 1):
-        assert rows[at][1:] == _counts([one for one in results["items"] if one["floor"] == floor["floor"]])
-    totals = [row[1:] for row in rows if row[0] == "All floors"]
-    assert totals == [_counts(results["items"])] * 2
+    assert len(heads) == len(there)
+    building = next(at for at, row in enumerate(rows) if row[0] == "Building")
+    for number, (basis, head) in enumerate(zip(there, heads, strict=True)):
+        assert rows[head - 1][0] == f"Pieces by class and floor: {BASES[basis]}"
+        for at, floor in enumerate(results["floors"], head + 1):
+            own = [one for one in made if one.item.floor == floor["floor"]]
+            assert rows[at][1:6] == _counts(own, basis)
+        assert rows[head + 1 + len(results["floors"])][1:6] == _counts(made, basis)
+        assert rows[building + 1 + number][:6] == [BASES[basis], *_counts(made, basis)]
+    again = [["run again", 0]] if made.has_simulated else []
+    anchored = sum(one.item.quantity for one in made if one.is_anchored)
+    expected = [*again, ["anchored", anchored], ["all", sum(one.item.quantity for one in made)]]
+    below = rows[building + 1 + len(there) :][: len(expected)]
+    assert [[row[0], row[5]] for row in below] == expected
+    assert [rows[heads[0]][6:], rows[heads[0] + 1 + len(results["floors"])][6:]] == [
+        [one[at] for one in expected] + [None] * (3 - len(expected)) for at in (0, 1)
+    ]
 
 
-def test_the_list_on_the_summary_is_that_of_the_highest_classes_and_chances(run):
-    _, book, results = run
-    rows = [list(row) for row in book["Summary"].iter_rows(max_col=8, values_only=True)]
-    top = next(at for at, row in enumerate(rows) if row[0] == "Item")
-    words = [risk.word for risk in RiskClass]
-    free = [one for one in results["items"] if one["anchored"] != "yes"]
-    ranked = [(words.index(one["adopted"]["class_upper"]), one["adopted"]["probability"]) for one in free]
-    expected = [chance for _, chance in sorted(ranked, reverse=True)[:10]]
-    assert [row[4] for row in rows[top + 1 : top + 1 + len(expected)]] == pytest.approx(expected, abs=1e-9)
+def test_the_lists_on_the_summary_are_those_of_the_highest_classes_and_chances(run, made):
+    """What was simulated, what was not, and what is unconfirmed are listed apart."""
+    _, book, _ = run
+    rows = [list(row) for row in book["Summary"].iter_rows(max_col=9, values_only=True)]
+    for basis, name in BASES.items():
+        free = [one for one in made if one.adopted.basis == basis and not one.is_anchored]
+        tops = [at for at, row in enumerate(rows) if row[0] == f"The pieces most likely to fall: {name}"]
+        assert len(tops) == (1 if any(one.adopted.basis == basis for one in made) else 0)
+        ranked = [(int(one.adopted.upper), one.adopted.probability) for one in free]
+        expected = [chance for _, chance in sorted(ranked, reverse=True)[:10]]
+        for top in tops:
+            shown = rows[top + 2 : top + 2 + len(expected)]
+            assert [row[4] for row in shown] == pytest.approx(expected, abs=1e-9)
+            assert {row[0] for row in shown} <= {_name(one) for one in free}
+            assert all((row[5] is None) == (basis != "simulated") for row in shown)
+
+
+def _name(one):
+    text = one.item.description or one.item.type
+    return (one.item.item + (f": {text}" if text else ""))[:80]
 
 
 def test_floors_and_motions_are_those_of_the_results(run):
@@ -153,16 +190,22 @@ def test_floors_and_motions_are_those_of_the_results(run):
             assert floors[floor["floor"]][at] == pytest.approx(largest, abs=1e-9)
 
 
-def test_what_to_fix_first_is_that_of_the_results(run):
-    _, book, results = run
-    items = {one["item"]: one for one in results["items"]}
-    rows = list(book["Fix first"].iter_rows(min_row=2, values_only=True))
-    assert rows
+def test_what_to_fix_first_is_that_of_the_results(run, made):
+    """Each basis has a table of its own."""
+    _, book, _ = run
+    rows = [row for row in book["Fix first"].iter_rows(min_row=2, values_only=True) if isinstance(row[0], int)]
+    bases = [row[7] for row in rows]
+    assert bases
+    assert bases == sorted(bases, key=["simulated", "formula (not simulated)", "unconfirmed"].index)
     for row in rows:
-        adopted = items[row[1]]["adopted"]
-        assert row[8:11] == (_is(adopted["probability"]), _is(adopted["low"]), _is(adopted["high"]))
-        assert row[12] == _is(adopted["probability"] * items[row[1]]["quantity"])
-        assert adopted["class"] in row[7]
+        one = made[row[1]]
+        adopted = one.adopted
+        assert row[7] == BASES[adopted.basis]
+        assert adopted.risk.word in row[8]
+        assert row[9:12] == (_is(adopted.probability), _is(adopted.low), _is(adopted.high))
+        is_simulated = adopted.basis == "simulated"
+        assert row[12] == (_is(one.governing.simulation.ideal.probability) if is_simulated else None)
+        assert row[14] == _is(adopted.probability * one.item.quantity)
 
 
 def test_inputs_and_settings_are_those_of_the_results(run):

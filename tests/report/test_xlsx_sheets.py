@@ -61,7 +61,7 @@ def test_items_show_bars_colours_and_choices(tmp_path):
     sheet = openpyxl.load_workbook(_report(tmp_path))["Items"]
     rules = [rule.type for area in sheet.conditional_formatting for rule in area.rules]
     assert rules.count("dataBar") == 4
-    assert rules.count("beginsWith") == 3 * 4 + 1
+    assert rules.count("beginsWith") == 3 * 4 + 2
     heads = {cell.value: cell.column_letter for cell in sheet[1]}
     choices = {
         str(rule.sqref).rstrip("0123456789").split(":")[0][:-1]: rule for rule in sheet.data_validations.dataValidation
@@ -70,9 +70,9 @@ def test_items_show_bars_colours_and_choices(tmp_path):
     assert choices[heads["Height [cm]"]].operator == "greaterThan"
     assert sheet.row_dimensions[1].height >= 30
     comments = [cell.comment.text for cell in sheet[1] if cell.comment]
-    assert len(comments) == 4
+    assert len(comments) == 6
     assert sheet.print_area.endswith(f"${heads['Class']}$6")
-    for label in ("Verified chance", "Class (verified)", "Order"):
+    for label in ("Chance in an earthquake like this one", "Upper class", "Order: simulated"):
         assert sheet.column_dimensions[heads[label]].hidden or _is_hidden(sheet, heads[label])
 
 

@@ -151,18 +151,13 @@ class ItemFormulas:
             "basis": self._while_as_run(own, again),
             "class": self._while_as_run(f"{self._mark()}&{self.terms.label(rank)}", again),
             "class_upper": self._while_as_run(f"{self._mark()}&{self.terms.label(upper)}"),
-        }
-        if basis == "unconfirmed":
-            return found | {
-                "class_notes": self._while_as_run(cells["settle"]),
-                "order_unconfirmed": self._order(rank, upper, cells[self.formula]),
-            }
-        return found | {
-            **{key: self._while_as_run(cells[f"{key}_run"]) for key in AT_RUN},
+            "class_notes": self._while_as_run(self._notes(is_settled=basis == "simulated")),
             "rank_formula": f'IF(ISNUMBER({cells[self.formula]}),{_rank(cells[self.formula])},"")',
-            "class_notes": self._while_as_run(self._notes()),
-            "order_simulated": self._order(rank, upper, cells["chance"]),
+            f"order_{basis}": self._order(rank, upper, cells["chance_run"]),
         }
+        if basis == "simulated":
+            found |= {key: self._while_as_run(cells[f"{key}_run"]) for key in AT_RUN}
+        return found
 
     def _of_any(self) -> dict[str, str]:
         cells, check = self.cells, literal(self.terms.check)
@@ -226,15 +221,16 @@ class ItemFormulas:
         free = f"AND({self.cells['anchored']}<>{literal(self.terms.yes)},ISNUMBER({known}))"
         return f'IF({free},{CLASS_WEIGHT}*{rank}+{chance}-ROW()*{ROW_WEIGHT},"")'
 
-    def _notes(self) -> str:
-        """Return what is to be said of a simulated class."""
+    def _notes(self, *, is_settled: bool) -> str:
+        """Return what is to be said of a class that holds for the inputs as run."""
         rank, upper, formula = (self.cells[key] for key in ("rank", "rank_upper", "rank_formula"))
         could_be = sentence(", " + _("could be {risk}"), risk=self.terms.label(upper))
         lowered = sentence(", " + _("lowered by simulation (formula: {risk})"), risk=self.terms.label(formula))
         fell = literal(", " + _("as it overturns under the record itself"))
         notes = [(f"{upper}>{rank}", could_be), (f"{formula}>{rank}", lowered), (f"{self.cells['fell']}=1", fell)]
-        each = "&".join(f'IF({test},{text},"")' for test, text in notes)
-        return f"MID({each},3,300)"
+        texts = [] if is_settled else [f"{literal(', ')}&{self.cells['settle']}"]
+        texts += [f'IF({test},{text},"")' for test, text in notes]
+        return f"MID({'&'.join(texts)},3,300)"
 
 
 def live_formulas(cells: Mapping[str, str]) -> dict[str, str]:

@@ -49,8 +49,8 @@ def list_simulated(one: ItemResult, *, is_ideal: bool) -> tuple[float | None, ..
 
 
 def listed_chance(one: ItemResult) -> float | None:
-    """Return the chance by which it stands in the list of its basis: the simulated one, else that of the formula."""
-    return one.adopted.probability if one.adopted.is_simulated else one.formula.value
+    """Return the chance by which it stands in the list of its basis."""
+    return one.adopted.probability if is_as_run(one) else one.formula.value
 
 
 def chance_behind(one: ItemResult, *, is_ideal: bool) -> float | None:
@@ -115,9 +115,7 @@ def upper_class(one: ItemResult) -> str:
 def class_notes(one: ItemResult) -> str:
     """Return what is to be said of the class."""
     adopted = one.adopted
-    if adopted.is_unconfirmed:
-        return say_unsettled(one)
-    texts = []
+    texts = [say_unsettled(one)] if adopted.is_unconfirmed else []
     if adopted.upper > adopted.risk:
         texts.append(words.could_be(say_class(adopted.upper)))
     if adopted.lowered_from is not None:

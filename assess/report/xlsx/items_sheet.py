@@ -21,6 +21,7 @@ from assess.report.xlsx.item_values import (
     class_notes,
     is_as_run,
     list_simulated,
+    listed_chance,
     order_number,
     say_unsettled,
     under_record,
@@ -130,7 +131,7 @@ def _in_force(results: Results) -> Iterator[Column]:
         chosen: dict[str, Any] = {"is_hidden": is_hidden, "look": "text", **more}
         return Column(label, width, read, key=key, **chosen)
 
-    yield column("basis", _("Basis"), 15, lambda one: bases[one.adopted.basis], is_live=True, is_hidden=False)
+    yield column("basis", _("Basis"), 26, lambda one: bases[one.adopted.basis], is_live=True, is_hidden=False)
     for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
         yield column(key, label, 12, _found(at, is_ideal=is_ideal), format=CHANCE, look="plain", is_live=True)
     yield column("class", _("Class"), 16, class_in_force, look="live", is_live=True, is_hidden=False)
@@ -192,7 +193,8 @@ def _workings(results: Results) -> Iterator[Column]:
     for key, label, read in _inputs():
         yield column(f"{key}_run", label, _if_as_run(read))
     for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
-        yield column(f"{key}_run", _("{what} (as run)", what=label), _found(at, is_ideal=is_ideal))
+        read = _if_as_run(listed_chance) if key == "chance" else _found(at, is_ideal=is_ideal)
+        yield column(f"{key}_run", _("{what} (as run)", what=label), read)
     yield column("edited", _("Edited"), lambda one: "", is_live=True)
     yield column("fell", _("Fell under the record"), _if_as_run(lambda one: 1 if one.fell_in_record else ""))
     yield column("behind", _("Chance behind the class"), partial(chance_behind, is_ideal=is_ideal))
@@ -200,7 +202,7 @@ def _workings(results: Results) -> Iterator[Column]:
     yield column("settle", _("How to settle the class"), _settle)
     yield column("rank", _("Rank"), _if_as_run(lambda one: int(one.adopted.risk)), is_live=True)
     yield column("rank_upper", _("Rank, upper"), _if_as_run(lambda one: int(one.adopted.upper)), is_live=True)
-    yield column("rank_formula", _("Rank, formula"), _formula_rank, is_live=True)
+    yield column("rank_formula", _("Rank, formula"), _if_as_run(lambda one: int(one.formula_class)), is_live=True)
     for key, name in zip(ORDERS, map(build_terms().bases.__getitem__, BASES), strict=True):
         yield column(key, _("Order: {basis}", basis=name), lambda one: None, is_live=True)
 
@@ -222,10 +224,6 @@ def _centre(one: ItemResult) -> float:
 
 def _settle(one: ItemResult) -> str:
     return say_unsettled(one) if one.adopted.is_unconfirmed else ""
-
-
-def _formula_rank(one: ItemResult) -> int | None:
-    return int(one.formula_class) if one.adopted.is_simulated else None
 
 
 def _if_as_run(read: Read) -> Read:
@@ -296,7 +294,7 @@ def _dress(pen: Pen, page: Any, columns: Sequence[Column], last: int) -> None:
             page.set_column(at, at, column.width, None, {"hidden": True})
         if column.key in CLASSES:
             pen.colour(page, f"{letters[column.key]}2:{letters[column.key]}{last}")
-        elif column.format == CHANCE and column.is_live:
+        elif column.format == CHANCE and column.is_live and column.key not in ("low", "high"):
             pen.bar(page, f"{letters[column.key]}2:{letters[column.key]}{last}")
     again = {"type": "text", "criteria": "begins with", "value": pen.terms.again, "format": pen.style("warning")}
     for key in ("basis", "class"):

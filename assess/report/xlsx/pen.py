@@ -136,7 +136,7 @@ class Pen:
         for at, label in enumerate(labels):
             if row == 0:
                 page.set_column(at, at, widths[at])
-            page.write_string(row, at, label, self.style("head"))
+            self.put(page, row, at, label, self.style("head"))
 
     def listing(self, page: Any, columns: Sequence[Column], rows: Sequence[Any]) -> int:
         """Write a sheet that is one table: frozen head, filter, head repeated on each printed page.

@@ -12,7 +12,7 @@ from assess.report import words
 from assess.report.content import Content
 from assess.report.findings import route_words as say
 from assess.report.ranking import list_steps
-from assess.report.xlsx.item_formulas import ANCHORED
+from assess.report.xlsx.item_formulas import ANCHORED, build_terms
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, of_field
 from assess.results import ItemResult
 from assess.route_fields import route_fields
@@ -237,12 +237,14 @@ def _beside_columns() -> list[Column]:
         field = route_fields(BesideRow)[key]
         return of_field(field, **{"width": width, "read": lambda row: field.read(row.near), **more})
 
+    bases = build_terms().bases
     return [
         _said(SegmentRow, "route", 16, lambda row: row.segment.route),
         _said(SegmentRow, "segment", 18, lambda row: row.segment.segment),
         _said(SegmentRow, "floor", 9, lambda row: row.result.item.floor),
         *_piece_columns(),
         Column(_("Chance of overturning"), 11, lambda row: row.result.adopted.probability, CHANCE),
+        Column(_("Basis"), 12, lambda row: bases[row.result.adopted.basis]),
         near("falls_while_blocked", 14),
         near("distance_m", 11),
         near("reach_m", 10),

@@ -108,11 +108,15 @@ def _draw(plan: _Plan, row: int, worst: Mapping[str, Sequence[Any]]) -> None:
 
 
 def _set_pages(plan: _Plan) -> None:
-    page, is_short = plan.page, plan.floors * len(plan.bases) <= MOST_FLOORS
+    """Print on one page where there is room; else the tables by floor, and their charts, begin pages."""
+    page, is_many = plan.page, plan.floors > MOST_FLOORS
     page.print_area(0, 0, plan.charts + len(plan.bases) * charts.count_rows(plan.floors), LAST)
+    is_short = not is_many and len(plan.bases) <= 1
     page.fit_to_pages(1, 1 if is_short else 0)
     if not is_short:
-        page.set_h_pagebreaks([*plan.tables.values(), plan.charts])
+        tables = list(plan.tables.values())
+        lists = list(plan.lists.values())[1:2]
+        page.set_h_pagebreaks([*lists, *(tables if is_many else tables[:1]), plan.charts - 1])
 
 
 # ---------------------------------------------------------------- sentences

@@ -107,7 +107,8 @@ class WorstList:
             return f"INDEX({self.areas[key]},{cell})"
 
         text = f'IF({of("description")}<>"",": "&{of("description")},IF({of("type")}<>"",": "&{of("type")},""))'
-        found = [of(key) for key in AT_RUN] if self._is_simulated else [of(self.run.formula.key), *['""'] * 3]
+        chance = of("chance_run" if self.basis == "unconfirmed" else self.run.formula.key)
+        found = [of(key) for key in AT_RUN] if self._is_simulated else [chance, *['""'] * 3]
         notes = of("class_notes")
         return [
             f"LEFT({of('item')}&{text},{_LONGEST})",
