@@ -222,7 +222,7 @@ def test_states_have_sign_and_colour(written):
 
 def test_the_sheets_are_set_up(written):
     _, book, _ = written
-    for name, frozen, area in (("Routes", "C2", "A1:AF6"), ("Route pieces", "A2", "A1:O4"),
+    for name, frozen, area in (("Routes", "C2", "A1:AF6"), ("Route pieces", "A2", "A1:P4"),
                                ("Route rooms", "B2", "A1:V3")):  # fmt: skip
         sheet = book[name]
         assert sheet.freeze_panes == frozen
@@ -261,8 +261,8 @@ def test_what_to_fix_first_says_for_which_route(written):
     west = results.route_tables.routes[0]
     at_most = west.blocked_if_unconfirmed_fall
     before = f"{100 * west.blocked.probability:.1f} %" if at_most is None else "up to 100.0 %"
-    assert book["Fix first"]["N1"].comment.text.startswith("Sorted by class (upper estimate)")
-    assert rows["tall"][13] == f"route West: {before} → 0.0 % (step 1 of 1)"
+    assert book["Fix first"]["P1"].comment.text.startswith("Sorted by class (upper estimate)")
+    assert rows["tall"][15] == f"route West: {before} → 0.0 % (step 1 of 1)"
 
 
 def test_methods_tell_the_rule_and_the_widths_that_codes_ask_for(written):
@@ -285,4 +285,4 @@ def test_headings_in_another_language_stay_apart(written, language, tmp_path):
         heads = [cell.value for cell in sheet[1] if cell.value]
         assert len(heads) == len(set(heads)), sheet.title
     widths = {len([cell for cell in sheet[1] if cell.value]) for sheet in book.worksheets}
-    assert {32, 15, 22} <= widths
+    assert {32, 16, 22} <= widths
