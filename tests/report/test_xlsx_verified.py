@@ -486,3 +486,38 @@ def test_the_workings_are_hidden_and_stand_last(report):
     assert sheet.column_dimensions[openpyxl.utils.get_column_letter(first)].hidden
     assert first > report.places["Notes"]
     assert sheet.auto_filter.ref.endswith(f"{openpyxl.utils.get_column_letter(max(report.places.values()))}21")
+
+
+def test_the_factor_on_the_motion_and_the_ideal_chance_are_named_on_every_sheet(tmp_path):
+    items = [{"item": "a", "floor": "1", "breadth": 40, "width": 90, "height": 180}]
+    floors = [{"floor": "1", "pfa_x": 0.4}]
+    found = _report(tmp_path, settings=Settings(runs=20, ideal=True, scale=0.8), items=items, floors=floors, period=0.9)
+    book = openpyxl.load_workbook(found.path, data_only=True)
+    assert {sheet.oddHeader.center.text.strip() for sheet in book} == {"motion × 0.8, if exactly this motion recurred"}
+    lines = [str(row[0]) for row in book["Summary"].iter_rows(max_row=6, values_only=True)]
+    assert "The motion of every floor is multiplied by 0.8." in lines
+    assert any(line.startswith("Chances are those if exactly this motion recurred") for line in lines)
+    row = {str(head.value): cell.value for head, cell in zip(book["Items"][1], book["Items"][2], strict=True)}
+    simulation = found.results["a"].governing.simulation
+    assert row[CHANCES[3]] == simulation.ideal.probability == found.results["a"].adopted.probability
+    assert (row["Interval low"], row["Interval high"]) == (simulation.ideal.low, simulation.ideal.high)
+    assert row[CHANCES[0]] == simulation.probability
+    assert list(found.places).index(CHANCES[3]) < list(found.places).index(CHANCES[0])
+
+
+def test_nothing_is_named_by_default(by_formula):
+    book = openpyxl.load_workbook(by_formula.path)
+    assert {sheet.oddHeader.center.text for sheet in book} == {None}
+
+
+def test_a_piece_that_may_fall_along_either_axis_holds_the_chance_of_both(tmp_path):
+    floors = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.28, "pfv_y": 33.0}]
+    items = [{"item": f"{breadth}", "floor": "1", "breadth": breadth, "width": breadth + 4, "height": 190}
+             for breadth in range(30, 66, 6)]  # fmt: skip
+    report = _report(tmp_path, settings=Settings(runs=30), items=items, floors=floors, period=0.9)
+    larger = [one for one in report.results if one.adopted.probability > one.governing.simulation.probability]
+    assert larger
+    assert compare_formulas(_copy(report, tmp_path)) > 12 * len(items)
+    book = openpyxl.load_workbook(report.path, data_only=True)["Items"]
+    for one in larger:
+        assert book.cell(report.rows[one.item.item], report.places[CHANCES[0]]).value == one.adopted.probability

@@ -61,19 +61,19 @@ def chance_behind(one: ItemResult, *, is_ideal: bool) -> float | None:
     """
 
     def chance(case: CaseRow) -> float:
-        formula, found = case.methods[one.formula_key].value or 0.0, case.simulation
-        if found is None:
-            return formula
-        simulated = found.ideal.probability if is_ideal else found.probability
-        return max(formula, simulated) if case.adopted.is_doubtful else simulated
+        formula, found, adopted = case.methods[one.formula_key].value or 0.0, case.simulation, case.adopted
+        if found is None or adopted.is_simulated:  # the adopted one may be that of a fall along either axis
+            return max(formula, adopted.probability) if adopted.is_doubtful else adopted.probability
+        return max(formula, found.ideal.probability if is_ideal else found.probability)
 
     return max(map(chance, one.cases)) if is_as_run(one) else None
 
 
 def upper_end(one: ItemResult, *, is_ideal: bool) -> float | None:
     """Return the chance behind the upper class: the highest upper end of its intervals, or a higher ideal chance."""
-    found = [case.simulation for case in one.cases if case.simulation]
-    ends = [found.ideal.high if is_ideal else max(found.high, found.ideal.probability) for found in found]
+    ends = [case.adopted.high for case in one.cases if case.adopted.high is not None]
+    for found in (case.simulation for case in one.cases if case.simulation):
+        ends += [found.ideal.high] if is_ideal else [found.high, found.ideal.probability]
     return max(ends, default=None)
 
 
