@@ -105,7 +105,14 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     from assess.workbook.example import example_texts
     from assess.workbook.schema import HELP, LISTS
 
-    texts = (template.TITLE, *template.HEADS, *template.FIRST_LINES, template.CLASS_NOTE, template.FOOTER)
+    texts = (
+        template.TITLE,
+        *template.HEADS,
+        *template.FIRST_LINES,
+        template.CLASS_NOTE,
+        template.ROCK_NOTE,
+        template.FOOTER,
+    )
     yield from ((text, "assess/workbook/template.py") for text in texts)
     yield from ((text, "assess/workbook/schema.py") for text in (HELP, LISTS))
     yield from (

@@ -163,7 +163,7 @@ def test_the_classes_stand_in_italian(book: Any) -> None:
     with speaking(load_catalogue("it")):
         words = {f"{risk.symbol} {gettext(risk.word)}" for risk in RiskClass}
     assert words == {"○ basso", "◇ medio", "▲ alto", "■ molto alto"}
-    letter = column_letters(FIRST + len(LIVE) - 1)
+    letter = column_letters(FIRST + LIVE.index("Class (formula)"))
     assert all(f'"{word}"' in book["Arredi"][f"{letter}2"].value for word in words)
 
 
