@@ -14,7 +14,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.methods import MethodInfo
 from assess.model import ANCHORED, AXES, IMPORTANCE
-from assess.results import CaseRow, ItemRow, MotionRow, Results, Simulation
+from assess.results import BASES, CaseRow, ItemRow, MotionRow, Results, Simulation
 from assess.risk import RiskClass
 
 Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "records"]
@@ -103,9 +103,11 @@ def _word(risk: RiskClass | None) -> str | None:
 
 
 def _simulated(name: str) -> Callable[[Any], Any]:
+    value = attrgetter(name)
+
     def read(row: Any) -> Any:
         found: Simulation | None = row.simulation if isinstance(row, CaseRow) else row.governing.simulation
-        return None if found is None else getattr(found, name)
+        return None if found is None else value(found)
 
     return read
 
@@ -119,11 +121,25 @@ def _simulation_field(name: str, kind: Kind, label: str, path: tuple[str, ...] =
 
 
 SIMULATION_FIELDS = (
-    _simulation_field("runs", "count", fill("Motions"), help="Motions that the piece was simulated under."),
-    _simulation_field("overturned", "count", fill("Overturned"), help="Motions under which it overturned."),
+    _simulation_field(
+        "runs", "count", fill("Motions"),
+        help="Draws of an earthquake like this one and of the piece, a motion each, that it was simulated under.",
+    ),
+    _simulation_field("overturned", "count", fill("Overturned"), help="Draws in which it overturned."),
     _simulation_field("probability", "share", fill("Chance"), help="`overturned` / `runs`."),
     _simulation_field("low", "share", fill("Low"), help="Lower end of the 95 % sampling interval (Wilson)."),
     _simulation_field("high", "share", fill("High"), help="Upper end of it."),
+    _simulation_field("runs", "count", fill("Motions"), ("ideal", "runs"), help="Motions, the same as of the draws."),
+    _simulation_field(
+        "ideal.overturned", "count", fill("Overturned"), ("ideal", "overturned"),
+        help="Motions under which the piece overturned exactly as given, if exactly this motion recurred.",
+    ),
+    _simulation_field(
+        "ideal.probability", "share", fill("Chance if exactly this motion recurred"), ("ideal", "probability"),
+        short=fill("If exactly this motion recurred"), shows=DATA | {"methods"}, help="`overturned` / `runs`.",
+    ),
+    _simulation_field("ideal.low", "share", fill("Low"), ("ideal", "low"), help="Lower end of its sampling interval."),
+    _simulation_field("ideal.high", "share", fill("High"), ("ideal", "high"), help="Upper end of it."),
     _simulation_field(
         "record_overturned", "flag", fill("Overturns under the record"), ("record", "overturned"),
         short=fill("Under the record"), shows=DATA | {"pieces"},
@@ -187,6 +203,11 @@ def _adopted(name: str, read: Callable[[Any], Any], label: str, kind: Kind, **mo
 ADOPTED_FIELDS = (
     _adopted("method", lambda one: one.method, fill("Method"), "text", help="Key of the method whose value it is."),
     _adopted(
+        "basis", lambda one: one.basis, fill("Basis"), "text", choices=BASES,
+        help="`simulated`; `formula`: not simulated; or `unconfirmed`: the formula's class, as the motions of a "
+        "simulation that gave a lower one may be too weak. Counts, lists and sums never mix them.",
+    ),
+    _adopted(
         "probability", lambda one: one.probability, fill("Chance of overturning"), "share", format="0.0%",
         short=fill("Chance"), shows=DATA | {"pieces", "risky"},
     ),
@@ -224,6 +245,10 @@ PIECE_FIELDS = (
     _of_item("height_cm", fill("Height"), kind="number", unit="cm"),
     _of_item(
         "breadth_to_height", fill("B/H"), kind="number", format="0.000", width=8, shows=EVERYWHERE | {"methods"},
+    ),
+    _of_item(
+        "centre_of_gravity", fill("Centre of gravity"), kind="share", format="0%", width=8, shows=DATA,
+        help="Height of the centre of gravity, as a share of the piece's height.",
     ),
     Field(
         key="axis", read=attrgetter("governing.motion.axis"), label=fill("Axis"), choices=AXES, width=6,
@@ -413,10 +438,16 @@ MOTION_FIELDS = (
     _of_motion("samples", "count"),
     Field(key="notes", read=lambda row: list(row.notes), kind="list"),
     _ensemble("motions", "count", label=fill("Motions"), format="#,##0"),
-    _ensemble("generic_spectrum", "flag"),
+    _ensemble(
+        "generic_spectrum", "flag", help="Whether only peaks are known, so that the motions follow a generic spectrum.",
+    ),
+    _ensemble(
+        "unknown_period", "flag",
+        help="Whether neither T1 nor the building's height is known, so that they may not lower a class.",
+    ),
     _ensemble(
         "weak_motions", "flag",
-        help="Whether the user's own motions are weaker than the floor's, so that they may not lower a class.",
+        help="Whether the motions are weaker than the floor's, so that they may not lower a class.",
     ),
     _fit("matched_to_s", fill("Matched from 0.05 s to"), "0.00", "s"),
     _fit("mean_deviation", fill("Mean deviation"), "0.0%"),

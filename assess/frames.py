@@ -46,11 +46,12 @@ def build_frame(results: Results, name: str) -> "pd.DataFrame":
 
 def results_html(results: Results, most: int = 10) -> str:
     """Return a short table: pieces by class, and the first rows."""
-    counts = dict.fromkeys((risk.word for risk in RiskClass), 0)
+    words = [risk.word for risk in reversed(RiskClass)]
+    counts = dict.fromkeys((*words, "unconfirmed", "by formula only"), 0)
     for one in results:
         if not one.is_anchored:
-            counts[one.adopted.risk.word] += one.item.quantity
-    classes = ", ".join(f"{word} {count:,}" for word, count in reversed(counts.items()))
+            counts[one.apart.replace("formula", "by formula only") or one.adopted.risk.word] += one.item.quantity
+    classes = ", ".join(f"{word} {count:,}" for word, count in counts.items() if count or word in words)
     head = f"<p>{escape(repr(results))}<br>Free-standing pieces by class: {classes}</p>"
     shown = ("item", "floor", "description", "breadth_cm", "height_cm", "pfa_g", "adopted_probability", "adopted_class")
     chosen = [field for field in item_fields(results) if field.key in shown]

@@ -370,7 +370,8 @@ class CaseRow:
 class ItemResult:
     """One row of furniture with its governing case, the risk adopted from it, and all its cases.
 
-    `formula` is the result of the adopted formula's method by case, for the properties below.
+    `formula` is the result of the adopted formula's method by case, for the properties below. `main_basis` is that of
+    the run (`Results.main_basis`).
     """
 
     item: ItemRow
@@ -378,6 +379,15 @@ class ItemResult:
     adopted: Adopted
     cases: tuple[CaseRow, ...]
     formula_key: str
+    main_basis: str = "formula"
+
+    @property
+    def apart(self) -> str:
+        """Its basis where that is not the one of the run's counts, by which it stands apart in lists and sums: else "".
+
+        One of "unconfirmed" and, in a run that simulated other pieces, "formula".
+        """
+        return "" if self.adopted.basis == self.main_basis else self.adopted.basis
 
     @property
     def routes(self) -> tuple[str, ...]:
@@ -781,7 +791,8 @@ class Results:
         item = self.item_rows[index]
         cases = tuple(self._read(case) for case in range(item.first_case, item.last_case))
         governing = cases[item.governing - item.first_case]
-        return ItemResult(item, governing, self._adopt_worst(governing, cases), cases, self.formula.key)
+        adopted = self._adopt_worst(governing, cases)
+        return ItemResult(item, governing, adopted, cases, self.formula.key, self.main_basis)
 
     @property
     def formula(self) -> MethodInfo:
@@ -797,6 +808,11 @@ class Results:
     def has_simulated(self) -> bool:
         """Whether any piece was simulated."""
         return any(one.ensemble is not None for one in self.motions)
+
+    @property
+    def main_basis(self) -> str:
+        """The basis of counts, lists and sums, one of `BASES`: simulated where any piece was, else the formula."""
+        return "simulated" if self.has_simulated else "formula"
 
     @property
     def has_routes(self) -> bool:

@@ -33,6 +33,8 @@ PLAIN = frozenset(("json", "csv", "xlsx"))
 """Formats that need no series of figures."""
 OPENED = ("pdf", "html", "xlsx")
 """Reports that --open opens: the first of these that was written."""
+UNCONFIRMED = "simulation gave a lower class than the formula, but its motions may be too weak to rely on."
+"""What the count of unconfirmed pieces means."""
 
 
 def command(
@@ -215,21 +217,32 @@ def _read_methods(files: Sequence[Path]) -> "list[Method]":
 
 
 def describe_result(results: "Results") -> Iterator[str]:
-    """Yield the pieces of each class, how many routes are at risk, and how much was simulated."""
-    from assess.report.counts import count_pieces
+    """Yield the pieces of each class and those apart, what settles these, the routes at risk, and what was assumed."""
+    from assess.report.counts import count
+    from assess.report.findings.apart import list_apart, list_ways_to_settle
+    from assess.report.findings.uncertain import list_conditions, say_assumed, say_sensitivity
     from assess.report.findings.verified import describe_verification
     from assess.risk import RiskClass
 
-    counts, anchored = count_pieces(results)
+    rows = tuple(results)
+    counts = count("", rows)
     for risk in reversed(RiskClass):
-        yield f"{risk.label:<13} {counts[risk]:>6,} {'piece' if counts[risk] == 1 else 'pieces'}"
-    if anchored:
-        depends = "it depends on its anchors" if anchored == 1 else "they depend on their anchors"
-        yield f"{'  anchored':<13} {anchored:>6,}, not classified: {depends}"
+        yield f"{risk.label:<13} {counts.by_class[risk]:>6,} {'piece' if counts.by_class[risk] == 1 else 'pieces'}"
+    if counts.unconfirmed:
+        ways = list_ways_to_settle(list_apart(rows, "unconfirmed"))
+        yield " ".join([f"{'  unconfirmed':<13} {counts.unconfirmed:>6,}, not counted above: {UNCONFIRMED}", *ways])
+    if counts.by_formula:
+        yield f"{'  by formula':<13} {counts.by_formula:>6,}, not counted above: not simulated"
+    if counts.anchored:
+        depends = "it depends on its anchors" if counts.anchored == 1 else "they depend on their anchors"
+        yield f"{'  anchored':<13} {counts.anchored:>6,}, not classified: {depends}"
     if results.has_routes:
         yield _describe_routes(results.route_tables)
     verified = describe_verification(results) if results.has_simulated else "Not simulated."
     yield f"Chance of overturning in this scenario, not per year. {verified}"
+    yield from (f"{text}." for text in list_conditions(results))
+    if assumed := " ".join(filter(None, (say_assumed(results), say_sensitivity(results, rows)))):
+        yield assumed
 
 
 def _describe_routes(routes: "RouteTables") -> str:

@@ -13,6 +13,7 @@ from assess.i18n import number
 from assess.report import statements, words
 from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, count_cannot_rock, count_rooms
 from assess.report.findings import cautions, motions, trials
+from assess.report.findings.apart import list_apart, list_parts
 from assess.report.findings.disagreements import Disagreements, find_disagreements
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
@@ -50,6 +51,16 @@ class FloorPage:
     def risky(self) -> Sequence[ItemResult]:
         """Free-standing pieces that reach high by the upper estimate, the worst first."""
         return list_risky(self.results)
+
+    @property
+    def unconfirmed(self) -> Sequence[ItemResult]:
+        """Free-standing pieces whose lower simulated class cannot be relied on, the worst by formula first."""
+        return list_apart(self.results, "unconfirmed")
+
+    @property
+    def risky_by_formula(self) -> Sequence[ItemResult]:
+        """Free-standing pieces that were not simulated, of high and very high class by formula, the worst first."""
+        return list_risky(self.results, "formula")
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +134,20 @@ class Content:
     def risky(self) -> Sequence[ItemResult]:
         """Free-standing pieces that reach high by the upper estimate, the worst first."""
         return list_risky(self.results)
+
+    @property
+    def unconfirmed(self) -> Sequence[ItemResult]:
+        """Free-standing pieces whose lower simulated class cannot be relied on, the worst by formula first."""
+        return list_apart(self.results, "unconfirmed")
+
+    @property
+    def risky_by_formula(self) -> Sequence[ItemResult]:
+        """Free-standing pieces that were not simulated, of high and very high class by formula, the worst first."""
+        return list_risky(self.results, "formula")
+
+    def parts(self, most: int) -> list[tuple[str, list[ItemResult]]]:
+        """Return the first `most` rows by their basis, with the heading of each part but the first."""
+        return list_parts(self.results[:most])
 
     @property
     def example(self) -> ItemResult | None:

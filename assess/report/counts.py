@@ -18,26 +18,31 @@ if TYPE_CHECKING:
 class Counts:
     """Pieces (not rows) of a room, a floor, or of the building, by class; anchored ones stand outside the classes.
 
-    Of those with a class, `lowered` were lowered by simulation, and `may_be` could be of a higher one. `expected` is
-    the expected number of free-standing pieces that fall.
+    Classes never mix bases: `by_class` are the simulated pieces, or those by formula in a run that simulated nothing.
+    `unconfirmed` and `by_formula` (not simulated in a run that simulated others) are counted apart. Of those with a
+    class, `lowered` were lowered by simulation, and `may_be` could be of a higher one. `expected` is the expected number
+    of them that fall, and `expected_by_formula` that of the pieces by formula, apart.
     """
 
     label: str
     by_class: Mapping[RiskClass, int]
     anchored: int
+    unconfirmed: int = 0
+    by_formula: int = 0
     lowered: int = 0
     may_be: int = 0
     expected: float = 0.0
+    expected_by_formula: float = 0.0
 
     @property
     def free(self) -> int:
-        """Free-standing pieces: those that have a class."""
+        """Free-standing pieces that have a class of the run's basis."""
         return sum(self.by_class.values())
 
     @property
     def total(self) -> int:
         """All pieces."""
-        return self.free + self.anchored
+        return self.free + self.unconfirmed + self.by_formula + self.anchored
 
     @property
     def risky(self) -> int:
@@ -48,28 +53,52 @@ class Counts:
         """Share of a class among the pieces that have one."""
         return f"{number(100 * self.by_class[risk] / self.free, '.0f')} %" if self.free else words.DASH
 
+    @property
+    def falls(self) -> str:
+        """The expected falls, and up to how many unconfirmed pieces besides."""
+        expected = words.fixed(self.expected, 1)
+        if not self.unconfirmed:
+            return expected
+        return _("{expected} and up to {n:,}", expected=expected, n=self.unconfirmed)
+
 
 def count_pieces(results: Iterable[ItemResult]) -> tuple[dict[RiskClass, int], int]:
-    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which have no class."""
+    """Count pieces, not rows: the free-standing ones by class, and the anchored ones, which have no class.
+
+    Those that stand apart (`ItemResult.apart`) are in neither.
+    """
     by_class, anchored = dict.fromkeys(RiskClass, 0), 0
     for one in results:
         if one.is_anchored:
             anchored += one.item.quantity
-        else:
+        elif not one.apart:
             by_class[one.adopted.risk] += one.item.quantity
     return by_class, anchored
 
 
+def count_apart(results: Iterable[ItemResult], basis: str) -> int:
+    """Count the free-standing pieces that stand apart with a basis, "unconfirmed" or "formula"."""
+    return sum(one.item.quantity for one in results if not one.is_anchored and one.apart == basis)
+
+
 def count(label: str, results: Sequence[ItemResult]) -> Counts:
-    """Count pieces by class, and those whose class was lowered, or could be higher."""
+    """Count pieces by class, those that stand apart, and those whose class was lowered, or could be higher."""
     free = [one for one in results if not one.is_anchored]
+    main = [one for one in free if not one.apart]
     return Counts(
         label,
         *count_pieces(results),
-        lowered=sum(one.item.quantity for one in free if one.adopted.lowered_from is not None),
-        may_be=sum(one.item.quantity for one in free if one.adopted.upper != one.adopted.risk),
-        expected=sum(one.adopted.probability * one.item.quantity for one in free),
+        unconfirmed=count_apart(results, "unconfirmed"),
+        by_formula=count_apart(results, "formula"),
+        lowered=sum(one.item.quantity for one in main if one.adopted.lowered_from is not None),
+        may_be=sum(one.item.quantity for one in main if one.adopted.upper != one.adopted.risk),
+        expected=_expected(main),
+        expected_by_formula=_expected([one for one in free if one.apart == "formula"]),
     )
+
+
+def _expected(results: Iterable[ItemResult]) -> float:
+    return sum(one.adopted.probability * one.item.quantity for one in results)
 
 
 def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
@@ -83,15 +112,14 @@ def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
 
 @dataclass(frozen=True, slots=True)
 class CannotRock:
-    """Free-standing pieces whose class by formula is higher than their rocking allows.
+    """Free-standing pieces whose class is by formula, and higher than their rocking allows.
 
-    `risky` are all of high and very high class by formula. Of these, `still` cannot start to rock by the criterion for
-    it; for `kept` of them simulation gave a lower class, which was not adopted. `stocky` others are too stocky to rock.
+    `risky` are all of high and very high class by formula that were not simulated. Of these, `still` cannot start to
+    rock by the criterion for it. `stocky` others are too stocky to rock.
     """
 
     risky: int
     still: int
-    kept: int
     stocky: int
 
     @property
@@ -124,14 +152,13 @@ def count_cannot_rock(results: Sequence[ItemResult], methods: "Sequence[MethodIn
     risky = [
         one
         for one in results
-        if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.method == one.formula_key
+        if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.basis == "formula"
     ]
     stocky = [one for one in risky if one.does_not_rock]
     still = [
         one for one in risky if criterion and not one.does_not_rock and one.governing.methods[criterion].value == 0
     ]
-    kept = [one for one in still if one.is_simulated]
-    return CannotRock(*(sum(one.item.quantity for one in ones) for ones in (risky, still, kept, stocky)))
+    return CannotRock(*(sum(one.item.quantity for one in ones) for ones in (risky, still, stocky)))
 
 
 MOST_BARS = 30
@@ -144,19 +171,23 @@ _LEAST = 13.0
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One part of a bar: its left edge and width, its class (None: anchored) and the number of pieces."""
+    """One part of a bar: its left edge and width, and the number of pieces; `fill` and `ink` are its colours.
+
+    `symbol` is that of the class, or of what stands apart: unconfirmed, by formula only, anchored.
+    """
 
     x: float
     width: float
-    risk: RiskClass | None
+    symbol: str
+    fill: str
+    ink: str
     pieces: int
 
     @property
     def label(self) -> str:
         """Symbol and number, or the number alone, or nothing, as there is room."""
-        symbol = "⚓" if self.risk is None else self.risk.symbol
         if self.width >= 2 * _LEAST:
-            return f"{symbol} {self.pieces}"
+            return f"{self.symbol} {self.pieces}"
         return f"{self.pieces}" if self.width >= _LEAST else ""
 
 
@@ -194,9 +225,15 @@ def build_bars(counts: Sequence[Counts], most: int = MOST_BARS) -> Bars | None:
 
 
 def _bar(counts: Counts, y: float, scale: float) -> Bar:
+    looks = [(risk.symbol, risk.fill, risk.ink, pieces) for risk, pieces in counts.by_class.items()]
+    looks += [
+        (words.UNCONFIRMED, words.APART_FILL, words.INK, counts.unconfirmed),
+        (words.BY_FORMULA, words.APART_FILL, words.INK, counts.by_formula),
+        (words.ANCHORED, words.ANCHORED_FILL, words.INK, counts.anchored),
+    ]
     parts, x = [], _LABEL
-    for risk, pieces in (*counts.by_class.items(), (None, counts.anchored)):
+    for symbol, fill, ink, pieces in looks:
         if pieces:
-            parts.append(Part(x, pieces * scale, risk, pieces))
+            parts.append(Part(x, pieces * scale, symbol, fill, ink, pieces))
             x += pieces * scale
     return Bar(words.cut(counts.label, 30), y, parts, counts.total)

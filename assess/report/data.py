@@ -73,6 +73,7 @@ def describe_run(results: Results) -> dict[str, Any]:
             "version": origin.version,
             "seed": results.settings.seed,
             "settings": asdict(results.settings) | {"scenario": origin.scenario},
+            "uncertainty": asdict(origin.uncertainty),
             "platform": dict(origin.platform),
             "inputs": {
                 "workbook": origin.workbook,
@@ -157,7 +158,8 @@ def disarm(value: object) -> object:
 def write_npz(results: Results, path: Path, progress: Progress = SILENT) -> None:
     """Write outcomes.npz: under which motions each piece overturned, for those who count what falls together.
 
-    Motion k is one earthquake on every floor of the building: two pieces fall together where both have bit k set.
+    Draw k is one earthquake for every floor of the building, by its scale and, along one axis, by the phases of its
+    motions; the signs of modes are not known. Two pieces fall together in draw k where both have bit k set.
 
     Arrays: ``item``, ``row`` (of the sheet Items), ``axis``, ``source`` and ``governs`` (m,) describe the m simulated
     cases (a piece under one floor motion), most of which have k motions; ``runs`` (m,) how many motions each was

@@ -12,6 +12,8 @@ from assess.route_results import RouteTables
 
 NAMED = 2
 """Routes that a reason names; the rest are counted."""
+APART = ("", "unconfirmed", "formula")
+"""The bases in the order of lists: that of the run, and what stands apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +76,14 @@ class Fix:
     """One line of what to fix first, with its place in the list.
 
     `saved` is the expected number of falls of this row, avoided if its anchors hold; `together` the share of all
-    expected falls that this line and those above it avoid. `steps` are the steps of routes that it is.
+    expected falls that this line and those above it avoid, None for a piece that stands apart. `steps` are the steps of
+    routes that it is.
     """
 
     place: int
     result: ItemResult
     saved: float
-    together: float
+    together: float | None
     steps: Sequence[RouteStep] = ()
 
     @property
@@ -96,7 +99,8 @@ class Fix:
 def list_fixes(results: Results, rows: Sequence[ItemResult], expected: float) -> list[Fix]:
     """Return the pieces of at least medium class and those that a route needs fixed, the most urgent first.
 
-    `expected` is the number of free-standing pieces that are expected to fall.
+    Pieces that stand apart (`ItemResult.apart`) come after all others, unconfirmed ones first. `expected` is the number
+    of free-standing pieces that are expected to fall, but for those.
     """
     steps: dict[int, list[RouteStep]] = {}
     for step in list_steps(results.route_tables):
@@ -104,17 +108,17 @@ def list_fixes(results: Results, rows: Sequence[ItemResult], expected: float) ->
     fixes, sum_saved = [], 0.0
     for place, one in enumerate(fix_first(rows, steps), 1):
         saved = one.adopted.probability * one.item.quantity
-        sum_saved += saved
+        sum_saved += 0.0 if one.apart else saved
         together = sum_saved / expected if expected else 0.0
-        fixes.append(Fix(place, one, saved, together, tuple(steps.get(one.item.index, ()))))
+        fixes.append(Fix(place, one, saved, None if one.apart else together, tuple(steps.get(one.item.index, ()))))
     return fixes
 
 
 def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:
     """Return the free-standing pieces of at least medium class and those that a route needs fixed, in order.
 
-    Sorted by whether the upper class is high or above, then life safety and routes, then the upper class, then
-    probability times quantity, then name. So a piece of low class that a route needs comes after the urgent pieces of
+    Sorted by basis, so that those that stand apart come last, then by whether the upper class is high or above, then
+    life safety and routes, then the upper class, then probability times quantity, then name. So a piece of low class that a route needs comes after the urgent pieces of
     medium class and before those that are not urgent.
 
     Parameters
@@ -132,6 +136,7 @@ def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> li
     return sorted(
         chosen,
         key=lambda one: (
+            APART.index(one.apart),
             one.adopted.upper < RiskClass.HIGH,
             not one.is_urgent,
             -one.adopted.upper,

@@ -19,10 +19,11 @@ from assess.errors import Problem
 from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
 from assess.model import AXES
 from assess.risk import RiskClass
+from assess.rocking.draws import Uncertainty
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
-VERSION = "3.0"
+VERSION = "4.0"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
@@ -166,6 +167,7 @@ def _assess() -> Schema:
             "version": TEXT,
             "seed": COUNT | {"description": "Of the generated motions."},
             "settings": _of_row(Settings),
+            "uncertainty": _of_row(Uncertainty) | {"description": "What the draws of the simulation vary."},
             "platform": _map(TEXT),
             "inputs": _object({"workbook": TEXT, "sha256": HASH, "records": _map(HASH), "motions": _map(HASH)}),
             "fitted_models": _map(fitted)
@@ -197,6 +199,7 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     (Settings, "route_risk"): INSIDE,
     (Settings, "scale"): {"type": "number", "exclusiveMinimum": 0, "maximum": MOST_SCALE},
     (Settings, "ductility_reduction"): {"type": "number", "minimum": 1},
+    (Uncertainty, "motion"): {"type": "number", "minimum": 0},
     (Problem, "severity"): {"enum": ["warning", "note"]},
 }
 """What is not as its type says."""

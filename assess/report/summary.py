@@ -7,7 +7,9 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
 from assess.report.counts import Counts
+from assess.report.findings.apart import say_apart
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
+from assess.report.findings.uncertain import say_assumed, say_sensitivity
 from assess.report.ranking import Fix, list_fixes
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
@@ -22,10 +24,14 @@ LEAST = 12
 class Summary:
     """A paragraph in plain words, the worst pieces, what to fix first, and the routes at risk.
 
-    `of_routes` are sentences on the routes, none where the workbook names none.
+    `apart` are sentences on the pieces that are counted apart, with what settles them; `assumed` are what was assumed
+    uncertain, and what other assumptions would change; `of_routes` are sentences on the routes, none where the workbook
+    names none.
     """
 
     plainly: Sequence[str]
+    apart: Sequence[str]
+    assumed: Sequence[str]
     worst: Sequence[ItemResult]
     fixes: Sequence[Fix]
     routes: Sequence[RouteAtRisk]
@@ -36,19 +42,29 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
     """Gather the summary."""
     worst, fixes = list_worst(rows), list_fixes(results, rows, total.expected)
     could_be = sum(one.item.quantity for one in list_risky(rows) if one.adopted.risk < RiskClass.HIGH)
-    plainly = say_plainly(total, could_be, worst, fixes)
-    return Summary(plainly, worst, fixes, list_routes_at_risk(results), say_routes(results))
+    return Summary(
+        plainly=say_plainly(total, could_be, worst, fixes),
+        apart=say_apart(rows),
+        assumed=[text for text in (say_assumed(results), say_sensitivity(results, rows)) if text],
+        worst=worst,
+        fixes=fixes,
+        routes=list_routes_at_risk(results),
+        of_routes=say_routes(results),
+    )
 
 
 def list_worst(results: Sequence[ItemResult]) -> list[ItemResult]:
-    """Return the free-standing pieces that are most likely to fall."""
-    return sorted((one for one in results if not one.is_anchored), key=_worst_first)[:WORST]
+    """Return the free-standing pieces that are most likely to fall, of the run's basis."""
+    return sorted((one for one in results if not (one.is_anchored or one.apart)), key=_worst_first)[:WORST]
 
 
-def list_risky(results: Sequence[ItemResult]) -> list[ItemResult]:
-    """Return the free-standing pieces that reach high by the upper estimate, the worst first."""
-    risky = [one for one in results if not one.is_anchored and one.adopted.upper >= RiskClass.HIGH]
-    return sorted(risky, key=_worst_first)
+def list_risky(results: Sequence[ItemResult], basis: str = "") -> list[ItemResult]:
+    """Return the free-standing pieces that reach high by the upper estimate, the worst first.
+
+    Those of the run's basis, or with `basis` those that stand apart with it.
+    """
+    found = [one for one in results if not one.is_anchored and one.apart == basis]
+    return sorted((one for one in found if one.adopted.upper >= RiskClass.HIGH), key=_worst_first)
 
 
 def _worst_first(one: ItemResult) -> tuple[float, float, str]:
@@ -71,21 +87,38 @@ def say_plainly(total: Counts, could_be: int, worst: Sequence[ItemResult], fixes
         texts.append(_("The worst is {item} ({what}, floor {floor}) with a chance of {chance}.",
                        item=words.cut(one.item.item, 40), what=describe(one, 60),
                        floor=words.cut(one.item.floor, 20), chance=words.chance(one)))  # fmt: skip
-    if total.expected >= 0.05 and fixes:
-        first = fixes[:FIXES]
+    return [*texts, *_say_falls(total, fixes)]
+
+
+def _say_falls(total: Counts, fixes: Sequence[Fix]) -> list[str]:
+    """Say how many pieces are expected to fall, how many may besides, and what the first fixes avoid."""
+    texts = []
+    if total.expected >= 0.05 or total.unconfirmed:
+        expected = _("About {expected:.1f} pieces are expected to fall", expected=total.expected)
+        texts.append(f"{expected}{_say_up_to(total.unconfirmed)}.")
+    first = [one for one in fixes[:FIXES] if one.together is not None]
+    if total.expected >= 0.05 and first:
         texts.append(ngettext(
-            "About {expected:.1f} pieces are expected to fall; fixing the first row of the list below avoids "
-            "{share:.0f} % of these falls.",
-            "About {expected:.1f} pieces are expected to fall; fixing the first {n} rows of the list below avoids "
-            "{share:.0f} % of these falls.",
-            len(first), expected=total.expected, share=100 * first[-1].together,
+            "Fixing the first row of the list below avoids {share:.0f} % of the expected falls.",
+            "Fixing the first {n} rows of the list below avoids {share:.0f} % of the expected falls.",
+            len(first), share=100 * (first[-1].together or 0.0),
         ))  # fmt: skip
     return texts
 
 
+def _say_up_to(unconfirmed: int) -> str:
+    if not unconfirmed:
+        return ""
+    return ", " + ngettext("and up to {n:,} unconfirmed piece", "and up to {n:,} unconfirmed pieces", unconfirmed)
+
+
 def _say_counts(total: Counts) -> str:
     if not total.free:
+        if total.unconfirmed or total.by_formula:
+            return _("No free-standing piece has a class by simulation.")
         return _("There are no free-standing pieces.")
+    if total.unconfirmed or total.by_formula:
+        return _say_simulated(total)
     if not total.risky:
         return ngettext(
             "The {n:,} free-standing piece has no high or very high chance of overturning in this scenario.",
@@ -102,6 +135,24 @@ def _say_counts(total: Counts) -> str:
         "Of {free:,} free-standing pieces, the chance of overturning in this scenario is very high for {very_high:,} "
         "and high for {high:,}.",
         free=total.free, very_high=total.by_class[RiskClass.VERY_HIGH], high=total.by_class[RiskClass.HIGH],
+    )  # fmt: skip
+
+
+def _say_simulated(total: Counts) -> str:
+    """Say the counts of the simulated pieces where others are counted apart."""
+    if not total.risky:
+        return ngettext(
+            "The {n:,} simulated free-standing piece has no high or very high chance of overturning in this scenario.",
+            "None of {n:,} simulated free-standing pieces has a high or very high chance of overturning in this "
+            "scenario.",
+            total.free,
+        )
+    return ngettext(
+        "Of {n:,} simulated free-standing piece, the chance of overturning in this scenario is very high for "
+        "{very_high:,} and high for {high:,}.",
+        "Of {n:,} simulated free-standing pieces, the chance of overturning in this scenario is very high for "
+        "{very_high:,} and high for {high:,}.",
+        total.free, very_high=total.by_class[RiskClass.VERY_HIGH], high=total.by_class[RiskClass.HIGH],
     )  # fmt: skip
 
 

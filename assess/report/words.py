@@ -126,8 +126,26 @@ def chance(one: ItemResult) -> str:
     adopted = one.adopted
     if adopted.low is None or adopted.high is None:
         return percent(adopted.probability)
-    interval = _("({low} to {high} %)", low=in_percent(adopted.low), high=in_percent(adopted.high))
-    return f"{percent(adopted.probability)} {interval.replace(' ', NO_BREAK)}"
+    return _with_interval(adopted.probability, adopted.low, adopted.high)
+
+
+def _with_interval(probability: float, low: float, high: float) -> str:
+    interval = _("({low} to {high} %)", low=in_percent(low), high=in_percent(high))
+    return f"{percent(probability)} {interval.replace(' ', NO_BREAK)}"
+
+
+def ideal_chance(one: ItemResult) -> str:
+    """Return the chance if exactly its governing motion recurred and it were exactly as given, with its interval."""
+    found = one.governing.simulation
+    if found is None:
+        return DASH
+    return _with_interval(found.ideal.probability, found.ideal.low, found.ideal.high)
+
+
+def varied_chance(one: ItemResult) -> str:
+    """Return the chance in an earthquake like the governing motion, the piece varied, with its interval."""
+    found = one.governing.simulation
+    return DASH if found is None else _with_interval(found.probability, found.low, found.high)
 
 
 def under_record(one: ItemResult) -> str:
@@ -146,9 +164,23 @@ def under_record(one: ItemResult) -> str:
 
 
 def risk_words(one: ItemResult) -> str:
-    """Return the class in words, with its notes."""
-    words = ", ".join([risk_word(one.adopted.risk), *risk_notes(one)])
+    """Return the class in words, with its notes; of a piece that stands apart, on what it rests."""
+    words = ", ".join([apart_words(one) or risk_word(one.adopted.risk), *risk_notes(one)])
     return _("depends on its anchor (free-standing: {risk})", risk=words) if one.is_anchored else words
+
+
+def apart_words(one: ItemResult) -> str:
+    """Return the class in words of a piece that stands apart from the simulated ones, "" for all others."""
+    if one.apart == "unconfirmed":
+        return _("unconfirmed (formula: {risk})", risk=risk_word(one.adopted.risk))
+    return _("{risk} by formula only", risk=risk_word(one.adopted.risk)) if one.apart else ""
+
+
+def apart_note(one: ItemResult) -> str:
+    """Return what stands beside the sign of a piece that stands apart."""
+    if one.apart == "unconfirmed":
+        return _("formula: {risk}", risk=risk_word(one.adopted.risk))
+    return _("by formula only")
 
 
 def risk_notes(one: ItemResult) -> list[str]:
@@ -156,11 +188,23 @@ def risk_notes(one: ItemResult) -> list[str]:
     adopted, notes = one.adopted, []
     if classify(adopted.probability) != adopted.risk:
         notes.append(_("as it overturns under the record itself"))
-    if adopted.upper != adopted.risk:
+    ideal = _ideal_class(one)
+    if ideal is not None:
+        notes.append(_("{risk} if exactly this motion recurred", risk=risk_word(ideal)))
+    if adopted.upper != adopted.risk and adopted.upper != ideal:
         notes.append(could_be(risk_word(adopted.upper)))
-    if adopted.lowered_from is not None:
+    if adopted.lowered_from is not None and not one.apart:
         notes.append(was_lowered(risk_word(adopted.lowered_from)))
     return notes
+
+
+def _ideal_class(one: ItemResult) -> RiskClass | None:
+    """Return the class of the piece as given under exactly its motions, None where that is no higher."""
+    if "ideal_higher" not in one.adopted.flags:
+        return None
+    classes = (classify(case.simulation.ideal.probability) for case in one.cases if case.simulation is not None)
+    ideal = max((risk for risk in classes if risk is not None), default=RiskClass.LOW)
+    return ideal if ideal > one.adopted.risk else None
 
 
 def could_be(risk: str) -> str:
@@ -175,6 +219,10 @@ def was_lowered(risk: str) -> str:
 
 COULD_BE, LOWERED = "?", "↓"
 """Marks beside the symbol of a class where there is no room for words."""
+UNCONFIRMED, BY_FORMULA, ANCHORED = "◌", "ƒ", "⚓"
+"""Signs in place of the symbol of a class, of what stands outside the classes."""
+APART_FILL, ANCHORED_FILL, INK = "#ffffff", "#e3e3e3", "#1c1c1c"
+"""Their colours in bars and on plans."""
 
 
 def marks() -> str:
@@ -182,10 +230,38 @@ def marks() -> str:
     return _("{could_be} could be a higher class; {lowered} lowered by simulation", could_be=COULD_BE, lowered=LOWERED)
 
 
+def apart_legend() -> str:
+    """Return the legend of the signs of what stands apart, without a full stop."""
+    return _(
+        "{unconfirmed} unconfirmed: class and chance by formula, as the motions of a simulation that gave a lower "
+        "class may be too weak; {by_formula} by formula only, not simulated",
+        unconfirmed=UNCONFIRMED, by_formula=BY_FORMULA,
+    )  # fmt: skip
+
+
 def class_marks(one: ItemResult) -> str:
     """Return the marks that stand beside the symbol of a class."""
     could_be = COULD_BE if one.adopted.upper != one.adopted.risk else ""
-    return could_be + (LOWERED if one.adopted.lowered_from is not None else "")
+    return could_be + (LOWERED if one.adopted.lowered_from is not None and not one.apart else "")
+
+
+def class_label(one: ItemResult) -> str:
+    """Return the class as symbol and words, ``■ very high``; of what stands apart ``◌ unconfirmed``, ``ƒ high``."""
+    if one.apart == "unconfirmed":
+        return f"{UNCONFIRMED} {_('unconfirmed')}"
+    return f"{BY_FORMULA} {risk_word(one.adopted.risk)}" if one.apart else risk_label(one.adopted.risk)
+
+
+def class_symbol(one: ItemResult) -> str:
+    """Return the sign of a piece: that of its class, or of why it stands outside the classes."""
+    if one.is_anchored:
+        return ANCHORED
+    return {"unconfirmed": UNCONFIRMED, "formula": BY_FORMULA}.get(one.apart, one.adopted.risk.symbol)
+
+
+def style_name(one: ItemResult) -> str:
+    """Return the name of the style of a piece: that of its class, or of why it stands outside the classes."""
+    return "anchored" if one.is_anchored else f"apart-{one.apart}" if one.apart else class_name(one.adopted.risk)
 
 
 def risk_word(risk: RiskClass) -> str:

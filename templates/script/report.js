@@ -8,8 +8,12 @@
 
   const language = document.documentElement.lang || "en";
   const order = new Intl.Collator(language, { numeric: true }).compare;
-  const body = table.tBodies[0];
-  const entries = Array.from(body.rows, (row) => ({ row, search: row.textContent.toLowerCase() }));
+  // Each part of the table, by what its classes rest on, is a body of its own, and is sorted by itself.
+  const heading = (row) => row.classList.contains("part");
+  const entries = Array.from(table.tBodies)
+    .flatMap((body) => Array.from(body.rows))
+    .filter((row) => !heading(row))
+    .map((row) => ({ row, body: row.parentElement, search: row.textContent.toLowerCase() }));
 
   table.parentElement.before(template.content.cloneNode(true));
   const bar = document.getElementById("filter-bar");
@@ -62,6 +66,9 @@
       if (row.hidden === fits) row.hidden = !fits;
       shown += fits;
     }
+    for (const part of table.querySelectorAll("tr.part")) {
+      part.hidden = !entries.some(({ row, body }) => body === part.parentElement && !row.hidden);
+    }
     tell(shown);
   };
   const clear = () => {
@@ -80,11 +87,11 @@
   const sort = (head, direction) => {
     const at = head.cellIndex;
     const isNumber = entries.some(({ row }) => "value" in row.cells[at].dataset);
-    const keyed = entries.map(({ row }) => ({ row, key: keyOf(row.cells[at]) }));
+    const keyed = entries.map(({ row, body }) => ({ row, body, key: keyOf(row.cells[at]) }));
     keyed.sort(compare(isNumber, direction === "ascending" ? 1 : -1));
     for (const other of heads) other.removeAttribute("aria-sort");
     head.setAttribute("aria-sort", direction);
-    body.append(...keyed.map(({ row }) => row));
+    for (const { row, body } of keyed) body.append(row);
   };
   const turn = (head) => {
     const now = head.getAttribute("aria-sort");
@@ -103,7 +110,7 @@
 
   const unsort = () => {
     for (const head of heads) head.removeAttribute("aria-sort");
-    body.append(...entries.map(({ row }) => row));
+    for (const { row, body } of entries) body.append(row);
   };
 
   // A row that is filtered out is shown before the browser goes to it.

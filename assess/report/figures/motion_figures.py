@@ -105,9 +105,9 @@ def choose_traced(content: Content) -> tuple[Traced, ...]:
     return tuple(_trace(content.run, own[0], len(own) - 1) for index, own in firsts.items() if index in chosen)
 
 
-def _by_risk(one: ItemResult) -> tuple[float, float, str]:
+def _by_risk(one: ItemResult) -> tuple[bool, float, float, str]:
     found = one.governing.simulation
-    return -one.adopted.upper, -found.probability if found else 0.0, one.item.item
+    return bool(one.apart), -one.adopted.upper, -found.probability if found else 0.0, one.item.item
 
 
 def _trace(results: Results, one: ItemResult, alike: int) -> Traced:

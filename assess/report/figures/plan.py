@@ -47,7 +47,7 @@ class Piece:
     name: str
     title: str
     upper: RiskClass | None
-    """The class that it may reach; None where it is anchored."""
+    """The class that it may reach; None where it stands outside the classes."""
     class_name: str
     fill: str
     ink: str
@@ -192,20 +192,20 @@ def _position(place: Place, floor: str) -> Point | None:
 
 
 def _piece(one: ItemResult, at: Point) -> Piece:
-    item, risk = one.item, one.adopted.risk
+    item, risk, is_outside = one.item, one.adopted.risk, one.is_anchored or bool(one.apart)
     breadth, height = item.breadth_cm / 100, item.height_cm / 100
     across, angle = (item.width_cm or item.breadth_cm) / 100, turn(item)
     falls = not one.is_anchored and max(risk, one.adopted.upper) >= RiskClass.MEDIUM
     return Piece(
         number=item.index + 1,
         name=words.cut(item.item, SHORT),
-        upper=None if one.is_anchored else max(risk, one.adopted.upper),
+        upper=None if is_outside else max(risk, one.adopted.upper),
         title=_title(one),
-        class_name="anchored" if one.is_anchored else words.class_name(risk),
-        fill=ANCHORED if one.is_anchored else risk.fill,
-        ink=INK if one.is_anchored else risk.ink,
-        symbol="⚓" if one.is_anchored else risk.symbol,
-        marks="" if one.is_anchored else words.class_marks(one),
+        class_name=words.style_name(one),
+        fill=ANCHORED if one.is_anchored else words.APART_FILL if one.apart else risk.fill,
+        ink=INK if is_outside else risk.ink,
+        symbol=words.class_symbol(one),
+        marks="" if is_outside else words.class_marks(one),
         side=min(breadth, across),
         at=at,
         corners=rectangle(at, angle, (-breadth / 2, breadth / 2), across),

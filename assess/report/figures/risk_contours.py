@@ -98,6 +98,11 @@ def _describe_figure(height: float, pieces: Sequence[ItemResult], methods: Seque
         "A symbol shows the class adopted for the piece, which may differ from the field it lies on: the fields are "
         "those of the formulas, for this height."
     )
+    if any(one.apart for one in pieces):
+        yield _(
+            "White symbols show pieces that are counted apart: a pentagon is unconfirmed, a triangle that points down "
+            "is by formula only."
+        )
     yield _(
         "Names are those of the worst piece at each place, with the number of further rows there; names for which "
         "there is no room are left out."

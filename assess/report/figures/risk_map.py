@@ -26,6 +26,8 @@ PANEL = (205.0, 190.0)
 """About the size of a panel [points], by which texts are kept off each other."""
 MARKERS = {RiskClass.LOW: "o", RiskClass.MEDIUM: "D", RiskClass.HIGH: "^", RiskClass.VERY_HIGH: "s"}
 """The symbols of the classes, as matplotlib names them."""
+APART = {"unconfirmed": "p", "formula": "v"}
+"""Those of pieces that stand apart from the simulated ones, without a class's colour."""
 LETTER, LINE, GAP = 3.7, 7.0, 5.0
 """About the width of a letter and the height of a line of 6 points, and a text's distance from a symbol."""
 
@@ -72,11 +74,12 @@ def paint_checked(axes: Any, method: "MethodInfo", height_cm: float) -> None:
 
 
 def paint_pieces(axes: Any, places: Mapping[Place, Sequence[ItemResult]]) -> None:
-    """Paint a symbol for each place and class, the worst on top."""
-    shown = dict.fromkeys((place, one.adopted.risk) for place, ones in places.items() for one in ones)
-    for (x, y), risk in sorted(shown, key=lambda pair: pair[1]):
-        axes.plot([x], [y], MARKERS[risk], color=HALO, markersize=7, zorder=5)
-        axes.plot([x], [y], MARKERS[risk], markersize=5, markerfacecolor=risk.fill, markeredgecolor=INK,
+    """Paint a symbol for each place and class, the worst on top, and below them one for those that stand apart."""
+    shown = dict.fromkeys((place, one.adopted.risk, one.apart) for place, ones in places.items() for one in ones)
+    for (x, y), risk, apart in sorted(shown, key=lambda found: (not found[2], found[1])):
+        marker, fill = (APART[apart], HALO) if apart else (MARKERS[risk], risk.fill)
+        axes.plot([x], [y], marker, color=HALO, markersize=7, zorder=5)
+        axes.plot([x], [y], marker, markersize=5, markerfacecolor=fill, markeredgecolor=INK,
                   markeredgewidth=0.8, zorder=5)[0].set_gid("piece")  # fmt: skip
 
 

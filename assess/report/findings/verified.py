@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.report import words
+from assess.report.findings.uncertain import list_conditions
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 from assess.settings import AUTO
@@ -13,7 +14,7 @@ from assess.settings import AUTO
 NAMED = 12
 """Pieces that a sentence names; the rest are counted."""
 SCENARIO = fill("Chance of overturning in this scenario, not per year.")
-INTERVAL = fill("the interval covers the number of motions only")
+INTERVAL = fill("the sampling interval covers the number of draws only")
 WILSON = (
     "Wilson EB (1927). Probable inference, the law of succession, and statistical inference. Journal of the American "
     "Statistical Association 22(158):209-212. doi:10.1080/01621459.1927.10502953"
@@ -25,9 +26,11 @@ WILSON = (
 class Verified:
     """The rows of a report by what simulation found.
 
-    `done` were simulated and `left` were not. Of those done, `lowered` and `raised` have another class than the
-    formula's; for `kept` a lower class was found but not adopted; `may_be` have an interval that reaches into a higher
-    class; `undecided` are not resolved after the last check of "auto"; `fell` overturn under a recorded motion itself.
+    `done` were simulated and `left` were not. Of those done, `unconfirmed` keep the formula's class, as the lower one
+    that was found cannot be relied on. Of the others, `lowered` and `raised` have another class than the formula's;
+    `may_be` have an interval that reaches into a higher class; `undecided` are not resolved after the last check of
+    "auto"; `fell` overturn under a recorded motion itself; `ideal_higher` would have a higher class if exactly this
+    motion recurred.
     """
 
     run: Results
@@ -35,10 +38,11 @@ class Verified:
     done: Sequence[ItemResult]
     lowered: Sequence[ItemResult]
     raised: Sequence[ItemResult]
-    kept: Sequence[ItemResult]
+    unconfirmed: Sequence[ItemResult]
     may_be: Sequence[ItemResult]
     undecided: Sequence[ItemResult]
     fell: Sequence[ItemResult]
+    ideal_higher: Sequence[ItemResult]
 
     @property
     def is_all(self) -> bool:
@@ -64,21 +68,21 @@ class Verified:
                 len(self.run), done=len(self.done), motions=self.motions,
             )
         ]  # fmt: skip
-        if self.kept:
+        if self.unconfirmed:
             texts.append(
                 ngettext(
-                    "for {n:,} row the formula's higher class is kept",
-                    "for {n:,} rows the formula's higher class is kept",
-                    len(self.kept),
+                    "{n:,} row is unconfirmed: the formula's class, counted apart",
+                    "{n:,} rows are unconfirmed: the formula's class, counted apart",
+                    len(self.unconfirmed),
                 )
             )
         if self.left:
-            texts.append(_("the classes of the other rows come from a published formula"))
+            texts.append(_("the other rows have a class by a published formula, and are counted apart"))
         return _("Simulated") if self.is_all else _("Partly simulated"), "; ".join(texts)
 
     @property
     def footer(self) -> str:
-        """The foot of every page."""
+        """The foot of every page, but for what `list_conditions` adds."""
         if not self.done:
             return f"{_(SCENARIO)} {self.sentence}"
         extent = ngettext(
@@ -88,21 +92,19 @@ class Verified:
         return f"{_(SCENARIO)} {extent}"
 
     @property
+    def conditions(self) -> str:
+        """What the head of every page says of the run: "" of a run with both uncertainties and the motions as given."""
+        return " · ".join(list_conditions(self.run))
+
+    @property
     def interval(self) -> str:
         """What the interval covers, and which percentages have none; without a full stop."""
         if not self.done:
             return _("there are no intervals, as no rocking has been simulated in this run")
-        covers = _("{interval}, not the formula, the motion of the floor or the earthquake", interval=INTERVAL)
-        if self.kept:
-            without = _(
-                "Percentages without a range come from the formula only; they were not simulated, or the simulation "
-                "gave a lower class, which is not adopted"
-            )
-            return f"{covers}. {without}"
-        if self.left:
-            without = _("Percentages without a range come from the formula only; they were not simulated")
-            return f"{covers}. {without}"
-        return covers
+        if self.left or self.unconfirmed:
+            without = _("Percentages without a range come from the formula only")
+            return f"{_(INTERVAL)}. {without}"
+        return _(INTERVAL)
 
     @property
     def adopted(self) -> str:
@@ -112,13 +114,14 @@ class Verified:
             text = _("Adopted risk: {formula}. The other methods are shown for comparison.", **titles)
         else:
             text = _(
-                "Adopted risk: {simulation} (direct integration) where a piece was simulated, otherwise {formula}. The "
-                "other methods are shown for comparison.", **titles,
+                "Adopted risk: {simulation} (direct integration) where a piece was simulated, otherwise {formula}, "
+                "counted apart. The other methods are shown for comparison.", **titles,
             )  # fmt: skip
-        if self.kept:
+        if self.unconfirmed:
             text += " " + _(
-                "Where simulation gave a lower class that may not be adopted, {formula} counts (not lowered).", **titles
-            )
+                "Where simulation gave a lower class that cannot be relied on, the class is that of {formula}, "
+                "unconfirmed.", **titles,
+            )  # fmt: skip
         return text
 
     @property
@@ -140,12 +143,8 @@ class Verified:
             yield _("class raised: {pieces}", pieces=count_rows(self.raised))
         if self.may_be:
             yield _("could be of a higher class: {pieces}", pieces=count_rows(self.may_be))
-        if n := len(self.kept):
-            yield ngettext(
-                "{n:,} row keeps the formula's class, which simulation may not lower",
-                "{n:,} rows keep the formula's class, which simulation may not lower",
-                n,
-            )
+        if self.unconfirmed:
+            yield _("unconfirmed: {pieces}", pieces=count_rows(self.unconfirmed))
         if n := len(self.fell):
             yield ngettext(
                 "{n:,} row overturns under the record itself", "{n:,} rows overturn under the record itself", n
@@ -166,10 +165,12 @@ class Verified:
             (_("Class raised by simulation"), self.raised,
              ", ".join(_("{n:,} to {risk}", n=n, risk=risk)
                        for n, risk in _by_class(self.raised, lambda one: one.adopted.risk))),
-            (_("Class of the formula kept although simulation gave a lower one (see the comparison of the methods): "
-               "the motions follow a generic spectrum or are weaker than the floor's, or its PFV is an estimate"),
-             self.kept, ""),
+            (_("Unconfirmed, the formula's class although simulation gave a lower one: neither T1 nor the building's "
+               "height is known, or the motions are weaker than the floor's"),
+             self.unconfirmed, name_some(self.unconfirmed)),
             (_("Could be of a higher class: the interval reaches into it"), self.may_be, ""),
+            (_("Would be of a higher class if exactly this motion recurred and the piece were exactly as given"),
+             self.ideal_higher, name_some(self.ideal_higher)),
             (_("Undecided: the interval still covers more than one class after {most:,} motions", most=most),
              self.undecided, name_some(self.undecided)),
             (_("Overturn under the recorded motion itself, and so are at least high"), self.fell, name_some(self.fell)),
@@ -184,19 +185,20 @@ def build_verified(run: Results, results: Sequence[ItemResult]) -> Verified:
     """Sort the rows by what simulation found."""
 
     def of(test: Callable[[ItemResult], bool]) -> tuple[ItemResult, ...]:
-        return tuple(one for one in done if test(one))
+        return tuple(one for one in done if not one.apart and test(one))
 
     done = tuple(one for one in results if one.is_simulated)
     return Verified(
         run=run,
         left=tuple(one for one in results if not one.is_simulated),
         done=done,
+        unconfirmed=tuple(one for one in done if one.adopted.is_unconfirmed),
         lowered=of(lambda one: one.adopted.lowered_from is not None),
         raised=of(lambda one: one.adopted.risk > one.formula_class),
-        kept=of(lambda one: "not_lowered" in one.adopted.flags),
         may_be=of(lambda one: one.adopted.upper > one.adopted.risk),
         undecided=of(lambda one: "undecided" in one.adopted.flags),
         fell=of(lambda one: one.fell_in_record),
+        ideal_higher=of(lambda one: "ideal_higher" in one.adopted.flags),
     )
 
 

@@ -73,5 +73,7 @@ def _line(columns: Sequence[PageColumn], one: ItemResult) -> Line:
     marks = words.class_marks(one)
     if one.is_anchored:
         mark = _("anchored")
-        return Line(text, None, f"⚓ {mark} ({words.risk_label(one.adopted.risk)}{marks})")
+        return Line(text, None, f"⚓ {mark} ({words.class_label(one)}{marks})")
+    if one.apart:
+        return Line(text, None, f"{words.class_label(one)} ({words.apart_note(one)})")
     return Line(text, one.adopted.risk, f"{words.risk_label(one.adopted.risk)}{marks}")

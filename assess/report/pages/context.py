@@ -66,6 +66,9 @@ def _of_content(content: Content, options: ReportOptions, *, for_print: bool, pr
         "logo": _logo(content),
         "floor_bars": build_bars(content.worst_floors),
         "marks": words.marks(),
+        "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
+        "apart_legend": words.apart_legend(),
+        "has_apart": bool(content.total.unconfirmed or content.total.by_formula),
         **_of_floors(content, progress),
         **_of_routes(content, for_print=for_print),
         **_of_methods(content),
@@ -102,8 +105,9 @@ def _list_tables(content: Content) -> dict[str, Sequence[PageColumn]]:
         "risky": list_columns(run, "risky"),
         "methods": list_columns(run, "methods"),
         "changed": short_columns(
-            run, "item", "floor", "description", "quantity", "formula", "adopted_probability", "adopted_class"
+            run, "item", "floor", "description", "quantity", "formula", "ideal", "adopted_probability", "adopted_class"
         ),
+        "apart": short_columns(run, "piece", "room_short", "size", "quantity", "formula", "class"),
         "short": short_columns(run, "piece", "room_short", "size", "quantity", "chance", "class"),
         "worst": short_columns(run, "piece", "place", "chance", "class"),
         "demand": motion_columns("axis", "source", "pfa_g", "pfv_cm_s", "origin"),
@@ -241,7 +245,10 @@ def _share(value: float) -> str:
 
 
 FILTERS: Mapping[str, Any] = {
+    "apart_note": words.apart_note,
+    "apart_words": words.apart_words,
     "chance": words.chance,
+    "class_label": words.class_label,
     "class_marks": words.class_marks,
     "class_name": words.class_name,
     "clip": words.clip,
@@ -282,6 +289,7 @@ FILTERS: Mapping[str, Any] = {
     "say_way": route_words.say_way,
     "share": _share,
     "size": words.size,
+    "style_name": words.style_name,
     "under_record": words.under_record,
 }
 """Filters of the templates, which show numbers and texts in the language in use."""

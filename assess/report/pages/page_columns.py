@@ -29,6 +29,8 @@ COMPACT: Mapping[str, int] = {
     "axis": 5, "pfa_g": 7, "pfv_cm_s": 10,
 }  # fmt: skip
 """Places of a column in a compact list, by key."""
+SIMULATED = frozenset(("verification_record_overturned", "verification_ideal_probability"))
+"""Left out where nothing was simulated."""
 NOT_COMPACT = frozenset(("verification_record_overturned", "adopted_class", "adopted_flags"))
 
 
@@ -113,7 +115,7 @@ def say_value(field: Field, value: Any) -> str:
 def list_columns(results: Results, where: Where) -> tuple[PageColumn, ...]:
     """Return the columns of a list of pieces: every field that it shows, in their order."""
     methods = {one.key: one for one in results.methods}
-    left_out = set() if results.has_simulated else {"verification_record_overturned"}
+    left_out = frozenset() if results.has_simulated else SIMULATED
     found = [field for field in item_fields(results) if where in field.shows and field.key not in left_out]
     columns = [_of_piece(field, where, methods.get(field.key)) for field in found]
     if not results.has_simulated:
@@ -134,6 +136,9 @@ def short_columns(results: Results, *keys: str) -> tuple[PageColumn, ...]:
     known["formula"] = PageColumn("formula", _("By formula"), _say_formula)
     known["chance"] = replace(known["adopted_probability"], key="chance", heading=_("Chance (interval)"))
     known["room_short"] = replace(known["room"], text=lambda one: words.cut(one.item.room, 14))
+    known["ideal"] = PageColumn(
+        "ideal", _("If exactly this motion recurred"), words.ideal_chance, is_number=True, is_wide=True
+    )
     known["class"] = replace(known["adopted_class"], key="class")
     return tuple(known[key] for key in keys)
 
@@ -165,6 +170,7 @@ def _of_piece(field: Field, where: Where, method: "MethodInfo | None") -> PageCo
         "breadth_cm": {"key": "size", "text": words.size, "sort": lambda one: one.item.height_cm, "places": 17},
         "adopted_probability": {"text": words.chance, "places": 25, "is_wide": True},
         "verification_record_overturned": {"text": words.under_record},
+        "verification_ideal_probability": {"text": words.ideal_chance, "places": 25, "is_wide": True},
         "adopted_class": {"text": words.risk_words, "sort": _rank},
         "adopted_flags": {"text": lambda one: ", ".join(map(_say_flag, one.adopted.flags))},
     }

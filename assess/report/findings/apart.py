@@ -1,0 +1,90 @@
+"""What stands apart from the simulated pieces: those that are unconfirmed, with what settles them, and by formula."""
+
+from collections.abc import Iterable, Sequence
+
+from assess.i18n import gettext as _
+from assess.i18n import ngettext
+from assess.report import words
+from assess.results import ItemResult
+from assess.risk import RiskClass
+from assess.workbook.schema import BUILDING
+
+NAMED = 8
+"""Pieces that a sentence names; the rest are counted."""
+
+
+def list_apart(results: Iterable[ItemResult], basis: str) -> list[ItemResult]:
+    """Return the free-standing pieces that stand apart with a basis, the worst by formula first."""
+    found = [one for one in results if not one.is_anchored and one.apart == basis]
+    return sorted(found, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))
+
+
+def list_parts(results: Sequence[ItemResult]) -> list[tuple[str, list[ItemResult]]]:
+    """Return the rows of a list by their basis, each part in their order: the first has no heading."""
+    heads = {"": "", "unconfirmed": _("Unconfirmed: class and chance by formula, a lower class was simulated"),
+             "formula": _("By formula only: not simulated")}  # fmt: skip
+    parts = {basis: [one for one in results if one.apart == basis] for basis in heads}
+    return [(heads[basis], own) for basis, own in parts.items() if own]
+
+
+def say_apart(results: Sequence[ItemResult]) -> list[str]:
+    """Return sentences on the free-standing pieces that stand apart, with what settles them; none where none do."""
+    texts = []
+    if unconfirmed := list_apart(results, "unconfirmed"):
+        texts.append(f"{_say_unconfirmed(unconfirmed)} {' '.join(list_ways_to_settle(unconfirmed))}")
+    if left := list_apart(results, "formula"):
+        texts.append(_say_left(left))
+    return texts
+
+
+def _say_unconfirmed(unconfirmed: Sequence[ItemResult]) -> str:
+    risky = _pieces(one for one in unconfirmed if one.adopted.risk >= RiskClass.HIGH)
+    names = words.name_first([words.cut(one.item.item, 20) for one in unconfirmed], NAMED)
+    text = ngettext(
+        "{n:,} piece is unconfirmed and counted apart: simulation gave a lower class than the formula, but its motions "
+        "may be too weak to rely on ({names}).",
+        "{n:,} pieces are unconfirmed and counted apart: simulation gave a lower class than the formula, but its "
+        "motions may be too weak to rely on ({names}).",
+        _pieces(unconfirmed), names=names,
+    )  # fmt: skip
+    if not risky:
+        return text
+    return text + " " + ngettext(
+        "By the formula, {n:,} of them would be high or very high.",
+        "By the formula, {n:,} of them would be high or very high.",
+        risky,
+    )  # fmt: skip
+
+
+def _say_left(left: Sequence[ItemResult]) -> str:
+    risky = _pieces(one for one in left if one.adopted.risk >= RiskClass.HIGH)
+    text = ngettext(
+        "{n:,} piece was not simulated and is counted apart, by formula only.",
+        "{n:,} pieces were not simulated and are counted apart, by formula only.",
+        _pieces(left),
+    )
+    if not risky:
+        return text
+    return text + " " + ngettext(
+        "By the formula, {n:,} of them would be high or very high.",
+        "By the formula, {n:,} of them would be high or very high.",
+        risky,
+    )  # fmt: skip
+
+
+def list_ways_to_settle(unconfirmed: Iterable[ItemResult]) -> list[str]:
+    """Return what to fill in, or to use, so that unconfirmed pieces get a class of their own."""
+    flags = {flag for one in unconfirmed for flag in one.adopted.flags}
+    ways = []
+    if "unknown_period" in flags:
+        period, height = (_(BUILDING.column(name).label) for name in ("period", "height"))
+        ways.append(_("To settle this, fill in {period} or {height} in the sheet Building, or records of the floors.",
+                      period=period, height=height))  # fmt: skip
+    if "weak_motions" in flags:
+        ways.append(_("To settle this, simulate with stronger motions: a set of your own (--motions, scaled with "
+                      "--scale-motions) whose PFV reaches the floor's."))  # fmt: skip
+    return ways
+
+
+def _pieces(results: Iterable[ItemResult]) -> int:
+    return sum(one.item.quantity for one in results)
