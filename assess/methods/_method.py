@@ -229,7 +229,8 @@ Detail = float | str | bool | None
 class Example:
     """One case that is worked through in a report: sizes [cm], peaks [cm/s2] and [cm/s], NaN where unknown.
 
-    `value`, `detail` and `flags` are what the method found; `restitution` is the building's own [-], NaN for Housner's.
+    `value`, `detail` and `flags` are what the method found; `restitution` is the building's own [-], NaN for Housner's;
+    `centre` is the height of the centre of gravity as a share of the piece's [-].
     """
 
     breadth: float
@@ -241,6 +242,7 @@ class Example:
     value: float
     detail: Mapping[str, Detail]
     flags: Collection[str]
+    centre: float = MIDDLE
 
     def number(self, name: str) -> float:
         """Return a number of `detail`; NaN where it is unknown."""

@@ -43,7 +43,7 @@ from assess.methods._method import (
     Reference,
     normal_cdf,
 )  # fmt: skip
-from assess.rocking.block import STOCKY, critical_angle, restitution
+from assess.rocking.block import STOCKY, critical_angle
 from assess.settings import Settings
 from assess.units import GRAVITY, VELOCITY
 
@@ -59,6 +59,10 @@ def _impulse_velocity(H: Any, alpha: Any, g: Any) -> Any:
 
 
 # ASCE 43-05, Appendix A: damping that loses as much as the impacts do
+def _restitution(alpha: Any) -> Any:
+    return 1 - 1.5 * np.sin(alpha) ** 2
+
+
 def _gamma(C_R: Any) -> Any:
     return -2 * np.log(C_R)
 
@@ -80,7 +84,7 @@ def _velocity_amplification(beta_e: Any) -> Any:
 def median_pfv(breadth: FloatArray, height: FloatArray) -> FloatArray:
     """Median PFV that overturns the piece [m/s]; NaN where the piece does not rock."""
     V_imp = _impulse_velocity(height, critical_angle(breadth, height), GRAVITY)
-    beta_e = _effective_damping(restitution(breadth, height))
+    beta_e = _effective_damping(_restitution(critical_angle(breadth, height)))
     return np.where(breadth / height < STOCKY, V_imp / _velocity_amplification(beta_e), np.nan)
 
 
@@ -102,8 +106,8 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
 def steps(example: Example) -> list[Text]:
     """Work the median velocity from the piece's size, then the chance at the floor's."""
     B, H, PFV = (number(one, ".6g") for one in (example.breadth, example.height, example.pfv))
-    alpha: Any = critical_angle(B, H)
-    C_R: Any = restitution(B, H)
+    alpha: Any = np.arctan(B / H)
+    C_R: Any = _restitution(number(float(alpha.value), ".6f"))
     V_imp = _impulse_velocity(H, number(float(alpha.value), ".6f"), number(G, ".3f"))
     gamma = _gamma(number(float(C_R.value), ".6f"))
     beta_e = _damping(number(float(gamma.value), ".6f"))

@@ -44,6 +44,7 @@ def _work(index: int, assessment: Assessment) -> Iterator[WorkedMethod]:
             height=to_edge(item.height, LENGTH["cm"]),
             pfa=demand.pfa / ACCELERATION["cm/s2"],
             pfv=demand.pfv / VELOCITY["cm/s"],
+            centre=item.centre_of_gravity,
             restitution=math.nan if restitution is None else restitution,
             settings=assessment.settings,
             value=value,

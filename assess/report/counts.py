@@ -9,6 +9,7 @@ from assess.i18n import ngettext, number
 from assess.report import words
 from assess.results import ItemResult
 from assess.risk import RiskClass
+from assess.rocking.block import MIDDLE
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo
@@ -155,9 +156,8 @@ def count_cannot_rock(results: Sequence[ItemResult], methods: "Sequence[MethodIn
         if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.basis == "formula"
     ]
     stocky = [one for one in risky if one.does_not_rock]
-    still = [
-        one for one in risky if criterion and not one.does_not_rock and one.governing.methods[criterion].value == 0
-    ]
+    rocking = [one for one in risky if not one.does_not_rock and one.item.centre_of_gravity <= MIDDLE]
+    still = [one for one in rocking if criterion and one.governing.methods[criterion].value == 0]
     return CannotRock(*(sum(one.item.quantity for one in ones) for ones in (risky, still, stocky)))
 
 

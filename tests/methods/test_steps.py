@@ -133,7 +133,7 @@ def test_settings_restitution_and_estimates_are_those_of_the_run() -> None:
         assert any("is an estimate from PFA and the building's period T1" in step for step in steps[key])
     simulated = steps[simulation().key]
     assert "η = 0.9, as set for the building." in simulated
-    (counted,) = [step for step in simulated if step.startswith("It overturned under")]
+    (counted,) = [step for step in simulated if step.startswith("It overturned in")]
     count = int(counted.split()[3])
     low, high = wilson_interval(count, 20, interval_width(settings))
     assert last(simulated, "R_low") == pytest.approx(float(low), abs=6e-5)
