@@ -2,7 +2,8 @@
 
 A profile gives the factor by which a rigid piece on a floor at height z of a building of height h is shaken more than
 the ground: PFA = ground PGA x amplification. Ground PGA is 0.4 SDS (ASCE 7) or alpha S (EN 1998-1, NTC 2018). Codes
-give design envelopes, not expected values: they mostly lie above what is recorded and bias a scenario high.
+give design envelopes, not expected values: they mostly lie above what is recorded, but not at mid-height of tall
+buildings.
 
 References
 ----------

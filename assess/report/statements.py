@@ -139,8 +139,9 @@ def list_limits(results: Results) -> Sequence[str]:
             "likely the scenario is."
         ),
         _(
-            "Every piece is a rigid block on a rigid floor, moving in one vertical plane, with its centroid at "
-            "mid-height. A top-heavy piece falls sooner, a bottom-heavy one later."
+            "Every piece is a rigid block on a rigid floor, moving in one vertical plane. Its centre of gravity is at "
+            "mid-height unless Centre of gravity says otherwise, which simulation takes into account and the formulas "
+            "do not. A top-heavy piece falls sooner, a bottom-heavy one later."
         ),
         _(
             "No piece slides. On a smooth floor (friction below B/H) a piece slides before it rocks, and may still hit "
@@ -162,7 +163,15 @@ def _limits_of_simulation() -> tuple[str, ...]:
     return (
         _(
             "A simulated chance is that of the rigid block under motions that match the floor's spectrum and peak. Its "
-            "interval covers the number of motions only."
+            "sampling interval covers the number of draws only."
+        ),
+        _(
+            "How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "
+            "nominal sizes, centre of gravity and restitution, is assumed, not measured on furniture."
+        ),
+        _(
+            "The motions of a draw have the same random phases on all floors along an axis; the signs of modes from "
+            "floor to floor are not known. What falls together on several floors is therefore an estimate."
         ),
         _(
             "Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
@@ -195,6 +204,8 @@ def list_making(results: Results) -> Lines:
         ("assess", f"{provenance.version} ({made_with})"),
         (_("Scenario kind"), _(provenance.scenario)),
         (_("Verification"), settings.verify),
+        *([("--ideal", _("yes"))] if settings.ideal else []),
+        *([("--scale", number(settings.scale, "g"))] if settings.scale != 1 else []),
     ]
     if results.has_simulated and provenance.suite is None:
         lines += [(_("Motions of each floor and axis"), f"{settings.runs}"), (_("Seed"), f"{settings.seed}")]

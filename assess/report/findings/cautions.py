@@ -87,13 +87,26 @@ def _underestimates(results: Results) -> Iterator[Caution]:
 
 
 def _generic(motions: Sequence[MotionRow]) -> Iterator[Caution]:
-    """Name the floors whose pieces were simulated under motions with a generic spectrum."""
-    floors = list(dict.fromkeys(one.floor for one in motions if one.ensemble and one.ensemble.generic_spectrum))
-    if floors:
-        text = _("{floors}: the generated motions follow a generic spectrum; simulation may raise a class there, never "
-                 "lower it.", floors=_name(floors))  # fmt: skip
-        short = _("{floors}: generic spectrum; simulation may raise a class there, never lower it.",
-                  floors=_name_some(floors))  # fmt: skip
+    """Name the floors whose pieces were simulated under a generic spectrum, and where simulation may lower no class."""
+    made = [(one.floor, one.ensemble) for one in motions if one.ensemble is not None]
+    unknown = list(dict.fromkeys(floor for floor, one in made if one.unknown_period))
+    generic = list(dict.fromkeys(floor for floor, one in made if one.generic_spectrum and not one.unknown_period))
+    weak = list(dict.fromkeys(floor for floor, one in made if one.weak_motions))
+    if unknown:
+        text = _("{floors}: the generated motions follow a generic spectrum, and neither T1 nor the building's height is "
+                 "known; simulation may raise a class there, never lower it.", floors=_name(unknown))  # fmt: skip
+        short = _("{floors}: generic spectrum, T1 unknown; simulation may raise a class there, never lower it.",
+                  floors=_name_some(unknown))  # fmt: skip
+        yield Caution(text, short)
+    if generic:
+        text = _("{floors}: only peaks are known; the generated motions follow a generic spectrum for the building's "
+                 "period.", floors=_name(generic))  # fmt: skip
+        yield Caution(text, _("{floors}: generic spectrum for the building's period.", floors=_name_some(generic)))
+    if weak:
+        text = _("{floors}: the generated motions have a smaller PFV than the floor's; simulation may raise a class "
+                 "there, never lower it.", floors=_name(weak))  # fmt: skip
+        short = _("{floors}: weaker motions than the floor's; simulation may raise a class there, never lower it.",
+                  floors=_name_some(weak))  # fmt: skip
         yield Caution(text, short)
 
 

@@ -8,8 +8,10 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.report import words
 from assess.report.findings.motions import describe_suite
+from assess.report.findings.uncertain import say_source
 from assess.report.findings.verified import Verified, name_some
 from assess.results import EnsembleRow, ItemResult, MotionRow, Results, SuiteInfo
+from assess.rocking.draws import BASE, CENTRE, CUT, HEIGHT, RESTITUTION
 from assess.settings import AUTO
 
 LARGE_MISFIT = 0.10
@@ -66,7 +68,7 @@ def _by_change(one: ItemResult) -> tuple[float, ...]:
 def _describe(results: Results, verified: Verified) -> Iterator[str]:
     yield f"{_extent(verified)} {_selection(results)}"
     yield _describe_motions(results)
-    yield f"{_restitution(results)} {_interval(results)}"
+    yield f"{_describe_draws(results)} {_restitution(results)} {_interval(results)}"
     if results.settings.runs == AUTO:
         yield _stopping(results, verified)
 
@@ -74,7 +76,7 @@ def _describe(results: Results, verified: Verified) -> Iterator[str]:
 def _extent(verified: Verified) -> str:
     text = _(
         "The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, see "
-        "Methods). The chance is the share of motions under which the piece overturns.",
+        "Methods). The chance is the share of draws in which the piece overturns, each of one motion.",
         done=len(verified.done), rows=words.plural(len(verified.run), "row"),
     )  # fmt: skip
     stocky = ngettext(
@@ -98,18 +100,44 @@ def _selection(results: Results) -> str:
 def _describe_motions(results: Results) -> str:
     if results.provenance.suite:
         return _(
-            "The motions are the user's own: {motions}. Motion k is one earthquake, the same on every floor and axis.",
+            "The motions are the user's own: {motions}. Motion k serves every floor and axis.",
             motions=describe_suite(results),
         )
     runs = results.settings.runs
     return _(
         "On each floor and axis {motions} were generated (seed {seed}). Their mean 5 % response spectrum matches that "
-        "of the floor's recorded motion, or a generic one where only peaks are known; their peaks scatter around the "
-        "floor's, as in real earthquakes. Motion k has the same random phases on every floor along an axis: it is one "
-        "earthquake of the whole building.",
+        "of the floor's recorded motion, or a generic one where only peaks are known. They differ by their random phases "
+        "alone, which is less than earthquakes differ. Motion k has the same phases on every floor along an axis; the "
+        "signs of modes from floor to floor are not known, so what falls together on several floors is an estimate.",
         motions=_("as many motions as are needed") if runs == AUTO else words.plural(int(runs), "motion"),
         seed=results.settings.seed,
     )
+
+
+def _describe_draws(results: Results) -> str:
+    """Return what is drawn, and what stands beside it."""
+    uncertainty = results.provenance.uncertainty
+    if results.settings.ideal:
+        return _("Adopted is the chance if exactly this motion recurred and every piece were exactly as given (--ideal).")
+    parts = []
+    if uncertainty.motion:
+        parts.append(_(
+            "In draw k, motion k is scaled by exp({dispersion} ε), with one normal number ε for the whole building "
+            "({source}).",
+            dispersion=number(uncertainty.motion, "g"), source=say_source(results),
+        ))  # fmt: skip
+    if uncertainty.piece:
+        parts.append(_(
+            "Each piece draws its base × N({mean}, {base}), its height × N(1, {height}), its centre of gravity "
+            "N(as given, {centre}) of its height and its restitution N(as given or Housner's, {restitution}), as "
+            "assumed.",
+            mean=number(BASE[0]), base=number(BASE[1]), height=number(HEIGHT), centre=number(CENTRE),
+            restitution=number(RESTITUTION),
+        ))  # fmt: skip
+    if parts:
+        parts.append(_("Normal numbers are cut at {cut:g} standard deviations.", cut=CUT))
+    beside = _("“If exactly this motion recurred” is the chance without either uncertainty.")
+    return " ".join([*parts, beside])
 
 
 def _restitution(results: Results) -> str:
@@ -121,8 +149,8 @@ def _restitution(results: Results) -> str:
 
 def _interval(results: Results) -> str:
     return _(
-        "The interval is Wilson's with z = {z:.2f}; it covers the number of motions only: not the model of the block, "
-        "not the motion of the floor, not the earthquake.",
+        "The sampling interval is Wilson's with z = {z:.2f}; it covers the number of draws only: not the model of the "
+        "block, not how well the floor's motion is known, not the assumed dispersions.",
         z=results.provenance.interval_z,
     )
 
@@ -173,6 +201,8 @@ def _floor_motions(results: Results, motion: MotionRow, ensemble: EnsembleRow) -
 def _kind(suite: SuiteInfo | None, ensemble: EnsembleRow) -> str:
     if suite is not None:
         return _("own, scaled to PFA") if suite.is_scaled else _("own, not scaled")
+    if ensemble.unknown_period:
+        return _("generic spectrum, T1 unknown")
     return _("generic spectrum") if ensemble.generic_spectrum else _("recorded spectrum")
 
 
@@ -224,7 +254,23 @@ def list_assumptions(results: Results, verified: Verified) -> list[tuple[str, st
         checks = len(results.provenance.looks)
         interval = _("Wilson's, z = {z:.2f}: 95 % for all {checks} checks together", z=z, checks=checks)
     return [
+        *_list_uncertainties(results),
         (_("Restitution (angular velocity after an impact over that before)"), restitution),
         (_("Motions of the simulation"), motions),
         (_("Interval of a simulated chance"), interval),
+    ]
+
+
+def _list_uncertainties(results: Results) -> list[tuple[str, str]]:
+    """Return what is assumed of the uncertainty of the motion and of the pieces."""
+    uncertainty = results.provenance.uncertainty
+    motion = _("{dispersion}, {source}", dispersion=number(uncertainty.motion, "g"), source=say_source(results))
+    piece = _("base, height, centre of gravity and restitution are drawn, with assumed dispersions")
+    if not uncertainty.piece:
+        piece = _("none: every piece is exactly as given")
+    if results.settings.ideal:
+        motion, piece = (_("{text}; left out (--ideal)", text=text) for text in (motion, piece))
+    return [
+        (_("Motion uncertainty (standard deviation of ln amplitude, one draw for the whole building)"), motion),
+        (_("Piece uncertainty"), piece),
     ]

@@ -33,7 +33,7 @@ def _say_motion(results: Results) -> str:
     if not dispersion:
         return _("The motions are not scaled, as the workbook sets Motion uncertainty to 0: exactly this motion recurs.")
     return _(
-        "The chance is that in an earthquake like this one: in each draw the motions of the whole building are scaled by one "
+        "Chances hold for an earthquake like this one: in each draw the motions of the whole building are scaled by one "
         "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
         dispersion=number(dispersion, "g"), source=say_source(results),
     )  # fmt: skip
