@@ -229,7 +229,7 @@ def describe_result(results: "Results") -> Iterator[str]:
     for risk in reversed(RiskClass):
         yield f"{risk.label:<13} {counts.by_class[risk]:>6,} {'piece' if counts.by_class[risk] == 1 else 'pieces'}"
     if counts.unconfirmed:
-        ways = list_ways_to_settle(list_apart(rows, "unconfirmed"))
+        ways = [*list_ways_to_settle(list_apart(rows, "unconfirmed")), "Records of your own: --motions."]
         yield " ".join([f"{'  unconfirmed':<13} {counts.unconfirmed:>6,}, not counted above: {UNCONFIRMED}", *ways])
     if counts.by_formula:
         yield f"{'  by formula':<13} {counts.by_formula:>6,}, not counted above: not simulated"

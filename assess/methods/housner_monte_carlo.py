@@ -7,8 +7,8 @@ is Housner's (1963), of any height of the centre of gravity.
 
 Equations
 ---------
-theta'' = -p2 [sin(alpha sgn theta - theta) + (a_g/g) cos(alpha sgn theta - theta)], p2 = m g R / I0; risk = overturned /
-N, with its Wilson interval.
+theta'' = -p2 [sin(alpha sgn theta - theta) + (a_g/g) cos(alpha sgn theta - theta)], p2 = m g R / I0; risk =
+overturned / N, with its Wilson interval.
 
 Validity
 --------
@@ -349,8 +349,8 @@ METHOD = Method(
             "{runs} draws overturn it.",
         ),
         Reason(
-            "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which a uniform block can start to rock; the draws that "
-            "overturn the piece have higher peaks, or a more slender or top-heavy body.",
+            "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which a uniform block can start to rock; the draws "
+            "that overturn the piece have higher peaks, or a more slender or top-heavy body.",
             side="above",
             can_rock=False,
         ),
@@ -376,22 +376,22 @@ METHOD = Method(
         "Centre of gravity at z_c, not H/2: tan α = b/z_c, b = B/2, R² = b² + z_c², I₀ = m·(B² + H²)/12 + m·R², "
         "p² = m·g·R/I₀",
         "There rocking starts where |a_g|/g > b/z_c; after an impact: θ′ = (1 - 2·m·R²·sin²α/I₀) · θ′ before",
-        "Draw k: motion k · exp(β·ε_k), ε_k = N(0, 1) for the whole building; base B·N(0.97, 0.05), height H·N(1, 0.02), "
-        "z_c/H = N(as given, 0.05), restitution = N(as given or as above, 0.04)",
+        "Draw k: motion k · exp(β·ε_k), ε_k = N(0, 1) for the whole building; base B·N(0.97, 0.05), height H·N(1, "
+        "0.02), z_c/H = N(as given, 0.05), restitution = N(as given or as above, 0.04)",
         "Risk = overturned / N; interval: (R + z²/2N ± z·√(R(1 - R)/N + z²/4N²)) / (1 + z²/N)",
     ),
     assumptions=(
         "The piece is rigid and free-standing; its centre of gravity is at mid-height, or where the workbook gives it; "
         "it neither slides nor bounces, and moves in one plane; vertical motion is left out.",
-        "An earthquake like this one: β is 0.4, assumed, unless the workbook gives another dispersion; no source was "
-        "found that measures it for floor motions. Base, height, centre of gravity and restitution of each piece are "
-        "drawn; their means and dispersions are assumed. Normal numbers are cut at 3 standard deviations.",
-        "Draw k has one scale for the whole building, and its motions have the same random phases on every floor along an "
-        "axis. The signs of modes from floor to floor are not known.",
+        "An earthquake like this one: β is 0.4, assumed, unless the workbook gives another dispersion. Base, height, "
+        "centre of gravity and restitution of each piece are drawn; their means and dispersions are assumed. Normal "
+        "numbers are cut at 3 standard deviations.",
+        "Draw k has one scale for the whole building, and its motions have the same random phases on every floor along "
+        "an axis. The signs of modes from floor to floor are not known.",
         "Motions are linear between samples. A block at rest can start again. After the end of a motion it is followed "
         "until it can no longer fall.",
-        "The interval is Wilson's, 95 % (z = 1.96): it covers the number of draws only, not the model of the block, how "
-        "well the floor's motion is known, or the assumed dispersions.",
+        "The interval is Wilson's, 95 % (z = 1.96): it covers the number of draws only, not the model of the block, "
+        "how well the floor's motion is known, or the assumed dispersions.",
         'With N "auto", motions are added at 125, 250, 500, 1,000, 2,500 and 5,000, and a piece is done once its '
         "interval (z = 2.64: 95 % for all six checks together) lies within one class.",
     ),
@@ -400,8 +400,8 @@ METHOD = Method(
         "0.037.",
         "What the piece does under the recorded motion itself is found as well: one that overturns there is at least "
         "high.",
-        "The paper takes the floor's motion and the piece as exactly known. That chance is shown next to the adopted one, "
-        "as that if exactly this motion recurred; --ideal adopts it.",
+        "The paper takes the floor's motion and the piece as exactly known. That chance is shown next to the adopted "
+        "one, as that if exactly this motion recurred, and is adopted where a run asks for it.",
         "The paper's block is uniform; here the centre of gravity may be at any height.",
     ),
     flags={

@@ -9,7 +9,6 @@ from assess.i18n import ngettext, number
 from assess.report import words
 from assess.results import ItemResult
 from assess.risk import RiskClass
-from assess.rocking.block import MIDDLE
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo
@@ -21,8 +20,8 @@ class Counts:
 
     Classes never mix bases: `by_class` are the simulated pieces, or those by formula in a run that simulated nothing.
     `unconfirmed` and `by_formula` (not simulated in a run that simulated others) are counted apart. Of those with a
-    class, `lowered` were lowered by simulation, and `may_be` could be of a higher one. `expected` is the expected number
-    of them that fall, and `expected_by_formula` that of the pieces by formula, apart.
+    class, `lowered` were lowered by simulation, and `may_be` could be of a higher one. `expected` is the expected
+    number of them that fall.
     """
 
     label: str
@@ -33,7 +32,6 @@ class Counts:
     lowered: int = 0
     may_be: int = 0
     expected: float = 0.0
-    expected_by_formula: float = 0.0
 
     @property
     def free(self) -> int:
@@ -93,13 +91,8 @@ def count(label: str, results: Sequence[ItemResult]) -> Counts:
         by_formula=count_apart(results, "formula"),
         lowered=sum(one.item.quantity for one in main if one.adopted.lowered_from is not None),
         may_be=sum(one.item.quantity for one in main if one.adopted.upper != one.adopted.risk),
-        expected=_expected(main),
-        expected_by_formula=_expected([one for one in free if one.apart == "formula"]),
+        expected=sum(one.adopted.probability * one.item.quantity for one in main),
     )
-
-
-def _expected(results: Iterable[ItemResult]) -> float:
-    return sum(one.adopted.probability * one.item.quantity for one in results)
 
 
 def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
@@ -156,11 +149,13 @@ def count_cannot_rock(results: Sequence[ItemResult], methods: "Sequence[MethodIn
         if not one.is_anchored and one.adopted.risk >= RiskClass.HIGH and one.adopted.basis == "formula"
     ]
     stocky = [one for one in risky if one.does_not_rock]
-    rocking = [one for one in risky if not one.does_not_rock and one.item.centre_of_gravity <= MIDDLE]
+    rocking = [one for one in risky if not one.does_not_rock and one.item.centre_of_gravity <= UNIFORM]
     still = [one for one in rocking if criterion and one.governing.methods[criterion].value == 0]
     return CannotRock(*(sum(one.item.quantity for one in ones) for ones in (risky, still, stocky)))
 
 
+UNIFORM = 0.5
+"""Centre of gravity of a uniform block as a share of its height [-]; a more top-heavy one starts to rock sooner."""
 MOST_BARS = 30
 """Bars that one picture shows."""
 _LABEL, _WIDTH, _ROW, _BAR = 150.0, 480.0, 17.0, 13.0

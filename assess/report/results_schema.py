@@ -18,8 +18,8 @@ from assess import route_results as rows
 from assess.errors import Problem
 from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
 from assess.model import AXES
+from assess.results import Provenance
 from assess.risk import RiskClass
-from assess.rocking.draws import Uncertainty
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
@@ -27,6 +27,7 @@ VERSION = "4.0"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
+UNCERTAINTY = get_type_hints(Provenance)["uncertainty"]
 
 TEXT: Schema = {"type": "string"}
 HASH: Schema = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
@@ -167,7 +168,7 @@ def _assess() -> Schema:
             "version": TEXT,
             "seed": COUNT | {"description": "Of the generated motions."},
             "settings": _of_row(Settings),
-            "uncertainty": _of_row(Uncertainty) | {"description": "What the draws of the simulation vary."},
+            "uncertainty": _of_row(UNCERTAINTY) | {"description": "What the draws of the simulation vary."},
             "platform": _map(TEXT),
             "inputs": _object({"workbook": TEXT, "sha256": HASH, "records": _map(HASH), "motions": _map(HASH)}),
             "fitted_models": _map(fitted)
@@ -199,7 +200,7 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     (Settings, "route_risk"): INSIDE,
     (Settings, "scale"): {"type": "number", "exclusiveMinimum": 0, "maximum": MOST_SCALE},
     (Settings, "ductility_reduction"): {"type": "number", "minimum": 1},
-    (Uncertainty, "motion"): {"type": "number", "minimum": 0},
+    (UNCERTAINTY, "motion"): {"type": "number", "minimum": 0},
     (Problem, "severity"): {"enum": ["warning", "note"]},
 }
 """What is not as its type says."""

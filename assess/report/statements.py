@@ -204,8 +204,8 @@ def list_making(results: Results) -> Lines:
         ("assess", f"{provenance.version} ({made_with})"),
         (_("Scenario kind"), _(provenance.scenario)),
         (_("Verification"), settings.verify),
-        *([("--ideal", _("yes"))] if settings.ideal else []),
-        *([("--scale", number(settings.scale, "g"))] if settings.scale != 1 else []),
+        *([(_("Exactly this motion, and every piece exactly as given"), _("yes"))] if settings.ideal else []),
+        *([(_("Factor on every floor's motion"), number(settings.scale, "g"))] if settings.scale != 1 else []),
     ]
     if results.has_simulated and provenance.suite is None:
         lines += [(_("Motions of each floor and axis"), f"{settings.runs}"), (_("Seed"), f"{settings.seed}")]

@@ -57,6 +57,31 @@ class Uncertainty:
     piece: bool = True
 
     @property
+    def base(self) -> tuple[float, float]:
+        """Mean and standard deviation of a drawn base over the nominal one [-]."""
+        return BASE
+
+    @property
+    def height(self) -> float:
+        """Standard deviation of a drawn height over the nominal one [-]."""
+        return HEIGHT
+
+    @property
+    def centre(self) -> float:
+        """Standard deviation of a drawn centre of gravity as a share of the height [-]."""
+        return CENTRE
+
+    @property
+    def restitution(self) -> float:
+        """Standard deviation of a drawn restitution [-]."""
+        return RESTITUTION
+
+    @property
+    def cut(self) -> float:
+        """Standard deviations beyond which nothing is drawn."""
+        return CUT
+
+    @property
     def largest(self) -> float:
         """Factor that no drawn motion exceeds [-]."""
         return math.exp(CUT * self.motion)

@@ -37,8 +37,9 @@ def test_the_schema_describes_fields_of_rows_and_knows_their_limits():
     assert {"from", "to"} <= set(segment)
     assert not {"from_place", "workbook_row", "start_x_m"} & set(segment)
     assert definitions["item"]["properties"]["friction"]["type"] == ["number", "null"]
+    text = "Draws of an earthquake like this one and of the piece, a motion each, that it was simulated under."
     assert definitions["verification"]["properties"]["runs"] == {
-        "type": "integer", "minimum": 0, "description": "Motions that the piece was simulated under.",
+        "type": "integer", "minimum": 0, "description": text,
     }  # fmt: skip
 
 
@@ -67,7 +68,7 @@ def test_results_hold_what_was_assessed(results):
     assert first["methods"]["housner_monte_carlo"]["value"] is None
     assert {demand["ensemble"] for floor in found["floors"] for demand in floor["demands"]} == {None}
     settings = found["assess"]["settings"]
-    assert found["schema"] == "3.0"
+    assert found["schema"] == "4.0"
     assert found["assess"]["seed"] == settings["seed"] == 1
     assert (settings["verify"], settings["runs"], settings["scale_motions"]) == ("none", 200, False)
     assert found["assess"]["inputs"]["motions"] == {}

@@ -133,10 +133,11 @@ class TestKnownRows:
     @pytest.mark.slow
     def test_simulation_counts_once_it_ran(self, tmp_path):
         settings = Settings(verify="all", runs=20)
-        row, reasons = one(tmp_path, 45, 180, 0.24, 35, settings=settings, period=1.0)
+        certain = {"motion_uncertainty": 0, "piece_uncertainty": "no"}
+        row, reasons = one(tmp_path, 45, 180, 0.24, 35, settings=settings, period=1.0, **certain)
         simulated = row.result.governing.simulation
         assert (row.lowest.method.role, row.lowest.value) == ("simulation", simulated.probability)
-        assert f"{simulated.overturned} of 20 motions overturn it." in reasons
+        assert f"{simulated.overturned} of 20 draws overturn it." in reasons
         assert "follow a generic spectrum" in reasons
 
 

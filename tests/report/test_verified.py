@@ -34,6 +34,9 @@ ITEMS = [
     {"item": "cube", "floor": "2", "breadth": 90, "width": 90, "height": 60},
 ]  # fmt: skip
 
+CERTAIN = {"motion_uncertainty": 0, "piece_uncertainty": "no"}
+"""Of the building: nothing is drawn, so that it is known which of the pulses overturn a piece."""
+
 
 def _pulses(*peaks):
     """Return a suite of five waves of 1 s each [g]."""
@@ -48,7 +51,7 @@ def _pulses(*peaks):
 
 
 def _assess(folder, peaks, items=ITEMS, floors=FLOORS, building=(), **settings):
-    inventory = assess.read_inventory(write(folder / "w.xlsx", items, floors, **dict(building)))
+    inventory = assess.read_inventory(write(folder / "w.xlsx", items, floors, **CERTAIN | dict(building)))
     with pytest.MonkeyPatch.context() as patch:  # weak motions may lower classes here, to show how that looks
         patch.setattr(ensembles, "WEAK_PFA", 0.0)
         patch.setattr(ensembles, "WEAK_PFV", 0.0)
@@ -69,7 +72,7 @@ def _ids(figure, name):
 @pytest.fixture(scope="module")
 def lowered(tmp_path_factory):
     """Motions so weak that nothing falls: partly simulated, and every class lowered that was simulated."""
-    return _assess(tmp_path_factory.mktemp("lowered"), [0.1] * 40)
+    return _assess(tmp_path_factory.mktemp("lowered"), [0.1] * 40, verify="high")
 
 
 @pytest.fixture(scope="module")
@@ -118,9 +121,10 @@ class TestExtent:
     def test_a_partly_simulated_report_names_both_parts(self, lowered, page_of_lowered):
         text = read_text(page_of_lowered)
         status = "Partly simulated: rocking of 3 of 5 rows simulated, 40 motions of the user's own"
-        assert text.count(f"{status}; the classes of the other rows come from a published formula") == 2
-        assert "Percentages without a range come from the formula only; they were not simulated." in text
-        assert "(direct integration) where a piece was simulated, otherwise Proposed OR formula." in text
+        apart = "the other rows have a class by a published formula, and are counted apart"
+        assert text.count(f"{status}; {apart}") == 2
+        assert "Percentages without a range come from the formula only." in text
+        assert "where a piece was simulated, otherwise Proposed OR formula, counted apart." in text
         assert "Not simulated: chance and class come from the formula: 5 pieces in 2 rows." in text
         assert "The rocking of 3 of 5 rows was integrated step by step" in text
         assert "in which the Proposed OR formula was checked; and those on a route." in text
@@ -129,7 +133,7 @@ class TestExtent:
     def test_a_simulated_report_has_chance_formula_and_record_side_by_side(self, some, page_of_some):
         text = read_text(page_of_some)
         assert "Status Simulated: rocking of 4 of 4 rows simulated, 40 motions of the user's own" in text
-        assert "the interval covers the number of motions only, not the formula, the motion of the floor or" in text
+        assert "not per year; the sampling interval covers the number of draws only." in text
         assert "Percentages without a range" not in text
         one = some.result(0)
         assert one.adopted.probability == 0.25
@@ -144,7 +148,7 @@ class TestExtent:
         document = pypdfium2.PdfDocument(written["pdf"])
         pages = [" ".join(document[at].get_textpage().get_text_range().split()) for at in range(len(document))]
         document.close()
-        footer = "not per year. Simulated: 4 of 4 rows; the interval covers the number of motions only."
+        footer = "not per year. Simulated: 4 of 4 rows; the sampling interval covers the number of draws only."
         assert all(footer in page for page in pages)
 
 
@@ -156,6 +160,7 @@ class TestChanges:
         note = "○ low, could be medium, lowered by simulation (formula: high)"
         assert text.count(note) == 2 * 2  # all pieces, classes lowered
         assert text.count("○ low ?↓") == 2 * 2  # on one line: the worst, what to fix first
+        assert text.count("ƒ medium by formula only") == text.count("ƒ low by formula only") == 1  # not simulated
         assert text.count("depends on its anchor (free-standing: low, could be medium, lowered by simulation") == 2
         assert "Class lowered by simulation: 3 pieces in 3 rows (1 of them anchored): 3 from high." in text
         assert "Could be of a higher class: the interval reaches into it: 3 pieces in 3 rows (1 of them" in text
@@ -229,18 +234,19 @@ class TestChanges:
 class TestMotions:
     def test_a_generic_floor_is_cautioned(self, generic, page_of_generic):
         text, content = read_text(page_of_generic), build_content(generic)
-        caution = "generic spectrum; simulation may raise a class there, never lower it."
-        assert text.count(f"Floor 1: the generated motions follow a {caution}") == 1
-        assert text.count(f"Floor 1: {caution}") == 1
+        never = "simulation may raise a class there, never lower it."
+        known = "and neither T1 nor the building's height is known"
+        assert text.count(f"Floor 1: the generated motions follow a generic spectrum, {known}; {never}") == 1
+        assert text.count(f"Floor 1: generic spectrum, T1 unknown; {never}") == 1
         assert "On each floor and axis 20 motions were generated (seed 1)." in text
         assert "At each impact a piece keeps 0.9 of its angular velocity, as set in the workbook." in text
         assert "Wilson EB (1927)" in text
-        kept = [one for one in generic if "not_lowered" in one.adopted.flags]
-        assert ("for 1 row the formula's higher class is kept" in text) == bool(kept)
-        assert ("or the simulation gave a lower class, which is not adopted" in text) == bool(kept)
+        unconfirmed = [one for one in generic if one.adopted.is_unconfirmed]
+        assert ("1 row is unconfirmed: the formula's class, counted apart" in text) == bool(unconfirmed)
+        assert ("simulation gave a lower class that cannot be relied on" in text) == bool(unconfirmed)
         (motion,) = content.trials.motions
         (fit,) = [one.ensemble.fit for one in generic.motions if one.ensemble]
-        assert (motion.kind, motion.motions, motion.rows) == ("generic spectrum", "20", 1)
+        assert (motion.kind, motion.motions, motion.rows) == ("generic spectrum, T1 unknown", "20", 1)
         assert motion.spectrum == (
             f"{100 * fit.mean_deviation:.1f} %; {100 * fit.worst_deviation:+.1f} % at {fit.worst_period_s:.2f} s"
         )

@@ -81,14 +81,18 @@ def rocked(tmp_path_factory):
     items = [PIECE | {"item": "thin", "anchored": "partly", "description": "Bookcase with a very long description"},
              PIECE | {"item": "stout", "floor": "2", "breadth": 60, "axis": "X"}]  # fmt: skip
     floors = [*FLOORS, {"floor": "2", "pfa_x": 0.1, "pfv_x": 20}]
-    return assessed(tmp_path_factory.mktemp("w") / "w.xlsx", items, floors, settings=Settings(runs=20))
+    return assessed(
+        tmp_path_factory.mktemp("w") / "w.xlsx", items, floors, settings=Settings(verify="high", runs=20), period=1.0
+    )
 
 
-def test_a_chance_of_the_formula_is_marked_beside_simulated_ones(rocked, tmp_path):
-    assert [one.is_simulated for one in rocked] == [True, False]
-    bare = [one for one in rocked if one.adopted.low is None]
-    assert write_html(rocked, tmp_path / "some").count("<small>formula</small>") == len(bare) == 1
-    assert "<small>formula</small>" not in write_html(assessed(tmp_path / "w.xlsx"), tmp_path / "none")
+def test_a_class_by_formula_is_marked_beside_simulated_ones(rocked, tmp_path):
+    assert [one.apart for one in rocked] == ["", "formula"]
+    html = write_html(rocked, tmp_path / "some")
+    assert (
+        html.count('<span class="badge apart-formula">ƒ medium</span><span class="note"> by formula only</span>') == 1
+    )
+    assert 'class="badge apart' not in write_html(assessed(tmp_path / "w.xlsx"), tmp_path / "none")
 
 
 def test_a_partly_anchored_piece_says_so_in_short_tables(rocked, tmp_path):
@@ -119,11 +123,11 @@ def test_the_first_sentence_for_none_one_and_many(very_high, high, low, could_be
 @pytest.mark.parametrize(
     ("counted", "told"),
     [
-        (CannotRock(12, 1, 0, 1), "Of 12 pieces of high or very high class by formula, 1 cannot even start to rock "
+        (CannotRock(12, 1, 1), "Of 12 pieces of high or very high class by formula, 1 cannot even start to rock "
                                   "under this motion and 1 is too stocky to rock"),
-        (CannotRock(12, 3, 0, 0), "Of 12 pieces of high or very high class by formula, 3 cannot even start to rock "
+        (CannotRock(12, 3, 0), "Of 12 pieces of high or very high class by formula, 3 cannot even start to rock "
                                   "under their motions"),
-        (CannotRock(1, 0, 0, 1), "Of 1 piece of high or very high class by formula, 1 is too stocky to rock"),
+        (CannotRock(1, 0, 1), "Of 1 piece of high or very high class by formula, 1 is too stocky to rock"),
     ],
 )  # fmt: skip
 def test_what_cannot_rock_is_told_with_what_is_too_stocky(counted, told):
@@ -137,9 +141,9 @@ def test_pieces_that_cannot_rock_are_counted(tmp_path):
     results = assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.24, "pfv_x": 35}])
     high = {one.item.item: one for one in results if one.adopted.risk >= RiskClass.HIGH and not one.is_anchored}
     assert high.keys() == {"still", "thin"}
-    assert count_cannot_rock(list(results), results.methods) == CannotRock(risky=4, still=3, kept=0, stocky=0)
+    assert count_cannot_rock(list(results), results.methods) == CannotRock(risky=4, still=3, stocky=0)
     risky = [replace(one, adopted=replace(one.adopted, risk=RiskClass.HIGH)) for one in results]
-    assert count_cannot_rock(risky, results.methods) == CannotRock(risky=6, still=3, kept=0, stocky=2)
+    assert count_cannot_rock(risky, results.methods) == CannotRock(risky=6, still=3, stocky=2)
 
 
 def test_bars_show_every_piece_in_proportion(tmp_path):

@@ -41,7 +41,10 @@ def test_results_are_said_in_words(found):
 def test_the_simulation_is_worked_too(tmp_path):
     content = build_content(assessed(tmp_path / "w.xlsx", ITEMS[:1], settings=Settings(verify="all", runs=20)))
     assert content.worked[-1].method.role == "simulation"
-    assert f"R = {content.example.adopted.probability:.4f}, that is" in content.worked[-1].result
+    found = content.example.governing.simulation
+    assert f"R = {found.probability:.4f}, that is" in content.worked[-1].result
+    ideal = f"it would overturn under {found.ideal.overturned} of 20 motions."
+    assert sum(step.endswith(ideal) for step in content.worked[-1].steps) == 1
 
 
 def test_in_another_language_nothing_stays_english(found):

@@ -81,8 +81,8 @@ def list_ways_to_settle(unconfirmed: Iterable[ItemResult]) -> list[str]:
         ways.append(_("To settle this, fill in {period} or {height} in the sheet Building, or records of the floors.",
                       period=period, height=height))  # fmt: skip
     if "weak_motions" in flags:
-        ways.append(_("To settle this, simulate with stronger motions: a set of your own (--motions, scaled with "
-                      "--scale-motions) whose PFV reaches the floor's."))  # fmt: skip
+        ways.append(_("To settle this, simulate under stronger motions: records of your own whose PFV reaches the "
+                      "floor's, or scaled to it."))  # fmt: skip
     return ways
 
 

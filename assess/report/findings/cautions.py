@@ -93,8 +93,8 @@ def _generic(motions: Sequence[MotionRow]) -> Iterator[Caution]:
     generic = list(dict.fromkeys(floor for floor, one in made if one.generic_spectrum and not one.unknown_period))
     weak = list(dict.fromkeys(floor for floor, one in made if one.weak_motions))
     if unknown:
-        text = _("{floors}: the generated motions follow a generic spectrum, and neither T1 nor the building's height is "
-                 "known; simulation may raise a class there, never lower it.", floors=_name(unknown))  # fmt: skip
+        text = _("{floors}: the generated motions follow a generic spectrum, and neither T1 nor the building's height "
+                 "is known; simulation may raise a class there, never lower it.", floors=_name(unknown))  # fmt: skip
         short = _("{floors}: generic spectrum, T1 unknown; simulation may raise a class there, never lower it.",
                   floors=_name_some(unknown))  # fmt: skip
         yield Caution(text, short)

@@ -11,7 +11,6 @@ from assess.report.findings.motions import describe_suite
 from assess.report.findings.uncertain import say_source
 from assess.report.findings.verified import Verified, name_some
 from assess.results import EnsembleRow, ItemResult, MotionRow, Results, SuiteInfo
-from assess.rocking.draws import BASE, CENTRE, CUT, HEIGHT, RESTITUTION
 from assess.settings import AUTO
 
 LARGE_MISFIT = 0.10
@@ -106,9 +105,10 @@ def _describe_motions(results: Results) -> str:
     runs = results.settings.runs
     return _(
         "On each floor and axis {motions} were generated (seed {seed}). Their mean 5 % response spectrum matches that "
-        "of the floor's recorded motion, or a generic one where only peaks are known. They differ by their random phases "
-        "alone, which is less than earthquakes differ. Motion k has the same phases on every floor along an axis; the "
-        "signs of modes from floor to floor are not known, so what falls together on several floors is an estimate.",
+        "of the floor's recorded motion, or a generic one where only peaks are known. They differ by their random "
+        "phases alone, which is less than earthquakes differ. Motion k has the same phases on every floor along an "
+        "axis; the signs of modes from floor to floor are not known, so what falls together on several floors is an "
+        "estimate.",
         motions=_("as many motions as are needed") if runs == AUTO else words.plural(int(runs), "motion"),
         seed=results.settings.seed,
     )
@@ -118,7 +118,7 @@ def _describe_draws(results: Results) -> str:
     """Return what is drawn, and what stands beside it."""
     uncertainty = results.provenance.uncertainty
     if results.settings.ideal:
-        return _("Adopted is the chance if exactly this motion recurred and every piece were exactly as given (--ideal).")
+        return _("Adopted is the chance if exactly this motion recurred and every piece were exactly as given.")
     parts = []
     if uncertainty.motion:
         parts.append(_(
@@ -128,16 +128,14 @@ def _describe_draws(results: Results) -> str:
         ))  # fmt: skip
     if uncertainty.piece:
         parts.append(_(
-            "Each piece draws its base × N({mean}, {base}), its height × N(1, {height}), its centre of gravity "
-            "N(as given, {centre}) of its height and its restitution N(as given or Housner's, {restitution}), as "
-            "assumed.",
-            mean=number(BASE[0]), base=number(BASE[1]), height=number(HEIGHT), centre=number(CENTRE),
-            restitution=number(RESTITUTION),
+            "Each piece draws its base × N({mean}, {base}), its height × N(1, {height}), its centre of gravity N(as "
+            "given, {centre}) of its height and its restitution N(as given or Housner's, {restitution}), as assumed.",
+            mean=number(uncertainty.base[0]), base=number(uncertainty.base[1]), height=number(uncertainty.height),
+            centre=number(uncertainty.centre), restitution=number(uncertainty.restitution),
         ))  # fmt: skip
     if parts:
-        parts.append(_("Normal numbers are cut at {cut:g} standard deviations.", cut=CUT))
-    beside = _("“If exactly this motion recurred” is the chance without either uncertainty.")
-    return " ".join([*parts, beside])
+        parts.append(_("Normal numbers are cut at {cut:g} standard deviations.", cut=uncertainty.cut))
+    return " ".join([*parts, _("“If exactly this motion recurred” is the chance without either uncertainty.")])
 
 
 def _restitution(results: Results) -> str:
@@ -269,7 +267,7 @@ def _list_uncertainties(results: Results) -> list[tuple[str, str]]:
     if not uncertainty.piece:
         piece = _("none: every piece is exactly as given")
     if results.settings.ideal:
-        motion, piece = (_("{text}; left out (--ideal)", text=text) for text in (motion, piece))
+        motion, piece = (_("{text}; left out in this run", text=text) for text in (motion, piece))
     return [
         (_("Motion uncertainty (standard deviation of ln amplitude, one draw for the whole building)"), motion),
         (_("Piece uncertainty"), piece),

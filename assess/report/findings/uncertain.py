@@ -1,21 +1,20 @@
 """What was assumed uncertain, in the words of reports: of the earthquake, of the pieces, and what it changes."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.results import ItemResult, Results, Simulation
 from assess.risk import RiskClass, classify
-from assess.rocking.draws import TRIED
 
 
 def list_conditions(results: Results) -> list[str]:
-    """Return what every page of a report says: a run with --ideal, and one with other motions than the workbook's."""
+    """Return what every page of a report says: that nothing is varied, that motions are not those of the workbook."""
     texts = []
     if results.settings.ideal and results.has_simulated:
-        texts.append(_("Assumed: exactly this motion, and every piece exactly as given (--ideal)"))
+        texts.append(_("Assumed: exactly this motion, and every piece exactly as given"))
     if results.settings.scale != 1:
-        texts.append(_("Every floor's motion times {scale} (--scale)", scale=number(results.settings.scale, "g")))
+        texts.append(_("Every floor's motion times {scale}", scale=number(results.settings.scale, "g")))
     return texts
 
 
@@ -24,17 +23,19 @@ def say_assumed(results: Results) -> str:
     if not results.has_simulated:
         return ""
     if results.settings.ideal:
-        return _("Assumed is that exactly this motion recurs and that every piece is exactly as given: nothing is varied.")
+        return _(
+            "Assumed is that exactly this motion recurs and that every piece is exactly as given: nothing is varied."
+        )
     return f"{_say_motion(results)} {_say_piece(results)}"
 
 
 def _say_motion(results: Results) -> str:
     dispersion = results.provenance.uncertainty.motion
     if not dispersion:
-        return _("The motions are not scaled, as the workbook sets Motion uncertainty to 0: exactly this motion recurs.")
+        return _("The motions are not scaled, as Motion uncertainty is 0 in the workbook: exactly this motion recurs.")
     return _(
-        "Chances hold for an earthquake like this one: in each draw the motions of the whole building are scaled by one "
-        "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
+        "Chances hold for an earthquake like this one: in each draw the motions of the whole building are scaled by "
+        "one factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
         dispersion=number(dispersion, "g"), source=say_source(results),
     )  # fmt: skip
 
@@ -53,15 +54,15 @@ def _say_piece(results: Results) -> str:
 def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
     """Return how many simulated pieces would have another class under other assumptions; "" where none was simulated.
 
-    Compared are the classes by the chance under the governing motion: with the dispersion of the motions at each of
-    `TRIED`; with `--ideal`, with the uncertainty that was left out.
+    Compared are the classes by the chance under the governing motion: with each other dispersion of the motions that
+    was tried; where uncertainty was left out (`Settings.ideal`), with it.
     """
-    found = [(one, one.governing.simulation) for one in rows if not one.is_anchored and one.adopted.is_simulated]
-    simulated = [(one, simulation) for one, simulation in found if simulation is not None]
+    counted = [one for one in rows if not one.is_anchored and one.adopted.is_simulated]
+    simulated = [(one, found) for one in counted if (found := one.governing.simulation) is not None]
     if not simulated:
         return ""
     if results.settings.ideal:
-        changes = _count(simulated, lambda found: found.ideal.probability, lambda found: found.probability)
+        changes = _count((one, found.ideal.probability, found.probability) for one, found in simulated)
         return _(
             "In an earthquake like this one (dispersion {dispersion}), {changes}.",
             dispersion=number(results.provenance.uncertainty.motion, "g"), changes=_say_changes(*changes),
@@ -70,23 +71,19 @@ def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
 
 
 def _list_tried(results: Results, simulated: Sequence[tuple[ItemResult, Simulation]]) -> Iterator[str]:
-    for dispersion in TRIED:
+    for dispersion in simulated[0][1].tried:
         if dispersion != results.provenance.uncertainty.motion:
-            changes = _count(simulated, lambda found: found.probability, lambda found, at=dispersion: found.tried[at])
+            changes = _count((one, found.probability, found.tried[dispersion]) for one, found in simulated)
             yield _("With a dispersion of {dispersion}, {changes}.", dispersion=number(dispersion, "g"),
                     changes=_say_changes(*changes))  # fmt: skip
 
 
-def _count(
-    simulated: Sequence[tuple[ItemResult, Simulation]],
-    now: Callable[[Simulation], float],
-    then: Callable[[Simulation], float],
-) -> tuple[int, int]:
-    """Return how many pieces would be of a higher and of a lower class."""
+def _count(changes: Iterable[tuple[ItemResult, float, float]]) -> tuple[int, int]:
+    """Return how many pieces would be of a higher and of a lower class, of rows with their chance now and then."""
     up = down = 0
-    for one, found in simulated:
+    for one, now, then in changes:
         least = RiskClass.HIGH if one.fell_in_record else RiskClass.LOW
-        change = max(_class(then(found)), least) - max(_class(now(found)), least)
+        change = max(_class(then), least) - max(_class(now), least)
         up += one.item.quantity * (change > 0)
         down += one.item.quantity * (change < 0)
     return up, down
