@@ -39,7 +39,10 @@ def command(
         str, typer.Option(metavar="DIR", help="Folder of the files; its folder parts keeps long integrations.")
     ] = "studies",
     runs: Annotated[
-        int, typer.Option(min=FEWEST, max=MOST, help="Motions generated for each channel; table2, contours, fit.")
+        int,
+        typer.Option(
+            min=FEWEST, max=MOST, help="Motions generated for each channel; table2, contours, fit, calibration."
+        ),
     ] = 100,
     seed: Annotated[int, typer.Option(min=0, help="Random seed of the generated motions.")] = 1,
     records: Annotated[
@@ -57,8 +60,9 @@ def command(
 
     The studies repeat results of the paper on open data, or compare its formulas with direct integration.
 
-    table1, table3 and solver take seconds to a minute. table2, contours and fit share one long integration, whose
-    finished parts are kept in the folder parts of --out: after an interruption, the same command continues from there.
+    table1, table3 and solver take seconds to a minute. table2, contours and fit share one long integration, and
+    calibration has its own; finished parts are kept in the folder parts of --out: after an interruption, the same
+    command continues from there.
     """
     for option, folder in (("out", out), ("records", records)):
         if folder is not None and not folder.strip():

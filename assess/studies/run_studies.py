@@ -39,7 +39,8 @@ def _to_csv(table: Table) -> str:
 
 def describe(study: Study, finding: Finding, folder: str) -> Iterator[str]:
     """Yield the section of a study; figures lie in `folder`, as links name it."""
-    yield from (f"`assess study {study.name}`, {study.of} of the paper.", "", *finding.page)
+    place = f"{study.of} of the paper" if study.of else "no part of the paper"
+    yield from (f"`assess study {study.name}`, {place}.", "", *finding.page)
     for name in finding.figures:
         yield from ("", f"![{study.title}]({folder}{name})")
 

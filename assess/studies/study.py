@@ -101,7 +101,8 @@ class Finding:
 class Study:
     """One study: its name, its place on the page, its heading, the part `of` the paper, and the function that runs it.
 
-    `takes` names which of the options "records", "breadth" and "height" it uses.
+    `of` is "" for a study that repeats no part of the paper. `takes` names which of the options "records", "breadth"
+    and "height" it uses.
     """
 
     name: str

@@ -18,7 +18,10 @@ from assess.version import __version__
 Arrays = Mapping[str, NDArray[np.generic]]
 PARTS = "parts"
 """Folder of kept results, within that of a study's files."""
-SOURCES = ("motion", "rocking", "compiled.py", "units.py", "studies/buildings.py")
+SOURCES = (
+    "motion", "rocking", "compiled.py", "units.py", "methods/_simulate.py", "studies/buildings.py",
+    "studies/calibration/floor_motions.py", "studies/calibration/shear_beam.py",
+)  # fmt: skip
 """The code that kept results depend on: if it changes, they are computed again."""
 MARK = "made_of"
 """Array within a kept file that identifies what its numbers were computed from."""

@@ -89,8 +89,8 @@ def _forms(values: Iterable[float], form: str, separator: str = "/") -> str:
 
 
 def _points(share: float, sign: str = "") -> str:
-    """Return a share or a difference of shares [-] in percentage points."""
-    return f"{100 * share:{sign}.1f}"
+    """Return a share or a difference of shares [-] in percentage points; "-" for NaN."""
+    return "-" if share != share else f"{100 * share:{sign}.1f}"
 
 
 def _span(values: Sequence[float], decimals: int) -> str:

@@ -17,7 +17,9 @@ from assess.resources import record
 from assess.studies import PAGE, PARTS, Finding, Options, Study, all_studies, check_folder, run_study, write_files
 from assess.studies.study_files import load_or_compute
 
-NAMES = ["table1", "solver", "table2", "contours", "table3", "fit"]
+NAMES = ["table1", "solver", "table2", "calibration", "contours", "table3", "fit"]
+OWN = {"calibration"}
+"""Studies that repeat no part of the paper."""
 
 
 def study(*words):
@@ -43,11 +45,11 @@ def two(monkeypatch):
 # ---------------------------------------------------------------- what there is
 
 
-def test_all_studies_of_the_paper_are_there():
+def test_all_studies_are_there():
     assert [one.name for one in all_studies()] == NAMES
+    assert {one.name for one in all_studies() if not one.of} == OWN
     for one in all_studies():
         assert one.title
-        assert one.of
         assert one.takes <= {"records", "breadth", "height"}
 
 
@@ -62,7 +64,7 @@ def test_the_help_names_every_study_and_the_sizes_that_are_used():
     assert f"{command_study.NAMES}; or all" in told
     given = Options(out=Path("unused"))
     assert all(f"[default: ({100 * size:g})]" in told for size in (given.breadth, given.height))
-    assert f"table2, contours, fit. [default: {given.runs}; 20<=x<=1000]" in told
+    assert f"table2, contours, fit, calibration. [default: {given.runs}; 20<=x<=1000]" in told
     assert "the same command continues from there" in told
 
 

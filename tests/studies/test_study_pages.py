@@ -38,3 +38,4 @@ def test_a_span_of_equal_numbers_is_one_number(values, shown):
 
 def test_an_unknown_share_is_a_dash():
     assert (study_pages.percent(math.nan), study_pages.percent(0.255)) == ("-", "26 %")
+    assert (study_pages._points(math.nan), study_pages._points(0.255, "+")) == ("-", "+25.5")

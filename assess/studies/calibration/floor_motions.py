@@ -1,0 +1,188 @@
+"""The floor motions of the calibration: recorded ones, and those of shear beams that stand on recorded ground motions.
+
+For each, motions are generated for its 5 % spectrum, as `assess run` does, and blocks are rocked under them and under
+the floor motion itself. The result of each floor motion is kept as soon as it is known.
+"""
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import InputError
+from assess.motion.formats import read_records
+from assess.motion.record import Motion, treat
+from assess.motion.target import build_grid, put_on_grid, recorded_target
+from assess.resources import record
+from assess.studies.buildings import all_buildings
+from assess.studies.studied_methods import BoolArray, FloatArray
+from assess.studies.study import Options
+from assess.studies.study_files import PARTS, Arrays, load_or_compute
+from assess.units import GRAVITY
+
+RATIOS, HEIGHTS = (0.12, 0.18, 0.26, 0.38), (0.9, 1.5, 2.1)
+"""B/H [-] and heights [m] of the blocks, in every combination."""
+LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.1, 1.5)
+"""PFA to which all floor motions are scaled [g]."""
+PERIODS, PLACES = (0.5, 1.0, 2.0, 4.0), (0.5, 1.0)
+"""T1 [s] of the beams and heights z/h [-] of their floors, in every combination."""
+GROUND = ("ground", "basement")
+"""Levels of the buildings that beams are put on."""
+FREE_FIELD = (
+    ("Redwood City", "X", "133 deg", "np01002p_4225a_a.smc"), ("Redwood City", "Y", "43 deg", "np01002p_4225c_a.smc"),
+)  # fmt: skip
+"""Station, axis, name and file of ground motions that are of no building: APEEL array 2, Loma Prieta 1989."""
+CYCLES = 5.0
+"""Rest after the ground motion, while beams swing, in multiples of T1 [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Beam:
+    """A uniform shear beam: T1 [s], and the height z/h of a floor in it [-]."""
+
+    period: float
+    place: float
+
+
+@dataclass(frozen=True, slots=True)
+class FloorMotion:
+    """One floor motion: the place, level, axis and name of its record, the file, and the beam on it, if any."""
+
+    site: str
+    level: str
+    axis: str
+    name: str
+    file: Path
+    beam: Beam | None = None
+
+    @property
+    def source(self) -> str:
+        """What is not independent of it: all motions along one axis of one site are of one earthquake."""
+        return f"{self.site}, {self.axis}"
+
+    def read(self) -> Motion:
+        """Return its motion."""
+        motion = treat(read_records(self.file)[0])
+        return motion if self.beam is None else _shake(motion, self.beam)
+
+    def __str__(self) -> str:
+        beam = "" if self.beam is None else f", shear beam, T1 {self.beam.period:g} s, z/h {self.beam.place:g}"
+        return f"{self.site}, {self.level}, {self.name}{beam}"
+
+
+def _shake(ground: Motion, beam: Beam) -> Motion:
+    """Return the motion of a floor of a beam, from the start of the ground motion until some cycles after its end."""
+    from scipy.integrate import cumulative_trapezoid
+
+    from assess.studies.calibration.shear_beam import shake_beam
+
+    grid = build_grid([ground])
+    rest = np.zeros(round(CYCLES * beam.period / grid.time_step))
+    shaking = np.concatenate([put_on_grid(ground, grid), rest])
+    acceleration = shake_beam(shaking, grid.time_step, beam.period, beam.place)
+    velocity = cumulative_trapezoid(acceleration, dx=grid.time_step, initial=0)
+    displacement = cumulative_trapezoid(velocity, dx=grid.time_step, initial=0)
+    return Motion(acceleration, velocity, displacement, grid.time_step)
+
+
+def list_recorded() -> list[FloorMotion]:
+    """Return the recorded floor motions, ground floors and basements among them."""
+    return [
+        FloorMotion(one.building, one.level, one.axis, one.name, one.file)
+        for building in all_buildings()
+        for one in building.channels
+    ]
+
+
+def list_beams() -> list[FloorMotion]:
+    """Return the floor motions of shear beams on all ground motions; InputError if a record is missing."""
+    return [
+        FloorMotion(one.site, one.level, one.axis, one.name, one.file, Beam(period, place))
+        for one in _list_grounds()
+        for period in PERIODS
+        for place in PLACES
+    ]
+
+
+def _list_grounds() -> Iterator[FloorMotion]:
+    yield from (one for one in list_recorded() if one.level in GROUND)
+    for site, axis, name, file in FREE_FIELD:
+        path = record(file)
+        if not path.is_file():
+            raise InputError(f"{path} is missing: the record of {site} is part of the package. Install it again.")
+        yield FloorMotion(site, "ground", axis, name, path)
+
+
+# ---------------------------------------------------------------- what falls
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tried:
+    """The response of the blocks to a floor motion at all `LEVELS`, and to the motions generated for it.
+
+    Parameters
+    ----------
+    floor : FloorMotion
+    factors : (a,) array
+        Factors by which it is scaled [-].
+    fallen : (a, b) integer array
+        Number of generated motions, of `runs`, under which each block overturned.
+    fell : (a, b) boolean array
+        Whether it overturned under the floor motion itself.
+    runs : int
+        Number of generated motions.
+    """
+
+    floor: FloorMotion
+    factors: FloatArray
+    fallen: NDArray[np.int64]
+    fell: BoolArray
+    runs: int
+
+
+def build_blocks() -> tuple[FloatArray, FloatArray]:
+    """Return breadths and heights of the blocks [m]: each height with every B/H."""
+    heights, ratios = np.meshgrid(HEIGHTS, RATIOS, indexing="ij")
+    return (ratios * heights).ravel(), heights.ravel()
+
+
+def draw_seed(floor: FloorMotion, seed: int) -> int:
+    """Return a seed of a floor motion's own, so that the phases of its motions are independent of the others'."""
+    return int.from_bytes(hashlib.sha256(f"{seed}: {floor}, {floor.axis}".encode()).digest()[:4], "big")
+
+
+def try_floors(floors: list[FloorMotion], options: Options) -> list[Tried]:
+    """Rock the blocks under each floor motion and under the motions generated for it, or load earlier results."""
+    return [_try_floor(floor, part) for floor, part in options.each(floors)]
+
+
+def _try_floor(floor: FloorMotion, options: Options) -> Tried:
+    digest = hashlib.sha256(floor.file.read_bytes()).hexdigest()
+    inputs = ("calibration", digest, str(floor), floor.axis, options.runs, options.seed, LEVELS, RATIOS, HEIGHTS)
+    kept = load_or_compute(options.out / PARTS, inputs, lambda: _integrate(floor, options))
+    return Tried(
+        floor=floor, factors=kept["factors"].astype(np.float64), fallen=kept["fallen"].astype(np.int64),
+        fell=kept["fell"].astype(np.bool_), runs=options.runs,
+    )  # fmt: skip
+
+
+def _integrate(floor: FloorMotion, options: Options) -> Arrays:
+    from assess.motion.generate import build_generator
+    from assess.rocking.ensemble import rock_blocks
+
+    (breadth, height), motion, threads = build_blocks(), floor.read(), options.jobs
+    grid, seed = build_grid([motion]), draw_seed(floor, options.seed)
+    generator = build_generator(recorded_target(motion, grid), grid, seed=seed, axis=floor.axis, threads=threads)
+    factors = np.array(LEVELS) * GRAVITY / motion.pfa
+    sizes = np.tile(breadth, factors.size), np.tile(height, factors.size)
+    scale, shape = np.repeat(factors, breadth.size), (factors.size, breadth.size)
+    made = rock_blocks(*sizes, generator.realise(0, options.runs), grid.time_step, scale=scale, threads=threads)
+    itself = rock_blocks(*sizes, motion.acceleration[None], motion.time_step, scale=scale)
+    return {
+        "factors": factors,
+        "fallen": made.overturned.sum(axis=1).reshape(shape),
+        "fell": itself.overturned[:, 0].reshape(shape),
+    }
