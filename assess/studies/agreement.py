@@ -142,15 +142,24 @@ def rock_all(options: Options) -> list[Compared]:
     return found
 
 
-def pool(compared: Sequence[Compared], key: str, chosen: Chosen = every_case) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Return chances by a formula, and numbers of motions that overturned the block, of the chosen cases, (n,) each."""
+def pool(
+    compared: Sequence[Compared], key: str, chosen: Chosen = every_case, *, uncertain: bool = False
+) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Return chances by a formula, and numbers of motions that overturned the block, of the chosen cases, (n,) each.
+
+    The latter for exactly the recorded motion and the piece as given, or with both `uncertain`.
+    """
     values = [one.formulas[key][chosen(one)] for one in compared]
-    return np.concatenate(values), np.concatenate([one.trials.fallen[chosen(one)] for one in compared])
+    return np.concatenate(values), np.concatenate([_count(one, uncertain)[chosen(one)] for one in compared])
 
 
-def agree(compared: Sequence[Compared], key: str, chosen: Chosen = every_case) -> Agreement:
-    """Return how a formula agrees with integration on some channels."""
-    return find_agreement(*pool(compared, key, chosen), compared[0].trials.runs)
+def _count(one: Compared, uncertain: bool) -> NDArray[np.int64]:
+    return one.trials.fallen_uncertain if uncertain else one.trials.fallen
+
+
+def agree(compared: Sequence[Compared], key: str, chosen: Chosen = every_case, *, uncertain: bool = False) -> Agreement:
+    """Return how a formula agrees with integration on some channels, with motion and piece `uncertain` or not."""
+    return find_agreement(*pool(compared, key, chosen, uncertain=uncertain), compared[0].trials.runs)
 
 
 def by_building(compared: Sequence[Compared]) -> dict[str, list[Compared]]:

@@ -19,7 +19,7 @@ from assess.motion.formats import read_records
 from assess.motion.record import Motion, treat
 from assess.motion.target import Grid, build_grid, recorded_target
 from assess.resources import record
-from assess.studies.studied_methods import Cases, FloatArray
+from assess.studies.studied_methods import Cases, FloatArray, rock_draws
 from assess.studies.study import Options
 from assess.studies.study_files import PARTS, Arrays, load_or_compute
 from assess.units import GRAVITY
@@ -143,6 +143,9 @@ class Trials:
         The blocks [m].
     fallen : (a, b) integer array
         Number of motions, of `runs`, under which each block overturned.
+    fallen_uncertain : (a, b) integer array
+        The same where the amplitude of each motion and the piece are drawn (`assess.rocking.draws.Uncertainty`): as in
+        the chances that `assess run` adopts.
     fell_in_record : (a, b) boolean array
         Whether it overturned under the record itself, as scaled.
     runs : int
@@ -157,6 +160,7 @@ class Trials:
     breadth: FloatArray
     height: FloatArray
     fallen: NDArray[np.int64]
+    fallen_uncertain: NDArray[np.int64]
     fell_in_record: NDArray[np.bool_]
     runs: int
     mean_pfa: float
@@ -201,8 +205,9 @@ def _rock(channel: Channel, grid: Grid, pfa: FloatArray, options: Options) -> Tr
     kept = load_or_compute(options.out / PARTS, inputs, lambda: _integrate(channel, grid, pfa, options))
     return Trials(
         channel=channel, pfa=pfa, pfv=pfa / motion.pfa * motion.pfv, breadth=breadth, height=height,
-        fallen=kept["fallen"].astype(np.int64), fell_in_record=kept["fell_in_record"].astype(np.bool_),
-        runs=options.runs, mean_pfa=float(kept["means"][0]), mean_pfv=float(kept["means"][1]),
+        fallen=kept["fallen"].astype(np.int64), fallen_uncertain=kept["fallen_uncertain"].astype(np.int64),
+        fell_in_record=kept["fell_in_record"].astype(np.bool_), runs=options.runs,
+        mean_pfa=float(kept["means"][0]), mean_pfv=float(kept["means"][1]),
     )  # fmt: skip
 
 
@@ -213,12 +218,29 @@ def _integrate(channel: Channel, grid: Grid, pfa: FloatArray, options: Options) 
     (breadth, height), motion = build_blocks(), channel.read()
     target, threads = recorded_target(motion, grid), options.jobs
     made = build_generator(target, grid, seed=options.seed, axis=channel.axis, threads=threads).realise(0, options.runs)
-    fallen, fell = [], []
+    fallen, uncertain, fell = [], [], []
     for scale, _ in options.each((pfa / motion.pfa).tolist()):
         rocking = rock_blocks(breadth, height, scale * made, grid.time_step, threads=threads)
         record = rock_blocks(breadth, height, scale * motion.acceleration[None], motion.time_step, threads=threads)
         fallen.append(rocking.overturned.sum(axis=1))
+        uncertain.append(_count_uncertain(breadth, height, scale * made, grid.time_step, options))
         fell.append(record.overturned[:, 0])
     velocity = np.cumsum((made[:, 1:] + made[:, :-1]) / 2, axis=1) * grid.time_step
     means = np.array([np.abs(made).max(axis=1).mean() / motion.pfa, np.abs(velocity).max(axis=1).mean() / motion.pfv])
-    return {"fallen": np.array(fallen), "fell_in_record": np.array(fell), "means": means}
+    return {
+        "fallen": np.array(fallen), "fallen_uncertain": np.array(uncertain), "fell_in_record": np.array(fell),
+        "means": means,
+    }  # fmt: skip
+
+
+def _count_uncertain(
+    breadth: FloatArray, height: FloatArray, motions: FloatArray, time_step: float, options: Options
+) -> NDArray[np.int64]:
+    """Return under how many motions each block overturns where their amplitude and the pieces are drawn, (b,)."""
+    every = np.arange(breadth.size)
+    cases = Cases.of(breadth=breadth, height=height, name=every)
+    overturned, _ = rock_draws(
+        cases, every, motions, time_step,
+        first=0, dispersions=(cases.uncertainty.motion,), seed=options.seed, threads=options.jobs,
+    )  # fmt: skip
+    return np.asarray(overturned[0].sum(axis=1), dtype=np.int64)

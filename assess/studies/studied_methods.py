@@ -8,13 +8,14 @@ from assess.methods import Cases, FittedOn, Method, all_methods
 from assess.methods._fitted import Fitted, write_model
 from assess.methods._fitted_model import QUANTITIES, Base, Polynomial, Powers, Probit, expand, find_groups, write_sum
 from assess.methods._method import BoolArray, FloatArray, Range
+from assess.methods._simulate import rock_draws
 from assess.methods.proposed_or import COEFFICIENTS
 from assess.settings import Settings
 
 __all__ = [
     "COEFFICIENTS", "CRITERIA", "FORMULAS", "METHODS", "QUANTITIES", "Base", "BoolArray", "Cases", "Fitted", "FittedOn",
     "FloatArray", "Method", "Polynomial", "Powers", "Probit", "Range", "evaluate_formulas", "expand", "find_groups",
-    "write_model", "write_sum",
+    "rock_draws", "write_model", "write_sum",
 ]  # fmt: skip
 
 OR, KANEKO, FEMA, STATIC, JAPAN = "proposed_or", "kaneko_hayashi", "fema_p58", "static", "japan_rule"

@@ -25,6 +25,7 @@ def make_compared(chance: Callable[..., np.ndarray], options: Options, runs: int
             fallen = np.rint(np.clip(np.broadcast_to(grid, (pfa.size, breadth.size)), 0, 1) * runs).astype(np.int64)
             trials = Trials(
                 channel=channel, pfa=pfa, pfv=pfv, breadth=breadth, height=height, fallen=fallen,
+                fallen_uncertain=fallen // 2,
                 fell_in_record=fallen > runs / 2, runs=runs, mean_pfa=1.0, mean_pfv=1.0,
             )  # fmt: skip
             found.append(evaluate_trials(building, trials, options))

@@ -15,6 +15,7 @@ import pytest
 from assess.motion.formats import read_records
 from assess.motion.generate import build_generator
 from assess.motion.target import build_grid, recorded_target
+from assess.rocking.draws import draw_bodies, draw_earthquakes
 from assess.rocking.ensemble import rock_blocks
 from assess.studies.buildings import Building, Trials, all_buildings, build_blocks, find_levels, rock_building
 from assess.studies.study import Options
@@ -50,7 +51,7 @@ def look(folder: Path) -> dict[Path, int]:
 def assert_same(one: Trials, other: Trials) -> None:
     """To the bit."""
     assert one.channel == other.channel
-    for name in ("pfa", "pfv", "breadth", "height", "fallen", "fell_in_record"):
+    for name in ("pfa", "pfv", "breadth", "height", "fallen", "fallen_uncertain", "fell_in_record"):
         ours, theirs = getattr(one, name), getattr(other, name)
         assert ours.dtype == theirs.dtype
         assert ours.tobytes() == theirs.tobytes()
@@ -124,11 +125,19 @@ def test_the_risk_is_that_of_the_blocks_under_the_scaled_motions(buildings, kept
         assert found.fallen[level, at] == alone.overturned.sum()
         record = rock_blocks(*sizes, scale * motion.acceleration[None], motion.time_step)
         assert found.fell_in_record[level, at] == record.overturned[0, 0]
+        own = [np.array([size]) for size in (*sizes, 0.5, np.nan)]
+        drawn = draw_bodies(*own, [at], seed=3, first=0, count=4)
+        alone = rock_blocks(
+            drawn.breadth, drawn.height, scale * made, grid.time_step,
+            restitution=drawn.restitution, centre=drawn.centre, scale=np.exp(0.4 * draw_earthquakes(3, 0, 4))[None],
+        )  # fmt: skip
+        assert found.fallen_uncertain[level, at] == alone.overturned.sum()
     assert found.pfa == pytest.approx(np.array(LEVELS) * GRAVITY)
     assert found.pfv[1] / found.pfa[1] == pytest.approx(motion.pfv / motion.pfa)
     assert found.mean_pfa == pytest.approx(np.abs(made).max(axis=1).mean() / motion.pfa)
     assert 0.5 < found.mean_pfv < 2
     assert 0 < found.risk.mean() < 1
+    assert (found.fallen_uncertain != found.fallen).any()
     assert found.fell_in_record.any()
     assert not found.fell_in_record.all()
 

@@ -132,11 +132,34 @@ def test_channels_of_a_pair_are_as_far_apart_as_their_chances():
         assert one.apart[INTEGRATION] == pytest.approx(abs(first - second) / 10)
 
 
+def split_tables(lines):
+    """The cells of each row of each table, its heading first."""
+    tables = []
+    for before, line in zip(["", *lines], lines, strict=False):
+        if line.startswith("| "):
+            tables += [] if before.startswith("|") else [[]]
+            tables[-1].append(line.split(" | "))
+    return tables
+
+
+def test_uncertain_motions_and_pieces_are_counted_apart(judged, compared):
+    """Half as many fall of those that are made up for them."""
+    for name, own in by_building(judged).items():
+        exact = np.concatenate([one.trials.fallen[: len(LEVELS)].ravel() for one in own])
+        said, halved = pool(own, "proposed_or", uncertain=True)
+        assert (halved == exact // 2).all()
+        assert halved.any()
+        assert compared.uncertain[name, "proposed_or"] == find_agreement(said, exact // 2, 100)
+        assert compared.uncertain[name, NOTHING].bias == pytest.approx(-np.mean(exact // 2) / 100)
+
+
 def test_the_page_states_bias_rank_and_classes_for_every_building_and_formula(judged, compared):
     values = collect(judged, compared, OPTIONS)
     head, *others = (render_block("table2", block, **values) for block in ("overview", "page", "failures"))
-    rows = [line.split(" | ") for line in head if line.startswith("| ")]
-    assert len(rows) == 1 + len(NAMES) * (len(FORMULAS) + 1)
+    each = 1 + len(NAMES) * (len(FORMULAS) + 1)
+    exact, uncertain = split_tables(head)
+    assert (len(exact), len(uncertain)) == (each, each)
+    rows = exact
     for row in rows[1:]:
         name, title = row[0].removeprefix("| "), row[1].strip('"')
         key = next((key for key, shown in FORMULAS.items() if shown == title), title)
@@ -146,6 +169,13 @@ def test_the_page_states_bias_rank_and_classes_for_every_building_and_formula(ju
         assert key == NOTHING or float(row[4]) == pytest.approx(one.rank_correlation, abs=0.005)
         assert float(row[7].split(" %")[0]) == pytest.approx(100 * one.class_too_low, abs=0.05)
         assert float(row[8].split(" %")[0]) == pytest.approx(100 * one.class_too_high, abs=0.05)
+    for row in uncertain[1:]:
+        title, name = row[0].removeprefix("| ").strip('"'), row[1]
+        key = next((key for key, shown in FORMULAS.items() if shown == title), title)
+        pair = compared.agreements[name, ALL, key], compared.uncertain[name, key]
+        shown = [float(cell.split(" ")[0]) for cell in row[2:8]]
+        values = [getattr(one, field) for field in ("bias", "class_too_low", "class_too_high") for one in pair]
+        assert shown == pytest.approx([100 * value for value in values], abs=0.0501)
     for lines in (head, *others):
         for name in NAMES:
             assert name in "\n".join(lines)

@@ -12,6 +12,7 @@ import numpy as np
 
 from assess.report.figures.draw import draw
 from assess.risk import classify_all
+from assess.rocking.draws import BASE, Uncertainty
 from assess.studies.agreement import NAMES, Compared, by_building, correlate_ranks, rock_all
 from assess.studies.buildings import HEIGHTS, LEVELS, RATIOS, RECORDED, TOGETHER
 from assess.studies.studied_methods import CRITERIA, FEMA, FORMULAS, INTEGRATION, JAPAN, KANEKO, OR, STATIC, FloatArray
@@ -22,7 +23,7 @@ from assess.units import GRAVITY, LENGTH
 
 CHANNELS = (
     "building", "level", "channel", "axis", "scaled_to", "factor", "pfa_g", "pfv_cm_s", "breadth_cm", "height_cm",
-    *FORMULAS, *CRITERIA, "fallen", "runs", "fell_in_record",
+    *FORMULAS, *CRITERIA, "fallen", "fallen_uncertain", "runs", "fell_in_record",
 )  # fmt: skip
 MARKS = (("x", "#6b6b6b"), ("^", "#1b4f72"), ("o", "#db7133"), ("s", "#8c1d3f"))
 """Of the formulas in the figure."""
@@ -56,6 +57,10 @@ def _build_tables(compared: Sequence[Compared], found: Comparison) -> dict[str, 
             columns=("building", "cases_chosen", "method", *NAMES),
             rows=[(*key, *astuple(one)) for key, one in found.agreements.items()],
         ),
+        "table2-uncertain": Table(
+            columns=("building", "method", *NAMES),
+            rows=[(*key, *astuple(one)) for key, one in found.uncertain.items()],
+        ),
         "table2-criteria": Table(
             columns=("building", "criterion", "not_met_though_it_falls", "met_though_it_stands"),
             rows=[(*key, one.missed, one.idle) for key, one in found.criteria.items()],
@@ -78,8 +83,8 @@ def _channel_rows(compared: Sequence[Compared]) -> Iterator[Row]:
                 values = [float(one.formulas[key][at, block]) for key in (*FORMULAS, *CRITERIA)]
                 yield (
                     channel.building, channel.level, channel.name, channel.axis, purpose, *peaks, 100 * breadth,
-                    100 * height, *values, int(trials.fallen[at, block]), trials.runs,
-                    bool(trials.fell_in_record[at, block]),
+                    100 * height, *values, int(trials.fallen[at, block]), int(trials.fallen_uncertain[at, block]),
+                    trials.runs, bool(trials.fell_in_record[at, block]),
                 )  # fmt: skip
 
 
@@ -109,6 +114,7 @@ def collect(compared: Sequence[Compared], found: Comparison, options: Options) -
         "OR": OR, "KANEKO": KANEKO, "FEMA": FEMA, "NOTHING": NOTHING, "ALL": ALL, "INTEGRATION": INTEGRATION,
         "formulas": FORMULAS, "criteria": CRITERIA, "ratios": RATIOS, "heights": HEIGHTS, "levels": LEVELS,
         "together": TOGETHER, "records_at": RECORDS_AT, "clear": CLEAR, "g": GRAVITY,
+        "uncertainty": Uncertainty(), "base": BASE,
         "options": options, "compared": compared, "found": found, "names": names, "whole": whole, "nearest": nearest,
         "correlation": correlate_ranks(found.biases[OR], found.ratios),
         "static": [found.criteria[name, STATIC] for name in names],

@@ -96,12 +96,14 @@ class Pair:
 class Comparison:
     """All of the above.
 
-    Agreements are by building, part of the cases (see `SUBSETS`) and key of the formula, or `NOTHING`; criteria by
+    Agreements are by building, part of the cases (see `SUBSETS`) and key of the formula, or `NOTHING`; `uncertain` are
+    those of all cases with integration where motion and piece are uncertain, by building and the same key; criteria by
     building and key. `ratios` are PFV/PFA of the channels [s], (c,), and `biases` those of each formula under them [-],
     (c,), by key.
     """
 
     agreements: Mapping[tuple[str, str, str], Agreement]
+    uncertain: Mapping[tuple[str, str], Agreement]
     ratios: Sequence[float]
     biases: Mapping[str, Sequence[float]]
     criteria: Mapping[tuple[str, str], Criterion]
@@ -113,6 +115,7 @@ def compare(compared: Sequence[Compared]) -> Comparison:
     """Compare formulas and criteria with the response of the blocks."""
     return Comparison(
         agreements=find_agreements(compared),
+        uncertain=find_uncertain(compared),
         ratios=[one.ratio for one in compared],
         biases={key: [agree([one], key).bias for one in compared] for key in FORMULAS},
         criteria=find_criteria(compared),
@@ -131,6 +134,16 @@ def find_agreements(compared: Sequence[Compared]) -> dict[tuple[str, str, str], 
             found |= {(name, subset, key): agree(own, key, chosen) for key in FORMULAS}
             fallen = pool(own, OR, chosen)[1]
             found[name, subset, NOTHING] = find_agreement(np.zeros(fallen.size), fallen, own[0].trials.runs)
+    return found
+
+
+def find_uncertain(compared: Sequence[Compared]) -> dict[tuple[str, str], Agreement]:
+    """Return how each formula agrees with integration where motion and piece are uncertain, by building and key."""
+    found: dict[tuple[str, str], Agreement] = {}
+    for name, own in by_building(compared).items():
+        found |= {(name, key): agree(own, key, uncertain=True) for key in FORMULAS}
+        fallen = pool(own, OR, uncertain=True)[1]
+        found[name, NOTHING] = find_agreement(np.zeros(fallen.size), fallen, own[0].trials.runs)
     return found
 
 
