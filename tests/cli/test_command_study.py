@@ -160,7 +160,7 @@ def test_two_commands_at_once_in_a_new_folder(tmp_path):
     [
         (("table1", "--records", ""), "--records is empty: name a folder, or leave out --records"),
         (("table2", "--runs", "19"), "'--runs'"),
-        (("table9",), "'table9' is an unknown study; expected one of: contours, fit,"),
+        (("table9",), "'table9' is an unknown study; expected one of: calibration, contours, fit,"),
         (("table1", "--breadth", "90", "--height", "80"), "--breadth is 90 cm, expected at most the height, 80 cm"),
         (("table1", "--breadth", "170"), "--breadth is 170 cm, expected at most the height, 160 cm"),
         (("table1", "--breadth", "nan"), "--breadth is nan cm, expected 5 to 600 cm"),
