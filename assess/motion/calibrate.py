@@ -13,7 +13,7 @@ from assess.motion.recipe import Bending, Recipe
 from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP, run_groups
 from assess.motion.sweep import Single, Sweep
-from assess.motion.target import JUDGED_FROM, Target, matched_to
+from assess.motion.target import JUDGED_FROM, Grid, Target, matched_to
 from assess.motion.wavelets import Correction, build_wavelets
 from assess.progress import Progress
 
@@ -115,7 +115,7 @@ class Filtering:
         farthest = BEYOND**2 * matched_to(periods, target.capped(target.velocity_level)[places])
         return cls(
             target=target, places=places, periods=periods, weight=np.where(periods > farthest, FAINT, 1.0),
-            matrix=response_matrix(periods, step), sweep=Sweep.of(periods, step),
+            matrix=response_matrix(periods, step), sweep=Sweep.of(periods, step, recipe.grid.count),
             frequencies=find_rates(recipe.grid).frequencies,
         )  # fmt: skip
 
@@ -187,7 +187,7 @@ class Corrections:
     """
 
     target: Target
-    time_step: float
+    grid: Grid
     bench: Bench
     errors: FloatArray
 
@@ -201,9 +201,12 @@ class Corrections:
             return np.flatnonzero(near & (_widest(np.abs(self.errors), 2 * AROUND + 1) > LEFT))
         return np.flatnonzero(near & ((periods < DIVIDED) == (kind == SHORT)))
 
+    def _sweep(self, places: NDArray[np.int64]) -> Sweep:
+        return Sweep.of(self.target.periods[places], self.grid.time_step, self.grid.count)
+
     def correct(self, motions: Single, places: NDArray[np.int64]) -> list[Correction]:
         """Correct the ordinates of motions (k, n) that are most off among their neighbours, in place; none may be."""
-        sweep = Sweep.of(self.target.periods[places], self.time_step)
+        sweep = self._sweep(places)
         peaks, when = self.bench.watch(sweep, motions)
         mean = np.abs(peaks).mean(axis=0, dtype=np.float64)
         self.errors[places] = np.log(self.target.pseudo[places] / mean)
@@ -215,10 +218,10 @@ class Corrections:
         most, own = np.log(MOST_CORRECTED), np.searchsorted(places, chosen)
         applied = np.where(self.errors[chosen] > 0, RAISED, LOWERED)
         correction = Correction(
-            wavelets=build_wavelets(tuple(self.target.periods), self.time_step),
+            wavelets=build_wavelets(tuple(self.target.periods), self.grid.time_step),
             places=chosen,
             shares=np.expm1(np.clip(applied * self.errors[chosen], -most, most)).astype(np.float32),
-            sweep=Sweep.of(self.target.periods[chosen], self.time_step),
+            sweep=self._sweep(chosen),
         )
         self.bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
         return [correction]
@@ -233,7 +236,7 @@ def _widest(off: FloatArray, width: int) -> FloatArray:
 
 def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Bench) -> Recipe:
     """Correct the mean spectrum and PFA of `motions` (k, n), in place; return the recipe with what was done."""
-    work = Corrections(target, recipe.grid.time_step, bench, np.zeros(target.periods.size))
+    work = Corrections(target, recipe.grid, bench, np.zeros(target.periods.size))
     found: list[Bending | Correction] = []
     for kind in STEPS:
         if kind == BEND:

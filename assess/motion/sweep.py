@@ -6,6 +6,7 @@ motions that are linear between samples, with velocity eliminated. `assess.motio
 an ensemble differ from it by 0.3 % on average, and by 2 to 5 % at long periods where a spectrum holds next to nothing.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +20,9 @@ Single = NDArray[np.float32]
 
 FEWEST = 20
 """Samples in a period at least, where motions are halved [-]: a peak between samples is missed by 0.4 % on average."""
-DEEPEST = 3
-"""Times that motions are halved at most [-]."""
+DEEPEST, SHORTEST = 3, 1000
+"""Times that motions are halved at most [-]; they keep at least half as many samples as the second: in short motions
+the ends count."""
 BLOCK = 32
 """Samples between the states that are kept on the way."""
 LANES = 8
@@ -40,10 +42,11 @@ class Sweep:
     steps: tuple[tuple[int, Single], ...]
 
     @classmethod
-    def of(cls, periods: FloatArray, time_step: float) -> "Sweep":
-        """Return the sweep of these periods [s] under motions of this time step [s]."""
+    def of(cls, periods: FloatArray, time_step: float, count: int) -> "Sweep":
+        """Return the sweep of these periods [s] under motions of `count` samples with this time step [s]."""
+        deepest = min(max(math.ceil(math.log2(count / SHORTEST)), 0), DEEPEST)
         fewest = np.log2(np.maximum(periods / (FEWEST * time_step), 1.0))
-        depths = np.minimum(np.floor(fewest + 1e-9), DEEPEST).astype(np.int64)
+        depths = np.minimum(np.floor(fewest + 1e-9), deepest).astype(np.int64)
         steps = tuple((int(one), recurrence(periods[depths == one], time_step, int(one))) for one in np.unique(depths))
         return cls(periods, time_step, depths, steps)
 

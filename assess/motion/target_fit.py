@@ -96,7 +96,7 @@ def measure_match(
     wanted_to = matched_to(target.periods, target.pseudo)
     periods = np.sqrt(target.periods[1:] * target.periods[:-1])
     periods = periods[(periods >= JUDGED_FROM) & (periods <= wanted_to)]
-    motions, sweep = np.asarray(acceleration, np.float32), Sweep.of(periods, time_step)
+    motions, sweep = np.asarray(acceleration, np.float32), Sweep.of(periods, time_step, acceleration.shape[1])
     pseudo, peaks = np.empty((len(motions), periods.size), np.float32), np.empty((len(motions), 3))
 
     def measure(rows: slice) -> None:

@@ -44,7 +44,7 @@ def build_wavelets(periods: tuple[float, ...], time_step: float) -> Wavelets:
     shapes = [_tapered_cosine(period, time_step) for period in periods]
     # A quarter of the length after the wavelet is time enough for the response to peak.
     found = [
-        Sweep.of(np.array([period]), time_step).peaks(np.pad(shape, (0, shape.size // 4))[None])
+        Sweep.of(np.array([period]), time_step, shape.size).peaks(np.pad(shape, (0, shape.size // 4))[None])
         for period, shape in zip(periods, shapes, strict=True)
     ]
     return Wavelets(

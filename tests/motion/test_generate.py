@@ -106,7 +106,7 @@ def test_ensembles_match_their_record(name: str) -> None:
     assert generator.fit.count == CALIBRATED == 100
     assert generator.recipe.scale == 1.0
     further = measure(generator.target, generator.realise(0, 200))
-    assert further.worst_deviation < 0.12
+    assert further.worst_deviation < 0.13
     assert further.mean_deviation < 0.05
     assert further.pfa_ratio == pytest.approx(1, abs=0.05)
 

@@ -23,7 +23,7 @@ def single(motion: FloatArray) -> np.ndarray:
 @pytest.mark.parametrize("name", ["a", TWELFTH, ROOF, GROUND])
 def test_spectra_are_those_of_the_exact_solution(name: str) -> None:
     motion = read_motion(name).acceleration
-    found = Sweep.of(PERIODS, STEP).spectra(single(motion))[0]
+    found = Sweep.of(PERIODS, STEP, motion.size).spectra(single(motion))[0]
     ratios = found / exact(motion)
     assert np.abs(ratios - 1).mean() < 0.005
     assert np.abs(ratios - 1).max() < 0.06
@@ -36,7 +36,7 @@ def test_peaks_come_when_they_do_with_their_sign(place: int) -> None:
     """Without what follows the peak the spectrum is the same, without the peak it is less; a motion turned over turns
     it."""
     motion, period = read_motion(TWELFTH).acceleration, PERIODS[[place]]
-    peaks, when = Sweep.of(period, STEP).peaks(single(np.stack([motion, -motion])))
+    peaks, when = Sweep.of(period, STEP, motion.size).peaks(single(np.stack([motion, -motion])))
     assert peaks[0, 0] == -peaks[1, 0]
     about = max(1, round(period[0] / STEP / FEWEST))
     whole = exact(motion, period)[0]
@@ -46,7 +46,7 @@ def test_peaks_come_when_they_do_with_their_sign(place: int) -> None:
 
 def test_each_motion_and_each_period_is_found_on_its_own() -> None:
     motions = single(np.stack([read_motion("a").acceleration[:3000], read_motion("b").acceleration[:3000]]))
-    both, alone = Sweep.of(PERIODS, STEP), Sweep.of(PERIODS[[33]], STEP)
+    both, alone = Sweep.of(PERIODS, STEP, 3000), Sweep.of(PERIODS[[33]], STEP, 3000)
     peaks, when = both.peaks(motions)
     np.testing.assert_array_equal(both.peaks(motions[1:])[0], peaks[1:])
     np.testing.assert_array_equal(both.peaks(motions[1:])[1], when[1:])
@@ -58,19 +58,21 @@ def test_the_last_peak_may_come_after_shaking() -> None:
     motion = np.zeros(4001)
     motion[100:200] = 1.0
     periods = np.array([0.3, 3.0])
-    np.testing.assert_allclose(Sweep.of(periods, STEP).spectra(single(motion))[0], exact(motion, periods), rtol=0.01)
+    np.testing.assert_allclose(
+        Sweep.of(periods, STEP, motion.size).spectra(single(motion))[0], exact(motion, periods), rtol=0.01
+    )
 
 
 def test_silence_has_no_peaks() -> None:
-    peaks, _ = Sweep.of(PERIODS, STEP).peaks(np.zeros((2, 500), np.float32))
+    peaks, _ = Sweep.of(PERIODS, STEP, 500).peaks(np.zeros((2, 500), np.float32))
     np.testing.assert_array_equal(peaks, 0.0)
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 41, 402])
 def test_short_motions_are_no_trouble(count: int) -> None:
-    peaks, when = Sweep.of(PERIODS, STEP).peaks(np.ones((2, count), np.float32))
+    peaks, when = Sweep.of(PERIODS, STEP, count).peaks(np.ones((2, count), np.float32))
     assert np.isfinite(peaks).all()
-    assert ((when >= 0) & (when <= max(count, 8))).all()
+    assert ((when >= 0) & (when < max(count, 2))).all()
 
 
 def test_halving_keeps_long_waves_and_takes_off_the_shortest() -> None:
@@ -81,3 +83,11 @@ def test_halving_keeps_long_waves_and_takes_off_the_shortest() -> None:
     gain = 1 + (2 * np.pi / 80) ** 2 / 4  # straight lines between half as many samples take as much off again
     np.testing.assert_allclose(half[0, 1:-1], gain * wave[::2][1:-1], atol=1e-4)
     np.testing.assert_allclose(half[1, 1:-1], 0.0, atol=1e-6)
+
+
+def test_short_motions_are_not_halved() -> None:
+    """There the ends count: two seconds keep all their samples."""
+    motion = read_motion("a").acceleration[2000:2401]
+    np.testing.assert_allclose(Sweep.of(PERIODS, STEP, 401).spectra(single(motion))[0], exact(motion), rtol=6e-3)
+    assert Sweep.of(PERIODS, STEP, 401).depths.max() == 0
+    assert Sweep.of(PERIODS, STEP, 12_000).depths.max() == 3

@@ -29,7 +29,7 @@ def adjusted(motion: FloatArray, ratios: FloatArray) -> FloatArray:
     places, changed = np.flatnonzero(ratios != 1.0), motion[None].astype(np.float32)
     if places.size:
         shares = (ratios[places] - 1).astype(np.float32)
-        Correction(WAVELETS, places, shares, Sweep.of(PERIODS[places], STEP)).apply(changed)
+        Correction(WAVELETS, places, shares, Sweep.of(PERIODS[places], STEP, motion.size)).apply(changed)
     return changed[0].astype(np.float64)
 
 

@@ -273,7 +273,8 @@ def test_the_spectra_of_each_floor_are_kept(inventory):
         assert spectra.ordinates.shape == (100, spectra.periods.size)
         for (motion, step), ordinates in zip(joint.examples, spectra.ordinates, strict=False):
             expected = pseudo_acceleration(motion, step, spectra.periods)
-            np.testing.assert_allclose(ordinates, expected, rtol=1e-4)  # examples are kept in single precision
+            # They are found in single precision and on fewer samples where periods are long.
+            np.testing.assert_allclose(ordinates, expected, rtol=0.01, atol=0.005 * expected.max())
         deviation = spectra.ordinates.mean(axis=0) / spectra.target - 1
         assert np.abs(deviation).mean() == pytest.approx(joint.fit.mean_deviation, rel=1e-5)
         assert deviation[np.abs(deviation).argmax()] == pytest.approx(joint.fit.worst_deviation, rel=1e-5)
