@@ -6,10 +6,12 @@ earthquake and on one clock, the real part of their cross spectrum has it: the s
 A floor without a record has no sign.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.motion.envelope import filter_frequencies, filter_length, octaves, split
+from assess.motion.envelope import PAD, octaves, split
 from assess.motion.record import FloatArray
 
 
@@ -35,12 +37,13 @@ def find_coherence(accelerations: FloatArray, time_step: float) -> FloatArray:
     rows = np.asarray(accelerations, dtype=np.float64)
     if rows.ndim != 2 or not rows.size or not np.isfinite(rows).all() or not rows.any(axis=1).all():
         raise ValueError(f"accelerations have shape {rows.shape}, expected (k, n) finite samples, each row with motion")
-    from scipy.fft import rfft
+    from scipy.fft import next_fast_len, rfft
 
     count = rows.shape[1]
-    spectra = rfft(rows, filter_length(count, time_step), axis=1)
+    length = next_fast_len(count + math.ceil(PAD / time_step), real=True)
+    spectra = rfft(rows, length, axis=1)
     reference = spectra[np.abs(rows).max(axis=1).argmax()]
-    weights = split(filter_frequencies(count, time_step), octaves())
+    weights = split(np.fft.rfftfreq(length, time_step), octaves())
     cross = (spectra * reference.conj()).real @ weights.T
     own, other = (np.square(np.abs(one)) @ weights.T for one in (spectra, reference))
     return np.asarray(cross / np.sqrt(np.maximum(own * other, 1e-300)), dtype=np.float64)

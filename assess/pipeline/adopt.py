@@ -17,8 +17,8 @@ from assess.methods._method import ALIKE, BoolArray, FloatArray
 from assess.model import Inventory
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all
-from assess.route_results import DOUBTS
 from assess.rocking.draws import STILL
+from assess.route_results import DOUBTS
 from assess.routes.chances import Falls
 from assess.settings import Settings
 from assess.units import GRAVITY
