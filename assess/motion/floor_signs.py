@@ -43,7 +43,7 @@ def find_coherence(accelerations: FloatArray, time_step: float) -> FloatArray:
     length = next_fast_len(count + math.ceil(PAD / time_step), real=True)
     spectra = rfft(rows, length, axis=1)
     reference = spectra[np.abs(rows).max(axis=1).argmax()]
-    weights = split(np.fft.rfftfreq(length, time_step), octaves())
+    weights = split(np.asarray(np.fft.rfftfreq(length, time_step), dtype=np.float64), octaves())
     cross = (spectra * reference.conj()).real @ weights.T
     own, other = (np.square(np.abs(one)) @ weights.T for one in (spectra, reference))
     return np.asarray(cross / np.sqrt(np.maximum(own * other, 1e-300)), dtype=np.float64)
