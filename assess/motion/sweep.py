@@ -25,8 +25,8 @@ DEEPEST, SHORTEST = 3, 1000
 the ends count."""
 BLOCK = 32
 """Samples between the states that are kept on the way."""
-LANES = 8
-"""Oscillators are filled up to multiples of it: vector instructions take as many."""
+LANES = 16
+"""Oscillators are filled up to multiples of it: vector loops take as many at once, and what is left one by one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
