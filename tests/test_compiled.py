@@ -103,8 +103,10 @@ ITEMS = [
     for breadth in range(24, 64, 4)
 ]
 FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.3, "pfv_x": 30.0}]
-MOST_APART = 0.02
-"""Largest difference of a risk on another kind of processor [-]: verdicts on the edge may turn over."""
+MOST_APART = 0.06
+"""Largest difference of a risk on another kind of processor [-], below the half width of its interval at 200 motions,
+0.07: in single precision a wavelet may be put at another of two peaks that are nearly equal, and rounds follow from
+it."""
 
 
 @pytest.mark.slow
