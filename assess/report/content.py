@@ -18,7 +18,7 @@ from assess.report.findings.disagreements import Disagreements, find_disagreemen
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
 from assess.report.provenance import report_time, say_date, say_reference
-from assess.report.summary import FLOORS, Summary, build_summary, list_risky
+from assess.report.summary import FLOORS, FLOORS_BESIDE, Summary, build_summary, list_risky
 from assess.results import FloorRow, ItemResult, MotionRow, Results, WorkedMethod
 from assess.risk import LIMITS, RiskClass, classify
 from assess.workbook.schema import BUILDING, NO, YES
@@ -169,9 +169,10 @@ class Content:
     def worst_floors(self) -> Sequence[Counts]:
         """The floors that the summary has room for: in their order, or those with most risky pieces."""
         there = [page.counts for page in self.furnished]
-        if len(there) <= FLOORS:
+        most = FLOORS if not self.total.unconfirmed else FLOORS_BESIDE
+        if len(there) <= most:
             return there
-        return sorted(there, key=lambda one: (-one.risky, -one.expected))[:FLOORS]
+        return sorted(there, key=lambda one: (-one.risky, -one.expected, -one.unconfirmed))[:most]
 
     @cached_property
     def cannot_rock(self) -> CannotRock:

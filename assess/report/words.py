@@ -232,11 +232,8 @@ def marks() -> str:
 
 def apart_legend() -> str:
     """Return the legend of the signs of what stands apart, without a full stop."""
-    return _(
-        "{unconfirmed} unconfirmed: class and chance by formula, as the motions of a simulation that gave a lower "
-        "class may be too weak; {by_formula} by formula only, not simulated",
-        unconfirmed=UNCONFIRMED, by_formula=BY_FORMULA,
-    )  # fmt: skip
+    return _("{unconfirmed} unconfirmed; {by_formula} by formula only: both by formula, and counted apart",
+             unconfirmed=UNCONFIRMED, by_formula=BY_FORMULA)  # fmt: skip
 
 
 def class_marks(one: ItemResult) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import assess
+from assess.settings import Settings
 from assess.workbook.template import Content, write_workbook
 from docs.screenshot import HEIGHT, WIDTH, find_browser
 from tests.workbooks import FLOORS, UNVERIFIED
@@ -183,6 +184,33 @@ def test_sorting_keeps_the_filter(open_page):
     _filter(page, "Floor").select_option("1")
     page.get_by_role("button", name="B/H").click()
     assert _shown(page) == ["A3", "A2", "A1"]
+
+
+def test_parts_of_the_table_are_sorted_and_filtered_each_by_itself(browser, tmp_path):
+    """Pieces that were simulated, and those by formula only, keep apart whatever the rows are sorted by."""
+    rows = {"Building": [{"period": 1.0}], "Floors": [FLOORS[0]], "Items": [
+        {"item": name, "floor": "1", "breadth": breadth, "width": 90, "height": 200, "axis": "Y"}
+        for name, breadth in (("b", 76), ("c", 29), ("a", 74), ("d", 30))
+    ]}  # fmt: skip
+    write_workbook(tmp_path / "w.xlsx", Content(rows=rows), "si")
+    results = assess.run(assess.read_inventory(tmp_path / "w.xlsx"), Settings(verify="high", runs=5), jobs=1)
+    assert [one.apart for one in results] == ["formula", "", "formula", ""]
+    page = browser.new_page()
+    page.goto(assess.write_reports(results, tmp_path, "html")["html"].as_uri())
+    heading = "By formula only: not simulated"
+    assert _shown(page) == ["c", "d", "b", "a"]
+    assert page.locator("#pieces tr.part").all_inner_texts() == [heading]
+    page.get_by_role("button", name="Item", exact=True).click()
+    assert _shown(page) == ["c", "d", "a", "b"]
+    page.get_by_role("button", name="Show all").click()
+    assert _shown(page) == ["c", "d", "b", "a"]
+    _filter(page, "Class").select_option("apart-formula")
+    assert _shown(page) == ["b", "a"]
+    assert page.locator("#pieces tr.part").is_visible()
+    _filter(page, "Search").fill("c")
+    _filter(page, "Class").select_option("")
+    assert not page.locator("#pieces tr.part").is_visible()
+    page.close()
 
 
 def test_a_piece_of_the_plan_leads_to_its_row_even_where_it_is_filtered_out(open_page):

@@ -96,9 +96,28 @@ def small(request, tmp_path_factory):
     return written["pdf"], json.loads(written["json"].read_text(encoding="utf-8"))
 
 
+PARTS = {"unconfirmed": "Unconfirmed: class and chance by formula", "formula": "By formula only: not simulated"}
+"""Headings of what stands apart in a run that simulated pieces."""
+
+
+def basis_of(items):
+    """Return the bases of items where they stand apart."""
+    found = {item["adopted"]["basis"] for item in items}
+    return found if "simulated" in found else set()
+
+
+def in_parts(items):
+    """Return items in the order of the table of all pieces: simulated ones, unconfirmed ones, those by formula."""
+    order = ("simulated", *PARTS)
+    return sorted(items, key=lambda item: order.index(item["adopted"]["basis"]))
+
+
 def test_the_table_of_all_pieces(small):
     path, results = small
-    assert_rows(read_section(path, "All pieces", "Comparison of the methods"), results["items"], of_row)
+    text = read_section(path, "All pieces", "Comparison of the methods")
+    assert_rows(text, in_parts(results["items"]), of_row)
+    parts = [heading for basis, heading in PARTS.items() if basis in basis_of(results["items"])]
+    assert [text.count(heading) for heading in parts] == [1] * len(parts)
 
 
 def test_the_comparison_of_the_methods(small):
@@ -112,12 +131,17 @@ def test_the_counts(small):
     text = next(page for page in read_pages(path) if page.lstrip().startswith("Floors"))
     free = [one for one in results["items"] if one["anchored"] != "yes"]
     anchored = sum(one["quantity"] for one in results["items"]) - sum(one["quantity"] for one in free)
+    bases = basis_of(free)
+    apart = [sum(one["quantity"] for one in free if one["adopted"]["basis"] == basis) for basis in PARTS if bases]
+    free = [one for one in free if not bases or one["adopted"]["basis"] == "simulated"]
     by_class = {name: sum(one["quantity"] for one in free if one["adopted"]["class"] == name) for name in SYMBOLS}
     total = sum(by_class.values())
     shown = " ".join(f"{count} ({100 * count / total:.0f} %)" for count in by_class.values())
     assert f"All floors {shown}" in text
     expected = sum(one["adopted"]["probability"] * one["quantity"] for one in free)
-    assert re.search(rf"All floors .* {anchored} {total + anchored} {expected:.1f}\b", text)
+    shown = " ".join(str(count) for count in apart if count)
+    falls = f"{expected:.1f} and up to {apart[0]}" if bases else f"{expected:.1f}"
+    assert re.search(rf"All floors .*{shown} {anchored} {total + sum(apart) + anchored} {falls}\b", text)
 
 
 def test_a_long_list_in_the_appendix(tmp_path):

@@ -9,7 +9,7 @@ from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.workbook.schema import BUILDING
 
-NAMED = 8
+NAMED = 5
 """Pieces that a sentence names; the rest are counted."""
 
 
