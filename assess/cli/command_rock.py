@@ -12,11 +12,11 @@ import typer
 
 from assess.cli.console import count, show_progress
 from assess.cli.options import AsJson, check_file, check_size, figure_kind, save_file
-from assess.cli.rock_extras import Extras, evaluate_extras
 from assess.errors import InputError
 from assess.units import GRAVITY, LENGTH, SHARE, VELOCITY
 
 if TYPE_CHECKING:
+    from assess.cli.rock_extras import Extras
     from assess.motion.formats import Channel
     from assess.motion.record import Baseline, Motion
     from assess.rocking.response import Response
@@ -81,6 +81,8 @@ def command(
         except ValueError as error:  # the stockiest block that rocks is a limit of the integration
             named = "--breadth and --height" if case.is_mid_height else "--breadth, --height and --cg"
             raise InputError(f"{named}: {error}") from None
+        from assess.cli.rock_extras import evaluate_extras
+
         extras = evaluate_extras(case, response, wall=wall, vertical=vertical, friction=friction)
     response, document = extras.response, describe(case, extras.response) | extras.document
     typer.echo(json.dumps(document, indent=1) if as_json else "\n".join(list_lines(case, response, extras)))
@@ -229,7 +231,7 @@ def describe(case: Case, response: "Response") -> dict[str, Any]:
     }
 
 
-def list_lines(case: Case, response: "Response", extras: Extras | None = None) -> Iterator[str]:
+def list_lines(case: Case, response: "Response", extras: "Extras | None" = None) -> Iterator[str]:
     """Yield the lines of text: the case, its outcome, and what else was asked for."""
     from assess.motion.record import treatment
 

@@ -245,7 +245,8 @@ def class_marks(one: ItemResult) -> str:
 def class_label(one: ItemResult) -> str:
     """Return the class as symbol and words, ``■ very high``; of what stands apart ``◌ unconfirmed``, ``ƒ high``."""
     if one.apart == "unconfirmed":
-        return f"{UNCONFIRMED} {_('unconfirmed')}"
+        word = _("unconfirmed")
+        return f"{UNCONFIRMED} {word}"
     return f"{BY_FORMULA} {risk_word(one.adopted.risk)}" if one.apart else risk_label(one.adopted.risk)
 
 

@@ -76,8 +76,8 @@ class LiveRow:
     def _centre(self, own_unit: str, listed_unit: str) -> str:
         """Expression for the height of the centre of gravity [-]: the row's own, else its type's, else the middle."""
         own, column = self._own("centre_of_gravity"), LETTERS["Catalogue", "centre_of_gravity"]
-        place = f"MATCH({self._own('type')},list_catalogue,0)"
-        listed = f"INDEX({gettext('Catalogue')}!${column}$2:${column}${self.last['Catalogue']},{place})"
+        place, sheet = f"MATCH({self._own('type')},list_catalogue,0)", gettext("Catalogue")
+        listed = f"INDEX({sheet}!${column}$2:${column}${self.last['Catalogue']},{place})"
         of_type = f'IF(ISNUMBER({place}),IF({listed}="",{MIDDLE!r},{listed}*{listed_unit}),{MIDDLE!r})'
         return f'IF({own}="",{of_type},{own}*{own_unit})'
 

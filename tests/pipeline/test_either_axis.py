@@ -12,7 +12,7 @@ from tests.workbooks import write
 
 SIZES = {"breadth": 30, "height": 180}
 FLOORS = [{"floor": "1", "pfa_x": 0.21, "pfa_y": 0.2}]
-SETTINGS = Settings(runs=40)
+SETTINGS = Settings(runs=80)
 
 
 def read(folder, *items, floors=FLOORS, **building):
@@ -23,7 +23,9 @@ def read(folder, *items, floors=FLOORS, **building):
 @pytest.fixture(scope="module")
 def done(tmp_path_factory):
     items = {"item": "square", "width": 35}, {"item": "long", "width": 40}, {"item": "along", "width": 35, "axis": "X"}
-    return compute(read(tmp_path_factory.mktemp("square"), *items, {"item": "unknown"}), SETTINGS)
+    return compute(
+        read(tmp_path_factory.mktemp("square"), *items, {"item": "unknown"}, motion_uncertainty=0.1), SETTINGS
+    )
 
 
 def cases_of(assessment, index):
@@ -46,7 +48,7 @@ def test_it_falls_in_a_draw_if_it_falls_along_either_axis(done):
     np.testing.assert_array_equal(done.either_axis[0], along_x | along_y)
     share = (along_x | along_y).mean()
     assert share > max(along_x.mean(), along_y.mean()) > 0, "neither axis alone tells it"
-    low, high = wilson_interval((along_x | along_y).sum(), 40)
+    low, high = wilson_interval((along_x | along_y).sum(), 80)
     for case in cases_of(done, 0):
         assert done.adoption.probability[case] == share
         assert (done.adoption.low[case], done.adoption.high[case]) == (low, high)
