@@ -16,7 +16,7 @@ from assess.risk import RiskClass
 
 WORST, FIXES, FLOORS, ROUTES, CAUTIONS = 6, 4, 6, 4, 3
 """Pieces, fixes, floors, routes and cautions that the page has room for."""
-FLOORS_BESIDE = 4
+FLOORS_BESIDE = 3
 """Floors that it has room for next to sentences on unconfirmed pieces."""
 LEAST = 12
 """Characters of a description that are kept next to "partly anchored"."""

@@ -232,7 +232,7 @@ def marks() -> str:
 
 def apart_legend() -> str:
     """Return the legend of the signs of what stands apart, without a full stop."""
-    return _("{unconfirmed} unconfirmed; {by_formula} by formula only: both by formula, and counted apart",
+    return _("{unconfirmed} unconfirmed, {by_formula} by formula only: counted apart",
              unconfirmed=UNCONFIRMED, by_formula=BY_FORMULA)  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.workbook.schema import BUILDING
 
-NAMED = 5
+NAMED = 3
 """Pieces that a sentence names; the rest are counted."""
 
 

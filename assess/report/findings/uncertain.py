@@ -34,8 +34,8 @@ def _say_motion(results: Results) -> str:
     if not dispersion:
         return _("The motions are not scaled, as Motion uncertainty is 0 in the workbook: exactly this motion recurs.")
     return _(
-        "Chances hold for an earthquake like this one: in each draw the motions of the whole building are scaled by "
-        "one factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
+        "Chances hold for an earthquake like this one: each draw scales the motions of the whole building by one "
+        "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
         dispersion=number(dispersion, "g"), source=say_source(results),
     )  # fmt: skip
 
