@@ -363,8 +363,8 @@ def test_an_unconfirmed_class_is_that_of_the_formula(report):
 
 
 def test_a_lowered_class_says_so_wherever_it_stands(report):
-    lowered = {one.item.item: one.adopted for one in report.results
-               if one.adopted.lowered_from is not None and not one.is_anchored and one.adopted.is_simulated}  # fmt: skip
+    simulated = [one for one in report.results if one.adopted.is_simulated and not one.is_anchored]
+    lowered = {one.item.item: one.adopted for one in simulated if one.adopted.lowered_from is not None}
     assert lowered
     shown = report.read(report.edit(), "Notes on the class")
     book = openpyxl.load_workbook(report.path)
