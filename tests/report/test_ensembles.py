@@ -16,6 +16,8 @@ from docs.ensemble_figures import draw_ensemble, draw_targets
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
+LARGEST = (3, 4, 6, 8, 10)
+"""Cells of a row of the page that differ from processor to processor."""
 RECORD = "575 Market Street, 34th floor, 225°"
 
 
@@ -36,15 +38,18 @@ def test_the_page_is_up_to_date(page, generator):
     """One row is made again; on another kind of processor numbers differ a little, and the largest stands elsewhere."""
     text = (ROOT / "docs" / "motions.md").read_text(encoding="utf-8")
     kept = next(line for line in text.splitlines() if line.startswith(f"| {RECORD} "))
-    assert _numbers(kept) == pytest.approx(_numbers(page.row_of(RECORD, generator)), abs=0.35), "run: make docs"
+    across = page.build(treat(read_records(page.RECORDS[RECORD][0])[0]), axis="Y")
+    made = page.row_of(RECORD, generator, across)
+    assert _numbers(kept) == pytest.approx(_numbers(made), abs=0.35), "run: make docs"
     motions = {name: treat(read_records(path)[0]) for name, (path, _, _) in page.RECORDS.items()}
     part = "\n".join(page.lines_of_targets(motions)).split("Where PFA")[0]
     assert part in text, "run: make docs"
 
 
 def _numbers(row):
+    """Return the numbers of a row, but for the largest deviations and the period of the first."""
     cells = row.replace("%", "").replace(",", " ").split("|")[2:-1]
-    del cells[3:5]
+    cells = [cell for at, cell in enumerate(cells) if at not in LARGEST]
     return [float(number) for cell in cells for number in cell.split()]
 
 

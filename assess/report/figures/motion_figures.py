@@ -25,7 +25,7 @@ MOST = 5
 MOST_STEPS = 300
 """Points of a curve of convergence."""
 MOST_SAMPLES, MOST_ORDINATES = 800, 60
-"""Points of a curve of acceleration, and about as many of each of the thin spectra."""
+"""Points of a curve of acceleration, and of each of the thin spectra."""
 RECORD, MOTION, MEAN, BAND = "#1c1c1c", "#1b4f72", "#db7133", "#c6d3dd"
 BINS = 10
 """Bars between rest and the critical angle."""
@@ -330,7 +330,7 @@ def _paint_motions(accelerations: Sequence[Acceleration], spectra: Spectra | Non
 def _paint_spectra(axes: Any, spectra: Spectra) -> None:
     """Paint every spectrum as a thin curve, the band of the 16th to 84th percentile, the mean, and the target."""
     periods, pseudo = spectra.periods, spectra.pseudo_g
-    shown = slice(None, None, max(1, periods.size // MOST_ORDINATES))
+    shown = slice(None, None, max(1, -(-periods.size // MOST_ORDINATES)))
     ends = np.full((len(pseudo), 1), np.nan)  # lifts the pen between two spectra
     every = np.hstack([pseudo[:, shown], ends]).ravel()
     along = np.tile(np.append(periods[shown], np.nan), len(pseudo))
