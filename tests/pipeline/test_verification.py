@@ -230,31 +230,38 @@ def test_a_real_record_lowers_classes_and_says_so(tmp_path):
     """The 42nd floor of 575 Market Street, 1989: 0.22 g, but little of it at the periods that overturn."""
     shutil.copy(MARKET / CHANNEL, tmp_path)
     items = [{"item": str(b), "floor": "42", "axis": "X", "breadth": b, "height": 180} for b in (40, 45, 60)]
-    path = write(tmp_path / "w.xlsx", items, [{"floor": "42", "record_x": CHANNEL}])
+    path = write(tmp_path / "w.xlsx", items, [{"floor": "42", "record_x": CHANNEL}], **EXACT)
     done = _run(tmp_path, path, "--runs", 20)
     assert [one["adopted"]["lowered_from"] for one in done.items.values()] == ["high"] * 3
-    assert done.stdout.splitlines()[-1].endswith(
-        "3 of 3 rows, 20 motions each; class lowered: 3 pieces in 3 rows; "
-        "could be of a higher class: 3 pieces in 3 rows."
-    )
+    told = "3 of 3 rows, 20 motions each; class lowered: 3 pieces in 3 rows; "
+    assert f"{told}could be of a higher class: 3 pieces in 3 rows." in done.stdout
 
 
 # --- which pieces, which motions ---
 
 
 @pytest.mark.slow
-def test_by_default_only_what_is_high_or_doubtful_or_on_a_route_is_verified(tmp_path):
+def test_high_simulates_only_what_is_high_or_doubtful_or_on_a_route(tmp_path):
     items = [
         {"item": "calm", "floor": "calm", "axis": "X", "breadth": 60, "height": 180},
         {"item": "outside", "floor": "still", "axis": "X", "breadth": 90, "height": 180},
     ]
-    done = _run(tmp_path, _book(tmp_path, items, [*FLOORS, {"floor": "calm", "pfa_x": 0.12}]), "--runs", 5)
+    done = _run(
+        tmp_path, _book(tmp_path, items, [*FLOORS, {"floor": "calm", "pfa_x": 0.12}]), "--verify", "high", "--runs", 5
+    )
     calm, outside = done.items["calm"], done.items["outside"]
     assert (calm["verification"], calm["adopted"]["method"]) == (None, "proposed_or")
     assert calm["adopted"]["probability"] == calm["methods"]["proposed_or"]["value"]
     assert "extrapolated" in outside["methods"]["proposed_or"]["flags"]
     assert outside["verification"]["runs"] == 5
+    assert calm["adopted"]["basis"] == "formula"
     assert "Simulated by direct integration: 1 of 2 rows, 5 motions each" in done.stdout
+
+
+@pytest.mark.slow
+def test_by_default_every_piece_that_can_be_rocked_is_simulated(tmp_path):
+    done = _run(tmp_path, _book(tmp_path), "--runs", 5)
+    assert {name for name, item in done.items.items() if item["verification"] is None} == {"stocky"}
 
 
 @pytest.mark.slow

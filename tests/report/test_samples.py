@@ -66,31 +66,54 @@ def is_at_a_limit(now, then):
     return any(one["low"] is not None and one["low"] <= limit <= one["high"] for one in (now, then) for limit in LIMITS)
 
 
+def find_moved(now, then):
+    """Return the pieces of which another motion governs, as two of them overturn it nearly as often."""
+    pairs = list(zip(now["items"], then["items"], strict=True))
+    moved = [pair for pair in pairs if len({(one["pfa_source"], one["axis"]) for one in pair}) > 1]
+    for one, other in moved:
+        assert abs(one["adopted"]["probability"] - other["adopted"]["probability"]) <= 0.05, one["item"]
+    assert len(moved) <= 0.05 * len(pairs)
+    return {one["item"] for one, _ in moved}
+
+
+def comparable(found, moved):
+    """Return results without the pieces that `moved`, and with what to fix on each route in no order."""
+    routes = [{**route, "fixes": sorted(one["item"] for one in route["fixes"])} for route in found["routes"]["routes"]]
+    items = [one for one in found["items"] if one["item"] not in moved]
+    return found | {
+        "assess": found["assess"]["settings"], "items": items, "routes": found["routes"] | {"routes": routes}
+    }  # fmt: skip
+
+
 def test_results_are_those_of_the_sample(results):
     """Whatever the processor: numbers within their sampling error, classes the same but at a limit."""
     now, then = results
     for one, other in zip(now["items"], then["items"], strict=True):
         if one["adopted"]["class"] != other["adopted"]["class"]:
             assert is_at_a_limit(one["adopted"], other["adopted"]), (one["item"], "run: make samples")
+    moved = find_moved(now, then)
     first, second = (
-        [f"{place} {value}" for place, value in flatten(found) if not CLASS.search(place)]
-        for found in (dict(now, assess=now["assess"]["settings"]), dict(then, assess=then["assess"]["settings"]))
+        [f"{place} {value}" for place, value in flatten(comparable(found, moved)) if not CLASS.search(place)]
+        for found in (now, then)
     )
     assert differences(first, second) == [], "run: make samples"
 
 
 @pytest.mark.parametrize("kind", READERS)
 def test_samples_are_current(written, results, kind):
-    """Their words are compared; where a class changed at its limit, in any order and without words of classes."""
+    """Their words are compared. Where a class changed at its limit, or another motion governs a piece, rows come and go
+    in lists: then all but 1 % of the words are there, in any order and without words of classes."""
     platforms = [found["assess"]["platform"] for found in results]
     classes = [[one["adopted"]["class"] for one in found["items"]] for found in results]
     now, then = (
         [hide_platforms(line, platforms) for line in READERS[kind](path)]
         for path in (written[kind], SAMPLES / f"market-street.{kind}")
     )
-    if classes[0] != classes[1]:
-        now, then = (sorted({line for line in lines if not CLASS_WORD.search(line)}) for lines in (now, then))
-    assert differences(now, then) == [], "run: make samples"
+    if classes[0] == classes[1] and not find_moved(*results):
+        assert differences(now, then) == [], "run: make samples"
+        return
+    now, then = ({line for line in lines if not CLASS_WORD.search(line)} for lines in (now, then))
+    assert len(now ^ then) <= 0.01 * len(now), ("run: make samples", sorted(now ^ then))
 
 
 def hide_platforms(line, platforms):
