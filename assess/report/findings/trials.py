@@ -118,7 +118,7 @@ def _describe_draws(results: Results) -> str:
     """Return what is drawn, and what stands beside it."""
     uncertainty = results.provenance.uncertainty
     if results.settings.ideal:
-        return _("Adopted is the chance if exactly this motion recurred and every piece were exactly as given.")
+        return _("The adopted chance is the one if exactly this motion recurred and every piece were exactly as given.")
     parts = []
     if uncertainty.motion:
         parts.append(_(

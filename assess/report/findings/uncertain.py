@@ -24,7 +24,7 @@ def say_assumed(results: Results) -> str:
         return ""
     if results.settings.ideal:
         return _(
-            "Assumed is that exactly this motion recurs and that every piece is exactly as given: nothing is varied."
+            "It is assumed that exactly this motion recurs and that every piece is exactly as given: nothing is varied."
         )
     return f"{_say_motion(results)} {_say_piece(results)}"
 
