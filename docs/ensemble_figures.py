@@ -5,6 +5,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.motion.generate import Generator
 from assess.motion.record import FloatArray
@@ -39,7 +40,7 @@ def _paint_ensemble(generator: Generator, title: str, figure: Any) -> None:
     axes.set_xlabel("time [s]")
 
 
-def _paint_spectra(axes: Any, generator: Generator, motions: FloatArray) -> None:
+def _paint_spectra(axes: Any, generator: Generator, motions: NDArray[Any]) -> None:
     fit = generator.fit
     periods = build_periods(0.03, 10.0, 250)
     spectra = response_spectrum(motions, generator.grid.time_step, periods).pseudo / GRAVITY

@@ -8,8 +8,10 @@ the Seismological Society of America 59(2):909-922. doi:10.1785/BSSA0590020909
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.compiled import compiled
 from assess.motion.record import FloatArray
@@ -50,7 +52,7 @@ def build_periods(shortest: float = 0.02, longest: float = 10.0, count: int = 12
 
 
 def response_spectrum(
-    acceleration: FloatArray,
+    acceleration: NDArray[Any],
     time_step: float,
     periods: FloatArray,
     *,
@@ -91,7 +93,7 @@ def response_spectrum(
 
 
 def pseudo_acceleration(
-    acceleration: FloatArray,
+    acceleration: NDArray[Any],
     time_step: float,
     periods: FloatArray,
     *,
@@ -104,7 +106,7 @@ def pseudo_acceleration(
 
 
 def _respond(
-    acceleration: FloatArray,
+    acceleration: NDArray[Any],
     time_step: float,
     periods: FloatArray,
     damping: float,

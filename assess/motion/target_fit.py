@@ -71,7 +71,7 @@ class Spectra:
         return replace(self, ordinates=self.ordinates[:count])
 
 
-def velocities(acceleration: FloatArray, time_step: float) -> FloatArray:
+def velocities(acceleration: NDArray[Any], time_step: float) -> FloatArray:
     """Return velocity [m/s] of motions (k, n) [m/s2] that start at rest."""
     steps = (acceleration[:, 1:] + acceleration[:, :-1]) * (time_step / 2)
     return np.pad(np.cumsum(steps, axis=1, dtype=np.float64), ((0, 0), (1, 0)))

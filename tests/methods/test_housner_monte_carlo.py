@@ -218,7 +218,8 @@ def test_batches_go_on_with_the_draws() -> None:
     (joint,) = evaluate(cases, Settings(runs=BATCH + 40)).joints
     late = draw_earthquakes(1, BATCH, 40)
     np.testing.assert_array_equal(late, draw_earthquakes(1, 0, BATCH + 40)[BATCH:])
-    drawn = draw_bodies(*(np.array([one]) for one in (0.3, 1.8, 0.5, np.nan)), [5], seed=1, first=BATCH, count=40)
+    breadth, height, centre, restitution = (np.array([one]) for one in (0.3, 1.8, 0.5, np.nan))
+    drawn = draw_bodies(breadth, height, centre, restitution, [5], seed=1, first=BATCH, count=40)
     motions = np.repeat(3.0 * _push()[None], 40, axis=0)
     found = rock_blocks(
         drawn.breadth, drawn.height, motions, STEP, restitution=drawn.restitution, centre=drawn.centre,

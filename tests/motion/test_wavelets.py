@@ -16,7 +16,7 @@ WAVELETS = build_wavelets(tuple(PERIODS), STEP)
 
 
 def samples_of(place: int) -> FloatArray:
-    return WAVELETS.samples[WAVELETS.start[place] : WAVELETS.start[place + 1]]
+    return np.asarray(WAVELETS.samples[WAVELETS.start[place] : WAVELETS.start[place + 1]], dtype=np.float64)
 
 
 def ordinate(motion: FloatArray, place: int) -> float:
@@ -30,7 +30,7 @@ def adjusted(motion: FloatArray, ratios: FloatArray) -> FloatArray:
     if places.size:
         shares = (ratios[places] - 1).astype(np.float32)
         Correction(WAVELETS, places, shares, Sweep.of(PERIODS[places], STEP, motion.size)).apply(changed)
-    return changed[0].astype(np.float64)
+    return np.asarray(changed[0], dtype=np.float64)
 
 
 def ratios_at(place: int, ratio: float) -> FloatArray:

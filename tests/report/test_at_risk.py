@@ -172,10 +172,11 @@ def test_one_earthquake_shakes_all_floors_whatever_is_known_of_each(tmp_path):
     sheets = {"Floors": floors, "Routes": routes, "Items": [*ITEMS, middle], **KNOWN}
     results = assess_routed(tmp_path / "w.xlsx", Settings(verify="all", runs=10), **sheets)
     west = results.route_tables.routes[0].blocked
+    assert west is not None
     assert (west.is_joint, west.pieces, west.unverified, west.runs) == (True, 2, 0, 10)
     assert not any("numbers of draws" in where for where, _ in statements.list_assumptions(results))
-    routes = replace(results.route_tables.routes[0], blocked=replace(west, is_joint=False))
-    changed = replace(results, route_tables=replace(results.route_tables, routes=(routes,)))
+    apart = replace(results.route_tables.routes[0], blocked=replace(west, is_joint=False))
+    changed = replace(results, route_tables=replace(results.route_tables, routes=(apart,)))
     assert any("numbers of draws" in where for where, _ in statements.list_assumptions(changed))
 
 

@@ -112,8 +112,8 @@ def test_samples_are_current(written, results, kind):
     if classes[0] == classes[1] and not find_moved(*results):
         assert differences(now, then) == [], "run: make samples"
         return
-    now, then = ({line for line in lines if not CLASS_WORD.search(line)} for lines in (now, then))
-    assert len(now ^ then) <= 0.01 * len(now), ("run: make samples", sorted(now ^ then))
+    one, other = ({line for line in lines if not CLASS_WORD.search(line)} for lines in (now, then))
+    assert len(one ^ other) <= 0.01 * len(one), ("run: make samples", sorted(one ^ other))
 
 
 def hide_platforms(line, platforms):

@@ -110,7 +110,8 @@ def test_draws_depend_on_the_seed_the_piece_and_their_number_alone():
 def test_pieces_of_one_name_draw_alike_in_any_order():
     sizes = [np.repeat(one, 3) for one in RACK]
     sizes[0] = np.array([0.4, 0.5, 0.4])
-    together = draw_bodies(*sizes, [7, 9, 7], seed=1, first=0, count=5)
+    breadth, height, centre, restitution = sizes
+    together = draw_bodies(breadth, height, centre, restitution, [7, 9, 7], seed=1, first=0, count=5)
     np.testing.assert_array_equal(together.breadth[0], together.breadth[2])
     np.testing.assert_array_equal(together.breadth[0], draw(5).breadth[0])
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from assess.methods._method import BoolArray
 from assess.model import Building, Floor, Inventory, Item, Place, Segment
 from assess.route_results import Chance, RouteTables, SegmentRow
 from assess.routes.chances import Falls
@@ -20,7 +21,7 @@ RISK = 0.03
 def make_falls(
     probability: Sequence[float],
     *,
-    fell: Mapping[int, Sequence[bool]] | None = None,
+    fell: Mapping[int, Sequence[bool] | BoolArray] | None = None,
     unconfirmed: Sequence[int] = (),
     in_record: Sequence[float] | None = None,
     anchored: Sequence[bool] | None = None,

@@ -126,7 +126,7 @@ def test_the_risk_is_that_of_the_blocks_under_the_scaled_motions(buildings, kept
         record = rock_blocks(*sizes, scale * motion.acceleration[None], motion.time_step)
         assert found.fell_in_record[level, at] == record.overturned[0, 0]
         own = [np.array([size]) for size in (*sizes, 0.5, np.nan)]
-        drawn = draw_bodies(*own, [at], seed=3, first=0, count=4)
+        drawn = draw_bodies(own[0], own[1], own[2], own[3], [at], seed=3, first=0, count=4)
         alone = rock_blocks(
             drawn.breadth, drawn.height, scale * made, grid.time_step,
             restitution=drawn.restitution, centre=drawn.centre, scale=np.exp(0.4 * draw_earthquakes(3, 0, 4))[None],

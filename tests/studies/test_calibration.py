@@ -115,8 +115,9 @@ def test_error_is_the_scatter_of_the_mean():
 
 
 def test_difference_beyond_twice_the_larger_error_is_clear():
-    score = find_score(outcomes([0.1, 1.0, 0.8], [0, 0, 1]))
-    score = replace(score, difference=0.2, error=0.1, error_by_source=0.1)
+    found = find_score(outcomes([0.1, 1.0, 0.8], [0, 0, 1]))
+    assert found is not None
+    score = replace(found, difference=0.2, error=0.1, error_by_source=0.1)
     assert not replace(score, error_by_source=0.101).is_clear
     assert replace(score, error=0.09, error_by_source=0.02).is_clear
     assert not replace(score, error=math.nan, error_by_source=math.nan).is_clear
@@ -310,7 +311,7 @@ def test_tables_and_figure_hold_every_case(monkeypatch, tmp_path):
         own = [row for row in by_name if row["kind"] == name]
         (whole,) = (row for row in scores if (row["kind"], row["class"]) == (name, "all"))
         assert whole["cases"] == len(own)
-        assert whole["fallen"] == sum(row["fell_itself"] for row in own)
+        assert whole["fallen"] == sum(bool(row["fell_itself"]) for row in own)
         assert whole["chance"] == pytest.approx(np.mean([row["fallen"] / row["runs"] for row in own]))
     text = finding.figures["calibration.svg"].decode()
     assert all(words in text for words in (RECORDED, BEAMS, "share that the floor motion itself overturned"))

@@ -134,7 +134,7 @@ def test_channels_of_a_pair_are_as_far_apart_as_their_chances():
 
 def split_tables(lines):
     """The cells of each row of each table, its heading first."""
-    tables = []
+    tables: list[list[list[str]]] = []
     for before, line in zip(["", *lines], lines, strict=False):
         if line.startswith("| "):
             tables += [] if before.startswith("|") else [[]]
@@ -174,8 +174,8 @@ def test_the_page_states_bias_rank_and_classes_for_every_building_and_formula(ju
         key = next((key for key, shown in FORMULAS.items() if shown == title), title)
         pair = compared.agreements[name, ALL, key], compared.uncertain[name, key]
         shown = [float(cell.split(" ")[0]) for cell in row[2:8]]
-        values = [getattr(one, field) for field in ("bias", "class_too_low", "class_too_high") for one in pair]
-        assert shown == pytest.approx([100 * value for value in values], abs=0.0501)
+        expected = [getattr(one, field) for field in ("bias", "class_too_low", "class_too_high") for one in pair]
+        assert shown == pytest.approx([100 * value for value in expected], abs=0.0501)
     for lines in (head, *others):
         for name in NAMES:
             assert name in "\n".join(lines)
