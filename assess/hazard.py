@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
+from assess.motion.formats.plain_csv import decode, is_comment
 from assess.units import GRAVITY
 
 FloatArray = NDArray[np.float64]
@@ -120,7 +121,7 @@ def parse_hazard(
             raise InputError(fill("there is no table. Its first row has to be: {columns}", columns=",".join(COLUMNS)))
         heading = [cell.lower() for cell in rows[0][1]]
         if {"lon", "lat"} <= set(heading):
-            comments = "\n".join(line for line in lines if _is_comment(line))
+            comments = "\n".join(line for line in lines if is_comment(line))
             return _read_sites(name, heading, rows, comments, latitude, longitude)
         return _read_table(name, heading, rows)
     except InputError as error:
@@ -143,22 +144,14 @@ def _decode(data: bytes) -> str:
         raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
     if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
         raise InputError(fill("the file is not plain text. Save it as CSV UTF-8"))
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return data.decode("latin-1")
-
-
-def _is_comment(line: str) -> bool:
-    # A spreadsheet puts a comment that holds commas into quotes.
-    return line.lstrip(' \t"').startswith("#")
+    return decode(data)
 
 
 def _split(lines: Sequence[str]) -> Iterator[Line]:
     """Yield the cells of each line that is neither blank nor a comment; the first one's separator is that of all."""
     separator = ""
     for number, line in enumerate(lines, 1):
-        if _is_comment(line) or not line.strip(' \t,;"'):
+        if is_comment(line) or not line.strip(' \t,;"'):
             continue
         separator = separator or next((mark for mark in "\t;" if mark in line), ",")
         cells = [cell.strip().strip('"').strip() for cell in line.split(separator)]

@@ -27,25 +27,11 @@ if TYPE_CHECKING:
     from assess.methods import MethodInfo
 
 
-@dataclass(frozen=True, slots=True)
-class FloorPage:
-    """One floor: what shakes it, and its pieces."""
+class ByBasis:
+    """Lists of the pieces in `results` by what their class rests on."""
 
-    floor: FloorRow
-    title: str
-    motions: Sequence[MotionRow]
-    counts: Counts
+    __slots__ = ()
     results: Sequence[ItemResult]
-
-    @property
-    def placed(self) -> int:
-        """Rows with a position on the plan."""
-        return sum(one.item.x_m is not None and one.item.y_m is not None for one in self.results)
-
-    @property
-    def rooms(self) -> Bars | None:
-        """The pieces of each room as bars: what is shown where no piece has a position."""
-        return build_bars(count_rooms(self.results))
 
     @property
     def risky(self) -> Sequence[ItemResult]:
@@ -64,6 +50,27 @@ class FloorPage:
 
 
 @dataclass(frozen=True, slots=True)
+class FloorPage(ByBasis):
+    """One floor: what shakes it, and its pieces."""
+
+    floor: FloorRow
+    title: str
+    motions: Sequence[MotionRow]
+    counts: Counts
+    results: Sequence[ItemResult]
+
+    @property
+    def placed(self) -> int:
+        """Rows with a position on the plan."""
+        return sum(one.item.x_m is not None and one.item.y_m is not None for one in self.results)
+
+    @property
+    def rooms(self) -> Bars | None:
+        """The pieces of each room as bars: what is shown where no piece has a position."""
+        return build_bars(count_rooms(self.results))
+
+
+@dataclass(frozen=True, slots=True)
 class WorkedExample:
     """The calculation of one method for the piece of the worked example."""
 
@@ -78,7 +85,7 @@ class WorkedExample:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Content:
+class Content(ByBasis):
     """The content of a report; every sequence is in the order in which it is shown.
 
     `run` is what it was made from, `results` its rows of furniture, `building` the lines about the building as label
@@ -129,21 +136,6 @@ class Content:
     def notes(self) -> Sequence[ItemResult]:
         """The rows that the workbook has a note on."""
         return [one for one in self.results if one.item.notes]
-
-    @property
-    def risky(self) -> Sequence[ItemResult]:
-        """Free-standing pieces that reach high by the upper estimate, the worst first."""
-        return list_risky(self.results)
-
-    @property
-    def unconfirmed(self) -> Sequence[ItemResult]:
-        """Free-standing pieces whose lower simulated class cannot be relied on, the worst by formula first."""
-        return list_apart(self.results, "unconfirmed")
-
-    @property
-    def risky_by_formula(self) -> Sequence[ItemResult]:
-        """Free-standing pieces that were not simulated, of high and very high class by formula, the worst first."""
-        return list_risky(self.results, "formula")
 
     def parts(self, most: int) -> list[tuple[str, list[ItemResult]]]:
         """Return the first `most` rows by their basis, with the heading of each part but the first."""

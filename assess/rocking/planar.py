@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 from assess.motion.record import FloatArray
 from assess.motion.rows import run_rows
 from assess.progress import SILENT, Progress
+from assess.rocking import block
 from assess.rocking import planar_kernel as kernel
 from assess.rocking.ensemble import Rocking
 from assess.rocking.response import Response
@@ -102,10 +103,10 @@ class Body:
             As `of`.
         """
         B, H = np.asarray(breadth, dtype=np.float64), np.asarray(height, dtype=np.float64)
-        b, z = B / 2, np.asarray(centre) * H
-        inertia = (B**2 + H**2) / 12 + b**2 + z**2  # I_0 over the mass
-        p = np.sqrt(GRAVITY * np.hypot(b, z) / inertia)
-        return cls.of(half_base=b, centre_height=z, frequency_parameter=p, restitution=restitution)
+        p = block.frequency_parameter(B, H, np.asarray(centre))
+        return cls.of(
+            half_base=B / 2, centre_height=np.asarray(centre) * H, frequency_parameter=p, restitution=restitution
+        )
 
 
 def wall_restitution(critical_angle: ArrayLike, restitution: ArrayLike, *, shape: ArrayLike = 1.5) -> FloatArray:

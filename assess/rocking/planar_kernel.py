@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.compiled import compiled, compiled_into
+from assess.rocking.kernel import MOST_AFTER, OVERTURNED, REST, SHORTEST
 
 FloatArray = NDArray[np.float64]
 
@@ -36,17 +37,8 @@ ORDER = 9
 """Highest power of a step's polynomial."""
 LONGEST_STEP = 0.1
 """Largest p dt of a step [-]."""
-OVERTURNED = math.pi / 2
-"""Rotation at which a body has fallen [rad]."""
-SHORTEST = 1e-10
-"""What is left of a sample below this share of it is left out [-]: it is lost in rounding."""
-REST = 1e-7
-"""A body rests once the next hop after an impact would be lower than this share of the critical angle [-]."""
 ROUNDS = 60
 """Most rounds of Newton's rule or halving; Newton's takes three or four."""
-MOST_AFTER = 1_000_000
-"""Samples after the end of a motion after which a body is taken to balance."""
-
 STATES = 9
 PHI, VELOCITY, EDGE, PEAK, IMPACTS, DONE, RESTS, FALL, ROWS = range(STATES)
 """State: angle, its velocity, edge, largest angle, impacts, time within the sample, 1 at rest, time of the fall or -1,

@@ -60,7 +60,7 @@ def recognises(head: bytes) -> bool:
     # UTF-16 and binary files have zeros; text has none.
     if b"\0" in head:
         return False
-    first = re.split(r"[,;\t]", _heading_line(split_text(_decode(head)))[1], maxsplit=1)[0].strip(' \t"').lower()
+    first = re.split(r"[,;\t]", _heading_line(split_text(decode(head)))[1], maxsplit=1)[0].strip(' \t"').lower()
     return first.startswith("time") and first[4:].lstrip()[:1] in {"", "["}
 
 
@@ -72,7 +72,7 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     RecordError
         If a heading has no known unit, or a cell is no number; the message names the line.
     """
-    table = _take_apart(_decode(data))
+    table = _take_apart(decode(data))
     numbers = _read_numbers(table)
     azimuths = _read_azimuths(table)
     with np.errstate(over="ignore"):  # what becomes infinite is refused further on
@@ -83,14 +83,16 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     )
 
 
-def _decode(data: bytes) -> str:
+def decode(data: bytes) -> str:
+    """Return the text of a file in UTF-8, with or without a mark, else in Latin-1."""
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         return data.decode("latin-1")
 
 
-def _is_comment(line: str) -> bool:
+def is_comment(line: str) -> bool:
+    """Whether a line is a comment."""
     # A spreadsheet puts a comment that holds commas into quotes.
     return line.lstrip(' \t"').startswith("#")
 
@@ -102,7 +104,7 @@ def _is_blank(line: str) -> bool:
 def _heading_line(lines: Sequence[str]) -> tuple[int, str]:
     """Return the first line that is neither blank nor a comment, and its place; (-1, "") where there is none."""
     return next(
-        ((place, line) for place, line in enumerate(lines) if not (_is_comment(line) or _is_blank(line))), (-1, "")
+        ((place, line) for place, line in enumerate(lines) if not (is_comment(line) or _is_blank(line))), (-1, "")
     )
 
 

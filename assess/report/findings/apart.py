@@ -38,7 +38,6 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
 
 
 def _say_unconfirmed(unconfirmed: Sequence[ItemResult]) -> str:
-    risky = _pieces(one for one in unconfirmed if one.adopted.risk >= RiskClass.HIGH)
     names = words.name_first([words.cut(one.item.item, 20) for one in unconfirmed], NAMED)
     text = ngettext(
         "{n:,} piece is unconfirmed and counted apart: simulation gave a lower class than the formula, but its motions "
@@ -47,22 +46,21 @@ def _say_unconfirmed(unconfirmed: Sequence[ItemResult]) -> str:
         "motions may be too weak to rely on ({names}).",
         _pieces(unconfirmed), names=names,
     )  # fmt: skip
-    if not risky:
-        return text
-    return text + " " + ngettext(
-        "By the formula, {n:,} of them would be high or very high.",
-        "By the formula, {n:,} of them would be high or very high.",
-        risky,
-    )  # fmt: skip
+    return _add_risky(text, unconfirmed)
 
 
 def _say_left(left: Sequence[ItemResult]) -> str:
-    risky = _pieces(one for one in left if one.adopted.risk >= RiskClass.HIGH)
     text = ngettext(
         "{n:,} piece was not simulated and is counted apart, by formula only.",
         "{n:,} pieces were not simulated and are counted apart, by formula only.",
         _pieces(left),
     )
+    return _add_risky(text, left)
+
+
+def _add_risky(text: str, pieces: Sequence[ItemResult]) -> str:
+    """Return a text on pieces followed by how many of them would be high or very high by the formula, if any."""
+    risky = _pieces(one for one in pieces if one.adopted.risk >= RiskClass.HIGH)
     if not risky:
         return text
     return text + " " + ngettext(
