@@ -27,10 +27,6 @@ from assess.methods import (
     Outcome,
     adopted_formula,
     interval_width,
-    make_batches,
-    rock_cases,
-    rock_draws,
-    run_side_by_side,
     simulation,
 )  # fmt: skip
 from assess.methods._method import BoolArray, Ensemble, FloatArray
@@ -38,8 +34,9 @@ from assess.model import AXES
 from assess.pipeline.adopt import adopt, build_falls, find_governing
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import GeneratedEnsemble
-from assess.pipeline.verify import check_pairs, choose_motions, describe_work
-from assess.progress import SILENT, Progress, Stage
+from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
+from assess.pipeline.verify import choose_motions
+from assess.progress import SILENT, Progress
 from assess.rocking.block import stocky_limit
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance
@@ -48,11 +45,9 @@ from assess.routes.network import build_course
 from assess.routes.obstructions import Obstructions, find_obstructions
 from assess.routes.scene import Scene
 from assess.routes.widths import kinds_of
-from assess.settings import AUTO, count_processors
+from assess.settings import AUTO
 from assess.units import ROUNDING
 
-BATCH = 100
-"""Motions made at once: the generator keeps its first hundred."""
 JUMP = 0.2
 """A chance that rises or falls by more than this between two values is not interpolated [-]."""
 
@@ -145,7 +140,7 @@ def _find_fragility(assessment: Assessment, values: Sequence[float], jobs: int |
     obstructions = find_obstructions(inventory, progress)
     beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
     sweep = _Sweep(assessment, obstructions, _choose(assessment, beside), tuple(values))
-    rocked = sweep.rock(jobs or count_processors(), progress)
+    rocked = sweep.rock(jobs, progress)
     scenes = [sweep.scene(at, rocked, progress) for at in range(len(values))]
     ensembles = list(zip(sweep.cases.ensembles, rocked, strict=True))
     doubtful = {int(case) for made, one in ensembles if made.is_unshaped or one.is_weak for case in one.own}
@@ -206,15 +201,6 @@ def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Rocked:
-    """The cases `own` (m,) of an ensemble, whether they overturn (values, m, runs), and whether it is too weak."""
-
-    own: NDArray[np.intp]
-    fell: BoolArray
-    is_weak: bool
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class _Sweep:
     """The cases of an assessment with their motions, at several values of PFA."""
 
@@ -223,46 +209,17 @@ class _Sweep:
     cases: Cases
     values: tuple[float, ...]
 
-    def rock(self, threads: int, progress: Progress) -> list[_Rocked]:
+    def rock(self, jobs: int | None, progress: Progress) -> list[RockedLevels]:
         """Return what the cases of each ensemble do at each value."""
-        owns = [np.flatnonzero(self.cases.ensemble == number) for number in range(len(self.cases.ensembles))]
-        check_pairs(sum(map(len, owns)), self.assessment.settings, len(self.values))
-        side_by_side = max(1, min(threads, len(owns)))
-        pieces = {int(self.assessment.case_item[case]) for own in owns for case in own}
-        floors = {self.assessment.case_demand[own[0]].floor.floor for own in owns}
-        with progress.stage("rocking", describe_work(len(pieces), len(floors)), len(owns)) as stage:
-
-            def work(number: int, own: NDArray[np.intp]) -> _Rocked:
-                return self._rock_one(number, own, max(1, threads // side_by_side), stage)
-
-            return list(run_side_by_side(work, list(enumerate(owns)), side_by_side))
-
-    def _rock_one(self, number: int, own: NDArray[np.intp], threads: int, stage: Stage) -> _Rocked:
-        """Rock the cases `own` under one ensemble: its motions are made once, and scaled."""
-        progress = stage.progress
-        runs, motions = int(self.assessment.settings.runs), self.cases.ensembles[number].open(threads, progress)
-        fell = np.zeros((len(self.values), len(own), runs), dtype=np.bool_)
-        scales = [_scale(value, self.assessment.case_demand[own[0]].pfa) for value in self.values]
-        for at, batch, time_step in make_batches(motions, 0, runs, BATCH):
-            for place, scale in enumerate(scales):
-                fell[place, :, at : at + len(batch)] = self._rock(own, scale * batch, time_step, at, threads, progress)
-            stage.at((at + len(batch)) / runs, number)
-        return _Rocked(own, fell, motions.is_weak)
-
-    def _rock(
-        self, own: NDArray[np.intp], motions: FloatArray, time_step: float, first: int, threads: int, progress: Progress
-    ) -> BoolArray:
-        """Return whether each of the cases `own` overturns in draws `first` and further ones, as in a run."""
-        settings = self.assessment.settings
-        if settings.ideal:
-            return rock_cases(self.cases, own, motions, time_step, threads, progress)[0]
-        fell, _ = rock_draws(
-            self.cases, own, motions, time_step, first=first, dispersions=(self.cases.uncertainty.motion,),
-            seed=settings.seed, threads=threads, progress=progress,
+        cases, settings = self.cases, self.assessment.settings
+        peaks = [self.assessment.case_demand[np.argmax(cases.ensemble == at)].pfa for at in range(len(cases.ensembles))]
+        factors = np.array([[find_factor(value, pfa) for value in self.values] for pfa in peaks])
+        return rock_levels(
+            cases, self.assessment.case_item, self.assessment.case_demand, factors.reshape(-1, len(self.values)),
+            settings, dispersion=None if settings.ideal else cases.uncertainty.motion, jobs=jobs, progress=progress,
         )  # fmt: skip
-        return np.asarray(fell[0])
 
-    def scene(self, at: int, rocked: Sequence[_Rocked], progress: Progress) -> Scene:
+    def scene(self, at: int, rocked: Sequence[RockedLevels], progress: Progress) -> Scene:
         """Return the segments with how the pieces fall at value `at`."""
         settings, value = self.assessment.settings, self.values[at]
         falls = self._falls(value, [(one.own, one.fell[at]) for one in rocked])
@@ -281,11 +238,6 @@ class _Sweep:
         adoption = adopt(outcomes, scaled, self.assessment.settings)
         governing = find_governing(adoption.probability, self.assessment.case_item, scaled.pfa)
         return build_falls(self.assessment.inventory, adoption, outcomes, governing, self.assessment.settings)
-
-
-def _scale(value: float, pfa: float) -> float:
-    """Return the factor that brings motions of one PFA to another: exactly 1 where they are the same."""
-    return 1.0 if abs(value / pfa - 1) <= ROUNDING else value / pfa
 
 
 def _outcome(count: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Outcome:

@@ -1,0 +1,121 @@
+"""The same pieces under the same motions at several levels of shaking: every motion multiplied by a factor a level.
+
+Draw k is one earthquake at every level: motion k, one scale for the whole building where the motion is uncertain, and
+every piece as it is in that draw. The shape of the spectrum stays, and PFV scales along with PFA.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.methods import Cases, make_batches, rock_cases, rock_draws, run_side_by_side
+from assess.methods._method import BoolArray, FloatArray
+from assess.pipeline.demand import Demand
+from assess.pipeline.verify import check_pairs, describe_work
+from assess.progress import SILENT, Progress, Stage
+from assess.settings import Settings, count_processors
+from assess.units import ROUNDING
+
+BATCH = 100
+"""Motions made at once: the generator keeps its first hundred."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RockedLevels:
+    """The cases `own` (m,) of an ensemble, whether they overturn (levels, m, runs), and whether it is too weak."""
+
+    own: NDArray[np.intp]
+    fell: BoolArray
+    is_weak: bool
+
+
+def rock_levels(
+    cases: Cases,
+    case_item: NDArray[np.intp],
+    case_demand: Sequence[Demand],
+    factors: FloatArray,
+    settings: Settings,
+    *,
+    dispersion: float | None,
+    jobs: int | None = None,
+    progress: Progress = SILENT,
+) -> list[RockedLevels]:
+    """Return what the cases of each ensemble do at each level.
+
+    Parameters
+    ----------
+    cases : Cases
+        n cases; those with an ensemble are rocked.
+    case_item, case_demand
+        The piece and the motion of each.
+    factors : (e, l) array
+        Of each of e ensembles the factors by which its motions are multiplied, at each of l levels [-].
+    settings : Settings
+        Give the number of draws, which has to be a number, and their seed.
+    dispersion : float, optional
+        Of the motion's amplitude [-], with pieces drawn as the cases say; None: motions and pieces as they are.
+    jobs : int, optional
+        Threads; they do not change a result.
+    progress : Progress
+        Receives the stage "rocking".
+
+    Raises
+    ------
+    CancelledError
+        If the caller stops the work.
+    InputError
+        If the results would need too much memory.
+    """
+    threads, parts = jobs or count_processors(), len(cases.ensembles)
+    owns = [np.flatnonzero(cases.ensemble == number) for number in range(parts)]
+    check_pairs(sum(map(len, owns)), settings, factors.shape[1])
+    pieces = {int(case_item[case]) for own in owns for case in own}
+    floors = {case_demand[own[0]].floor.floor for own in owns}
+    side_by_side = max(1, min(threads, parts))
+    each = max(1, threads // side_by_side)
+    with progress.stage("rocking", describe_work(len(pieces), len(floors)), parts) as stage:
+
+        def work(number: int, own: NDArray[np.intp]) -> RockedLevels:
+            return _Run(cases, own, settings, dispersion, each, stage).rock(number, factors[number])
+
+        return list(run_side_by_side(work, list(enumerate(owns)), side_by_side))
+
+
+def find_factor(value: float, of: float) -> float:
+    """Return the factor that brings motions of one peak to another: exactly 1 where they are the same."""
+    return 1.0 if abs(value / of - 1) <= ROUNDING else value / of
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """The cases `own` under one ensemble: its motions are made once, and scaled."""
+
+    cases: Cases
+    own: NDArray[np.intp]
+    settings: Settings
+    dispersion: float | None
+    threads: int
+    stage: Stage
+
+    def rock(self, number: int, factors: FloatArray) -> RockedLevels:
+        progress, runs = self.stage.progress, int(self.settings.runs)
+        motions = self.cases.ensembles[number].open(self.threads, progress)
+        fell = np.zeros((len(factors), len(self.own), runs), dtype=np.bool_)
+        for at, batch, time_step in make_batches(motions, 0, runs, BATCH):
+            for level, factor in enumerate(factors.tolist()):
+                fell[level, :, at : at + len(batch)] = self._rock(factor * batch, time_step, at)
+            self.stage.at((at + len(batch)) / runs, number)
+        return RockedLevels(self.own, fell, motions.is_weak)
+
+    def _rock(self, motions: FloatArray, time_step: float, first: int) -> BoolArray:
+        """Return whether each case overturns in draws `first` and further ones, (m, k), as in a run."""
+        progress = self.stage.progress
+        if self.dispersion is None:
+            return rock_cases(self.cases, self.own, motions, time_step, self.threads, progress)[0]
+        fell, _ = rock_draws(
+            self.cases, self.own, motions, time_step, first=first, dispersions=(self.dispersion,),
+            seed=self.settings.seed, threads=self.threads, progress=progress,
+        )  # fmt: skip
+        return np.asarray(fell[0])
