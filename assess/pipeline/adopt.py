@@ -145,8 +145,11 @@ def build_falls(
     outcomes: Mapping[str, Outcome],
     governing: NDArray[np.intp],
     settings: Settings,
+    either_axis: Mapping[int, BoolArray],
 ) -> Falls:
     """Return how the pieces of an inventory fall: a blank axis takes the outcomes of the governing one.
+
+    A piece of `either_axis` (by its index) takes those instead: in which draws it falls along either axis.
 
     Draw k is one earthquake for the whole building: all simulated pieces share its scale, and on floors whose motions
     were generated along one axis its phases. A piece whose simulated class may not be adopted is unconfirmed. With
@@ -159,6 +162,7 @@ def build_falls(
         if case in rows and adoption.basis[case] == SIMULATED:
             joint, row = rows[case]
             fell[at] = (joint.ideal if settings.ideal else joint.fell)[row, : joint.runs[row]]
+    fell |= either_axis
     return Falls(
         probability=adoption.probability[governing],
         fell=fell,

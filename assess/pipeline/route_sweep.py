@@ -33,6 +33,7 @@ from assess.methods._method import BoolArray, Ensemble, FloatArray
 from assess.model import AXES
 from assess.pipeline.adopt import adopt, build_falls, find_governing
 from assess.pipeline.assessment import Assessment
+from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.ensembles import GeneratedEnsemble
 from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
 from assess.pipeline.verify import choose_motions
@@ -235,9 +236,11 @@ class _Sweep:
         )  # nothing is doubtful here: what was rocked is taken as it is
         formula = adopted_formula().evaluate(scaled, self.assessment.settings)
         outcomes = {adopted_formula().key: formula, simulation().key: _outcome(every.size, fell)}
-        adoption = adopt(outcomes, scaled, self.assessment.settings)
-        governing = find_governing(adoption.probability, self.assessment.case_item, scaled.pfa)
-        return build_falls(self.assessment.inventory, adoption, outcomes, governing, self.assessment.settings)
+        inventory, case_item, settings = self.assessment.inventory, self.assessment.case_item, self.assessment.settings
+        adoption = adopt(outcomes, scaled, settings)
+        adoption, united = unite_axes(adoption, outcomes, inventory, case_item, self.assessment.case_demand, settings)
+        governing = find_governing(adoption.probability, case_item, scaled.pfa)
+        return build_falls(inventory, adoption, outcomes, governing, settings, united)
 
 
 def _outcome(count: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Outcome:

@@ -309,7 +309,9 @@ def _evaluate_routes(assessment: Assessment, progress: Progress) -> RouteTables:
         return RouteTables(risk=settings.route_risk)
     from assess.routes.evaluate import evaluate_routes
 
-    falls = build_falls(inventory, assessment.adoption, assessment.outcomes, assessment.governing, settings)
+    falls = build_falls(
+        inventory, assessment.adoption, assessment.outcomes, assessment.governing, settings, assessment.either_axis
+    )
     return evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
 
 

@@ -112,6 +112,20 @@ def test_a_blank_axis_takes_the_worse_at_each_value(tmp_path):
     assert any(one != other for one, other in along)
 
 
+def test_a_square_piece_blocks_in_draws_in_which_it_falls_along_either_axis(tmp_path):
+    """The route is blocked as often as the piece falls, at the scenario's own PFA and in a run."""
+    square = {**CABINET, "axis": None, "width": 50, "breadth": 40}
+    assessment = assessed(tmp_path, square, floor=SLOW | {"record_y": "slow.csv"}, settings=Settings(runs=60))
+    chance = assessment.adoption.probability[0]
+    (joint,) = {float(one.fell.mean()) for one in assessment.joints.values() if 0 in one.cases}
+    assert 0 < joint < chance < 1, "one axis alone falls less often"
+    rows = build_results(assessment, figures=False).route_tables.routes
+    assert [one.blocked.probability if one.blocked else 0 for one in rows] == [pytest.approx(chance), 0]
+    pfa = assessment.demands["1", "X"][0].pfa / GRAVITY
+    assert assessment.demands["1", "Y"][0].pfa / GRAVITY == pytest.approx(pfa)
+    assert chances(fragility(assessment, pfa)) == [pytest.approx(chance)]
+
+
 def test_a_piece_too_stocky_to_rock_falls_by_the_formula(tmp_path):
     assessment = assessed(tmp_path, {**CABINET, "breadth": 160, "width": 160, "height": 110, "quantity": 2})
     found = fragility(assessment, 0.3, 0.9)
