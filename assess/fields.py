@@ -227,6 +227,34 @@ ADOPTED_FIELDS = (
     ),
 )  # fmt: skip
 
+
+def _annual(name: str, label: str, kind: Kind, **more: Any) -> Field:
+    read = attrgetter(name)
+    return Field(
+        key=f"annual_{name}", read=lambda one: None if one.item.annual is None else read(one.item.annual),
+        path=("annual", name), label=label, kind=kind, **{"shows": DATA, **more},
+    )  # fmt: skip
+
+
+ANNUAL_FIELDS = (
+    _annual("rate", fill("Falls a year"), "number", help="How often a year it falls, if it stands free."),
+    _annual("low", fill("Low"), "number", is_optional=True,
+            help="Lower end of the 95 % sampling interval of the rate; null where it fell in no draw."),
+    _annual("high", fill("High"), "number", is_optional=True, help="Upper end of it."),
+    _annual("chance_a_year", fill("Chance a year"), "share", format="0.00%", shows=FILES),
+    _annual("chance_in_50_years", fill("Chance in 50 years"), "share", format="0.0%", shows=FILES),
+    _annual("fit", fill("Integrated"), "text", choices=("lognormal", "table"),
+            help="The lognormal fitted to the shares that fall, or their table where that is not near enough."),
+    _annual("median_g", fill("Median ground PGA"), "number", unit="g", is_optional=True,
+            help="Ground PGA at which it falls in half of the draws, by the lognormal."),
+    _annual("dispersion", fill("Dispersion"), "number", is_optional=True),
+    _annual("misfit", fill("Misfit"), "share", is_optional=True,
+            help="Largest difference between the lognormal and a share."),
+    _annual("at_least", fill("Lower bound"), "flag", help="Whether the motions may be too weak: a lower bound then."),
+)  # fmt: skip
+"""How often a year it falls: together null where that was not evaluated."""
+
+
 _IN_ALL_LISTS: frozenset[Where] = EVERYWHERE | {"risky", "methods"}
 
 PIECE_FIELDS = (
@@ -315,6 +343,7 @@ def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Fiel
         *(field for method in methods for field in method_fields(method)),
         *SIMULATION_FIELDS,
         *ADOPTED_FIELDS,
+        *ANNUAL_FIELDS,
         axes,
         _of_item("anchored", fill("Anchored"), choices=ANCHORED, width=10),
         Field(key="route", read=lambda one: one.item.route or None, label=fill("Route"), width=24, is_optional=True),
@@ -476,7 +505,7 @@ def floor_fields(results: Results) -> tuple[Field, ...]:
 # ---------------------------------------------------------------- records and tables
 
 
-_GROUPS = ("verification", "ensemble")
+_GROUPS = ("verification", "ensemble", "annual")
 """Groups of fields that are None together where nothing in them is known, such as where no simulation ran."""
 
 

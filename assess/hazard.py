@@ -74,6 +74,14 @@ class HazardCurve:
         """Whether its site is farther from the building than `FAR`."""
         return self.distance is not None and self.distance > FAR
 
+    @property
+    def remarks(self) -> tuple[Text, ...]:
+        """What a reader has to know of it: its notes, and whether its site is far."""
+        if self.distance is None or not self.is_far:
+            return self.notes
+        far = fill("the site of the hazard curve is {km:.0f} km from the building", km=self.distance / 1000)
+        return (*self.notes, far)
+
 
 def read_hazard(path: Path, *, latitude: float | None = None, longitude: float | None = None) -> HazardCurve:
     """Read the hazard curve of a file, as `parse_hazard`.
@@ -83,13 +91,17 @@ def read_hazard(path: Path, *, latitude: float | None = None, longitude: float |
     InputError
         If it cannot be read or used; the message names the file, and the line where there is one.
     """
+    return parse_hazard(read_bytes(path), path.name, latitude=latitude, longitude=longitude)
+
+
+def read_bytes(path: Path) -> bytes:
+    """Return the bytes of a file, but no more than show that it is too large; InputError if it cannot be read."""
     try:
         with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
+            return file.read(LARGEST_FILE + 1)
     except (OSError, ValueError) as error:  # ValueError: a zero character in the name
         why = getattr(error, "strerror", None) or str(error)
         raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None
-    return parse_hazard(data, path.name, latitude=latitude, longitude=longitude)
 
 
 def parse_hazard(

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from assess.errors import Problem, RecordError
+from assess.hazard import HazardCurve
 from assess.i18n import fill, find_language
 from assess.motion.formats import parse_records, select
 from assess.motion.record import Record
@@ -58,7 +59,8 @@ def split_names(text: str | None) -> list[str]:
 class Building:
     """The building and the earthquake; a blank text or None where the workbook says nothing.
 
-    Lengths in m, `period` in s, accelerations in m/s2, velocities in m/s, `azimuth_deg` clockwise from north.
+    Lengths in m, `period` in s, accelerations in m/s2, velocities in m/s, `azimuth_deg` clockwise from north,
+    `latitude` and `longitude` in degrees, north and east positive. `hazard` is the name of the file with the curve.
     `motion_uncertainty` is a standard deviation of the natural logarithm of PFA [-], `piece_uncertainty` whether pieces
     vary from one simulated earthquake to the next; None where blank. `cells` tells in which cell of the sheet a field
     stands.
@@ -66,6 +68,8 @@ class Building:
 
     building: str = ""
     address: str = ""
+    latitude: float | None = None
+    longitude: float | None = None
     use: str = ""
     client: str = ""
     storeys: int | None = None
@@ -84,6 +88,7 @@ class Building:
     ground_pga: float | None = None
     ground_pgv: float | None = None
     sds: float | None = None
+    hazard: str = ""
     friction: float | None = None
     restitution: float | None = None
     motion_uncertainty: float | None = None
@@ -316,8 +321,10 @@ class Inventory:
         Warnings and notes; errors as well where it was read with ``strict=False``.
     extra_columns : tuple of str
         Headers of the columns of Items that `assess` does not know.
+    hazard : HazardCurve, optional
+        How often a year the ground shakes; compared by the hash of its file.
     files : mapping of str to str
-        Hashes (SHA-256) of the recorded motions, by name.
+        Hashes (SHA-256) of the recorded motions and of the hazard curve, by name.
     language : str
         Code of the workbook's language: that of more than half of the sheets it has, by their names; else English.
     sheets : mapping of str to str
@@ -338,6 +345,7 @@ class Inventory:
     catalogue: tuple[CatalogueType, ...] = ()
     problems: tuple[Problem, ...] = ()
     extra_columns: tuple[str, ...] = ()
+    hazard: HazardCurve | None = field(default=None, compare=False)
     files: Mapping[str, str] = field(default_factory=dict)
     language: str = "en"
     sheets: Mapping[str, str] = field(default_factory=dict)

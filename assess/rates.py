@@ -143,12 +143,7 @@ def integrate_table(curve: HazardCurve, levels: ArrayLike, shares: ArrayLike) ->
 
 def list_remarks(curve: HazardCurve, found: AnnualRate) -> tuple[Text, ...]:
     """Return what a reader of an annual rate has to know of its hazard curve."""
-    return (*curve.notes, *_remark_on_site(curve), *_remark_on_ends(curve, found))
-
-
-def _remark_on_site(curve: HazardCurve) -> Iterator[Text]:
-    if curve.distance is not None and curve.is_far:
-        yield fill("the site of the hazard curve is {km:.0f} km from the building", km=curve.distance / 1000)
+    return (*curve.remarks, *_remark_on_ends(curve, found))
 
 
 def _remark_on_ends(curve: HazardCurve, found: AnnualRate) -> Iterator[Text]:

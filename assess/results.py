@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import InputError, Problem
 from assess.i18n import fill, join, nfill
 from assess.methods import MethodInfo, Outcome
@@ -228,7 +229,8 @@ class ItemRow:
     `friction` is the one that was used: the piece's own, else the building's. `extra` holds the texts of the columns
     that `assess` does not know, `more` the values of those that nothing is computed with, by their fields. `routes` are
     those that it names, or has a segment of which it can reach. `governing`, `first_case` and `last_case` are places in
-    `Results.cases`: the case that governs, and those of the item.
+    `Results.cases`: the case that governs, and those of the item. `annual` is how often a year it falls if it stands
+    free, None where that was not evaluated.
     """
 
     index: int
@@ -262,6 +264,7 @@ class ItemRow:
     governing: int
     first_case: int
     last_case: int
+    annual: AnnualRow | None = None
 
     def field(self, key: str) -> Any:
         """Return one field by its key, whether or not anything is computed with it: None where that is blank."""
@@ -724,6 +727,8 @@ class Results:
         is blank.
     route_tables : RouteTables
         Evacuation routes; its tables are empty where the workbook names none.
+    annual : AnnualTables, optional
+        What annual chances rest on, and those of the building; None where the workbook names no hazard file.
     places, catalogue
         As the workbook has them.
     problem_rows : tuple of Problem
@@ -746,6 +751,7 @@ class Results:
     item_rows: tuple[ItemRow, ...]
     cases_table: CaseTable
     route_tables: RouteTables
+    annual: AnnualTables | None
     places: tuple[Place, ...]
     catalogue: tuple[CatalogueType, ...]
     problem_rows: tuple[Problem, ...]

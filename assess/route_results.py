@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
 from typing import Any
 
+from assess.annual_results import AnnualRow
 from assess.risk import RiskClass, classify
 
 FLAGS: Mapping[str, str] = {
@@ -275,7 +276,8 @@ class RouteRow:
     `state` to `most_likely_piece` are as in `SegmentRow`. `unevaluated_segments` names those of its segments that are
     not evaluated; `evaluated` is whether any is. `fixes` is the smallest set found that brings the route under the
     chosen risk with unconfirmed pieces fallen, and `is_fixed` whether one exists: not where it is blocked with nothing
-    fallen.
+    fallen. `annual` is how often a year it is blocked if all anchors hold, `annual_if_anchors_fail` the same with
+    anchored pieces taken as free-standing, None where there are none; both are None where no hazard file is given.
     """
 
     route: str
@@ -294,6 +296,8 @@ class RouteRow:
     most_likely_piece: PieceRef | None
     fixes: tuple[RouteFixRow, ...]
     is_fixed: bool
+    annual: AnnualRow | None = None
+    annual_if_anchors_fail: AnnualRow | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -340,6 +344,8 @@ class RoomRow:
         The same by their index.
     ways : tuple of WayRow
         Ways out, the safest first; further ones share as few segments as possible with those before them.
+    annual : AnnualRow, optional
+        How often a year it loses every exit, if all anchors hold; None where no hazard file is given.
     """
 
     room: str
@@ -355,6 +361,7 @@ class RoomRow:
     unevaluated_segments: tuple[str, ...]
     unevaluated_indices: tuple[int, ...]
     ways: tuple[WayRow, ...]
+    annual: AnnualRow | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

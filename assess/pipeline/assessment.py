@@ -17,6 +17,7 @@ from assess.settings import Settings
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
+    from assess.pipeline.annual import Annual
     from assess.routes.obstructions import Obstructions
 
 
@@ -52,6 +53,8 @@ class Assessment:
         What can reach the segments of evacuation routes.
     problems : tuple of Problem
         Warnings and notes about the input.
+    annual : Annual, optional
+        Annual chances; None where the workbook names no hazard file.
     """
 
     inventory: Inventory
@@ -70,6 +73,7 @@ class Assessment:
     governing: NDArray[np.intp]
     obstructions: "Sequence[Obstructions]"
     problems: tuple[Problem, ...]
+    annual: "Annual | None" = None
 
     @property
     def joints(self) -> Mapping[Demand, Joint]:

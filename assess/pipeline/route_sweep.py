@@ -13,7 +13,7 @@ Where the motions may be too weak, the chances are lower bounds, and those piece
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -21,27 +21,19 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import fill
-from assess.methods import (
-    Cases,
-    Joint,
-    Outcome,
-    adopted_formula,
-    interval_width,
-    simulation,
-)  # fmt: skip
-from assess.methods._method import BoolArray, Ensemble, FloatArray
+from assess.methods import Cases, interval_width
+from assess.methods._method import Ensemble
 from assess.model import AXES
-from assess.pipeline.adopt import adopt, build_falls, find_governing
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.ensembles import GeneratedEnsemble
+from assess.pipeline.level_falls import find_falls
 from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.block import stocky_limit
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance
-from assess.routes.chances import Falls, Happens
+from assess.routes.chances import Happens
 from assess.routes.network import build_course
 from assess.routes.obstructions import Obstructions, find_obstructions
 from assess.routes.scene import Scene
@@ -223,44 +215,12 @@ class _Sweep:
     def scene(self, at: int, rocked: Sequence[RockedLevels], progress: Progress) -> Scene:
         """Return the segments with how the pieces fall at value `at`."""
         settings, value = self.assessment.settings, self.values[at]
-        falls = self._falls(value, [(one.own, one.fell[at]) for one in rocked])
+        every = np.full(self.cases.pfa.size, value)
+        falls = find_falls(self.assessment, self.cases, every, [(one.own, one.fell[at]) for one in rocked], settings)
         z = interval_width(settings)
         return Scene(
             self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed, z, progress
         )
-
-    def _falls(self, value: float, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Falls:
-        every = np.full(self.cases.pfa.size, value)
-        scaled = replace(
-            self.cases, pfa=every, pfv=self.cases.pfv * value / self.cases.pfa, pfv_estimated=every < 0
-        )  # nothing is doubtful here: what was rocked is taken as it is
-        formula = adopted_formula().evaluate(scaled, self.assessment.settings)
-        outcomes = {adopted_formula().key: formula, simulation().key: _outcome(every.size, fell)}
-        inventory, case_item, settings = self.assessment.inventory, self.assessment.case_item, self.assessment.settings
-        adoption = adopt(outcomes, scaled, settings)
-        adoption, united = unite_axes(adoption, outcomes, inventory, case_item, self.assessment.case_demand, settings)
-        governing = find_governing(adoption.probability, case_item, scaled.pfa)
-        return build_falls(inventory, adoption, outcomes, governing, settings, united)
-
-
-def _outcome(count: int, fell: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Outcome:
-    """Return what was rocked as the outcome of a simulation of `count` cases, without the recorded motion."""
-    value: FloatArray = np.full(count, np.nan)
-    joints = []
-    for number, (own, one) in enumerate(fell):
-        value[own] = one.sum(axis=1) / one.shape[1]
-        runs, rotation = np.full(own.size, one.shape[1]), np.zeros((0, 0), dtype=np.float32)
-        joint = Joint(
-            ensemble=number, cases=own, runs=runs, fell=one, ideal=one, rotation=rotation, examples=(), fit=None
-        )
-        joints.append(joint)
-    unknown, no = np.full(count, np.nan), np.zeros(count, dtype=np.bool_)
-    return Outcome(
-        value,
-        {"ideal": value, **dict.fromkeys(("low", "high", "ideal_low", "ideal_high", "record_overturned"), unknown)},
-        dict.fromkeys(("unknown_period", "weak_motions", "fell_in_record"), no),
-        tuple(joints),
-    )
 
 
 # ---------------------------------------------------------------- the routes

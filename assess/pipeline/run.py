@@ -24,6 +24,7 @@ from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
+    add_annual,
     build_cases,
     build_floor,
     build_items,
@@ -41,6 +42,7 @@ from assess.settings import SCENARIOS, Settings, change_settings
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
+    from assess.pipeline.annual import Annual
     from assess.routes.obstructions import Obstructions
 
 SERIES = "series.npz"
@@ -153,7 +155,7 @@ def _compute(
     adopted = adopt(outcomes, cases, settings)
     adoption, united = unite_axes(adopted, outcomes, inventory, case_item, case_demand, settings)
     remarks = [*remark(inventory, filled, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
-    return Assessment(
+    assessment = Assessment(
         inventory=inventory,
         settings=settings,
         scenario=scenario,
@@ -171,6 +173,7 @@ def _compute(
         obstructions=obstructions,
         problems=(*inventory.problems, *map(inventory.place, (*remarks, *_route_problems(inventory, obstructions)))),
     )
+    return replace(assessment, annual=_evaluate_annual(assessment, jobs, progress))
 
 
 def build_results(
@@ -216,6 +219,7 @@ def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Pat
         item_rows=build_items(assessment, routes),
         cases_table=build_cases(assessment, demands),
         route_tables=routes,
+        annual=None if assessment.annual is None else assessment.annual.tables,
         places=inventory.places,
         catalogue=inventory.catalogue,
         problem_rows=assessment.problems,
@@ -292,6 +296,14 @@ def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple
     )
 
 
+def _evaluate_annual(assessment: Assessment, jobs: int | None, progress: Progress) -> "Annual | None":
+    if assessment.inventory.hazard is None:
+        return None
+    from assess.pipeline.annual import evaluate_annual
+
+    return evaluate_annual(assessment, jobs=jobs, progress=progress)
+
+
 # ---------------------------------------------------------------- routes, imported only where there are any
 
 
@@ -312,7 +324,8 @@ def _evaluate_routes(assessment: Assessment, progress: Progress) -> RouteTables:
     falls = build_falls(
         inventory, assessment.adoption, assessment.outcomes, assessment.governing, settings, assessment.either_axis
     )
-    return evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
+    found = evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
+    return found if assessment.annual is None else add_annual(found, assessment.annual.ways)
 
 
 def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Any:

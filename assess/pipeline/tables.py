@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from assess.annual_results import AnnualRow
 from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
 from assess.model import AXES, Floor, Inventory, Item
@@ -32,6 +33,7 @@ from assess.version import __version__
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
     from assess.motion.target_fit import Fit
+    from assess.pipeline.annual_ways import AnnualWays
     from assess.route_results import RouteTables
 
 _FACTORS: Mapping[str, float] = {**LENGTH, **ACCELERATION, **VELOCITY}
@@ -170,16 +172,24 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
     """Return a row for each row of furniture."""
     inventory = assessment.inventory
     firsts = np.searchsorted(assessment.case_item, np.arange(len(inventory.items) + 1)).tolist()
+    annual = {} if assessment.annual is None else assessment.annual.items
     governing, named = assessment.governing.tolist(), _list_routes(inventory, routes)
     return tuple(
-        _item(inventory.complete(item), index, governing[index], (firsts[index], firsts[index + 1]), named.get(index))
+        _item(
+            inventory.complete(item),
+            index,
+            governing[index],
+            (firsts[index], firsts[index + 1]),
+            named.get(index),
+            annual.get(index),
+        )
         for index, item in enumerate(inventory.items)
     )
 
 
 def _item(
     item: Item, index: int, governing: int, cases: tuple[int, int],
-    routes: tuple[str, ...] | None,
+    routes: tuple[str, ...] | None, annual: AnnualRow | None,
 ) -> ItemRow:  # fmt: skip
     return ItemRow(
         index=index,
@@ -213,6 +223,20 @@ def _item(
         governing=governing,
         first_case=cases[0],
         last_case=cases[1],
+        annual=annual,
+    )
+
+
+def add_annual(tables: "RouteTables", ways: "AnnualWays") -> "RouteTables":
+    """Return the tables of routes with how often a year routes are blocked and rooms lose every exit."""
+    fail = ways.routes_if_anchors_fail
+    return replace(
+        tables,
+        routes=tuple(
+            replace(one, annual=ways.routes.get(one.route), annual_if_anchors_fail=fail.get(one.route))
+            for one in tables.routes
+        ),
+        rooms=tuple(replace(one, annual=ways.rooms.get(one.room)) for one in tables.rooms),
     )
 
 

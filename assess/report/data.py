@@ -40,6 +40,7 @@ def write_json(results: Results, path: Path, progress: Progress = SILENT) -> Non
         _write_list(file, "items", map(shape.nest, progress.checked(results)))
         file.write(",\n")
         _write_routes(file, results.route_tables.to_record())
+        file.write(f',\n "annual": {_dump(results.annual and asdict(results.annual))}')
         file.write(",\n")
         _write_list(file, "problems", (asdict(one) for one in results.problem_rows))
         file.write("\n}\n")

@@ -15,6 +15,7 @@ from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from assess import route_results as rows
+from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import Problem
 from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
 from assess.model import AXES
@@ -49,6 +50,8 @@ def build_schema() -> Schema:
         })),
         "items": _list(_ref("item")),
         "routes": _of_row(rows.RouteTables),
+        "annual": _or_null(_of_row(AnnualTables))
+        | {"description": "What annual chances rest on, and those of the building; null: no Hazard file was given."},
         "problems": _list(_of_row(Problem) | {"description": "Warnings and notes about the input."}),
     }  # fmt: skip
     return {
@@ -104,7 +107,7 @@ _KINDS: Mapping[str, Schema] = {
     "text": TEXT, "number": {"type": "number"}, "count": COUNT, "share": SHARE, "flag": {"type": "boolean"},
     "class": {"enum": [risk.word for risk in RiskClass]}, "list": _list(TEXT),
 }  # fmt: skip
-_GROUPS_OR_NULL = {("verification",), ("verification", "record"), ("ensemble",), ("ensemble", "fit")}
+_GROUPS_OR_NULL = {("verification",), ("verification", "record"), ("ensemble",), ("ensemble", "fit"), ("annual",)}
 
 
 def _of_fields(chosen: Iterable[Field]) -> Schema:
@@ -185,7 +188,7 @@ def _assess() -> Schema:
 _ROWS: Mapping[type, str] = {
     rows.Chance: "chance", rows.PieceRef: "piece", rows.BesideRow: "beside", rows.SegmentRow: "segment",
     rows.RouteRow: "route", rows.RouteFixRow: "route_fix", rows.WayRow: "way", rows.RoomRow: "room",
-    rows.FloorRoutesRow: "route_floor",
+    rows.FloorRoutesRow: "route_floor", AnnualRow: "annual",
 }  # fmt: skip
 """The rows that are defined once, by their names in the schema."""
 

@@ -207,6 +207,7 @@ def _checks(files: FileReader) -> tuple[Check, ...]:
     """Return all checks in the order in which their problems are listed."""
     return (
         files.check_logo,
+        files.check_hazard,
         check.check_catalogue,
         check.check_floors,
         files.check_records,
@@ -259,6 +260,7 @@ def _build(tables: Tables, files: FileReader) -> dict[str, Any]:
         "places": build_rows(Place, tables["Places"], "place", "floor"),
         "routes": build_rows(Segment, tables["Routes"], "route", "segment"),
         "catalogue": catalogue,
+        "hazard": files.hazard,
         "extra_columns": tables["Items"].extra,
         "files": files.hashes,
         "language": _language(tables),

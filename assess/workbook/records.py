@@ -1,4 +1,6 @@
-"""Files that the workbook names: recorded motions, the logo, plans. Only files inside one folder are touched.
+"""Files that the workbook names: recorded motions, a hazard curve, the logo, plans.
+
+Only files inside one folder are touched.
 
 A name is judged as text first, by the rules of both Windows and POSIX, before the file system sees it: resolving a
 network path would already talk to another machine.
@@ -10,7 +12,9 @@ import unicodedata
 from collections.abc import Generator, Iterator, Mapping
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from assess.errors import Problem, RecordError
+from assess.errors import InputError, Problem, RecordError
+from assess.hazard import HazardCurve, parse_hazard
+from assess.hazard import read_bytes as read_hazard_bytes
 from assess.i18n import fill
 from assess.model import AXES, NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
 from assess.motion.formats import parse_records, read_bytes, select
@@ -42,7 +46,9 @@ class FileReader:
     Attributes
     ----------
     hashes : dict of str to str
-        SHA-256 of the recorded motions, by the name of the file.
+        SHA-256 of the recorded motions and of the hazard curve, by the name of the file.
+    hazard : HazardCurve, optional
+        The hazard curve of the site.
     records : dict
         The recorded motions of the floors, by the number of their row and axis.
     plans : dict of int to Path
@@ -60,12 +66,48 @@ class FileReader:
         self.records: dict[tuple[int, Axis], tuple[FloorRecord, ...]] = {}
         self.plans: dict[int, Path] = {}
         self.logo: Path | None = None
+        self.hazard: HazardCurve | None = None
         self._read: dict[str, tuple[tuple[Record, ...] | CellError, str]] = {}
 
     def check_logo(self, tables: Tables) -> Iterator[Problem]:
         """Find the logo, or report what is wrong with it."""
         for row in tables["Building"].with_all("logo"):
             self.logo = yield from self._find_picture(tables["Building"], "logo", row)
+
+    def check_hazard(self, tables: Tables) -> Iterator[Problem]:
+        """Read the hazard curve, or report what is wrong with it, or with the building's latitude and longitude."""
+        table = tables["Building"]
+        for row in table.rows:
+            for name, other in (("latitude", "longitude"), ("longitude", "latitude")):
+                if row.get(name) is not None and table.lacks(row, other):
+                    message = fill(
+                        "{label} is given without {other}.", label=table.label(name), other=table.label(other)
+                    )
+                    yield table.problem(name, row, message, fill("Fill in both, or clear both."))
+        for row in table.with_all("hazard"):
+            if table.spoilt("latitude", row) or table.spoilt("longitude", row):
+                continue
+            try:
+                self.hazard = self._read_hazard(row.get("hazard"), row.get("latitude"), row.get("longitude"))
+            except CellError as error:
+                yield table.problem("hazard", row, error.message, error.fix)
+                continue
+            yield from (
+                table.problem("hazard", row, fill("the hazard curve: {note}.", note=note), severity="warning")
+                for note in self.hazard.remarks
+            )
+
+    def _read_hazard(self, file: str, latitude: float | None, longitude: float | None) -> HazardCurve:
+        content, address = self._find(file)
+        name = PurePosixPath(_posix(address)).name
+        try:
+            data = content if isinstance(content, bytes) else read_hazard_bytes(content)
+            curve = parse_hazard(data, name, latitude=latitude, longitude=longitude)
+        except InputError as error:
+            fix = fill("Correct the file, or give a CSV file with the columns pga_g,annual_rate.")
+            raise CellError(fill("the hazard curve cannot be used: {why}.", why=error.message), fix) from None
+        self.hashes[file] = hashlib.sha256(data).hexdigest()
+        return curve
 
     def check_plans(self, tables: Tables) -> Iterator[Problem]:
         """Find the plans of the floors, or report what is wrong with them."""

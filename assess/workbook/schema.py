@@ -123,6 +123,9 @@ BUILDING = Sheet(
     (
         Column("building", "Building", "text", "Name of the building.", width=40),
         Column("address", "Address", "text", "Street and town."),
+        Column("latitude", "Latitude", "number", "Of the site, north positive: with Longitude, to find it in a Hazard "
+               "file of many sites.", **_DEGREES | {"low": -90, "high": 90}),
+        Column("longitude", "Longitude", "number", "Of the site, east positive.", **_DEGREES | {"low": -180, "high": 180}),
         Column("use", "Use", "text", "Office, hospital, school ..."),
         Column("client", "Client", "text", "For whom the report is made: for its cover."),
         Column("storeys", "Storeys", "count", "Storeys above ground.", low=1, high=300),
@@ -143,11 +146,15 @@ BUILDING = Sheet(
         Column("scenario_kind", "Scenario kind", "choice", "as filled: each floor's record, else PFA, else between "
                "its neighbours, else ASCE 7-22. A code: every floor.", choices=SCENARIOS, default="as filled"),
         Column("ground_pga", "Ground PGA", "number", "Peak ground acceleration (0.4 SDS in ASCE 7, α S in EN 1998-1 "
-               "and NTC): gives the motion of floors without record or PFA.", **_ACCELERATION),
+               "and NTC): gives the motion of floors without record or PFA, and the level to which annual chances "
+               "refer.", **_ACCELERATION),
         Column("ground_pgv", "Ground PGV", "number", "Peak ground velocity of the same earthquake.",
                **_GROUND_VELOCITY),
         Column("sds", "SDS", "number", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank "
                "Ground PGA.", **_ACCELERATION),
+        Column("hazard", "Hazard file", "file", "Hazard curve of the site beside the workbook, for chances a year: a CSV "
+               "file with pga_g,annual_rate, or OpenQuake's hazard_curve-mean-PGA.csv.",
+               default="chances a year are not evaluated"),
         Column("friction", "Default friction", "number", "Coefficient of friction of pieces whose own is blank. "
                "Blank: no sliding, as the paper assumes.", low=0.01, high=2, default="no sliding"),
         Column("restitution", "Restitution", "number", "Angular velocity after an impact over that before it, for "

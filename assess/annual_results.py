@@ -1,0 +1,112 @@
+"""Annual chances in the results: how often a year pieces fall, routes are blocked and rooms lose every exit.
+
+A chance a year counts all earthquakes of the site's hazard curve, strong and weak; the other chances of a report are
+those in one scenario.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnnualRow:
+    """How often a year something happens.
+
+    Parameters
+    ----------
+    rate : float
+        Times a year.
+    low, high : float, optional
+        95 % sampling interval of the rate: it covers the number of draws only. None where it happened in no draw at any
+        level of shaking.
+    chance_a_year, chance_in_50_years : float
+        Chance of at least once.
+    fit : str
+        What was integrated: a lognormal fitted to the shares, or the table of shares where that is not near enough.
+    median_g : float, optional
+        Ground PGA at which it happens in half of the draws [g], by the lognormal; None where that was not used.
+    dispersion : float, optional
+        Logarithmic standard deviation of the lognormal.
+    misfit : float, optional
+        Its largest difference from a share.
+    at_least : bool
+        Whether the rate is a lower bound, as the motions may be too weak.
+    """
+
+    rate: float
+    low: float | None
+    high: float | None
+    chance_a_year: float
+    chance_in_50_years: float
+    fit: Literal["lognormal", "table"]
+    median_g: float | None
+    dispersion: float | None
+    misfit: float | None
+    at_least: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnnualTables:
+    """What annual chances rest on, and those of the building.
+
+    Parameters
+    ----------
+    file : str
+        The file of the hazard curve.
+    missing : str
+        Why nothing was evaluated, and what to fill in; empty where it was.
+    latitude, longitude : float, optional
+        Of the site of the curve [deg].
+    distance_km : float, optional
+        From there to the building.
+    curve_pga_g, curve_rate : tuple of float
+        Points of the curve: peak ground acceleration, and how often a year it is exceeded.
+    ground_pga_g : float, optional
+        Ground PGA of the scenario: the floors' motions are taken to grow in proportion to it.
+    motion_dispersion : float
+        Logarithmic standard deviation of the floors' motions at a ground PGA.
+    runs : int
+        Draws at each level.
+    levels_g : tuple of float
+        Ground PGA at which every piece was rocked.
+    pieces, not_evaluated : int
+        Free-standing pieces that are counted, and those that are not, as they were not simulated.
+    at_least : int
+        Those of the counted ones whose rate is a lower bound.
+    expected_falls : float
+        Free-standing pieces that fall a year, on average.
+    expected_low, expected_high : float, optional
+        95 % sampling interval of that; None where nothing fell.
+    life_safety_pieces : int
+        Counted pieces whose Importance is life safety.
+    life_safety : AnnualRow, optional
+        Any of those falls; None where there are none.
+    remarks : tuple of str
+        What a reader has to know of the curve and its ends.
+    """
+
+    file: str
+    missing: str = ""
+    latitude: float | None = None
+    longitude: float | None = None
+    distance_km: float | None = None
+    curve_pga_g: tuple[float, ...] = ()
+    curve_rate: tuple[float, ...] = ()
+    ground_pga_g: float | None = None
+    motion_dispersion: float = 0.0
+    runs: int = 0
+    levels_g: tuple[float, ...] = ()
+    pieces: int = 0
+    not_evaluated: int = 0
+    at_least: int = 0
+    expected_falls: float = 0.0
+    expected_low: float | None = None
+    expected_high: float | None = None
+    life_safety_pieces: int = 0
+    life_safety: AnnualRow | None = None
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def is_evaluated(self) -> bool:
+        """Whether there are annual chances."""
+        return not self.missing
