@@ -7,6 +7,9 @@ those in one scenario.
 from dataclasses import dataclass
 from typing import Literal
 
+YEARS = 50
+"""Years of the longer chance."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnnualRow:

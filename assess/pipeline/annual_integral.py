@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.annual_results import AnnualRow
+from assess.annual_results import YEARS, AnnualRow
 from assess.fragility import fit_fragility
 from assess.hazard import HazardCurve
 from assess.i18n import Text
@@ -16,9 +16,6 @@ from assess.methods._method import BoolArray, FloatArray
 from assess.rates import evaluate_rate, integrate_table, list_remarks
 from assess.risk import NORMAL_95
 from assess.units import GRAVITY
-
-YEARS = 50
-"""Years of the longer chance."""
 
 
 @dataclass(frozen=True)

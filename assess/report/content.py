@@ -13,6 +13,7 @@ from assess.i18n import number
 from assess.report import statements, words
 from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, count_cannot_rock, count_rooms
 from assess.report.findings import cautions, motions, trials
+from assess.report.findings.annual_chances import AnnualChances, build_annual
 from assess.report.findings.apart import list_apart, list_parts
 from assess.report.findings.disagreements import Disagreements, find_disagreements
 from assess.report.findings.trials import Trials
@@ -109,6 +110,7 @@ class Content(ByBasis):
     verified: Verified
     trials: Trials
     disagreements: Disagreements
+    annual: AnnualChances | None
     worked: Sequence[WorkedExample]
     making: Sequence[tuple[str, str]]
 
@@ -212,6 +214,7 @@ def build_content(results: Results) -> Content:
         verified=verified,
         trials=trials.build_trials(results, verified),
         disagreements=find_disagreements(results, rows),
+        annual=build_annual(results, rows),
         worked=tuple(_work(results, one) for one in results.worked),
         making=statements.list_making(results),
     )

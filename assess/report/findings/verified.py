@@ -14,12 +14,19 @@ from assess.settings import AUTO
 NAMED = 12
 """Pieces that a sentence names; the rest are counted."""
 SCENARIO = fill("Chance of overturning in this scenario, not per year.")
+WITH_ANNUAL = fill("Chance of overturning in this scenario, unless it is called a chance a year.")
 INTERVAL = fill("the sampling interval covers the number of draws only")
 WILSON = (
     "Wilson EB (1927). Probable inference, the law of succession, and statistical inference. Journal of the American "
     "Statistical Association 22(158):209-212. doi:10.1080/01621459.1927.10502953"
 )
 """The interval of a simulated chance."""
+
+
+def say_scenario(results: Results) -> str:
+    """Return what the chances of a report are, for the foot of every page."""
+    has_annual = results.annual is not None and results.annual.is_evaluated
+    return _(WITH_ANNUAL if has_annual else SCENARIO)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,12 +91,12 @@ class Verified:
     def footer(self) -> str:
         """The foot of every page, but for what `list_conditions` adds."""
         if not self.done:
-            return f"{_(SCENARIO)} {self.sentence}"
+            return f"{say_scenario(self.run)} {self.sentence}"
         extent = ngettext(
             "Simulated: {done:,} of {n:,} row; {interval}.", "Simulated: {done:,} of {n:,} rows; {interval}.",
             len(self.run), done=len(self.done), interval=INTERVAL,
         )  # fmt: skip
-        return f"{_(SCENARIO)} {extent}"
+        return f"{say_scenario(self.run)} {extent}"
 
     @property
     def conditions(self) -> str:

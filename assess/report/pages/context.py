@@ -15,7 +15,7 @@ from assess.report.figures.motion_figures import choose_traced, draw_motion, dra
 from assess.report.figures.plan import build_plan
 from assess.report.figures.risk_contours import build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
-from assess.report.findings import motions, route_rows, route_words, trials
+from assess.report.findings import annual_chances, motions, route_rows, route_words, trials
 from assess.report.pages import compact
 from assess.report.pages.page_columns import (
     PageColumn,
@@ -35,6 +35,7 @@ LIMITS: Mapping[str, int] = {
     "most_rows": 5000, "most_lines": compact.MOST_LINES, "most_routes": 100, "most_segments": 150,
     "most_rooms": 150, "most_beside": 300, "most_steps": 120, "most_problems": 120, "most_notes": 150,
     "most_motions": 60, "most_groups": 15, "most_risky": 60, "listed": trials.LISTED,
+    "most_annual": annual_chances.LISTED,
     "most_fixes": summary.FIXES, "most_cautions": summary.CAUTIONS, "most_at_risk": summary.ROUTES,
 }  # fmt: skip
 """What the lists of HTML and PDF show at most; the Excel report holds all."""
@@ -81,6 +82,7 @@ def _list_parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
         "summary": _("Summary"),
         "floors": _("Floors"),
         "routes": _("Evacuation routes"),
+        "annual": _("Chances a year"),
         "items": _("All pieces"),
         "comparison": _("Comparison of the methods"),
         "verification": _("Verification"),
@@ -93,7 +95,11 @@ def _list_parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
         "appendix": _("Appendix"),
         "lists": _("Appendix: all pieces"),
     }
-    left_out = {"contours": "contours/items" not in content.run.series, "lists": not is_compact}
+    left_out = {
+        "annual": content.annual is None,
+        "contours": "contours/items" not in content.run.series,
+        "lists": not is_compact,
+    }
     return [(name, heading) for name, heading in parts.items() if not left_out.get(name)]
 
 

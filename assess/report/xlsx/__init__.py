@@ -17,7 +17,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report.content import Content, report_date
-from assess.report.xlsx import floors_sheet, items_sheet, method_sheets, route_sheets, summary_sheet
+from assess.report.xlsx import annual_sheet, floors_sheet, items_sheet, method_sheets, route_sheets, summary_sheet
 from assess.report.xlsx.pen import Pen, name_sheets, set_print
 from assess.workbook.formulas import write_plainly
 from assess.workbook.writer import write_book
@@ -40,6 +40,7 @@ SHEETS: tuple[tuple[str, Write, IsThere], ...] = (
     (fill("Routes"), route_sheets.write_routes, _always),
     (fill("Route pieces"), route_sheets.write_route_pieces, route_sheets.has_pieces),
     (fill("Route rooms"), route_sheets.write_route_rooms, lambda content: bool(content.run.route_tables.rooms)),
+    (fill("Annual"), annual_sheet.write_annual, lambda content: content.annual is not None),
     (fill("Methods"), method_sheets.write_methods, _always),
     (fill("Assumptions"), method_sheets.write_assumptions, _always),
     (fill("Quality log"), method_sheets.write_quality, _always),
@@ -77,5 +78,5 @@ def _write_sheets(book: xlsxwriter.Workbook, content: Content, progress: Progres
     for page, name, (_title, write) in zip(pages, pen.sheets.values(), there, strict=True):
         progress.check()
         write_plainly(page)
-        set_print(page, content.title, name, content.run.settings)
+        set_print(page, content.title, name, content.run)
         write(pen, page, content)

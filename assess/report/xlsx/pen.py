@@ -10,8 +10,9 @@ from assess.fields import Field
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.findings.verified import SCENARIO
+from assess.report.findings.verified import say_scenario
 from assess.report.xlsx.item_formulas import Terms, build_terms
+from assess.results import Results
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.settings import Settings
@@ -255,17 +256,19 @@ def _say_conditions_shortly(settings: Settings) -> str:
     return ", ".join(texts)
 
 
-def set_print(page: Any, title: str, sheet: str, settings: Settings) -> None:
+def set_print(page: Any, title: str, sheet: str, run: Results) -> None:
     """Set up the printed pages of a sheet: A4 across, fit to the width, with headers; a sheet may set more itself."""
     page.set_landscape()
     page.set_paper(A4)
     page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
     page.fit_to_pages(1, 0)
     pages = _plain(_("Page {page} of {pages}", page="\x01", pages="\x02"))
-    conditions = _plain(_say_conditions_shortly(settings))
+    conditions = _plain(_say_conditions_shortly(run.settings))
     middle = f"&C&8 {conditions}" if conditions else ""
     page.set_header(f"&L&8 {_plain(words.cut(title, 80))}{middle}&R&8 {_plain(sheet)}")
-    page.set_footer(f"&L&8 {_plain(_(SCENARIO).rstrip('.'))}&R&8 {pages}".replace("\x01", "&P").replace("\x02", "&N"))
+    page.set_footer(
+        f"&L&8 {_plain(say_scenario(run).rstrip('.'))}&R&8 {pages}".replace("\x01", "&P").replace("\x02", "&N")
+    )
 
 
 def _plain(text: str) -> str:

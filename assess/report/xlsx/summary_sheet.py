@@ -15,7 +15,7 @@ from assess.i18n import ngettext
 from assess.report import words
 from assess.report.content import Content
 from assess.report.findings.at_risk import describe_at_risk
-from assess.report.findings.verified import INTERVAL, SCENARIO
+from assess.report.findings.verified import INTERVAL, say_scenario
 from assess.report.summary import ROUTES
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import literal, sentence
@@ -124,7 +124,8 @@ def _set_pages(plan: _Plan) -> None:
 
 def _list_lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> list[tuple[str, str]]:
     """Return the sentences below the title, each with its formula or ""."""
-    plain = (*content.cautions, *_say_routes(content))
+    annual = content.annual.paragraphs[:1] if content.annual else ()
+    plain = (*content.cautions, *annual, *_say_routes(content))
     return [*_lines(pen, content, areas, bases), *((text, "") for text in plain)]
 
 
@@ -147,10 +148,10 @@ def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence
     yield from ((text, "") for text in say_conditions(content.run.settings))
     if not content.run.has_simulated:
         status, meaning = verified.status
-        yield _(SCENARIO), ""
+        yield say_scenario(content.run), ""
         yield f"{status}: {meaning}.", ""
     else:
-        yield f"{_(SCENARIO)} {_(INTERVAL)[0].upper()}{_(INTERVAL)[1:]}.", ""
+        yield f"{say_scenario(content.run)} {_(INTERVAL)[0].upper()}{_(INTERVAL)[1:]}.", ""
         yield verified.sentence, ""
         if len(bases) > 1:
             yield _("What was simulated, what was not, and what is unconfirmed are counted apart."), ""

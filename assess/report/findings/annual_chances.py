@@ -1,0 +1,209 @@
+"""The section on chances a year: what they rest on, and those of the building, its pieces, routes and rooms."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from assess.annual_results import YEARS, AnnualRow, AnnualTables
+from assess.i18n import gettext as _
+from assess.i18n import ngettext, number
+from assess.report import words
+from assess.report.summary import describe
+from assess.results import ItemResult, Results
+
+LISTED = 20
+"""Rows of a list on a page; the Excel report has all."""
+LEAST, MOST = 1e-5, 0.999
+"""Chances beyond which no digits are shown [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnnualLine:
+    """One line of a table: its name, what and where it is, and its chances; `row` has the numbers."""
+
+    name: str
+    what: str
+    where: str
+    row: AnnualRow
+
+    @property
+    def a_year(self) -> str:
+        """The chance a year."""
+        return say_share(self.row.chance_a_year, self.row)
+
+    @property
+    def in_50_years(self) -> str:
+        """The chance in 50 years."""
+        return say_share(self.row.chance_in_50_years, self.row)
+
+    @property
+    def once_in(self) -> str:
+        """The mean time between two of them [years]."""
+        return say_years(self.row)
+
+    @property
+    def interval(self) -> str:
+        """The 95 % sampling interval of the chance in 50 years."""
+        return say_interval(self.row)
+
+    @property
+    def median(self) -> str:
+        """Ground PGA at which it happens in half of the draws [g], with the dispersion; a dash without a lognormal."""
+        if self.row.median_g is None or self.row.dispersion is None:
+            return words.DASH
+        return f"{number(self.row.median_g, '.2f')} ({number(self.row.dispersion, '.2f')})"
+
+
+@dataclass(frozen=True, slots=True)
+class AnnualChances:
+    """What the section shows; every list is sorted, the likeliest first.
+
+    The first of `paragraphs` is what the summary says: the building's own, or why nothing was evaluated.
+    """
+
+    is_evaluated: bool
+    paragraphs: Sequence[str]
+    remarks: Sequence[str]
+    pieces: Sequence[AnnualLine]
+    routes: Sequence[AnnualLine]
+    rooms: Sequence[AnnualLine]
+
+
+def build_annual(results: Results, rows: Sequence[ItemResult]) -> AnnualChances | None:
+    """Gather the section; None where the workbook names no hazard file."""
+    found = results.annual
+    if found is None:
+        return None
+    if not found.is_evaluated:
+        return AnnualChances(False, (_say_missing(found),), tuple(map(_, found.remarks)), (), (), ())
+    ways = results.route_tables
+    routes = (AnnualLine(one.route, "", ", ".join(one.floors), one.annual) for one in ways.routes if one.annual)
+    return AnnualChances(
+        is_evaluated=True,
+        paragraphs=(" ".join(_say_building(found)), " ".join(_say_basis(found)), " ".join(_say_counted(found))),
+        remarks=tuple(map(_, found.remarks)),
+        pieces=_sort(_pieces(rows)),
+        routes=_sort(routes),
+        rooms=_sort(AnnualLine(one.room, "", one.floor, one.annual) for one in ways.rooms if one.annual),
+    )
+
+
+def _say_missing(found: AnnualTables) -> str:
+    """Return why there are no chances a year, and what to fill in."""
+    return _("Chances a year were not evaluated: {why}.", why=_(found.missing))
+
+
+def _pieces(rows: Sequence[ItemResult]) -> Iterator[AnnualLine]:
+    for one in rows:
+        if one.item.annual is not None and not one.is_anchored:
+            where = ", ".join(filter(None, (one.item.floor, one.item.room)))
+            yield AnnualLine(one.item.item, describe(one), where, one.item.annual)
+
+
+def _sort(lines: Iterable[AnnualLine]) -> tuple[AnnualLine, ...]:
+    return tuple(sorted(lines, key=lambda one: -one.row.rate))
+
+
+# ---------------------------------------------------------------- sentences
+
+
+def _say_building(found: AnnualTables) -> Iterator[str]:
+    low, high = found.expected_low, found.expected_high
+    text = _(
+        "Over all earthquakes that the hazard curve counts, {falls} free-standing pieces are expected to fall a year",
+        falls=_say_number(found.expected_falls),
+    )
+    if low is not None and high is not None:
+        interval = _("95 % sampling interval {low} to {high}", low=_say_number(low), high=_say_number(high))
+        text = f"{text} ({interval})"
+    yield f"{text}."
+    row = found.life_safety
+    if row is None:
+        yield _("No simulated free-standing piece has the Importance life safety.")
+        return
+    yield _(
+        "The chance that any piece of the Importance life safety falls is {year} a year, and {years} in 50 years.",
+        year=say_share(row.chance_a_year, row),
+        years=say_share(row.chance_in_50_years, row),
+    )
+
+
+def _say_basis(found: AnnualTables) -> Iterator[str]:
+    yield _(
+        "The hazard curve is that of the file {file}, from {first} to {last} g.", file=found.file,
+        first=number(found.curve_pga_g[0], ".3g"), last=number(found.curve_pga_g[-1], ".3g"),
+    )  # fmt: skip
+    if found.latitude is not None and found.longitude is not None:
+        place = _("Its site is at {lat:.3f} north, {lon:.3f} east", lat=found.latitude, lon=found.longitude)
+        if found.distance_km is not None:
+            far = _("{km:.1f} km from the building", km=found.distance_km)
+            place = f"{place}, {far}"
+        yield f"{place}."
+    yield _(
+        "Every piece was rocked in {runs:,} draws at each of {levels} levels of ground PGA, from {first:.3g} to "
+        "{last:.3g} g. The motions of all floors were taken to grow in proportion to the ground PGA, from those of "
+        "this scenario at {ground:.3g} g: damage to the building, which changes how its floors move, is left out.",
+        runs=found.runs, levels=len(found.levels_g), first=found.levels_g[0], last=found.levels_g[-1],
+        ground=found.ground_pga_g or 0.0,
+    )  # fmt: skip
+    yield _(
+        "At a given ground PGA the motions of the floors still scatter, with a logarithmic standard deviation of "
+        "{beta:.2g}.",
+        beta=found.motion_dispersion,
+    )
+    yield _(
+        "The shares that fall were integrated over the curve by the lognormal that fits them, or as a table where that "
+        "misses a share by more than 0.05."
+    )
+
+
+def _say_counted(found: AnnualTables) -> Iterator[str]:
+    yield ngettext("{n:,} free-standing piece is counted.", "{n:,} free-standing pieces are counted.", found.pieces)
+    if found.not_evaluated:
+        yield ngettext(
+            "{n:,} more is not: it was not simulated.", "{n:,} more are not: they were not simulated.",
+            found.not_evaluated,
+        )  # fmt: skip
+    if found.at_least:
+        yield ngettext(
+            "The motions of {n:,} piece may be too weak: its chance, marked ≥, is a lower bound.",
+            "The motions of {n:,} pieces may be too weak: their chances, marked ≥, are lower bounds.",
+            found.at_least,
+        )  # fmt: skip
+    yield _("The intervals cover the number of draws only, not what is not known of the hazard.")
+
+
+# ---------------------------------------------------------------- numbers
+
+
+def say_share(value: float, row: AnnualRow) -> str:
+    """Return a chance with two significant digits; lower bounds are marked."""
+    mark = "≥ " if row.at_least else ""
+    if value == 0:
+        return f"{mark}0 %"
+    if value < LEAST:
+        return f"< {number(100 * LEAST, '.3f')} %"
+    if value > MOST:
+        return f"> {number(100 * MOST, '.1f')} %"
+    decimals = 1 if value >= 0.01 else 2 if value >= 0.001 else 3
+    return f"{mark}{number(100 * value, f'.{decimals}f')} %"
+
+
+def say_years(row: AnnualRow) -> str:
+    """Return the mean time between two events [years]; a dash where none was found."""
+    if row.rate <= 0:
+        return words.DASH
+    years = 1 / row.rate
+    return number(years, ".1f") if years < 10 else number(float(f"{years:.2g}"), ",.0f")
+
+
+def say_interval(row: AnnualRow) -> str:
+    """Return the 95 % sampling interval of the chance in 50 years; a dash where it is not known."""
+    if row.low is None or row.high is None:
+        return words.DASH
+    low, high = (-math.expm1(-YEARS * rate) for rate in (row.low, row.high))
+    return _("{low} to {high}", low=say_share(low, row), high=say_share(high, row))
+
+
+def _say_number(value: float) -> str:
+    return number(float(f"{value:.2g}"), ".12g")
