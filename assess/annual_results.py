@@ -70,8 +70,8 @@ class AnnualTables:
         Logarithmic standard deviation of the floors' motions at a ground PGA.
     runs : int
         Draws at each level.
-    levels_g : tuple of float
-        Ground PGA at which every piece was rocked.
+    factors : tuple of float
+        Factors on the motions of the scenario under which every piece was rocked.
     pieces, not_evaluated : int
         Free-standing pieces that are counted, and those that are not, as they were not simulated.
     at_least : int
@@ -98,7 +98,7 @@ class AnnualTables:
     ground_pga_g: float | None = None
     motion_dispersion: float = 0.0
     runs: int = 0
-    levels_g: tuple[float, ...] = ()
+    factors: tuple[float, ...] = ()
     pieces: int = 0
     not_evaluated: int = 0
     at_least: int = 0

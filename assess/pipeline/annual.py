@@ -3,12 +3,12 @@
 Every piece is rocked at several levels of ground PGA, the motions of all floors growing in proportion to it from those
 of the scenario. The shares that fall are integrated over the hazard curve of the site, by the lognormal fitted to them
 where it is near enough. At a given ground PGA the floors' motions still scatter: without that a rate comes out too low
-by a factor of about two, so that the dispersion of the workbook is always in it, also where a run leaves it out.
+by a factor of about two, so that the dispersion of the workbook is always in it, also where a run leaves it out. It is
+one scale for the whole building, as the level is: so it is not drawn, but shares are averaged over it (`Integral`).
 
 What is not simulated has no annual chance. Under motions that may be too weak, a rate is a lower bound.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -19,7 +19,7 @@ from assess.hazard import HazardCurve
 from assess.i18n import Text, fill
 from assess.methods import Cases
 from assess.methods._method import BoolArray, FloatArray
-from assess.pipeline.annual_integral import Integral
+from assess.pipeline.annual_integral import STEP, Integral, space
 from assess.pipeline.annual_ways import AnnualWays, evaluate_ways
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import find_ground
@@ -30,10 +30,6 @@ from assess.rocking.draws import MOTION, STILL, Uncertainty
 from assess.routes.chances import Falls
 from assess.settings import AUTO, RUNS, Settings
 from assess.units import GRAVITY
-
-STEP = 1.25
-"""Each level is about so many times the one before [-]."""
-MOST_LEVELS = 24
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,14 +106,14 @@ class _Annual:
         return replace(settings, runs=RUNS) if settings.runs == AUTO else settings
 
     def find_levels(self) -> FloatArray:
-        """Return the levels of ground PGA [m/s2], rising: from where nothing can rock to the end of the curve."""
+        """Return rising levels, as ground PGA [m/s2]: from where nothing can rock to beyond the end of the curve."""
         cases = self.cases
         rocked = cases.ensemble >= 0
-        start = STILL * GRAVITY * cases.threshold[rocked] / (cases.pfa[rocked] * cases.uncertainty.largest)
-        last = float(self.curve.pga[-1])
-        first = float(np.clip(self.ground * start.min(), self.curve.pga[0], last / STEP))
-        count = min(MOST_LEVELS, math.ceil(math.log(last / first) / math.log(STEP)) + 1)
-        return np.geomspace(first, last, count)
+        start = STILL * GRAVITY * cases.threshold[rocked] / cases.pfa[rocked]
+        largest = cases.uncertainty.largest
+        last = float(self.curve.pga[-1]) * largest
+        first = float(np.clip(self.ground * start.min(), self.curve.pga[0] / largest, last / STEP))
+        return space(first, last)
 
     def evaluate(self, jobs: int | None, progress: Progress) -> Annual:
         """Rock every piece at every level, and integrate."""
@@ -125,14 +121,14 @@ class _Annual:
         factors = np.repeat((levels / self.ground)[np.newaxis], len(cases.ensembles), axis=0)
         rocked = rock_levels(
             cases, assessment.case_item, assessment.case_demand, factors, self.settings,
-            dispersion=cases.uncertainty.motion, jobs=jobs, progress=progress,
+            dispersion=0.0, jobs=jobs, progress=progress,
         )  # fmt: skip
         return progress.wait_for(lambda: self._integrate(levels, rocked, progress))
 
     def _integrate(self, levels: FloatArray, rocked: Sequence[RockedLevels], progress: Progress) -> Annual:
-        assessment = self.assessment
+        assessment, cases = self.assessment, self.cases
         falls = [self._find_falls(at, float(level), rocked) for at, level in enumerate(levels)]
-        integrate = Integral(self.curve, levels, int(self.settings.runs))
+        integrate = Integral(self.curve, levels, cases.uncertainty.motion, int(self.settings.runs))
         doubtful = self._list_doubtful(rocked)
         fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
         items = {item: integrate.of_draws(own, at_least=item in doubtful) for item, own in fell.items()}
@@ -176,7 +172,7 @@ class _Annual:
             ground_pga_g=self.ground / GRAVITY,
             motion_dispersion=self.cases.uncertainty.motion,
             runs=integrate.runs,
-            levels_g=tuple((levels / GRAVITY).tolist()),
+            factors=tuple((levels / self.ground).tolist()),
             pieces=everything,
             not_evaluated=standing - everything,
             at_least=sum(quantity[item] for item in at_least),

@@ -1,4 +1,10 @@
-"""Shares that fall at several levels of ground PGA, integrated over a hazard curve, with their sampling interval."""
+"""Shares that fall at several levels of ground PGA, integrated over a hazard curve, with their sampling interval.
+
+At a level the motions are those of the scenario times one factor. At a given ground PGA they scatter about that, by one
+scale for the whole building: the share at a ground PGA is the mean of the shares at levels about it, weighted by the
+normal distribution of ln scale, cut at 3 standard deviations as in a run. That is the same as to draw the scale, but
+without the error of drawing it, of which rare strong scales would make the most.
+"""
 
 import math
 from dataclasses import dataclass
@@ -15,21 +21,63 @@ from assess.i18n import Text
 from assess.methods._method import BoolArray, FloatArray
 from assess.rates import evaluate_rate, integrate_table, list_remarks
 from assess.risk import NORMAL_95
+from assess.rocking.draws import CUT
 from assess.units import GRAVITY
+
+STEP = 1.25
+"""Each level is about so many times the one before [-]."""
+MOST_LEVELS = 30
+NODES = 61
+"""Scales over which a share is averaged."""
+
+
+def space(first: float, last: float) -> FloatArray:
+    """Return levels from a first to a last, each about `STEP` times the one before."""
+    return np.geomspace(first, last, min(MOST_LEVELS, math.ceil(math.log(last / first) / math.log(STEP)) + 1))
 
 
 @dataclass(frozen=True)
 class Integral:
-    """The hazard curve, and the levels of ground PGA [m/s2] at which shares are known, from so many draws."""
+    """A hazard curve, and levels at which shares are known.
+
+    Parameters
+    ----------
+    curve : HazardCurve
+        Of the site.
+    levels : (n,) array
+        Rising levels, as ground PGA [m/s2].
+    dispersion : float
+        Standard deviation of ln scale at a ground PGA [-], above 0.
+    runs : int
+        Draws that a share comes from.
+    """
 
     curve: HazardCurve
     levels: FloatArray
+    dispersion: float
     runs: int
 
     @cached_property
+    def points(self) -> FloatArray:
+        """Ground PGA at which shares are integrated [m/s2], (m,)."""
+        first, last = self.curve.pga[[0, -1]].tolist()
+        return space(min(max(first, self.levels[0] * math.exp(-CUT * self.dispersion)), last / STEP), last)
+
+    @cached_property
+    def average(self) -> FloatArray:
+        """The shares at `points` are this, (m, n), times those at the levels: below the first of them it is 0."""
+        scales = np.linspace(-CUT, CUT, NODES)
+        weight = np.exp(-(scales**2) / 2)
+        known = np.log(np.concatenate([self.levels[:1] / STEP, self.levels]))
+        at = np.log(self.points)[:, np.newaxis] + self.dispersion * scales
+        shares = [np.interp(at, known, one) for one in np.eye(known.size)[1:]]
+        return np.stack([one @ weight / weight.sum() for one in shares], axis=1)
+
+    @cached_property
     def weights(self) -> FloatArray:
-        """What a share of 1 at each level alone adds to an annual rate [1/year], (levels,)."""
-        return np.array([integrate_table(self.curve, self.levels, one).rate for one in np.eye(self.levels.size)])
+        """What a share of 1 at each level alone adds to an annual rate [1/year], (n,)."""
+        at_points = [integrate_table(self.curve, self.points, one).rate for one in np.eye(self.points.size)]
+        return np.asarray(np.array(at_points) @ self.average)
 
     def of_draws(self, happened: BoolArray, *, at_least: bool) -> AnnualRow:
         """Return the annual row of what happened at each level and draw, (levels, draws)."""
@@ -37,7 +85,8 @@ class Integral:
 
     def of_shares(self, shares: FloatArray, spread: float | None, *, at_least: bool) -> AnnualRow:
         """Return the annual row of shares (levels,); `spread` is the half width of the interval over the rate."""
-        fitted = fit_fragility(self.levels, np.minimum(shares, 1) * self.runs, np.full(self.levels.size, self.runs))
+        at_points = np.clip(self.average @ shares, 0, 1)
+        fitted = fit_fragility(self.points, at_points * self.runs, np.full(self.points.size, self.runs))
         found = evaluate_rate(self.curve, fitted)
         is_fitted = fitted.is_lognormal
         return AnnualRow(
@@ -66,4 +115,5 @@ class Integral:
 
     def list_remarks(self, happened: FloatArray) -> tuple[Text, ...]:
         """Return what a reader has to know of the curve, by what happened at each level and draw, on average."""
-        return list_remarks(self.curve, integrate_table(self.curve, self.levels, happened.mean(axis=1)))
+        shares = np.clip(self.average @ happened.mean(axis=1), 0, 1)
+        return list_remarks(self.curve, integrate_table(self.curve, self.points, shares))

@@ -140,10 +140,11 @@ def _say_basis(found: AnnualTables) -> Iterator[str]:
             place = f"{place}, {far}"
         yield f"{place}."
     yield _(
-        "Every piece was rocked in {runs:,} draws at each of {levels} levels of ground PGA, from {first:.3g} to "
-        "{last:.3g} g. The motions of all floors were taken to grow in proportion to the ground PGA, from those of "
-        "this scenario at {ground:.3g} g: damage to the building, which changes how its floors move, is left out.",
-        runs=found.runs, levels=len(found.levels_g), first=found.levels_g[0], last=found.levels_g[-1],
+        "Every piece was rocked in {runs:,} draws under the motions of this scenario times each of {levels} factors, "
+        "from {first:.2g} to {last:.2g}: the motions of all floors were taken to grow in proportion to the ground PGA, "
+        "which is {ground:.3g} g in this scenario. Damage to the building, which changes how its floors move, is left "
+        "out.",
+        runs=found.runs, levels=len(found.factors), first=found.factors[0], last=found.factors[-1],
         ground=found.ground_pga_g or 0.0,
     )  # fmt: skip
     yield _(

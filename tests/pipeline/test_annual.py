@@ -1,0 +1,230 @@
+"""Annual chances of a workbook with a hazard file, held against integrals of their own and against the run itself."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import assess
+from assess.fragility import lognormal_chance
+from assess.hazard import read_hazard
+from assess.pipeline.levels import rock_levels
+from assess.pipeline.run import build_results, compute
+from assess.rates import integrate_lognormal
+from assess.settings import Settings
+from assess.units import GRAVITY
+from assess.workbook.template import Content, write_workbook
+from tests.hazards import K_0, K, write_hazard
+
+RUNS = 60
+SETTINGS = Settings(runs=RUNS, seed=3)
+BUILDING = {"period": 0.8, "ground_pga": 0.15, "hazard": "hazard.csv"}
+FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfa_y": 0.3}]
+CABINET = {"item": "a", "floor": "1", "breadth": 40, "width": 90, "height": 180, "axis": "X"}
+CORRIDOR = {"route": "A", "segment": "corridor", "floor": "1", "start": "Room", "end": "Street", "clear_width": 1.5,
+            "required_width": 0.9}  # fmt: skip
+PLACES = [{"place": "Room", "floor": "1", "kind": "room"}, {"place": "Street", "floor": "1", "kind": "exit"}]
+BLOCKS = {"route": "A", "edge_distance": 0}
+
+
+def assessed(
+    folder: Path, *items: dict[str, Any], settings: Settings = SETTINGS, routes: bool = False, **building: Any
+):
+    rows: dict[str, Any] = {"Building": [BUILDING | building], "Floors": FLOORS, "Items": list(items) or [CABINET]}
+    rows |= {"Places": PLACES, "Routes": [CORRIDOR]} if routes else {}
+    if not (folder / "hazard.csv").exists():
+        write_hazard(folder)
+    path = folder / "w.xlsx"
+    write_workbook(path, Content(rows=rows), "si")
+    return compute(assess.read_inventory(path), settings)
+
+
+def rows_of(assessment):
+    results = build_results(assessment, figures=False)
+    return results, [one.item.annual for one in results]
+
+
+@pytest.fixture(scope="module")
+def several(tmp_path_factory):
+    """Pieces of several kinds on one floor, with a route that the first of them blocks."""
+    items = (
+        {**CABINET, **BLOCKS, "importance": "life safety"},
+        {**CABINET, "item": "b", "breadth": 50, "importance": "life safety"},
+        {**CABINET, "item": "c", "quantity": 3},
+        {**CABINET, "item": "d", "anchored": "yes", "importance": "life safety"},
+        {**CABINET, "item": "e", "breadth": 160, "width": 160, "height": 110, "quantity": 2},
+    )
+    return assessed(tmp_path_factory.mktemp("several"), *items, routes=True)
+
+
+# --- pieces
+
+
+def test_a_piece_falls_as_often_as_its_lognormal_says(tmp_path):
+    """Cornell et al. (2002): k0 theta^-k exp(k^2 beta^2 / 2), physics.md G; the ends of the curve are far away."""
+    assessment = assessed(tmp_path, settings=Settings(seed=3))
+    (row,) = rows_of(assessment)[1]
+    assert row.fit == "lognormal"
+    assert row.misfit <= 0.05
+    closed = K_0 * row.median_g**-K * np.exp(K**2 * row.dispersion**2 / 2)
+    assert row.rate == pytest.approx(closed, rel=0.03)
+    exact = integrate_lognormal(
+        read_hazard(tmp_path / "hazard.csv"), median=row.median_g * GRAVITY, dispersion=row.dispersion
+    )
+    assert row.rate == pytest.approx(exact.rate, rel=1e-9)
+    assert row.chance_a_year == pytest.approx(1 - np.exp(-row.rate))
+    assert row.chance_in_50_years == pytest.approx(1 - np.exp(-50 * row.rate))
+    assert row.low < row.rate < row.high
+
+
+def test_at_the_scenarios_own_ground_pga_it_is_what_the_run_finds(several):
+    """The motions of a factor of 1 are those of the run, draw by draw."""
+    cases, (joint,) = several.cases, several.joints.values()
+    found = rock_levels(
+        cases, several.case_item, several.case_demand, np.array([[0.5, 1.0]]), SETTINGS,
+        dispersion=cases.uncertainty.motion,
+    )  # fmt: skip
+    np.testing.assert_array_equal(found[0].own, joint.cases)
+    np.testing.assert_array_equal(found[0].fell[1], joint.fell)
+    assert found[0].fell[0].sum() < joint.fell.sum()
+
+
+def test_the_share_at_a_level_is_the_chance_in_a_scenario_of_it(tmp_path):
+    """Half of the earthquakes of the ground PGA of the median fell it: so does a run scaled to it."""
+    (row,) = rows_of(assessed(tmp_path, settings=Settings(seed=3)))[1]
+    scaled = assess.run(tmp_path / "w.xlsx", Settings(seed=3, scale=row.median_g / 0.15), figures=False)
+    assert scaled["a"].adopted.probability == pytest.approx(0.5, abs=0.05 + 2 * 0.035)
+
+
+def test_scatter_of_the_motion_is_averaged_over_as_if_it_were_drawn(tmp_path):
+    """The share at the ground PGA of the scenario is the chance that the run finds by drawing the scale."""
+    assessment = assessed(tmp_path, settings=Settings(seed=3, runs=2000))
+    (row,) = rows_of(assessment)[1]
+    by_curve = lognormal_chance(0.15, row.median_g, row.dispersion)
+    chance = assessment.adoption.probability[0]
+    assert by_curve == pytest.approx(chance, abs=0.02 + 2 * np.sqrt(chance * (1 - chance) / 2000))
+
+
+def test_ideal_changes_no_rate_and_a_factor_on_the_motion_hardly_any(tmp_path):
+    """The factor is one on the earthquake: floors and ground grow alike."""
+    rates = [
+        rows_of(assessed(tmp_path, settings=settings))[1][0].rate
+        for settings in (SETTINGS, Settings(runs=RUNS, seed=3, ideal=True), Settings(runs=RUNS, seed=3, scale=1.5))
+    ]
+    assert rates[1] == rates[0]
+    assert rates[2] == pytest.approx(rates[0], rel=0.15)
+
+
+def test_the_dispersion_of_the_motion_is_always_in_it(tmp_path):
+    """Also where the scenario is taken as exact; a rate without it is about 2.2 times too low (physics.md G)."""
+    without, given = (assessed(tmp_path, motion_uncertainty=beta, piece_uncertainty="no") for beta in (0, 0.4))
+    assert without.annual.tables.motion_dispersion == 0.4
+    assert rows_of(without)[1] == rows_of(given)[1]
+    small = assessed(tmp_path, motion_uncertainty=0.01, piece_uncertainty="no")
+    ratio = rows_of(given)[1][0].rate / rows_of(small)[1][0].rate
+    assert ratio == pytest.approx(np.exp(K**2 * (0.4**2 - 0.01**2) / 2), rel=0.05)
+
+
+def test_a_square_piece_falls_along_either_axis(tmp_path):
+    square = {**CABINET, "width": 45, "axis": None}
+    x, y, either = (
+        rows_of(assessed(tmp_path, one))[1][0].rate for one in (square | {"axis": "X"}, square | {"axis": "Y"}, square)
+    )
+    assert 1.02 * max(x, y) < either < x + y
+
+
+# --- the building
+
+
+def test_the_building_adds_up_its_free_standing_pieces(several):
+    results, rows = rows_of(several)
+    found = results.annual
+    assert rows[4] is None, "it cannot rock: it was not simulated"
+    assert (found.pieces, found.not_evaluated, found.at_least, found.life_safety_pieces) == (5, 2, 0, 2)
+    assert found.expected_falls == pytest.approx(rows[0].rate + rows[1].rate + 3 * rows[2].rate)
+    assert found.expected_low < found.expected_falls < found.expected_high
+    one, other = rows[0].rate, rows[1].rate
+    assert max(one, other) <= found.life_safety.rate < one + other, "the anchored one does not count"
+    assert rows[3].rate == pytest.approx(rows[2].rate, rel=0.2), "an anchored piece has that of a free-standing one"
+    assert found.ground_pga_g == pytest.approx(0.15)
+    assert np.diff(found.factors).min() > 0
+    assert found.factors[-1] == pytest.approx(3.0 / 0.15 * np.exp(3 * 0.4)), (
+        "beyond the end of the curve, as it scatters"
+    )
+
+
+def test_a_route_and_a_room_are_lost_as_often_as_the_piece_that_blocks_them_falls(several):
+    results, rows = rows_of(several)
+    (route,), (room,) = results.route_tables.routes, results.route_tables.rooms
+    assert route.annual.rate == pytest.approx(rows[0].rate)
+    assert room.annual.high == pytest.approx(rows[0].high)
+    assert route.annual_if_anchors_fail is None
+
+
+def test_a_route_that_anchored_pieces_reach_has_a_rate_if_they_fail(tmp_path):
+    items = {**CABINET, **BLOCKS}, {**CABINET, **BLOCKS, "item": "b", "breadth": 35, "anchored": "yes"}
+    results, rows = rows_of(assessed(tmp_path, *items, routes=True))
+    (route,) = results.route_tables.routes
+    assert route.annual.rate == pytest.approx(rows[0].rate)
+    assert route.annual_if_anchors_fail.rate > rows[1].rate * 0.999
+
+
+def test_rates_are_lower_bounds_where_the_motions_may_be_too_weak(tmp_path):
+    results, (row,) = rows_of(assessed(tmp_path, {**CABINET, **BLOCKS}, routes=True, period=None))
+    assert row.at_least
+    assert results.annual.at_least == 1
+    assert results.route_tables.routes[0].annual.at_least
+
+
+def test_what_cannot_fall_within_the_curve_has_a_rate_of_0(tmp_path):
+    write_hazard(tmp_path, 0.001, 0.004, 5)
+    results, (row,) = rows_of(assessed(tmp_path))
+    assert (row.rate, row.low, row.high, row.fit) == (0, None, None, "table")
+    assert results.annual.expected_falls == 0
+    assert results.annual.expected_high is None
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "word"), [(0.2, 3.0, "begins at 0.2 g"), (0.01, 0.3, "end of the hazard curve at 0.3 g")]
+)
+def test_it_is_remarked_on_where_the_ends_of_the_curve_matter(tmp_path, first, last, word):
+    write_hazard(tmp_path, first, last)
+    assert any(word in one for one in rows_of(assessed(tmp_path))[0].annual.remarks)
+
+
+# --- what is missing
+
+
+def test_without_a_hazard_file_there_is_nothing(tmp_path):
+    results, rows = rows_of(assessed(tmp_path, hazard=None))
+    assert results.annual is None
+    assert rows == [None]
+
+
+@pytest.mark.parametrize(
+    ("building", "settings", "why"),
+    [({"ground_pga": None}, SETTINGS, "fill in Ground PGA in Building"), ({}, Settings(verify="none"), "--verify all")],
+)
+def test_what_is_missing_is_named(tmp_path, building, settings, why):
+    results, rows = rows_of(assessed(tmp_path, settings=settings, **building))
+    assert why in results.annual.missing
+    assert not results.annual.is_evaluated
+    assert rows == [None]
+
+
+def test_sds_stands_in_for_the_ground_pga(tmp_path):
+    results, (row,) = rows_of(assessed(tmp_path, ground_pga=None, sds=0.375))
+    assert results.annual.ground_pga_g == pytest.approx(0.15)
+    assert row.rate == pytest.approx(rows_of(assessed(tmp_path))[1][0].rate)
+
+
+def test_auto_takes_the_usual_number_of_draws(tmp_path):
+    assert assessed(tmp_path, settings=Settings(runs="auto")).annual.tables.runs == 200
+
+
+def test_threads_change_nothing(tmp_path):
+    assessed(tmp_path)
+    inventory = assess.read_inventory(tmp_path / "w.xlsx")
+    one, other = (compute(inventory, SETTINGS, jobs=jobs).annual for jobs in (1, 3))
+    assert one == other
