@@ -77,6 +77,15 @@ def velocities(acceleration: NDArray[Any], time_step: float) -> FloatArray:
     return np.pad(np.cumsum(steps, axis=1, dtype=np.float64), ((0, 0), (1, 0)))
 
 
+def measure_peaks(acceleration: NDArray[Any], time_step: float) -> FloatArray:
+    """Return PFA [m/s2] and PFV [m/s] of motions (k, n) [m/s2] that start at rest, (k, 2)."""
+    from assess.motion.bending import measure_rows
+
+    peaks = np.empty((len(acceleration), 3))
+    measure_rows(np.asarray(acceleration, np.float32), time_step, peaks)
+    return peaks[:, :2]
+
+
 def measure_fit(target: Target, acceleration: NDArray[Any], time_step: float, threads: int = 1) -> Fit:
     """Return how motions (k, n) [m/s2] meet their target, half-way between the periods that were matched."""
     return measure_match(target, acceleration, time_step, threads)[0]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from assess.methods import Cases, make_batches, rock_cases, rock_draws, run_side_by_side
 from assess.methods._method import BoolArray, FloatArray
+from assess.motion.target_fit import measure_peaks
 from assess.pipeline.demand import Demand
 from assess.pipeline.verify import check_pairs, describe_work
 from assess.progress import SILENT, Progress, Stage
@@ -24,11 +25,25 @@ BATCH = 100
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RockedLevels:
-    """The cases `own` (m,) of an ensemble, whether they overturn (levels, m, runs), and whether it is too weak."""
+    """The cases of one ensemble at every level.
+
+    Parameters
+    ----------
+    own : (m,) integer array
+        The cases.
+    fell : (levels, m, runs) boolean array
+        Whether each overturns; False at levels at which it was not rocked.
+    is_weak : bool
+        Whether the motions are weaker than the floor's.
+    pfa, pfv : float
+        Mean peaks of the motions before any factor [m/s2], [m/s].
+    """
 
     own: NDArray[np.intp]
     fell: BoolArray
     is_weak: bool
+    pfa: float
+    pfv: float
 
 
 def rock_levels(
@@ -39,6 +54,7 @@ def rock_levels(
     settings: Settings,
     *,
     dispersion: float | None,
+    wanted: BoolArray | None = None,
     jobs: int | None = None,
     progress: Progress = SILENT,
 ) -> list[RockedLevels]:
@@ -56,6 +72,8 @@ def rock_levels(
         Give the number of draws, which has to be a number, and their seed.
     dispersion : float, optional
         Of the motion's amplitude [-], with pieces drawn as the cases say; None: motions and pieces as they are.
+    wanted : (n, l) boolean array, optional
+        At which levels each case is rocked; at all by default.
     jobs : int, optional
         Threads; they do not change a result.
     progress : Progress
@@ -78,7 +96,8 @@ def rock_levels(
     with progress.stage("rocking", describe_work(len(pieces), len(floors)), parts) as stage:
 
         def work(number: int, own: NDArray[np.intp]) -> RockedLevels:
-            return _Run(cases, own, settings, dispersion, each, stage).rock(number, factors[number])
+            every = np.ones((len(own), factors.shape[1]), dtype=np.bool_) if wanted is None else wanted[own]
+            return _Run(cases, own, settings, dispersion, each, stage).rock(number, factors[number], every)
 
         return list(run_side_by_side(work, list(enumerate(owns)), side_by_side))
 
@@ -99,23 +118,29 @@ class _Run:
     threads: int
     stage: Stage
 
-    def rock(self, number: int, factors: FloatArray) -> RockedLevels:
+    def rock(self, number: int, factors: FloatArray, wanted: BoolArray) -> RockedLevels:
         progress, runs = self.stage.progress, int(self.settings.runs)
         motions = self.cases.ensembles[number].open(self.threads, progress)
         fell = np.zeros((len(factors), len(self.own), runs), dtype=np.bool_)
+        peaks = np.empty((runs, 2))
         for at, batch, time_step in make_batches(motions, 0, runs, BATCH):
+            draws = slice(at, at + len(batch))
+            peaks[draws] = measure_peaks(batch, time_step)
             for level, factor in enumerate(factors.tolist()):
-                fell[level, :, at : at + len(batch)] = self._rock(factor * batch, time_step, at)
-            self.stage.at((at + len(batch)) / runs, number)
-        return RockedLevels(self.own, fell, motions.is_weak)
+                rows = np.flatnonzero(wanted[:, level])
+                if rows.size:
+                    fell[level, rows, draws] = self._rock(self.own[rows], factor * batch, time_step, at)
+            self.stage.at(draws.stop / runs, number)
+        pfa, pfv = peaks.mean(axis=0).tolist()
+        return RockedLevels(self.own, fell, motions.is_weak, pfa, pfv)
 
-    def _rock(self, motions: FloatArray, time_step: float, first: int) -> BoolArray:
-        """Return whether each case overturns in draws `first` and further ones, (m, k), as in a run."""
+    def _rock(self, own: NDArray[np.intp], motions: FloatArray, time_step: float, first: int) -> BoolArray:
+        """Return whether each case of `own` overturns in draws `first` and further ones, (m, k), as in a run."""
         progress = self.stage.progress
         if self.dispersion is None:
-            return rock_cases(self.cases, self.own, motions, time_step, self.threads, progress)[0]
+            return rock_cases(self.cases, own, motions, time_step, self.threads, progress)[0]
         fell, _ = rock_draws(
-            self.cases, self.own, motions, time_step, first=first, dispersions=(self.dispersion,),
+            self.cases, own, motions, time_step, first=first, dispersions=(self.dispersion,),
             seed=self.settings.seed, threads=self.threads, progress=progress,
         )  # fmt: skip
         return np.asarray(fell[0])

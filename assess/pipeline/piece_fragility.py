@@ -1,0 +1,522 @@
+"""How likely each piece, or a piece of each type, overturns, against the PFA or the PFV of its floor.
+
+Each piece is rocked under the motions of its floor (those compatible with its record, or with its generic spectrum),
+all multiplied by one factor, so that the floor's PFA or PFV takes each level. The same motions serve at every level;
+the shape of the spectrum stays, and with it the ratio of PFV to PFA: a fragility against PFA holds for motions of that
+ratio only. A blank axis takes the worse one at each level; a piece that is nearly square on plan falls in a draw if it
+falls along either.
+
+The uncertainty of the motion is not part of it: whoever applies it to a PFA or PFV brings that of the demand. The
+phases of the motions scatter, and each piece differs from what is filled in as the workbook says; with `settings.ideal`
+it does not. No class or formula of an assessment enters.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Literal, TypeVar, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import InputError, Problem, WorkbookError
+from assess.fragility import Fragility, fit_fragility
+from assess.i18n import Text, fill
+from assess.methods import Cases
+from assess.methods._method import BoolArray, FloatArray
+from assess.model import AXES, Axis, Inventory, Item
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.demand import Demand
+from assess.pipeline.either_axis import is_square
+from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
+from assess.pipeline.verify import choose_motions
+from assess.progress import SILENT, Progress
+from assess.rocking.block import stocky_limit, threshold
+from assess.settings import AUTO
+from assess.units import GRAVITY
+from assess.workbook.names import key
+
+By = Literal["item", "type"]
+Measure = Literal["pfa", "pfv"]
+BY: tuple[str, ...] = get_args(By)
+"""What has one curve: a row of Items, or the rows of one Type; rows without a Type go by their sizes."""
+MEASURES: tuple[str, ...] = get_args(Measure)
+"""Intensity measures."""
+UNITS: Mapping[str, float] = {"pfa": GRAVITY, "pfv": 0.01}
+"""Of the levels: g and cm/s, in m/s2 and m/s."""
+
+LOWEST, HIGHEST = 0.5, 4.0
+"""First levels of a curve over the PFA at which its most and its least slender piece start to rock [-]."""
+NEARLY_ALL, FARTHEST = 0.98, 16.0
+"""Levels are added until this share falls [-], or to so many times the PFA at which rocking starts [-]."""
+RUNGS = (
+    "1.00", "1.12", "1.25", "1.40", "1.60", "1.80", "2.00", "2.24", "2.50", "2.80",
+    "3.15", "3.55", "4.00", "4.50", "5.00", "5.60", "6.30", "7.10", "8.00", "9.00",
+)  # fmt: skip
+"""Levels of a decade: the preferred numbers R20 of ISO 3, 12 % apart."""
+MORE_RUNGS = 6
+"""Rungs that are added at a time: a factor of two."""
+
+_Choice = TypeVar("_Choice", bound=str)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FloorMotions:
+    """The motions of one floor along one axis, before any factor.
+
+    Parameters
+    ----------
+    floor, axis : str
+        Where.
+    source : str
+        Where its demand comes from: the record's name, "given", the profile's code, or two floors.
+    pfa, pfv : float
+        Of the floor [m/s2], [m/s]; `pfv` is NaN where it is unknown or estimated, so that the motions do not follow it.
+    mean_pfa, mean_pfv : float
+        Means over the motions [m/s2], [m/s].
+    spectrum : str
+        What their spectrum follows, in words.
+    is_generic, is_unshaped, is_weak : bool
+        Whether the spectrum is a generic one, whether it rests on neither T1 nor the building's height, and whether the
+        motions are weaker than the floor's. Under the latter two a fragility may be too low.
+    """
+
+    floor: str
+    axis: Axis
+    source: str
+    pfa: float
+    pfv: float
+    mean_pfa: float
+    mean_pfv: float
+    spectrum: Text
+    is_generic: bool
+    is_unshaped: bool
+    is_weak: bool
+
+    @property
+    def pfv_per_pfa(self) -> float:
+        """Mean PFV over mean PFA of the motions [s]; a factor does not change it."""
+        return self.mean_pfv / self.mean_pfa
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PieceFragility:
+    """One curve.
+
+    Parameters
+    ----------
+    name : str
+        The item, the type, or the sizes of rows without a type.
+    type : str
+        Of its rows; "" where they have none.
+    items : tuple of Item
+        Its rows, in the order of the workbook.
+    curve : Fragility
+        How many fell at each level [m/s2] or [m/s], and the lognormal fitted to it. Of an item the trials are draws; of
+        a type each row counts by its Quantity, as all pieces of a row fall alike.
+    motions : tuple of FloorMotions
+        Those under which they were rocked.
+    """
+
+    name: str
+    type: str
+    items: tuple[Item, ...]
+    curve: Fragility
+    motions: tuple[FloorMotions, ...]
+
+    @property
+    def floors(self) -> tuple[str, ...]:
+        """Floors of its pieces."""
+        return tuple(dict.fromkeys(one.floor for one in self.motions))
+
+    @property
+    def pieces(self) -> int:
+        """Number of its pieces, by Quantity."""
+        return sum(one.quantity for one in self.items)
+
+    @property
+    def thresholds(self) -> tuple[float, float]:
+        """The least and the largest acceleration at which its pieces start to rock [m/s2]."""
+        every = [GRAVITY * float(threshold(one.breadth, one.height, one.centre_of_gravity)) for one in self.items]
+        return min(every), max(every)
+
+    @property
+    def pfv_per_pfa(self) -> tuple[float, float]:
+        """The least and the largest ratio of mean PFV to mean PFA of its motions [s]."""
+        every = [one.pfv_per_pfa for one in self.motions]
+        return min(every), max(every)
+
+    @property
+    def may_be_too_low(self) -> bool:
+        """Whether any of its motions may be too weak, so that pieces may fall at lower levels than it says."""
+        return any(one.is_unshaped or one.is_weak for one in self.motions)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PieceFragilities:
+    """The curves of a workbook.
+
+    Parameters
+    ----------
+    by, im : str
+        What has one curve, of `BY`; the intensity measure of the levels, of `MEASURES`.
+    runs, seed : int
+        Number of draws at each level, and their seed.
+    has_drawn_pieces : bool
+        Whether each draw has a base, height, centre of gravity and restitution of its own; else pieces are as given.
+    curves : tuple of PieceFragility
+        In the order of the workbook.
+    stocky : tuple of Item
+        Rows that are too stocky to rock, and left out.
+    """
+
+    by: By
+    im: Measure
+    runs: int
+    seed: int
+    has_drawn_pieces: bool
+    curves: tuple[PieceFragility, ...]
+    stocky: tuple[Item, ...]
+
+
+def find_piece_fragilities(
+    assessment: Assessment,
+    *,
+    by: By = "item",
+    im: Measure = "pfa",
+    levels: Sequence[float] | None = None,
+    jobs: int | None = None,
+    progress: Progress = SILENT,
+) -> PieceFragilities:
+    """Find how likely pieces overturn at each level of their floor's PFA or PFV, and fit lognormals to it.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        From `assess.pipeline.run.compute`, simulated or not; its settings give the number of draws and their seed.
+    by : "item" or "type"
+        What has one curve.
+    im : "pfa" or "pfv"
+        The intensity measure.
+    levels : sequence of float, optional
+        Rising levels [m/s2] or [m/s], above 0. By default each curve takes preferred numbers, in g or cm/s, from where
+        about nothing falls to where about everything does.
+    jobs : int, optional
+        Threads; as many as there are processors by default. They do not change a result.
+    progress : Progress
+        Receives the stage "rocking", more than once where levels are added.
+
+    Raises
+    ------
+    CancelledError
+        If the caller stops the work.
+    WorkbookError
+        If the measure is PFV and a floor with pieces has none, or an estimated one; it names every such floor.
+    InputError
+        If `by`, `im` or `levels` cannot be used, the number of motions is "auto", they are the user's own, no piece
+        can rock, or the results may exceed the available memory.
+    """
+    if assessment.settings.runs == AUTO or assessment.suite is not None:
+        raise InputError(fill('runs: a fragility needs a fixed number of generated motions, not "auto" or a suite'))
+    by, im = _choose("by", by, BY), _choose("im", im, MEASURES)
+    given = None if levels is None else _check_levels(levels)
+    rocked = np.flatnonzero([not _is_stocky(item) for item in assessment.inventory.items])
+    if not rocked.size:
+        raise InputError(fill("no piece can rock: all are too stocky, or there are none."))
+    _check_velocities(assessment, rocked, im)
+    return progress.wait_for(lambda: _find(assessment, rocked, by, im, given, jobs, progress))
+
+
+def _find(
+    assessment: Assessment,
+    rocked: NDArray[np.intp],
+    by: By,
+    im: Measure,
+    given: tuple[float, ...] | None,
+    jobs: int | None,
+    progress: Progress,
+) -> PieceFragilities:
+    inventory, settings = assessment.inventory, assessment.settings
+    groups = _group(inventory, rocked, by)
+    study = _Study(
+        assessment=assessment,
+        cases=_choose_cases(assessment, rocked),
+        groups=groups,
+        peaks=np.array([one.pfa if im == "pfa" else _pfv(one) for one in assessment.case_demand]),
+        unit=UNITS[im],
+        jobs=jobs,
+        progress=progress,
+    )
+    levels, fallen = study.rock_chosen() if given is None else study.rock_given(given)
+    return PieceFragilities(
+        by=by,
+        im=im,
+        runs=int(settings.runs),
+        seed=settings.seed,
+        has_drawn_pieces=study.cases.uncertainty.piece and not settings.ideal,
+        curves=tuple(_build_curve(study, group, levels, fallen[group], by) for group in groups),
+        stocky=tuple(item for item in inventory.items if _is_stocky(item)),
+    )
+
+
+# ---------------------------------------------------------------- what was asked for
+
+
+def _choose(name: str, text: _Choice, choices: tuple[str, ...]) -> _Choice:
+    if text not in choices:
+        known = ", ".join(choices)
+        raise InputError(fill("{name} is {text!r}, expected one of: {known}", name=name, text=str(text), known=known))
+    return text
+
+
+def _check_levels(levels: Sequence[float]) -> tuple[float, ...]:
+    values = tuple(float(one) for one in levels)
+    is_rising = all(one < other for one, other in pairwise(values))
+    if not values or not is_rising or not all(0 < one < math.inf for one in values):
+        raise InputError(fill("levels have to be finite, above 0 and rising, and at least one."))
+    return values
+
+
+def _check_velocities(assessment: Assessment, rocked: NDArray[np.intp], im: Measure) -> None:
+    """Raise WorkbookError where PFV is wanted and the motions of a floor do not follow any."""
+    if im != "pfv":
+        return
+    pairs = zip(assessment.case_item.tolist(), assessment.case_demand, strict=True)
+    kept = frozenset(rocked.tolist())
+    lacking = {(one.floor.floor, one.axis): one for item, one in pairs if item in kept and math.isnan(_pfv(one))}
+    problems = [
+        Problem("error", "Floors", one.floor.cell(f"pfv_{one.axis.lower()}"), _say_lacking(one), _TO_FILL_IN)
+        for one in lacking.values()
+    ]
+    if problems:
+        raise WorkbookError([assessment.inventory.place(problem) for problem in problems])
+
+
+_TO_FILL_IN = fill("Fill in its PFA and PFV, or a record, or take PFA as the measure.")
+
+
+def _say_lacking(demand: Demand) -> Text:
+    if "pfv_estimated" in demand.flags:
+        return fill(
+            "the PFV of floor '{floor}' along {axis} is estimated from T1, and its motions do not follow it: no "
+            "fragility against PFV can be given.",
+            floor=demand.floor.floor,
+            axis=demand.axis,
+        )
+    return fill(
+        "the PFV of floor '{floor}' along {axis} is not known: no fragility against PFV can be given.",
+        floor=demand.floor.floor,
+        axis=demand.axis,
+    )
+
+
+def _pfv(demand: Demand) -> float:
+    """Return the PFV that the motions of a demand follow [m/s], NaN where there is none."""
+    return math.nan if "pfv_estimated" in demand.flags else demand.pfv
+
+
+# ---------------------------------------------------------------- which pieces have one curve
+
+
+def _is_stocky(item: Item) -> bool:
+    return bool(item.breadth / item.height >= stocky_limit(item.centre_of_gravity))
+
+
+def _group(inventory: Inventory, rocked: Iterable[int], by: By) -> list[list[int]]:
+    """Return which items have one curve, in the order of the workbook."""
+    groups: dict[object, list[int]] = {}
+    for at in map(int, rocked):
+        item = inventory.items[at]
+        shape = (item.breadth, item.height, item.centre_of_gravity)
+        mark: object = at if by == "item" else key(item.type) if item.type else shape
+        groups.setdefault(mark, []).append(at)
+    return list(groups.values())
+
+
+def _name(item: Item, by: By) -> tuple[str, str]:
+    """Return the name of a curve and the type of its rows, from the first of them."""
+    if by == "item" or item.type:
+        return (item.item if by == "item" else item.type), item.type
+    return f"{round(100 * item.breadth, 6):g} x {round(100 * item.height, 6):g} cm", ""
+
+
+# ---------------------------------------------------------------- rocking
+
+
+def _choose_cases(assessment: Assessment, rocked: NDArray[np.intp]) -> Cases:
+    """Return the cases with the motions under which the items `rocked` are rocked."""
+    chosen = np.isin(assessment.case_item, rocked)
+    building = assessment.inventory.building
+    return choose_motions(
+        assessment.cases, chosen, assessment.case_demand, assessment.demands, building, assessment.settings, None
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class _Study:
+    """The cases of an assessment with their motions, and how often the items of `groups` fall.
+
+    `peaks` (n,) are the values of the measure of the cases' floors [m/s2] or [m/s]; `motions` fills while they are
+    rocked, by the ensembles of `cases`.
+    """
+
+    assessment: Assessment
+    cases: Cases
+    groups: Sequence[Sequence[int]]
+    peaks: FloatArray
+    unit: float
+    jobs: int | None
+    progress: Progress
+    motions: dict[int, FloorMotions] = field(default_factory=dict)
+
+    def rock_given(self, levels: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+        """Return the levels (l,) and how often each item fell at each, (items, l); NaN where it was not rocked."""
+        every = np.array(levels)
+        fallen = np.full((len(self.assessment.inventory.items), every.size), np.nan)
+        wanted = np.zeros(fallen.shape, dtype=np.bool_)
+        for group in self.groups:
+            wanted[group] = True
+        self._rock(every, wanted, fallen)
+        return every, fallen
+
+    def rock_chosen(self) -> tuple[FloatArray, FloatArray]:
+        """Return the same at preferred numbers: more of them until about everything fell, as far as it goes."""
+        spans = [self._span(group) for group in self.groups]
+        first, last = min(low for low, _, _ in spans), max(end for _, _, end in spans)
+        levels = np.array([_read_rung(rung) * self.unit for rung in range(first, last + 1)])
+        fallen = np.full((len(self.assessment.inventory.items), levels.size), np.nan)
+        ranges = [(low - first, top - first) for low, top, _ in spans]
+        while any(start <= stop for start, stop in ranges):
+            wanted = np.zeros(fallen.shape, dtype=np.bool_)
+            for group, (start, stop) in zip(self.groups, ranges, strict=True):
+                wanted[group, start : stop + 1] = True
+            self._rock(levels, wanted, fallen)
+            for number, (group, (_, _, end)) in enumerate(zip(self.groups, spans, strict=True)):
+                top = ranges[number][1]
+                is_enough = self._share(fallen[group, top]) >= NEARLY_ALL
+                ranges[number] = (top + 1, top if is_enough else min(top + MORE_RUNGS, end - first))
+        return levels, fallen
+
+    def _span(self, group: Sequence[int]) -> tuple[int, int, int]:
+        """Return the rungs of a group's lowest level, of its highest to begin with, and of its last."""
+        own = np.isin(self.assessment.case_item, group)
+        start = self.cases.threshold[own] * GRAVITY * self.peaks[own] / self.cases.pfa[own] / self.unit
+        low, high = float(start.min()), float(start.max())
+        return _find_rung(LOWEST * low), _find_rung(HIGHEST * high) + 1, _find_rung(FARTHEST * high) + 1
+
+    def _share(self, fallen: FloatArray) -> float:
+        return float(fallen.mean()) / int(self.assessment.settings.runs)
+
+    def _rock(self, levels: FloatArray, wanted: BoolArray, fallen: FloatArray) -> None:
+        """Put into `fallen` (items, l) how often items fall at the levels that are `wanted`, (items, l)."""
+        used = wanted.any(axis=0)
+        own = self._keep(np.asarray(wanted.any(axis=1)))
+        firsts = [int(np.argmax(own.ensemble == number)) for number in range(len(own.ensembles))]
+        factors = np.array([[find_factor(level, self.peaks[at]) for level in levels[used].tolist()] for at in firsts])
+        settings = self.assessment.settings
+        rocked = rock_levels(
+            own, self.assessment.case_item, self.assessment.case_demand, factors, settings,
+            dispersion=None if settings.ideal else 0.0, wanted=wanted[self.assessment.case_item][:, used],
+            jobs=self.jobs, progress=self.progress,
+        )  # fmt: skip
+        for at, one in zip(firsts, rocked, strict=True):
+            self.motions.setdefault(int(self.cases.ensemble[at]), self._describe(at, one))
+        counts = self._count(rocked, int(used.sum()))
+        part = fallen[:, used]
+        part[wanted[:, used]] = counts[wanted[:, used]]
+        fallen[:, used] = part
+
+    def _keep(self, items: BoolArray) -> Cases:
+        """Return the cases of those items alone with their motions."""
+        which = np.where(items[self.assessment.case_item], self.cases.ensemble, -1)
+        numbers = np.unique(which[which >= 0])
+        renumbered = np.where(which >= 0, np.searchsorted(numbers, which), -1)
+        kept = tuple(self.cases.ensembles[number] for number in numbers)
+        return replace(self.cases, ensemble=renumbered.astype(np.intp), ensembles=kept)
+
+    def _count(self, rocked: Sequence[RockedLevels], levels: int) -> FloatArray:
+        """Return in how many draws each item falls at each level, (items, levels)."""
+        verdicts = {int(case): one.fell[:, row] for one in rocked for row, case in enumerate(one.own)}
+        axes: dict[int, dict[Axis, list[BoolArray]]] = {}
+        for case, fell in sorted(verdicts.items()):
+            by_axis = axes.setdefault(int(self.assessment.case_item[case]), {})
+            by_axis.setdefault(self.assessment.case_demand[case].axis, []).append(fell)
+        items = self.assessment.inventory.items
+        counts = np.zeros((len(items), levels))
+        for at, by_axis in axes.items():
+            worst = [_take_worst(by_axis[axis]) for axis in AXES if axis in by_axis]
+            fell = np.any(worst, axis=0) if is_square(items[at]) else _take_worst(worst)
+            counts[at] = fell.sum(axis=1)
+        return counts
+
+    def _describe(self, case: int, rocked: RockedLevels) -> FloorMotions:
+        demand, made = self.assessment.case_demand[case], self.cases.ensembles[self.cases.ensemble[case]]
+        return FloorMotions(
+            floor=demand.floor.floor,
+            axis=demand.axis,
+            source=demand.label,
+            pfa=demand.pfa,
+            pfv=_pfv(demand),
+            mean_pfa=rocked.pfa,
+            mean_pfv=rocked.pfv,
+            spectrum=_say_spectrum(demand, self.assessment.inventory),
+            is_generic=made.is_generic,
+            is_unshaped=made.is_unshaped,
+            is_weak=rocked.is_weak,
+        )
+
+
+def _take_worst(every: Sequence[BoolArray]) -> BoolArray:
+    """Return of verdicts (levels, runs) those with the most falls at each level, of equal ones the first."""
+    stacked = np.stack(every)
+    worst = stacked.sum(axis=2).argmax(axis=0)
+    return np.asarray(stacked[worst, np.arange(worst.size)])
+
+
+def _find_rung(value: float) -> int:
+    """Return the number of the preferred number at or just below a value, counted from 1."""
+    return math.floor(len(RUNGS) * math.log10(value))
+
+
+def _read_rung(number: int) -> float:
+    """Return a preferred number by its number."""
+    decade, at = divmod(number, len(RUNGS))
+    return float(f"{RUNGS[at]}e{decade}")
+
+
+def _say_spectrum(demand: Demand, inventory: Inventory) -> Text:
+    """Return in words what the spectrum of the motions of a demand follows."""
+    building = inventory.building
+    if demand.motion is not None:
+        return fill("that of the record")
+    if building.period is not None:
+        shape = fill("generic, for T1 {period:g} s", period=building.period)
+    elif building.height is not None:
+        shape = fill("generic, for T1 by the building's height {height:g} m", height=building.height)
+    else:
+        shape = fill("generic, shape of ICC-ES AC156, T1 and height unknown")
+    if math.isnan(_pfv(demand)):
+        return shape
+    return fill("{shape}; long periods by the floor's PFV", shape=shape)
+
+
+# ---------------------------------------------------------------- the curves
+
+
+def _build_curve(study: _Study, group: Sequence[int], levels: FloatArray, fallen: FloatArray, by: By) -> PieceFragility:
+    """Return the curve of a group whose items fell so often at the levels, (m, l); NaN where they were not rocked."""
+    assessment = study.assessment
+    items = tuple(assessment.inventory.items[at] for at in group)
+    own = dict.fromkeys(study.cases.ensemble[np.isin(assessment.case_item, group)].tolist())
+    kept = ~np.isnan(fallen[0])
+    counts = np.array([one.quantity if by == "type" else 1 for one in items], dtype=np.float64)
+    trials = np.full(int(kept.sum()), int(assessment.settings.runs) * counts.sum())
+    name, kind = _name(items[0], by)
+    return PieceFragility(
+        name=name,
+        type=kind,
+        items=items,
+        curve=fit_fragility(levels[kept], counts @ fallen[:, kept], trials),
+        motions=tuple(study.motions[number] for number in own),
+    )

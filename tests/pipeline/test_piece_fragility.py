@@ -1,0 +1,349 @@
+"""The fragility of pieces: blocks rocked one by one, pooled types, PFA against PFV, and what cannot be had."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+import numpy as np
+import pytest
+
+import assess
+from assess.fragility import lognormal_chance
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.piece_fragility import find_piece_fragilities
+from assess.pipeline.run import compute
+from assess.pipeline.verify import choose_motions
+from assess.progress import Progress, Report
+from assess.rocking.draws import draw_bodies, name_number
+from assess.rocking.ensemble import rock_blocks
+from assess.settings import Settings
+from assess.units import GRAVITY
+from assess.workbook.template import Content, write_workbook
+from tests.shaking import write_records
+
+RUNS = 20
+SETTINGS = Settings(verify="none", runs=RUNS, seed=4)
+CABINET = {"item": "a1", "floor": "1", "breadth": 40, "width": 80, "height": 180, "axis": "X"}
+EXACT = {"piece_uncertainty": "no"}
+SLOW = {"record_x": "slow.csv"}
+PEAKS = {"pfa_x": 0.3, "pfa_y": 0.2}
+LEVELS = (0.2, 0.3, 0.5, 0.9)
+
+
+def assessed(
+    folder: Path,
+    *items: dict[str, Any],
+    settings: Settings = SETTINGS,
+    floors: list[dict[str, Any]] | None = None,
+    building: dict[str, Any] | None = None,
+) -> Assessment:
+    catalogue = [{"type": one, "breadth": 40, "width": 80, "height": 180} for one in ("Cabinet", "Shelf")]
+    rows = {
+        "Catalogue": catalogue,
+        "Building": [building or {}],
+        "Floors": floors or [{"floor": "1", **SLOW}],
+        "Items": list(items) or [CABINET],
+    }
+    write_records(folder, "pulse", "slow")
+    path = folder / "w.xlsx"
+    write_workbook(path, Content(rows=rows), "si")
+    return compute(assess.read_inventory(path), settings)
+
+
+def found(assessment: Assessment, *pfa_g: float, **named: Any):
+    levels = [one * GRAVITY for one in pfa_g] or None
+    return find_piece_fragilities(assessment, levels=levels, **named)
+
+
+def counts(assessment: Assessment, *pfa_g: float, **named: Any) -> list[list[float]]:
+    return [one.curve.fallen.tolist() for one in found(assessment, *pfa_g, **named).curves]
+
+
+def rocked(assessment: Assessment, pfa_g: float) -> list[np.ndarray[Any, Any]]:
+    """Rock every case alone under the motions of its axis scaled to a PFA: in which draws it falls."""
+    every = np.ones(len(assessment.case_item), dtype=np.bool_)
+    building, settings = assessment.inventory.building, assessment.settings
+    cases = choose_motions(
+        assessment.cases, every, assessment.case_demand, assessment.demands, building, settings, None
+    )
+    verdicts = []
+    for at, demand in enumerate(assessment.case_demand):
+        ((motions, step),) = cases.ensembles[cases.ensemble[at]].open(1).realise(0, settings.runs)
+        size = tuple(one[at : at + 1] for one in (cases.breadth, cases.height, cases.centre, cases.restitution))
+        b, h, z, eta = (np.repeat(one, settings.runs) for one in size)
+        if cases.uncertainty.piece and not settings.ideal:
+            name = [name_number(assessment.inventory.items[assessment.case_item[at]].item)]
+            drawn = draw_bodies(*size, name, seed=settings.seed, first=0, count=int(settings.runs))
+            b, h, z, eta = (one[0] for one in (drawn.breadth, drawn.height, drawn.centre, drawn.restitution))
+        scaled = motions * (pfa_g * GRAVITY / demand.pfa)
+        alone = (
+            rock_blocks(b[k], h[k], scaled[k : k + 1], step, restitution=eta[k], centre=z[k]).overturned.item()
+            for k in range(len(scaled))
+        )
+        verdicts.append(np.array(list(alone), dtype=np.bool_))
+    return verdicts
+
+
+# --- one piece ---
+
+
+@pytest.mark.parametrize(("building", "ideal"), [(EXACT, False), ({}, False), ({}, True)])
+def test_one_piece_falls_as_often_as_it_does_alone(tmp_path, building, ideal):
+    """Neither the uncertainty of the motion, 0.4 where blank, nor the floor's own PFA plays a part."""
+    settings = replace(SETTINGS, ideal=ideal)
+    assessment = assessed(tmp_path, building=building, settings=settings, floors=[{"floor": "1", **PEAKS}])
+    result = found(assessment, *LEVELS)
+    (one,) = result.curves
+    assert one.curve.fallen.tolist() == [rocked(assessment, pfa)[0].sum() for pfa in LEVELS]
+    assert one.curve.trials.tolist() == [RUNS] * len(LEVELS)
+    assert 0 < one.curve.fallen.sum() < RUNS * len(LEVELS)
+    assert result.has_drawn_pieces == (building == {} and not ideal)
+    assert one.thresholds == (pytest.approx(40 / 180 * GRAVITY),) * 2
+
+
+def test_the_motions_own_scatter_and_the_workbooks_do_not_enter(tmp_path):
+    own = [counts(assessed(tmp_path, building={"motion_uncertainty": one}), *LEVELS) for one in (0, 0.8)]
+    assert own[0] == own[1]
+
+
+def test_a_blank_axis_takes_the_worse_at_each_level(tmp_path):
+    assessment = assessed(tmp_path, {**CABINET, "axis": None}, building=EXACT)
+    along = [[one.sum() for one in rocked(assessment, pfa)] for pfa in LEVELS]
+    assert counts(assessment, *LEVELS) == [[max(both) for both in along]]
+    assert any(x != y for x, y in along)
+
+
+def test_parallel_records_take_the_worse_at_each_level(tmp_path):
+    assessment = assessed(tmp_path, building=EXACT, floors=[{"floor": "1", "record_x": "slow.csv; pulse.csv"}])
+    along = [[one.sum() for one in rocked(assessment, pfa)] for pfa in LEVELS]
+    assert counts(assessment, *LEVELS) == [[max(both) for both in along]]
+    assert len(found(assessment, *LEVELS).curves[0].motions) == 2
+    assert any(one != other for one, other in along)
+
+
+def test_a_square_piece_falls_along_either_axis(tmp_path):
+    assessment = assessed(tmp_path, {**CABINET, "axis": None, "width": 50}, building=EXACT)
+    verdicts = [rocked(assessment, pfa) for pfa in LEVELS]
+    either = [int((x | y).sum()) for x, y in verdicts]
+    assert counts(assessment, *LEVELS) == [either]
+    assert any(int(max(x.sum(), y.sum())) < both for (x, y), both in zip(verdicts, either, strict=True))
+
+
+def test_it_is_what_a_run_finds_at_the_floors_own_pfa_without_uncertain_motions(tmp_path):
+    settings = Settings(runs=RUNS, seed=4)
+    ran = assessed(tmp_path, building={"motion_uncertainty": 0}, settings=settings)
+    (pfa,) = {demand.pfa for demand in ran.case_demand}
+    (one,) = find_piece_fragilities(ran, levels=[0.5 * pfa, pfa]).curves
+    assert one.curve.shares[1] == ran.adoption.probability[0]
+    assert 0 < one.curve.shares[1] < 1
+
+
+# --- levels ---
+
+
+def test_levels_reach_from_about_none_to_about_all(tmp_path):
+    """Also of pieces of very different size; they are preferred numbers in g, 12 % apart."""
+    thin, stout = {**CABINET, "item": "thin", "breadth": 15}, {**CABINET, "item": "stout", "breadth": 75, "height": 75}
+    result = found(assessed(tmp_path, thin, CABINET, stout))
+    for one in result.curves:
+        assert (one.curve.shares[0], one.curve.kind) == (0, "fitted"), one.name
+        assert one.curve.shares[-1] >= 0.98, one.name
+        assert one.curve.levels[0] / GRAVITY <= 0.5 * one.thresholds[0] / GRAVITY * 1.12
+        assert np.diff(np.log(one.curve.levels)) == pytest.approx(math.log(10) / 20, abs=0.02)
+        assert [float(f"{level / GRAVITY:.3g}") for level in one.curve.levels] == pytest.approx(
+            (one.curve.levels / GRAVITY).tolist(), rel=1e-12
+        )
+    medians = [one.curve.median for one in result.curves]
+    assert medians == sorted(medians)
+
+
+def test_levels_are_added_where_a_short_motion_fells_late(tmp_path):
+    """A record of 8 Hz starts pieces rocking long before it can overturn them."""
+    write_records(tmp_path, "fast")
+    assessment = assessed(tmp_path, building=EXACT, floors=[{"floor": "1", "record_x": "fast.csv"}])
+    (one,) = found(assessment).curves
+    at = [float(level) for level in one.curve.levels]
+    assert at[-1] > 4.6 * one.thresholds[0], "more than the first levels"
+    assert one.curve.shares[-1] >= 0.98 or at[-1] >= 15.9 * one.thresholds[0]
+    again = find_piece_fragilities(assessment, levels=at).curves[0].curve
+    assert again.fallen.tolist() == one.curve.fallen.tolist(), "no level is rocked otherwise for being added"
+
+
+def test_levels_and_threads_change_nothing(tmp_path):
+    items = [CABINET, {**CABINET, "item": "a2", "breadth": 30, "axis": None}]
+    floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4}]
+    assessment = assessed(tmp_path, *items, {**CABINET, "item": "b", "floor": "2"}, floors=floors)
+    several = counts(assessment, *LEVELS, jobs=1)
+    assert counts(assessment, *LEVELS, jobs=3) == several
+    assert counts(assessment, 0.3, 0.9) == [[one[1], one[3]] for one in several]
+    assert counts(assessment, jobs=1) == counts(assessment, jobs=2)
+
+
+def test_the_fit_follows_the_table(tmp_path):
+    (one,) = found(assessed(tmp_path, settings=replace(SETTINGS, runs=200))).curves
+    curve = one.curve
+    assert 0.2 < curve.median / GRAVITY < 0.9
+    assert np.interp(curve.median, curve.levels, curve.shares) == pytest.approx(0.5, abs=0.1)
+    fitted = lognormal_chance(curve.levels, curve.median, curve.dispersion)
+    assert np.abs(fitted - curve.shares).max() == pytest.approx(curve.misfit)
+    assert curve.misfit < 0.15
+
+
+# --- PFV ---
+
+
+def test_levels_of_pfv_are_those_of_pfa_by_the_floors_ratio(tmp_path):
+    floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4, "pfv_x": 50}]
+    assessment = assessed(tmp_path, CABINET, {**CABINET, "item": "b", "floor": "2"}, floors=floors)
+    for demand, at in zip(assessment.case_demand, (0, 1), strict=True):
+        by_pfa = find_piece_fragilities(assessment, levels=[factor * demand.pfa for factor in (0.5, 1, 2)])
+        by_pfv = find_piece_fragilities(assessment, levels=[factor * demand.pfv for factor in (0.5, 1, 2)], im="pfv")
+        one, other = by_pfa.curves[at].curve, by_pfv.curves[at].curve
+        assert other.fallen == pytest.approx(one.fallen, abs=1), "but for the last digit of a factor"
+        assert other.levels / one.levels == pytest.approx(demand.pfv / demand.pfa)
+        assert 0 < one.fallen.sum() < 3 * RUNS
+
+
+def test_the_ratio_of_the_motions(tmp_path):
+    floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4, "pfv_x": 50}]
+    assessment = assessed(tmp_path, CABINET, {**CABINET, "item": "b", "floor": "2"}, floors=floors)
+    recorded, generic = (one.motions[0] for one in found(assessment, 0.3, 0.5).curves)
+    every = np.ones(2, dtype=np.bool_)
+    cases = choose_motions(
+        assessment.cases, every, assessment.case_demand, assessment.demands, assessment.inventory.building, SETTINGS,
+        None,
+    )  # fmt: skip
+    for one, ensemble in zip((recorded, generic), cases.ensembles, strict=True):
+        ((motions, step),) = ensemble.open(1).realise(0, RUNS)
+        velocity = np.cumsum((motions[:, 1:] + motions[:, :-1]) * (step / 2), axis=1, dtype=np.float64)
+        assert one.mean_pfa == pytest.approx(np.abs(motions).max(axis=1).mean(), rel=1e-6)
+        assert one.mean_pfv == pytest.approx(np.abs(velocity).max(axis=1).mean(), rel=1e-4)
+        assert one.pfv_per_pfa == one.mean_pfv / one.mean_pfa
+    assert (recorded.spectrum, recorded.source) == ("that of the record", "slow.csv")
+    assert generic.spectrum == "generic, shape of ICC-ES AC156, T1 and height unknown; long periods by the floor's PFV"
+    assert generic.mean_pfv == pytest.approx(0.5, rel=0.15)
+    assert [(one.is_generic, one.is_unshaped) for one in (recorded, generic)] == [(False, False), (True, True)]
+
+
+@pytest.mark.parametrize(
+    ("building", "text"),
+    [
+        ({}, "the PFV of floor '2' along X is not known: no fragility against PFV can be given"),
+        ({"period": 1.0}, "the PFV of floor '2' along X is estimated from T1, and its motions do not follow it"),
+    ],
+)
+def test_an_unknown_pfv_is_named(tmp_path, building, text):
+    floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4}, {"floor": "3", "pfa_x": 0.4}]
+    items = [{**CABINET, "item": str(at), "floor": "2"} for at in range(3)]
+    stout = {**CABINET, "item": "stout", "floor": "3", "breadth": 150, "width": 150, "height": 90}
+    assessment = assessed(tmp_path, *items, CABINET, stout, floors=floors, building=building)
+    with pytest.raises(assess.WorkbookError) as caught:
+        found(assessment, im="pfv")
+    (problem,) = caught.value.problems
+    assert (problem.sheet, problem.cell) == ("Floors", assessment.inventory.floors[1].cell("pfv_x"))
+    assert problem.message.startswith(text)
+    assert problem.fix == "Fill in its PFA and PFV, or a record, or take PFA as the measure."
+
+
+# --- types ---
+
+
+def test_a_type_is_the_sum_of_its_rows_by_quantity(tmp_path):
+    floors = [{"floor": "1", **SLOW}, {"floor": "2", "pfa_x": 0.4, "pfv_x": 50}]
+    items = [
+        {**CABINET, "item": "a", "type": "Cabinet", "quantity": 3},
+        {**CABINET, "item": "b", "type": "Shelf", "breadth": 30},
+        {**CABINET, "item": "c", "type": "cabinet", "breadth": 45, "floor": "2"},
+        {**CABINET, "item": "d"},
+        {**CABINET, "item": "e", "floor": "2", "quantity": 2},
+        {**CABINET, "item": "f", "centre_of_gravity": 30},
+    ]
+    assessment = assessed(tmp_path, *items, floors=floors)
+    own = {one.name: one.curve.fallen for one in found(assessment, *LEVELS).curves}
+    result = found(assessment, *LEVELS, by="type")
+    assert [(one.name, one.type, [item.item for item in one.items], one.pieces) for one in result.curves] == [
+        ("Cabinet", "Cabinet", ["a", "c"], 4),
+        ("Shelf", "Shelf", ["b"], 1),
+        ("40 x 180 cm", "", ["d", "e"], 3),
+        ("40 x 180 cm", "", ["f"], 1),
+    ]
+    cabinet, shelf, sized, low = (one.curve for one in result.curves)
+    assert cabinet.fallen.tolist() == (3 * own["a"] + own["c"]).tolist()
+    assert cabinet.trials.tolist() == [4 * RUNS] * len(LEVELS)
+    assert shelf.fallen.tolist() == own["b"].tolist()
+    assert sized.fallen.tolist() == (own["d"] + 2 * own["e"]).tolist()
+    assert low.fallen.tolist() == own["f"].tolist()
+    assert result.curves[0].floors == ("1", "2")
+    low_ratio, high_ratio = result.curves[0].pfv_per_pfa
+    assert low_ratio < high_ratio
+    assert {one.pfv_per_pfa for one in result.curves[0].motions} == {low_ratio, high_ratio}
+
+
+# --- what is flagged, left out, or cannot be had ---
+
+
+def test_motions_that_may_be_too_weak_are_flagged(tmp_path):
+    floors = [{"floor": "1", **SLOW}, {"floor": "2", "record_x": "pulse.csv"}, {"floor": "3", "pfa_x": 0.4}]
+    items = [{**CABINET, "item": one, "floor": one} for one in "123"]
+    for building, unshaped in (({}, True), ({"height": 20}, False)):
+        result = found(assessed(tmp_path, *items, floors=floors, building=building), 0.3, 0.6)
+        assert [one.may_be_too_low for one in result.curves] == [False, True, unshaped]
+        flags = [
+            (one.is_generic, one.is_unshaped, one.is_weak) for (one,) in (curve.motions for curve in result.curves)
+        ]
+        assert flags == [(False, False, False), (False, False, True), (True, unshaped, False)]
+    assert result.curves[2].motions[0].spectrum == "generic, for T1 by the building's height 20 m"
+
+
+def test_stocky_pieces_are_left_out(tmp_path):
+    stout = {**CABINET, "item": "stout", "breadth": 160, "width": 160, "height": 110, "quantity": 2}
+    result = found(assessed(tmp_path, CABINET, stout), 0.3, 0.6)
+    assert ([one.name for one in result.curves], [one.item for one in result.stocky]) == (["a1"], ["stout"])
+    with pytest.raises(assess.InputError, match=r"^no piece can rock: all are too stocky"):
+        found(assessed(tmp_path, stout), 0.3)
+
+
+def test_where_nothing_falls_nothing_is_fitted(tmp_path):
+    (one,) = found(assessed(tmp_path), 0.02, 0.03).curves
+    assert (one.curve.kind, one.curve.fallen.tolist()) == ("none fell", [0, 0])
+    assert math.isnan(one.curve.median)
+
+
+def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
+    assessment, reports = assessed(tmp_path), []
+    found(assessment, 0.3, jobs=1, progress=Progress(reports.append))
+    own = [one for one in reports if one.stage == "rocking"]
+    assert {one.detail for one in own} == {"1 piece on 1 floor"}
+    assert (own[0].share, own[-1].share) == (0, 1)
+    cancel = Event()
+
+    def listen(_: Report) -> None:
+        cancel.set()
+
+    with pytest.raises(assess.CancelledError):
+        found(assessment, 0.3, progress=Progress(listen, cancel))
+
+
+@pytest.mark.parametrize(
+    ("named", "message"),
+    [
+        ({"by": "room"}, "^by is 'room', expected one of: item, type$"),
+        ({"im": "psa"}, "^im is 'psa', expected one of: pfa, pfv$"),
+        ({"levels": []}, "^levels have to be finite, above 0 and rising, and at least one.$"),
+        ({"levels": [2.0, 1.0]}, "^levels have to be"),
+        ({"levels": [1.0, 1.0]}, "^levels have to be"),
+        ({"levels": [0.0, 1.0]}, "^levels have to be"),
+        ({"levels": [1.0, math.inf]}, "^levels have to be"),
+        ({"levels": [math.nan]}, "^levels have to be"),
+    ],
+)
+def test_what_cannot_be_used(tmp_path, named, message):
+    with pytest.raises(assess.InputError, match=message):
+        find_piece_fragilities(assessed(tmp_path), **named)
+
+
+def test_the_number_of_draws_is_a_number(tmp_path):
+    with pytest.raises(assess.InputError, match="a fixed number of generated motions"):
+        found(assessed(tmp_path, settings=replace(SETTINGS, runs="auto")))
