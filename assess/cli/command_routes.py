@@ -1,8 +1,5 @@
 """``assess routes``: the chance that each evacuation route is blocked, against the PFA of its floors."""
 
-import re
-from collections.abc import Sequence
-from decimal import Decimal
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -10,9 +7,21 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.console import count, print_warnings, show_progress
-from assess.cli.options import AsJson, Jobs, Scenario, Seed, Workbook, check_file, figure_kind, read_settings, save_file
+from assess.cli.options import (
+    AsJson,
+    Draws,
+    Jobs,
+    Scenario,
+    Seed,
+    Span,
+    Workbook,
+    check_file,
+    figure_kind,
+    read_settings,
+    save_file,
+)
 from assess.errors import InputError
-from assess.settings import AUTO, RUNS
+from assess.settings import AUTO
 from assess.units import GRAVITY
 
 if TYPE_CHECKING:
@@ -24,10 +33,7 @@ EXAMPLES = (
     "assess routes building.xlsx --pfa 0.1:0.6:0.1 --plot routes.png --csv routes.csv",
 )
 
-MOST_PFA, STEP, MOST_VALUES = Decimal(5), "0.05", 50
-"""Largest PFA [g], the default step [g], and the largest number of values."""
-NUMBER = r"(\d{1,4}(?:\.\d{0,12})?|\.\d{1,12})"
-PFA = re.compile(rf"{NUMBER}:{NUMBER}(?::{NUMBER})?", re.ASCII)
+PFA = Span("--pfa", "g", step="0.05", most=5, examples="0.1:1.0 or 0.1:1.0:0.05")
 
 
 def command(
@@ -35,9 +41,7 @@ def command(
     pfa: Annotated[
         str, typer.Option(metavar="LOW:HIGH[:STEP]", help="PFA on the routes' floors [g]: both ends, steps of 0.05.")
     ] = "0.1:1.0",
-    runs: Annotated[
-        str | None, typer.Option(help="Draws: motions of each floor and axis.", show_default=str(RUNS))
-    ] = None,
+    runs: Draws = None,
     seed: Seed = None,
     scenario: Scenario = None,
     jobs: Jobs = None,
@@ -57,7 +61,7 @@ def command(
 
     Rocking is not monotone: a piece may stand in a stronger motion and overturn in a weaker one, so a chance may fall.
     """
-    values, settings = read_pfa(pfa), read_settings(verify="none", runs=runs, seed=seed, scenario=scenario)
+    values, settings = PFA.read(pfa), read_settings(verify="none", runs=runs, seed=seed, scenario=scenario)
     if settings.runs == AUTO:
         raise InputError(f"--runs: {AUTO} is for assess run, as every value uses the same motions. Give a number.")
     check_file(csv, "table", (".csv",))
@@ -84,24 +88,6 @@ def command(
     if plot is not None:
         left = _write_figure(sweep, plot)
         typer.echo(f"wrote {plot}" + (f"; {count(left, 'more route')} not drawn" if left else ""), err=True)
-
-
-def read_pfa(text: str) -> Sequence[float]:
-    """Return the values of PFA [g] that ``LOW:HIGH`` or ``LOW:HIGH:STEP`` means: both ends, and every step between."""
-    found = PFA.fullmatch(text.strip())
-    if found is None:
-        raise InputError(f"--pfa: {text[:40]!r} is not LOW:HIGH or LOW:HIGH:STEP in g, as 0.1:1.0 or 0.1:1.0:0.05.")
-    low, high, step = (Decimal(part) for part in (found[1], found[2], found[3] or STEP))
-    if not 0 < low <= high <= MOST_PFA:
-        raise InputError(f"--pfa is {low} to {high} g, expected above 0, LOW first, and at most {MOST_PFA} g.")
-    if step == 0:
-        raise InputError("--pfa: the step is 0 g, expected above 0.")
-    steps = int((high - low) / step)
-    values = [low + step * at for at in range(min(steps, MOST_VALUES) + 1)]
-    values += [high] if values[-1] < high else []
-    if len(values) > MOST_VALUES:
-        raise InputError(f"--pfa: {text.strip()} gives over {MOST_VALUES} values. Take a larger step.")
-    return [float(one) for one in values]
 
 
 def _write_figure(sweep: "Sweep", path: Path) -> int:

@@ -1,5 +1,11 @@
 """Options that several commands have: their help, and what turns them into arguments of the library."""
 
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,6 +22,7 @@ Runs = Annotated[
         show_default=str(RUNS),
     ),
 ]
+Draws = Annotated[str | None, typer.Option(help="Draws: motions of each floor and axis.", show_default=str(RUNS))]
 Seed = Annotated[int | None, typer.Option(help="Random seed of the generated motions.", show_default=str(SEED))]
 Scale = Annotated[
     float,
@@ -59,12 +66,38 @@ def check_file(path: Path | None, what: str, endings: tuple[str, ...] = FIGURES)
 
 def save_file(data: bytes, path: Path) -> None:
     """Write a file whole or not at all; OutputError if it cannot be written."""
-    stage = path.with_name(f".{path.stem[:40]}.writing")
+    save_files({path: data})
+
+
+def save_files(files: Mapping[Path, bytes]) -> None:
+    """Write files, whole or none of them: each is written next to its place, and they are moved there at the end.
+
+    Raises
+    ------
+    OutputError
+        If one cannot be written; what was there before is left.
+    """
+    stages = {path: path.with_name(f".{path.stem[:40]}{path.suffix[:8]}.writing") for path in files}
     try:
-        stage.write_bytes(data)
-        stage.replace(path)
+        for path, data in files.items():
+            with _naming(path), stages[path].open("wb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+        for path, stage in stages.items():
+            with _naming(path):
+                stage.replace(path)
+    finally:
+        for stage in stages.values():
+            stage.unlink(missing_ok=True)
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Turn an error of the system into an OutputError that names the file."""
+    try:
+        yield
     except OSError as error:
-        stage.unlink(missing_ok=True)
         raise OutputError(f"{path} could not be written: {error.strerror}. Name another file.") from None
 
 
@@ -84,3 +117,43 @@ def check_size(option: str, value: float, name: str = "") -> None:
     low, high = column.low or 0.0, column.high or float("inf")
     if not low <= value <= high:
         raise InputError(f"--{option} is {value:g} {column.unit}, expected {low:g} to {high:g} {column.unit}")
+
+
+# ---------------------------------------------------------------- levels of shaking
+
+MOST_LEVELS = 50
+_NUMBER = r"(\d{1,4}(?:\.\d{0,12})?|\.\d{1,12})"
+_SPAN = re.compile(rf"{_NUMBER}:{_NUMBER}(?::{_NUMBER})?", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """How levels are typed: their option, their unit, the default step, the largest level, and examples."""
+
+    option: str
+    unit: str
+    step: str
+    most: int
+    examples: str
+
+    def read(self, text: str) -> Sequence[float]:
+        """Return the levels that ``LOW:HIGH`` or ``LOW:HIGH:STEP`` means: both ends, and every step between."""
+        found = _SPAN.fullmatch(text.strip())
+        if found is None:
+            raise InputError(
+                f"{self.option}: {text[:40]!r} is not LOW:HIGH or LOW:HIGH:STEP in {self.unit}, as {self.examples}."
+            )
+        low, high, step = (Decimal(part) for part in (found[1], found[2], found[3] or self.step))
+        if not 0 < low <= high <= self.most:
+            raise InputError(
+                f"{self.option} is {low} to {high} {self.unit}, expected above 0, LOW first, and at most {self.most} "
+                f"{self.unit}."
+            )
+        if step == 0:
+            raise InputError(f"{self.option}: the step is 0 {self.unit}, expected above 0.")
+        steps = int((high - low) / step)
+        values = [low + step * at for at in range(min(steps, MOST_LEVELS) + 1)]
+        values += [high] if values[-1] < high else []
+        if len(values) > MOST_LEVELS:
+            raise InputError(f"{self.option}: {text.strip()} gives over {MOST_LEVELS} values. Take a larger step.")
+        return [float(one) for one in values]

@@ -60,7 +60,7 @@ class Sweep:
     def cautions(self) -> Iterator[str]:
         """Yield what in this building makes the chances less certain."""
         if floors := self.fragility.generic:
-            yield (f"Only peaks are known for {_name_floors(floors)}: the motions follow a generic spectrum.")
+            yield (f"Only peaks are known for {name_floors(floors)}: the motions follow a generic spectrum.")
         for floors, why, fix in (
             (self.fragility.unshaped, "as neither T1 nor the building's height is known",
              "Enter the Period T1 or the Height in the sheet Building."),
@@ -69,7 +69,7 @@ class Sweep:
         ):  # fmt: skip
             if floors:
                 yield (
-                    f"The motions of {_name_floors(floors)} may be too weak, {why}: chances that rest on them are "
+                    f"The motions of {name_floors(floors)} may be too weak, {why}: chances that rest on them are "
                     f"lower bounds, and assess run leaves such routes not known where it matters. {fix}"
                 )
         if stocky := self.fragility.stocky:
@@ -241,7 +241,8 @@ def _describe_pieces(one: RouteFragility) -> str:
     )
 
 
-def _name_floors(floors: Sequence[str]) -> str:
+def name_floors(floors: Sequence[str]) -> str:
+    """Return floors by name in running text, the first of many."""
     named = words.name_first([repr(words.cut(floor, 20)) for floor in floors], 8)
     return f"{'floor' if len(floors) == 1 else 'floors'} {named}"
 

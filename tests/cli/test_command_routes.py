@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 import assess
 from assess.cli import command_routes
 from assess.cli.app import app
-from assess.cli.command_routes import read_pfa
+from assess.cli.command_routes import PFA
 from assess.cli.route_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
 from assess.cli.route_output import Sweep
 from assess.pipeline.route_sweep import Fragility, RouteFragility
@@ -310,7 +310,7 @@ def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
 )
 def test_values_that_are_none(pfa, message):
     with pytest.raises(assess.InputError) as caught:
-        read_pfa(pfa)
+        PFA.read(pfa)
     assert message in str(caught.value)
 
 
@@ -325,7 +325,7 @@ def test_values_that_are_none(pfa, message):
     ],
 )
 def test_values(text, values):
-    assert read_pfa(text) == values
+    assert PFA.read(text) == values
 
 
 @pytest.mark.parametrize(
