@@ -274,7 +274,7 @@ def _check_levels(levels: Sequence[float]) -> tuple[float, ...]:
     values = tuple(float(one) for one in levels)
     is_rising = all(one < other for one, other in pairwise(values))
     if not values or not is_rising or not all(0 < one < math.inf for one in values):
-        raise InputError(fill("levels have to be finite, above 0 and rising, and at least one."))
+        raise InputError(fill("levels: expected one or more finite numbers above 0, each larger than the one before"))
     return values
 
 

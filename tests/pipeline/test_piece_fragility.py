@@ -71,8 +71,8 @@ def rocked(assessment: Assessment, pfa_g: float) -> list[np.ndarray[Any, Any]]:
     verdicts = []
     for at, demand in enumerate(assessment.case_demand):
         ((motions, step),) = cases.ensembles[cases.ensemble[at]].open(1).realise(0, settings.runs)
-        size = tuple(one[at : at + 1] for one in (cases.breadth, cases.height, cases.centre, cases.restitution))
-        b, h, z, eta = (np.repeat(one, settings.runs) for one in size)
+        size = cases.breadth[[at]], cases.height[[at]], cases.centre[[at]], cases.restitution[[at]]
+        b, h, z, eta = (np.repeat(one, int(settings.runs)) for one in size)
         if cases.uncertainty.piece and not settings.ideal:
             name = [name_number(assessment.inventory.items[assessment.case_item[at]].item)]
             drawn = draw_bodies(*size, name, seed=settings.seed, first=0, count=int(settings.runs))
@@ -312,7 +312,8 @@ def test_where_nothing_falls_nothing_is_fitted(tmp_path):
 
 
 def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
-    assessment, reports = assessed(tmp_path), []
+    assessment = assessed(tmp_path)
+    reports: list[Report] = []
     found(assessment, 0.3, jobs=1, progress=Progress(reports.append))
     own = [one for one in reports if one.stage == "rocking"]
     assert {one.detail for one in own} == {"1 piece on 1 floor"}
@@ -331,12 +332,12 @@ def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
     [
         ({"by": "room"}, "^by is 'room', expected one of: item, type$"),
         ({"im": "psa"}, "^im is 'psa', expected one of: pfa, pfv$"),
-        ({"levels": []}, "^levels have to be finite, above 0 and rising, and at least one.$"),
-        ({"levels": [2.0, 1.0]}, "^levels have to be"),
-        ({"levels": [1.0, 1.0]}, "^levels have to be"),
-        ({"levels": [0.0, 1.0]}, "^levels have to be"),
-        ({"levels": [1.0, math.inf]}, "^levels have to be"),
-        ({"levels": [math.nan]}, "^levels have to be"),
+        ({"levels": []}, "^levels: expected one or more finite numbers above 0, each larger than the one before$"),
+        ({"levels": [2.0, 1.0]}, "^levels: expected one or more"),
+        ({"levels": [1.0, 1.0]}, "^levels: expected one or more"),
+        ({"levels": [0.0, 1.0]}, "^levels: expected one or more"),
+        ({"levels": [1.0, math.inf]}, "^levels: expected one or more"),
+        ({"levels": [math.nan]}, "^levels: expected one or more"),
     ],
 )
 def test_what_cannot_be_used(tmp_path, named, message):
