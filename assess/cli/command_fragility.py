@@ -1,0 +1,186 @@
+"""``assess fragility``: the chance that pieces overturn, against the PFA or PFV of their floor, and a fit to it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from enum import Enum
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from assess.cli.console import count, print_warnings, show_progress
+from assess.cli.options import (
+    AsJson,
+    Draws,
+    Jobs,
+    Scenario,
+    Seed,
+    Span,
+    Workbook,
+    check_file,
+    figure_kind,
+    read_settings,
+    save_files,
+)
+from assess.errors import InputError, OutputError
+from assess.settings import AUTO
+
+if TYPE_CHECKING:
+    from assess.cli.fragility_output import Curves
+    from assess.progress import Progress
+    from assess.settings import Settings
+
+ORDER = 4
+EXAMPLES = (
+    "assess fragility building.xlsx",
+    "assess fragility building.xlsx --by type --im pfv --plot types.png",
+    "assess fragility building.xlsx --levels 0.1:1.5:0.1 --formats csv --out curves",
+)
+DEFAULT = "csv,json"
+
+
+class By(str, Enum):
+    """What has one curve."""
+
+    ITEM = "item"
+    TYPE = "type"
+
+
+class Measure(str, Enum):
+    """Intensity measures."""
+
+    PFA = "pfa"
+    PFV = "pfv"
+
+
+SPANS = {
+    Measure.PFA: Span("--levels", "g", step="0.05", most=20, examples="0.1:1.0 or 0.1:1.0:0.05"),
+    Measure.PFV: Span("--levels", "cm/s", step="5", most=5000, examples="10:200 or 10:200:10"),
+}
+
+
+def command(
+    path: Workbook,
+    by: Annotated[
+        By, typer.Option(help="One curve for each row of Items, or for all rows of a Type (without one: of a size).")
+    ] = By.ITEM,
+    im: Annotated[Measure, typer.Option(help="Intensity measure: PFA or PFV of the floor.")] = Measure.PFA,
+    levels: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LOW:HIGH[:STEP]",
+            help="Levels [g], steps of 0.05, or [cm/s], steps of 5.",
+            show_default="from where about nothing falls to where about everything does",
+        ),
+    ] = None,
+    formats: Annotated[
+        str | None, typer.Option(help="Files to write, separated by commas: csv, json.", show_default=DEFAULT)
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the files; with --json none are written by default.", show_default="NAME-fragility"
+        ),
+    ] = None,
+    runs: Draws = None,
+    seed: Seed = None,
+    scenario: Scenario = None,
+    ideal: Annotated[
+        bool, typer.Option("--ideal", help="Every piece exactly as filled in, whatever Piece uncertainty says.")
+    ] = False,
+    jobs: Jobs = None,
+    as_json: AsJson = False,
+    plot: Annotated[Path | None, typer.Option(help="Draw the curves to this .png, .svg or .pdf.")] = None,
+) -> None:
+    """Fit the chance that a piece overturns to the PFA or PFV of its floor.
+
+    Each piece is rocked under the motions of its floor, all multiplied by one factor, so that the floor's PFA or PFV
+    takes each level. The result is a table and the lognormal fitted to it: median and beta, with the largest misfit.
+
+    It is conditional on the floor's PFA or PFV: the uncertainty of the motion is not in it, as whoever applies it to
+    a demand brings that of the demand. The uncertainty of the pieces is in it (Piece uncertainty in the sheet
+    Building). The spectrum keeps its shape, so that a curve holds for motions of the PFV/PFA stated beside it.
+    """
+    span = None if levels is None else SPANS[im].read(levels)
+    settings = read_settings(verify="none", runs=runs, seed=seed, scenario=scenario, ideal=ideal)
+    if settings.runs == AUTO:
+        raise InputError(f"--runs: {AUTO} is for assess run, as every level uses the same motions. Give a number.")
+    wanted = [] if as_json and formats is None and out is None else _read_formats(formats or DEFAULT)
+    folder = out or Path(f"{path.stem}-fragility")
+    if wanted:
+        _check_folder(folder)
+    check_file(plot, "figure")
+    with show_progress() as progress:
+        curves = _find(path, by, im, span, settings, jobs, progress)
+    typer.echo(curves.to_json() if as_json else curves.to_text())
+    _write(curves, wanted, folder, plot)
+
+
+def _find(
+    path: Path,
+    by: By,
+    im: Measure,
+    span: Sequence[float] | None,
+    settings: "Settings",
+    jobs: int | None,
+    progress: "Progress",
+) -> "Curves":
+    from assess.cli.fragility_output import Curves
+    from assess.pipeline.piece_fragility import UNITS, find_piece_fragilities
+    from assess.pipeline.run import compute
+    from assess.workbook.read import read_inventory
+
+    inventory = replace(read_inventory(path, progress=progress), routes=())  # they play no part
+    assessment = compute(inventory, settings, progress=progress)
+    print_warnings(assessment.problems)
+    levels = None if span is None else [one * UNITS[im.value] for one in span]
+    found = find_piece_fragilities(assessment, by=by.value, im=im.value, levels=levels, jobs=jobs, progress=progress)
+    return Curves(assessment, found)
+
+
+def _read_formats(text: str) -> list[str]:
+    from assess.cli.fragility_output import FORMATS
+
+    wanted = [name.strip().lower() for name in text.split(",") if name.strip()]
+    unknown = [name for name in wanted if name not in FORMATS]
+    if unknown or not wanted:
+        named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
+        raise InputError(f"--formats: {named}; expected some of: {', '.join(FORMATS)}")
+    return list(dict.fromkeys(wanted))
+
+
+def _check_folder(folder: Path) -> None:
+    from assess.report import check_folder
+
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"--out: {folder} is a file; name a folder")
+    check_folder(folder)
+
+
+def _write(curves: "Curves", formats: Sequence[str], folder: Path, plot: Path | None) -> None:
+    """Write the files and the figure, all of them or none."""
+    from assess.cli.fragility_output import FORMATS
+
+    files = {folder / name: data for one in formats for name, data in FORMATS[one](curves).items()}
+    left = 0
+    if plot is not None:
+        files[plot], left = _draw(curves, figure_kind(plot))
+    try:
+        for parent in {folder} if formats else ():
+            parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be written to: {error.strerror}. Name another folder.") from None
+    save_files(files)
+    for file in files:
+        more = f"; {count(left, 'more curve')} not drawn" if file == plot and left else ""
+        typer.echo(f"wrote {file}{more}", err=True)
+
+
+def _draw(curves: "Curves", kind: str) -> tuple[bytes, int]:
+    """Return the figure, and how many curves it has no room for."""
+    from assess.cli.fragility_figure import choose_drawn, paint, size
+    from assess.report.figures.draw import draw
+
+    panels, left = choose_drawn(curves.found.curves)
+    return draw(*size(panels), partial(paint, curves, panels), kind), left

@@ -1,0 +1,307 @@
+"""Results of `assess fragility`, the chance of overturning against PFA or PFV: as files, JSON and text."""
+
+import csv
+import io
+import json
+import math
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from assess.cli.console import count
+from assess.cli.route_output import WIDE, name_floors
+from assess.fragility import MOST_MISFIT, lognormal_chance
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.piece_fragility import UNITS, FloorMotions, PieceFragilities, PieceFragility
+from assess.pipeline.versions import versions
+from assess.report import words
+from assess.report.data import disarm
+from assess.units import GRAVITY, LENGTH, to_edge
+from assess.version import __version__
+
+SCHEMA = "1.0"
+"""Version of the document's shape: the first number changes where a key goes or gets another meaning."""
+MOST_LINES = 200
+"""Curves that the text lists; files and the document hold all."""
+LABELS: Mapping[str, str] = {"pfa": "g", "pfv": "cm/s"}
+COLUMNS: Mapping[str, str] = {"pfa": "pfa_g", "pfv": "pfv_cm_s"}
+"""The unit of the levels, and their name in files."""
+DECIMALS = 12
+PIECES_DRAWN = (
+    "Each draw has a base, height, centre of gravity and restitution of its own (Piece uncertainty of the sheet "
+    "Building)."
+)
+POOLED = (
+    "The rows of a Type are pooled over their sizes and floors, each by its Quantity; rows without a Type by equal "
+    "size. Pieces of a row fall alike, so that trials count each draw once for each piece."
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curves:
+    """What `assess fragility` found."""
+
+    assessment: Assessment
+    found: PieceFragilities
+
+    @property
+    def measure(self) -> str:
+        """The intensity measure in words."""
+        return self.found.im.upper()
+
+    @property
+    def conditions(self) -> str:
+        """What a curve is conditional on, in short."""
+        pieces = "that of the pieces is" if self.found.has_drawn_pieces else "neither is that of the pieces"
+        return (
+            f"chance of overturning given the floor's {self.measure}; the uncertainty of the motion is not in it, "
+            f"{pieces}; holds for motions of the stated PFV/PFA"
+        )
+
+    def say(self) -> Iterator[str]:
+        """Yield what the numbers mean, in paragraphs."""
+        measure, unit = self.measure, LABELS[self.found.im]
+        pieces = PIECES_DRAWN if self.found.has_drawn_pieces else "Every piece is exactly as filled in."
+        yield (
+            f"Chance that a free-standing piece overturns, given the {measure} of its floor; not a chance per year. "
+            f"The uncertainty of the motion is not in it: whoever applies a curve to a {measure} brings that of the "
+            f"demand. {pieces}"
+        )
+        yield (
+            f"Motions: the floor's own, all multiplied by level / the floor's {measure}, and the same at every level; "
+            "their single peaks scatter about it. The spectrum keeps its shape: a curve holds for motions of the "
+            "PFV/PFA stated (mean PFV over mean PFA of the motions). A blank axis takes the worse one at each level. "
+            "Sliding, castors, walls and anchors are not modelled; anchored pieces are taken as free-standing."
+        )
+        if self.found.by == "type":
+            yield POOLED
+        draws, error = count(self.found.runs, "draw"), 50 / math.sqrt(self.found.runs)
+        yield (
+            f"Median [{unit}] and beta (standard deviation of ln) are those of a lognormal fitted by maximum binomial "
+            "likelihood (Baker 2015). Misfit: the largest difference between it and the share that fell, at any "
+            f"level; up to {MOST_MISFIT:g} the lognormal stands in for the table, else use the table. With {draws} a "
+            f"share has a standard error of up to {error:.1f} percentage points, which is part of the misfit."
+        )
+
+    def cautions(self) -> Iterator[str]:
+        """Yield what in this building makes the curves less certain, and what was left out."""
+        every = [one for curve in self.found.curves for one in curve.motions]
+        if floors := self._list_floors(one for one in every if one.is_generic):
+            yield f"Only peaks are known for {name_floors(floors)}: the motions follow a generic spectrum."
+        for chosen, why, fix in (
+            ((one for one in every if one.is_unshaped), "as neither T1 nor the building's height is known",
+             "Enter the Period T1 or the Height in the sheet Building."),
+            ((one for one in every if one.is_weak), "as they are weaker than the floor's", ""),
+        ):  # fmt: skip
+            if floors := self._list_floors(chosen):
+                yield (
+                    f"The motions of {name_floors(floors)} may be too weak, {why}: pieces may overturn at lower levels "
+                    f"than curves that rest on them say. {fix}"
+                ).strip()
+        if stocky := sum(item.quantity for item in self.found.stocky):
+            yield f"Left out: {count(stocky, 'piece')} too stocky to rock."
+
+    def _list_floors(self, motions: Iterable[FloorMotions]) -> list[str]:
+        names = {one.floor for one in motions}
+        return [floor.floor for floor in self.assessment.inventory.floors if floor.floor in names]
+
+    # ------------------------------------------------------------ the document
+
+    def describe(self) -> dict[str, Any]:
+        """Return the document of `assess fragility --json` and fragility.json."""
+        inventory, found = self.assessment.inventory, self.found
+        return {
+            "schema": SCHEMA,
+            "workbook": {"file": inventory.source.name, "sha256": inventory.sha256},
+            "assess": {"version": __version__, "platform": dict(versions(has_rocked=True))},
+            "meaning": " ".join(self.say()),
+            "cautions": list(self.cautions()),
+            "scenario": self.assessment.scenario,
+            "by": found.by,
+            "intensity_measure": {"name": found.im, "unit": LABELS[found.im], "key": COLUMNS[found.im]},
+            "draws": found.runs,
+            "seed": found.seed,
+            "uncertainty": {"motion": 0.0, "piece": found.has_drawn_pieces},
+            "too_stocky": [item.item for item in found.stocky],
+            "motions": [_describe_motions(one) for one in self.list_motions()],
+            "curves": [self._describe(curve) | {"table": list(self._tabulate(curve))} for curve in found.curves],
+        }
+
+    def list_motions(self) -> list[FloorMotions]:
+        """Return the motions of all curves, each once."""
+        return list({id(one): one for curve in self.found.curves for one in curve.motions}.values())
+
+    def _describe(self, one: PieceFragility) -> dict[str, Any]:
+        """Return a curve without its table, flat."""
+        curve, unit, level = one.curve, UNITS[self.found.im], COLUMNS[self.found.im]
+        thresholds, ratios, motions = one.thresholds, one.pfv_per_pfa, one.motions
+        return {
+            "name": one.name,
+            "type": one.type or None,
+            "items": [item.item for item in one.items],
+            "floors": list(one.floors),
+            "pieces": one.pieces,
+            "anchored_pieces": sum(item.quantity for item in one.items if item.anchored == "yes"),
+            "kind": curve.kind,
+            "why": str(curve.why),
+            f"median_{level}": _finite(curve.median / unit),
+            "beta": _finite(curve.dispersion),
+            "misfit": _finite(curve.misfit),
+            "is_lognormal": curve.is_lognormal,
+            **_range("breadth_{}_cm", [to_edge(item.breadth, LENGTH["cm"]) for item in one.items]),
+            **_range("height_{}_cm", [to_edge(item.height, LENGTH["cm"]) for item in one.items]),
+            **_range("breadth_to_height_{}", [item.breadth / item.height for item in one.items]),
+            **_range("centre_of_gravity_{}_percent", [_to_percent(item.centre_of_gravity) for item in one.items]),
+            **_range("rocks_from_{}_g", [value / GRAVITY for value in thresholds]),
+            **_range("pfv_per_pfa_{}_s", ratios),
+            "generic_spectrum": any(motion.is_generic for motion in motions),
+            "unknown_period": any(motion.is_unshaped for motion in motions),
+            "weak_motions": any(motion.is_weak for motion in motions),
+            "may_be_too_low": one.may_be_too_low,
+        }
+
+    def _tabulate(self, one: PieceFragility) -> Iterator[dict[str, Any]]:
+        curve, unit = one.curve, UNITS[self.found.im]
+        fitted = lognormal_chance(curve.levels, curve.median, curve.dispersion) if curve.kind == "fitted" else None
+        for at, level in enumerate(curve.levels.tolist()):
+            yield {
+                COLUMNS[self.found.im]: round(level / unit, DECIMALS),
+                "trials": int(curve.trials[at]),
+                "fallen": int(curve.fallen[at]),
+                "share": float(curve.shares[at]),
+                "fitted": None if fitted is None else float(fitted[at]),
+            }
+
+    def to_json(self) -> str:
+        """Return the document as text."""
+        return json.dumps(self.describe(), ensure_ascii=False, allow_nan=False, indent=1)
+
+    # ------------------------------------------------------------ the tables
+
+    def to_csv(self) -> str:
+        """Return a line a curve, for other programs; the last column says what it is conditional on."""
+        own = {"by": self.found.by, "draws": self.found.runs, "seed": self.found.seed, "conditions": self.conditions}
+        return _write_rows({**self._describe(curve), **own} for curve in self.found.curves)
+
+    def to_table(self) -> str:
+        """Return a line a curve and level."""
+        return _write_rows(
+            {"name": curve.name, "type": curve.type or None, "items": [item.item for item in curve.items], **row}
+            for curve in self.found.curves
+            for row in self._tabulate(curve)
+        )
+
+    # ------------------------------------------------------------ the text
+
+    def to_text(self) -> str:
+        """Return what a person reads."""
+        return "\n".join(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        found = self.found
+        yield (
+            f"{self.assessment.inventory.source.name}: scenario {self.assessment.scenario}, "
+            f"{count(found.runs, 'draw')}, seed {found.seed}; against the floor's {self.measure}"
+        )
+        yield ""
+        rows = [self._cells(one) for one in found.curves[:MOST_LINES]]
+        yield from _align(
+            [found.by, "pieces", "floors", "B/H", f"median [{LABELS[found.im]}]", "beta", "misfit", "PFV/PFA [s]", ""],
+            rows,
+        )
+        if len(found.curves) > MOST_LINES:
+            yield f"... and {len(found.curves) - MOST_LINES:,} more, which files and --json hold."
+        for paragraph in (*self.cautions(), *self.say()):
+            yield ""
+            yield from textwrap.wrap(paragraph, WIDE)
+
+    def _cells(self, one: PieceFragility) -> list[str]:
+        curve, unit = one.curve, UNITS[self.found.im]
+        fitted = [f"{curve.median / unit:.3g}", f"{curve.dispersion:.2f}", f"{curve.misfit:.3f}"]
+        return [
+            words.cut(one.name, 34),
+            f"{one.pieces:,}",
+            words.cut(", ".join(one.floors), 16),
+            _spread([item.breadth / item.height for item in one.items]),
+            *(fitted if curve.kind == "fitted" else ["-", "-", "-"]),
+            _spread(one.pfv_per_pfa),
+            "; ".join(_remark(one)),
+        ]
+
+
+def _write_csv(curves: Curves) -> dict[str, bytes]:
+    return {
+        "fragility.csv": curves.to_csv().encode("utf-8-sig"),
+        "fragility_table.csv": curves.to_table().encode("utf-8-sig"),
+    }
+
+
+def _write_json(curves: Curves) -> dict[str, bytes]:
+    return {"fragility.json": f"{curves.to_json()}\n".encode()}
+
+
+FORMATS: Mapping[str, Callable[[Curves], dict[str, bytes]]] = {"csv": _write_csv, "json": _write_json}
+"""What writes each format: the bytes of its files by their names."""
+
+
+def _remark(one: PieceFragility) -> Iterator[str]:
+    if one.curve.kind != "fitted":
+        yield str(one.curve.why)
+    elif not one.curve.is_lognormal:
+        yield "use the table"
+    if one.may_be_too_low:
+        yield "may be too low"
+
+
+def _describe_motions(one: FloorMotions) -> dict[str, Any]:
+    return {
+        "floor": one.floor,
+        "axis": one.axis,
+        "source": str(one.source),
+        "spectrum": str(one.spectrum),
+        "pfa_g": one.pfa / GRAVITY,
+        "pfv_cm_s": _finite(100 * one.pfv),
+        "mean_pfa_g": one.mean_pfa / GRAVITY,
+        "mean_pfv_cm_s": 100 * one.mean_pfv,
+        "pfv_per_pfa_s": one.pfv_per_pfa,
+        "generic_spectrum": one.is_generic,
+        "unknown_period": one.is_unshaped,
+        "weak_motions": one.is_weak,
+    }
+
+
+def _write_rows(rows: Iterable[Mapping[str, Any]]) -> str:
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\r\n")
+    for number, row in enumerate(rows):
+        if number == 0:
+            writer.writerow(row)
+        writer.writerow([disarm(value) for value in row.values()])
+    return file.getvalue()
+
+
+def _range(name: str, values: Sequence[float]) -> dict[str, float]:
+    """Return the least and the largest value by name."""
+    return {name.format("min"): min(values), name.format("max"): max(values)}
+
+
+def _spread(values: Sequence[float]) -> str:
+    low, high = f"{min(values):.2f}", f"{max(values):.2f}"
+    return low if low == high else f"{low}-{high}"
+
+
+def _align(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Yield lines of columns: the first and the last to the left, the others to the right."""
+    wide = [max(len(row[at]) for row in (heads, *rows)) for at in range(len(heads))]
+    for row in (heads, *rows):
+        middle = (f"{text:>{width}}" for text, width in zip(row[1:-1], wide[1:-1], strict=True))
+        yield "  ".join([f"{row[0]:<{wide[0]}}", *middle, row[-1]]).rstrip()
+
+
+def _to_percent(share: float) -> float:
+    return round(100 * share, DECIMALS)
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

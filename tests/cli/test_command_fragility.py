@@ -1,0 +1,362 @@
+"""`assess fragility`: its table, document, files and figure, and what it says of bad input."""
+
+import csv
+import io
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from typer.testing import CliRunner
+
+import assess
+from assess.cli.app import app
+from assess.cli.fragility_figure import A_PANEL, MOST_PANELS, choose_drawn, paint, size
+from assess.cli.fragility_output import FORMATS, MOST_LINES, Curves
+from assess.fragility import fit_fragility, lognormal_chance
+from assess.model import Item
+from assess.pipeline.piece_fragility import FloorMotions, PieceFragilities, PieceFragility, find_piece_fragilities
+from assess.pipeline.run import compute
+from assess.units import GRAVITY
+from assess.workbook.template import Content, write_workbook
+from tests.shaking import write_records
+
+SHAPE = {"width": 80, "axis": "X", "height": 180}
+ITEMS = [
+    {"item": "a1", "floor": "1", "breadth": 40, "type": "=Shelf", "quantity": 2, **SHAPE},
+    {"item": "a2", "floor": "2", "breadth": 30, "type": "=Shelf", "anchored": "yes", **SHAPE},
+    {"item": "@b", "floor": "1", "breadth": 60, **SHAPE},
+    {"item": "stout", "floor": "1", "breadth": 160, "width": 160, "height": 110},
+]
+FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.5, "pfv_x": 60}]
+SWEEP = ("--levels", "0.1:0.9:0.1", "--runs", "20", "--seed", "3")
+LEVELS = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
+
+
+def write(folder: Path, **rows: Any) -> Path:
+    write_records(folder, "slow")
+    path = folder / "w.xlsx"
+    content = {"Building": [{}], "Floors": FLOORS, "Items": ITEMS, "Catalogue": [{"type": "=Shelf"}], **rows}
+    write_workbook(path, Content(rows=content), "si")
+    return path
+
+
+def run(*words: object):
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def error(done):
+    """The message of a run that failed as it should: status 2, nothing printed, no traceback."""
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.exception is None or isinstance(done.exception, SystemExit)
+    return " ".join(re.sub(r"[│╭╮╰╯─\n]", " ", done.stderr).split())
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """The folder of one run by type with everything that it can write, its document, and its text."""
+    folder = tmp_path_factory.mktemp("fragility")
+    path, out = write(folder), folder / "out"
+    words = ("fragility", path, *SWEEP, "--by", "type")
+    printed = run(*words, "--json")
+    assert (printed.exit_code, printed.exception) == (0, None)
+    assert sorted(one.name for one in folder.iterdir()) == ["slow.csv", "w.xlsx"], "--json alone writes nothing"
+    done = run(*words, "--out", out, "--plot", folder / "f.svg")
+    assert (done.exit_code, done.exception) == (0, None)
+    return folder, json.loads(printed.stdout), done.stdout, done.stderr
+
+
+def test_the_document(made):
+    _, document, _, _ = made
+    assert document["schema"] == "1.0"
+    assert document["workbook"]["file"] == "w.xlsx"
+    assert (document["by"], document["draws"], document["seed"]) == ("type", 20, 3)
+    assert document["intensity_measure"] == {"name": "pfa", "unit": "g", "key": "pfa_g"}
+    assert document["uncertainty"] == {"motion": 0.0, "piece": True}
+    assert "The uncertainty of the motion is not in it" in document["meaning"]
+    assert "each by its Quantity" in document["meaning"]
+    assert document["too_stocky"] == ["stout"]
+    assert document["cautions"] == [
+        "Only peaks are known for floor '2': the motions follow a generic spectrum.",
+        "The motions of floor '2' may be too weak, as neither T1 nor the building's height is known: pieces may "
+        "overturn at lower levels than curves that rest on them say. Enter the Period T1 or the Height in the sheet "
+        "Building.",
+        "Left out: 1 piece too stocky to rock.",
+    ]
+    shelf, sized = document["curves"]
+    assert (shelf["name"], shelf["type"], shelf["items"], shelf["floors"]) == (
+        "=Shelf", "=Shelf", ["a1", "a2"], ["1", "2"],
+    )  # fmt: skip
+    assert (sized["name"], sized["type"], sized["items"]) == ("60 x 180 cm", None, ["@b"])
+    assert (shelf["pieces"], shelf["anchored_pieces"], sized["pieces"]) == (3, 1, 1)
+    assert (shelf["breadth_min_cm"], shelf["breadth_max_cm"]) == (30, 40)
+    assert (shelf["rocks_from_min_g"], shelf["rocks_from_max_g"]) == pytest.approx((30 / 180, 40 / 180))
+    assert (shelf["may_be_too_low"], sized["may_be_too_low"]) == (True, False)
+    ratios = {one["floor"]: one["pfv_per_pfa_s"] for one in document["motions"]}
+    assert (shelf["pfv_per_pfa_min_s"], shelf["pfv_per_pfa_max_s"]) == (min(ratios.values()), max(ratios.values()))
+    assert sized["pfv_per_pfa_min_s"] == sized["pfv_per_pfa_max_s"] == ratios["1"]
+    for one in document["motions"]:
+        peaks = one["mean_pfv_cm_s"] / (100 * GRAVITY * one["mean_pfa_g"])
+        assert one["pfv_per_pfa_s"] == pytest.approx(peaks)
+    for one in (shelf, sized):
+        assert [row["pfa_g"] for row in one["table"]] == LEVELS
+        assert {row["trials"] for row in one["table"]} == {20 * one["pieces"]}
+        assert all(row["share"] == row["fallen"] / row["trials"] for row in one["table"])
+    assert shelf["table"][0]["fallen"] == 0
+    assert shelf["table"][-1]["share"] > 0.9
+
+
+def test_it_is_what_the_library_finds(made):
+    folder, document, _, _ = made
+    settings = assess.Settings(verify="none", runs=20, seed=3)
+    assessment = compute(assess.read_inventory(folder / "w.xlsx"), settings)
+    found = find_piece_fragilities(assessment, by="type", levels=[one * GRAVITY for one in LEVELS])
+    for one, curve in zip(document["curves"], found.curves, strict=True):
+        assert [row["fallen"] for row in one["table"]] == curve.curve.fallen.tolist()
+        assert one["kind"] == curve.curve.kind == "fitted"
+        assert one["median_pfa_g"] == curve.curve.median / GRAVITY
+        assert (one["beta"], one["misfit"]) == (curve.curve.dispersion, curve.curve.misfit)
+        assert one["is_lognormal"] == (one["misfit"] <= 0.05)
+        levels = np.array([row["pfa_g"] for row in one["table"]])
+        fitted = lognormal_chance(levels, one["median_pfa_g"], one["beta"])
+        assert [row["fitted"] for row in one["table"]] == pytest.approx(fitted.tolist())
+
+
+def test_the_files_are_the_document(made):
+    folder, document, _, stderr = made
+    names = ["fragility.csv", "fragility.json", "fragility_table.csv"]
+    assert sorted(one.name for one in (folder / "out").iterdir()) == names
+    assert json.loads((folder / "out" / "fragility.json").read_text(encoding="utf-8")) == document
+    assert [line for line in stderr.splitlines() if line.startswith("wrote")] == [
+        *(f"wrote {folder / 'out' / name}" for name in ("fragility.csv", "fragility_table.csv", "fragility.json")),
+        f"wrote {folder / 'f.svg'}",
+    ]
+    curves, table = (read_csv(folder / "out" / name) for name in ("fragility.csv", "fragility_table.csv"))
+    assert [row["name"] for row in curves] == ["'=Shelf", "60 x 180 cm"], "no text is taken for a formula"
+    assert [row["items"] for row in curves] == ["a1; a2", "'@b"]
+    for row, one in zip(curves, document["curves"], strict=True):
+        for name in set(one) - {"name", "type", "items", "floors", "table"}:
+            assert row[name] == ("" if one[name] is None else str(one[name])), name
+        assert row["conditions"].startswith(
+            "chance of overturning given the floor's PFA; the uncertainty of the motion"
+        )
+        assert (row["draws"], row["seed"], row["by"]) == ("20", "3", "type")
+    every = [(one["name"], at) for one in document["curves"] for at in one["table"]]
+    for row, (name, at) in zip(table, every, strict=True):
+        assert row["name"].removeprefix("'") == name
+        assert {key: row[key] for key in at} == {key: str(value) for key, value in at.items()}
+
+
+def read_csv(path: Path) -> list[dict[str, str]]:
+    data = path.read_bytes()
+    assert data.startswith(b"\xef\xbb\xbf")
+    return list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"), newline="")))
+
+
+def test_the_text_is_the_document(made):
+    _, document, text, _ = made
+    assert text.startswith("w.xlsx: scenario as filled, 20 draws, seed 3; against the floor's PFA\n\ntype ")
+    head, *lines = text.split("\n\n")[1].splitlines()
+    assert re.split(r"  +", head) == ["type", "pieces", "floors", "B/H", "median [g]", "beta", "misfit", "PFV/PFA [s]"]
+    for line, one in zip(lines, document["curves"], strict=True):
+        cells = re.split(r"  +", line)
+        assert cells[:2] == [one["name"], str(one["pieces"])]
+        assert cells[4:7] == [f"{one['median_pfa_g']:.3g}", f"{one['beta']:.2f}", f"{one['misfit']:.3f}"]
+        assert ("use the table" in line) == (one["misfit"] > 0.05)
+        assert ("may be too low" in line) == one["may_be_too_low"]
+    flat = " ".join(text.split())
+    assert "The uncertainty of the motion is not in it" in flat
+    assert all(one in flat for one in document["cautions"])
+    assert "a share has a standard error of up to 11.2 percentage points" in flat
+
+
+def test_pfv_by_item_without_uncertain_pieces(tmp_path):
+    """Formats choose the files; columns are named by the measure."""
+    path = write(tmp_path)
+    words = ("--im", "pfv", "--levels", "20:200:60", "--ideal", "--runs", 10, "--formats", "csv", "--out", tmp_path)
+    done = run("fragility", path, *words)
+    assert done.exit_code == 0
+    assert "Every piece is exactly as filled in." in " ".join(done.stdout.split())
+    assert "median [cm/s]" in done.stdout
+    assert not (tmp_path / "fragility.json").exists()
+    curves, table = (read_csv(tmp_path / name) for name in ("fragility.csv", "fragility_table.csv"))
+    assert [row["name"] for row in curves] == ["a1", "a2", "'@b"]
+    assert "median_pfv_cm_s" in curves[0]
+    assert "neither is that of the pieces" in curves[0]["conditions"]
+    assert [row["pfv_cm_s"] for row in table[:4]] == ["20.0", "80.0", "140.0", "200.0"]
+    assert {row["trials"] for row in table} == {"10"}
+
+
+def test_the_same_files_with_any_number_of_threads(tmp_path):
+    path = write(tmp_path)
+    for jobs in (1, 2):
+        done = run("fragility", path, "--runs", 10, "--jobs", jobs, "--out", tmp_path / str(jobs))
+        assert done.exit_code == 0
+    for name in ("fragility.csv", "fragility_table.csv", "fragility.json"):
+        assert (tmp_path / "1" / name).read_bytes() == (tmp_path / "2" / name).read_bytes()
+
+
+# --- curves that are made up ---
+
+
+def curves_of(*shares: list[float], weak: bool = False) -> Curves:
+    """Curves over 0.1, 0.2, ... g with these shares of 100 draws."""
+    motions = FloorMotions(
+        floor="1", axis="X", source="given", pfa=3.0, pfv=0.4, mean_pfa=3.0, mean_pfv=0.45,
+        spectrum=cast("Any", "generic"), is_generic=True, is_unshaped=weak, is_weak=False,
+    )  # fmt: skip
+    every = []
+    for number, one in enumerate(shares):
+        levels = [GRAVITY * (1 + at) / 10 for at in range(len(one))]
+        curve = fit_fragility(levels, [100 * share for share in one], [100] * len(one))
+        item = Item(row=2, item=f"p{number}", floor="1", breadth=0.4, height=1.8)
+        every.append(PieceFragility(name=item.item, type="", items=(item,), curve=curve, motions=(motions,)))
+    found = PieceFragilities(
+        by="item", im="pfa", runs=100, seed=1, has_drawn_pieces=True, curves=tuple(every), stocky=()
+    )
+    floors = (SimpleNamespace(floor="1"),)
+    inventory = SimpleNamespace(source=Path("w.xlsx"), sha256="", floors=floors)
+    return Curves(cast("Any", SimpleNamespace(inventory=inventory, scenario="given")), found)
+
+
+def test_where_nothing_is_fitted_the_reason_stands():
+    curves = curves_of([0, 0, 0], [0, 0, 1], weak=True)
+    none, apart = curves.describe()["curves"]
+    assert [one["kind"] for one in (none, apart)] == ["none fell", "separated"]
+    assert [none[name] for name in ("median_pfa_g", "beta", "misfit", "is_lognormal")] == [None, None, None, False]
+    assert none["why"] == "not fitted: nothing fell at any level"
+    assert [row["fitted"] for row in none["table"]] == [None] * 3
+    text = " ".join(curves.to_text().split())
+    assert " - - - 0.15 not fitted: nothing fell at any level; may be too low " in text
+    (row, _) = csv.DictReader(io.StringIO(curves.to_csv()))
+    assert (row["median_pfa_g"], row["beta"]) == ("", "")
+    assert set(FORMATS["csv"](curves)) == {"fragility.csv", "fragility_table.csv"}
+
+
+def test_a_long_text_is_cut_and_the_document_is_not():
+    curves = curves_of(*[[0.1, 0.5, 0.9]] * (MOST_LINES + 3))
+    assert "\n... and 3 more, which files and --json hold.\n" in curves.to_text()
+    assert len(curves.describe()["curves"]) == MOST_LINES + 3
+
+
+def test_the_figure_draws_the_lowest_medians_first():
+    flat, early, late = [0.0, 0.0, 0.0, 0.0], [0.1, 0.6, 0.9, 1.0], [0.0, 0.1, 0.6, 0.9]
+    curves = curves_of(flat, late, early)
+    panels, left = choose_drawn(curves.found.curves)
+    assert ([one.name for one in panels[0]], len(panels), left) == (["p2", "p1", "p0"], 1, 0)
+    panels, left = choose_drawn(curves_of(*[early] * 40).found.curves)
+    assert ([len(one) for one in panels], left) == ([A_PANEL] * MOST_PANELS, 40 - A_PANEL * MOST_PANELS)
+    assert [len(one) for one in choose_drawn(curves_of(*[early] * 8).found.curves)[0]] == [4, 4]
+
+
+def test_the_figure_holds_the_shares_and_the_fits():
+    curves = curves_of([0.1, 0.6, 0.9, 1.0], [0.0, 0.0, 0.0, 0.0], weak=True)
+    panels, _ = choose_drawn(curves.found.curves)
+    figure = Figure(figsize=size(panels))
+    paint(curves, panels, figure)
+    (axes,) = figure.axes
+    points, fitted, _, still, dots, _ = axes.lines
+    assert list(points.get_xdata()) == pytest.approx([0.1, 0.2, 0.3, 0.4])
+    assert list(points.get_ydata()) == [0.1, 0.6, 0.9, 1.0]
+    one = curves.found.curves[0].curve
+    x, y = (np.asarray(values, dtype=float) for values in (fitted.get_xdata(), fitted.get_ydata()))
+    assert y == pytest.approx(lognormal_chance(x, one.median / GRAVITY, one.dispersion))
+    assert list(still.get_ydata()) == list(dots.get_ydata()) == [0, 0, 0, 0]
+    legend = axes.get_legend()
+    assert legend is not None
+    texts = [text.get_text() for text in legend.get_texts()]
+    assert texts[0].startswith(f"p0 *\nmedian {one.median / GRAVITY:.3g} g, beta {one.dispersion:.2f}")
+    assert texts[1] == "p1 *\nnone fell"
+    title = " ".join(figure.get_suptitle().split())
+    assert "the uncertainty of the motion is not in it" in title
+    assert "PFV/PFA 0.15 to 0.15 s" in title
+    assert "* Its motions may be too weak" in title
+
+
+# --- what is wrong ---
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--levels", "1:0.5"), "--levels is 1 to 0.5 g, expected above 0, LOW first, and at most 20 g."),
+        (("--levels", "0:1"), "--levels is 0 to 1 g, expected above 0"),
+        (("--levels", "x"), "--levels: 'x' is not LOW:HIGH or LOW:HIGH:STEP in g, as 0.1:1.0 or 0.1:1.0:0.05."),
+        (("--levels", "0.1:5"), "--levels: 0.1:5 gives over 50 values. Take a larger step."),
+        (("--levels", "9:5", "--im", "pfv"), "--levels is 9 to 5 cm/s, expected above 0, LOW first, and at most 5000"),
+        (("--im", "psa"), "'psa' is not one of 'pfa', 'pfv'"),
+        (("--by", "room"), "'room' is not one of 'item', 'type'"),
+        (("--runs", "auto"), "--runs: auto is for assess run, as every level uses the same motions. Give a number."),
+        (("--formats", "csv,nrlm"), "--formats: 'nrlm' is an unknown format; expected some of: csv, json"),
+        (("--formats", ","), "--formats: no format is named; expected some of: csv, json"),
+        (("--out", "w.xlsx"), "--out: w.xlsx is a file; name a folder"),
+        (("--plot", "x.gif"), "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
+        (("--scenario", "recorded"), "Floors!H3: floor '2' has no record"),
+    ],
+)
+def test_bad_options_are_named(tmp_path, monkeypatch, words, message):
+    path = write(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    assert message in error(run("fragility", path.name, *words))
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["slow.csv", "w.xlsx"]
+
+
+def test_floors_without_pfv_are_named_by_their_cells(tmp_path, monkeypatch):
+    path = write(tmp_path, Floors=[FLOORS[0], {"floor": "2", "pfa_x": 0.5}])
+    monkeypatch.chdir(tmp_path)
+    text = error(run("fragility", path, "--im", "pfv", "--json"))
+    assert "Floors!F3: the PFV of floor '2' along X is not known: no fragility against PFV can be given." in text
+    assert "Fill in its PFA and PFV, or a record, or take PFA as the measure." in text
+    assert "1 error; nothing was written." in text
+
+
+def test_a_workbook_in_which_nothing_can_rock(tmp_path):
+    text = error(run("fragility", write(tmp_path, Items=ITEMS[3:]), "--out", tmp_path / "out"))
+    assert "no piece can rock: all are too stocky, or there are none." in text
+    assert not (tmp_path / "out").exists()
+
+
+def test_files_appear_all_or_none(tmp_path, monkeypatch):
+    """The second file cannot be written: the first one is as it was."""
+    path, out = write(tmp_path), tmp_path / "out"
+    out.mkdir()
+    (out / "fragility.csv").write_text("before", encoding="utf-8")
+    written = Path.open
+
+    def forbid(self: Path, *words: Any, **named: Any):
+        if self.name.startswith(".fragility_table"):
+            raise OSError(28, "No space left on device")
+        return written(self, *words, **named)
+
+    monkeypatch.setattr(Path, "open", forbid)
+    done = run("fragility", path, *SWEEP, "--out", out)
+    assert done.exit_code == 1
+    assert "fragility_table.csv could not be written: No space left on device." in done.stderr
+    assert [(one.name, one.read_text(encoding="utf-8")) for one in out.iterdir()] == [("fragility.csv", "before")]
+
+
+def test_help_says_what_it_is_conditional_on():
+    text = " ".join(run("fragility", "--help").output.split())
+    for words in (
+        "the uncertainty of the motion is not in it",
+        "LOW:HIGH[:STEP]",
+        "--by",
+        "--im",
+        "[default: (csv,json)]",
+    ):
+        assert words.casefold() in text.casefold(), words
+
+
+def test_the_command_loads_nothing_heavy_before_it_is_used():
+    code = (
+        "import sys\nimport assess.cli.command_fragility\n"
+        "print([name for name in ('numpy', 'scipy', 'numba', 'matplotlib', 'assess.pipeline') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert done.stdout.strip() == "[]", done.stderr
