@@ -22,6 +22,7 @@ from assess.i18n import fill, join, nfill
 from assess.methods import MethodInfo, Outcome
 from assess.methods._method import ALIKE
 from assess.model import Building, CatalogueType, Place
+from assess.motion.scenario import ROOF_FACTOR
 from assess.risk import RiskClass, classify
 from assess.rocking.draws import TRIED, Uncertainty
 from assess.route_results import RouteTables
@@ -66,6 +67,9 @@ MOTION_FLAGS: Mapping[str, str] = {
     ),
     "code_profile": fill("PFA by a code's design profile: an envelope, not an expected value"),
     "pfv_estimated": fill("PFV was not given: estimated from PFA and the building's period T1"),
+    "pfv_capped": fill(
+        "the estimate of PFV was larger than {factor:.2f} times Ground PGV, and is set to that", factor=ROOF_FACTOR
+    ),
 }
 """Flags of a floor's motion, and their meanings."""
 CARRIED = ("fell_in_record", "ideal_higher", "undecided")
@@ -146,6 +150,14 @@ class EnsembleRow:
     fit: FitRow | None
 
 
+@dataclass(frozen=True, slots=True)
+class EstimateRow:
+    """What a PFV was estimated from: its ratio to PFA [cm/s for each g], and the most that it may be [cm/s]."""
+
+    ratio: float
+    largest_cm_s: float
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionRow:
     """One motion of one floor along one axis; parallel records give several.
@@ -174,6 +186,8 @@ class MotionRow:
         The record's peak before treatment.
     treatment : str
         What was done to the record.
+    estimate : EstimateRow, optional
+        What its PFV follows when its PFA is edited; None where it is not estimated, or Ground PGV is not known.
     ensemble : EnsembleRow, optional
         What pieces were simulated under; None where none was.
     """
@@ -204,6 +218,7 @@ class MotionRow:
     samples: int | None = None
     treatment: str = ""
     notes: tuple[str, ...] = ()
+    estimate: EstimateRow | None = None
     ensemble: EnsembleRow | None = None
 
     @property

@@ -22,6 +22,7 @@ from assess.i18n import Text, fill, join
 from assess.methods._expression import localise, show_pfa, show_ratio
 from assess.methods._method import (
     PFV_FLAGS,
+    RESTS_ON_ESTIMATE,
     BoolArray,
     Cases,
     Column,
@@ -34,6 +35,7 @@ from assess.methods._method import (
     Reason,
     Reference,
     normal_cdf,
+    rests_on_estimate,
 )  # fmt: skip
 from assess.rocking.block import frequency_parameter
 from assess.settings import Settings
@@ -178,6 +180,7 @@ class Fitted:
         flags = {"extrapolated": known & ~self.holds(cases), "clipped": known & (value != raw)}
         if isinstance(self.formula, Probit):
             flags |= {"pfv_unknown": np.isnan(cases.pfv), "pfv_estimated": known & cases.pfv_estimated}
+            flags["rests_on_estimated_pfv"] = rests_on_estimate(value, cases)
         return Outcome(value, {"raw": raw}, flags)
 
 
@@ -251,6 +254,7 @@ FLAGS_OF_POLYNOMIAL = {
 FLAGS_OF_PROBIT = {
     "extrapolated": fill("outside the data that it was fitted to"),
     **PFV_FLAGS,
+    **RESTS_ON_ESTIMATE,
 }
 
 

@@ -102,8 +102,8 @@ FACTS: Mapping[str, str] = {
 
 
 ESTIMATED = (
-    "PFV {pfv_cm_s} cm/s was not given: it is an estimate from PFA and the building's period T1, on which every method "
-    "that depends on velocity relies."
+    "PFV {pfv_cm_s} cm/s was not given: it is an estimate from PFA, the building's period T1 and, where it is known, "
+    "Ground PGV, on which every method that depends on velocity relies."
 )
 """The reason that several methods give where the flag ``pfv_estimated`` is raised."""
 PFV_FLAGS: Mapping[str, str] = {
@@ -111,6 +111,11 @@ PFV_FLAGS: Mapping[str, str] = {
     "pfv_estimated": "peak floor velocity estimated from PFA and the building's period",
 }
 """Flags of several methods that depend on velocity, and what they mean."""
+RESTS_ON_ESTIMATE: Mapping[str, str] = {
+    "rests_on_estimated_pfv": "its class rests on an estimated peak floor velocity: from the peak acceleration alone "
+    "it would be lower, or unknown",
+}
+"""The flag of methods with a class that an estimated velocity raises, and what it means."""
 
 
 @dataclass(frozen=True, slots=True)

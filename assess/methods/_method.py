@@ -8,16 +8,28 @@ from typing import TYPE_CHECKING, Any, Protocol, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from assess.methods._info import ESTIMATED, PFV_FLAGS, Column, FittedOn, MethodInfo, Parameter, Range, Reason, Reference
+from assess.methods._info import (
+    ESTIMATED,
+    PFV_FLAGS,
+    RESTS_ON_ESTIMATE,
+    Column,
+    FittedOn,
+    MethodInfo,
+    Parameter,
+    Range,
+    Reason,
+    Reference,
+)
 from assess.progress import SILENT, Progress
+from assess.risk import classify_all
 from assess.rocking.block import MIDDLE, stocky_limit, threshold
 from assess.rocking.draws import Uncertainty
 from assess.settings import Settings
 
 __all__ = [
-    "ALIKE", "ESTIMATED", "NORMAL_CDF", "PFV_FLAGS", "BoolArray", "Cases", "Column", "Ensemble", "Example",
-    "FittedOn", "FloatArray", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome", "Parameter",
-    "Range", "Reason", "Reference", "normal_cdf",
+    "ALIKE", "ESTIMATED", "NORMAL_CDF", "PFV_FLAGS", "RESTS_ON_ESTIMATE", "BoolArray", "Cases", "Column", "Ensemble",
+    "Example", "FittedOn", "FloatArray", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome", "Parameter",
+    "Range", "Reason", "Reference", "normal_cdf", "rests_on_estimate",
 ]  # fmt: skip
 
 if TYPE_CHECKING:
@@ -306,3 +318,17 @@ def normal_cdf(x: Any) -> Any:
     """Standard normal distribution function of `x` [-], accurate in both tails; NaN stays NaN."""
     found = NORMAL_CDF(x)
     return np.asarray(found, dtype=np.float64) if isinstance(found, (float, np.ndarray)) else found
+
+
+def rests_on_estimate(value: FloatArray, cases: Cases, without: ArrayLike = math.nan) -> BoolArray:
+    """Tell for each of n cases whether an estimated PFV raises its class.
+
+    Parameters
+    ----------
+    value : (n,) array
+        The chance [-].
+    cases : Cases
+    without : (n,) array
+        The chance by the peak acceleration alone [-]; NaN where there is none, which counts as low.
+    """
+    return np.asarray(cases.pfv_estimated & (classify_all(value) > np.maximum(classify_all(without), 0)))

@@ -32,6 +32,7 @@ from assess.methods._expression import G, note_estimate, number, show
 from assess.methods._method import (
     ESTIMATED,
     PFV_FLAGS,
+    RESTS_ON_ESTIMATE,
     Cases,
     Column,
     Example,
@@ -42,6 +43,7 @@ from assess.methods._method import (
     Reason,
     Reference,
     normal_cdf,
+    rests_on_estimate,
 )  # fmt: skip
 from assess.rocking.block import STOCKY, critical_angle
 from assess.settings import Settings
@@ -97,6 +99,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     flags = {
         "pfv_unknown": np.isnan(cases.pfv),
         "pfv_estimated": known & cases.pfv_estimated,
+        "rests_on_estimated_pfv": rests_on_estimate(value, cases),
         "does_not_rock": cases.is_stocky,
         "extrapolated": known & ~CHECKED_BREADTH_TO_HEIGHT.holds(cases.breadth_to_height),
     }
@@ -182,6 +185,7 @@ METHOD = Method(
     ),
     flags={
         **PFV_FLAGS,
+        **RESTS_ON_ESTIMATE,
         "does_not_rock": "not evaluated: B/H is 1.41 or more, so the piece does not rock",
         "extrapolated": "outside the B/H of the nine published medians (0.155 to 0.625)",
     },

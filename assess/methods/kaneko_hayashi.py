@@ -39,6 +39,7 @@ from assess.methods._expression import G, note_estimate, number, show, show_pfa,
 from assess.methods._method import (
     ESTIMATED,
     PFV_FLAGS,
+    RESTS_ON_ESTIMATE,
     Cases,
     Column,
     Example,
@@ -49,6 +50,7 @@ from assess.methods._method import (
     Reason,
     Reference,
     normal_cdf,
+    rests_on_estimate,
 )  # fmt: skip
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, ROUNDING, VELOCITY
@@ -105,6 +107,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     alpha, zeta_A, zeta_V = settings.slide_coefficient, settings.zeta_acceleration, settings.zeta_velocity
     value = _risk(B, H, B / H, PFA, PFV, alpha, zeta_A, zeta_V)
     F_f, F_b = _eq7_floor_frequency(PFA, PFV), _eq7_boundary_frequency(H, B / H)
+    by_acceleration = _eq5(alpha, np.log(PFA), _eq6_lambda_a(B / H, G), zeta_A)
     known = ~np.isnan(value)
     branch = np.select([~known, np.isnan(PFV), F_f > F_b], ["", "bound", "pfv"], default="pfa")
     detail = {
@@ -117,6 +120,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
     flags = {
         "pfv_unknown_upper_bound": branch == "bound",
         "pfv_estimated": known & cases.pfv_estimated & (branch != "bound"),
+        "rests_on_estimated_pfv": (branch == "pfv") & rests_on_estimate(value, cases, without=by_acceleration),
         "near_switch": known & (np.abs(np.log(F_f / F_b)) <= math.log(NEAR_SWITCH) * (1 + ROUNDING)),
         "slides": known & (cases.friction < B / H * (1 - ROUNDING)),
     }
@@ -272,6 +276,7 @@ METHOD = Method(
     flags={
         "pfv_unknown_upper_bound": "peak floor velocity unknown: the largest risk over every velocity is shown",
         "pfv_estimated": PFV_FLAGS["pfv_estimated"],
+        **RESTS_ON_ESTIMATE,
         "near_switch": "within 10 % of the frequency at which the formula jumps from acceleration to velocity",
         "slides": "friction is below B/H: the piece would slide before it rocks, which the result does not count in "
         "its favour",

@@ -1,4 +1,4 @@
-"""Peaks of floors without sensors: PFA by the profiles that codes give for design, PFV estimated from PFA.
+"""Peaks of floors without sensors: PFA by the profiles that codes give for design, PFV estimated from PFA and T1.
 
 A profile gives the factor by which a rigid piece on a floor at height z of a building of height h is shaken more than
 the ground: PFA = ground PGA x amplification. Ground PGA is 0.4 SDS (ASCE 7) or alpha S (EN 1998-1, NTC 2018). Codes
@@ -176,3 +176,30 @@ def estimate_pfv(pfa: float, period: float) -> float:
     It is the paper's equivalent floor frequency, equation (7), solved for PFV.
     """
     return pfa / (2 * math.pi * min(1 / period, HIGHEST_FLOOR_FREQUENCY))
+
+
+VELOCITY_AMPLIFICATION = 2.30
+"""Pseudo-velocity of an oscillator of 5 % damping over PGV [-], largest over all periods, 84th percentile: Newmark and
+Hall (1982). To be checked: the publication was not read; their median, 1.65, is that of public implementations."""
+
+ROOF_PARTICIPATION = 4 / math.pi
+"""Roof of a uniform shear beam over an oscillator, in the first mode [-]: Miranda and Taghavi (2005)."""
+
+ROOF_FACTOR = round(1 + VELOCITY_AMPLIFICATION * ROOF_PARTICIPATION, 2)
+"""PFV over PGV that an estimate does not exceed [-]: the ground's own motion, and that of the roof relative to it in
+the first mode, as if both peaked together."""
+
+
+def cap_pfv(ground_pgv: float) -> float:
+    """Return the most that `estimate_pfv` is taken for [m/s], on every floor, from the ground's PGV [m/s].
+
+    Over the recorded floors of the package PFV is 1.0 to 2.4 times PGV. Of the roofs of shear beams on the FEMA P-695
+    far-field motions, T1 0.3 to 6 s, 2 % exceed it.
+
+    References
+    ----------
+    Newmark NM, Hall WJ (1982). Earthquake Spectra and Design. Earthquake Engineering Research Institute.
+    Miranda E, Taghavi S (2005). Approximate floor acceleration demands in multistory buildings. I: Formulation.
+    Journal of Structural Engineering 131(2):203-211. doi:10.1061/(ASCE)0733-9445(2005)131:2(203).
+    """
+    return ROOF_FACTOR * ground_pgv

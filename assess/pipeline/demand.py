@@ -3,19 +3,21 @@
 Precedence, as filled: a floor's record on an axis, then its given PFA and PFV. Where one axis alone is known it serves
 both, flagged ``one_axis_only``. A floor of which nothing is known is interpolated between the nearest floors above and
 below of which something is, flagged ``interpolated``; where it does not lie between two such, a code's profile serves
-it from Ground PGA, flagged ``code_profile``. A PFV that is not given is estimated from T1, flagged ``pfv_estimated``.
+it from Ground PGA, flagged ``code_profile``. A PFV that is not given is estimated from T1, flagged ``pfv_estimated``;
+where Ground PGV is known, a larger estimate is capped by it, flagged ``pfv_capped``.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 from assess.errors import Problem, WorkbookError
 from assess.i18n import fill
 from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
 from assess.motion.record import Motion, Record, treat
-from assess.motion.scenario import DEFAULT, PGA_OF_SDS, PROFILES, Profile, estimate_pfv
+from assess.motion.scenario import DEFAULT, PGA_OF_SDS, PROFILES, Profile, cap_pfv, estimate_pfv
 from assess.progress import SILENT, Progress
 from assess.results import MOTION_FLAGS
 from assess.workbook.check import describe_unserved
@@ -107,11 +109,12 @@ Demands = Mapping[tuple[str, Axis], tuple[Demand, ...]]
 """The demands of every floor (by its name) and axis; parallel records give several."""
 
 _ByAxis = Mapping[Axis, tuple[Demand, ...]]
+_Estimate = Callable[[float, float], tuple[float, tuple[str, ...]]]
 
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """What a profile starts from.
+    """The ground motion that a profile and the estimate of PFV start from, and the roof.
 
     Parameters
     ----------
@@ -123,16 +126,19 @@ class Ground:
         Height of the roof [m], at least 0; None where neither Height nor any Elevation is given.
     is_highest_floor : bool
         Whether `roof` is the highest floor of the workbook, which makes z/h larger than the roof would.
+    pgv : float, optional
+        Peak ground velocity [m/s], which caps the PFV that is estimated from T1.
     """
 
     pga: float | None
     is_from_sds: bool
     roof: float | None
     is_highest_floor: bool
+    pgv: float | None = None
 
 
 def find_ground(inventory: Inventory) -> Ground:
-    """Return what profiles start from, as far as the workbook gives it."""
+    """Return what profiles and estimates start from, as far as the workbook gives it."""
     building = inventory.building
     highest = max((floor.elevation for floor in inventory.floors if floor.elevation is not None), default=None)
     by_sds = building.ground_pga is None and building.sds is not None
@@ -141,6 +147,7 @@ def find_ground(inventory: Inventory) -> Ground:
         is_from_sds=by_sds,
         roof=building.height if building.height is not None or highest is None else max(highest, 0.0),
         is_highest_floor=building.height is None,
+        pgv=building.ground_pgv,
     )
 
 
@@ -169,7 +176,7 @@ def build_demands(
     """
     period, ground = inventory.building.period, find_ground(inventory)
     profile = DEFAULT if scenario == "as filled" else PROFILES.get(scenario)
-    own = {floor.floor: own_demands(floor, scenario, period, progress) for floor in inventory.floors}
+    own = {floor.floor: own_demands(floor, scenario, period, ground.pgv, progress) for floor in inventory.floors}
     known = [demands for demands in own.values() if demands]
     problems = list(_check_ground(inventory, scenario, ground))
     demands: dict[tuple[str, Axis], tuple[Demand, ...]] = {}
@@ -193,19 +200,25 @@ def scale_demands(demands: Demands, factor: float) -> Demands:
 # ---------------------------------------------------------------- what a floor has of its own
 
 
-def own_demands(floor: Floor, scenario: str, period: float | None, progress: Progress = SILENT) -> _ByAxis:
-    """Return the motions that the workbook gives for a floor itself and `scenario` uses; empty where there are none."""
-    found = {axis: _on_axis(floor, axis, scenario, period, progress) for axis in AXES}
+def own_demands(
+    floor: Floor, scenario: str, period: float | None, ground_pgv: float | None = None, progress: Progress = SILENT
+) -> _ByAxis:
+    """Return the motions that the workbook gives for a floor itself and `scenario` uses; empty where there are none.
+
+    From the building's T1 [s] and the ground's PGV [m/s], as far as they are known, a PFV that is not given follows.
+    """
+    estimate = partial(_velocity, period=period, ground_pgv=ground_pgv)
+    found = {axis: _on_axis(floor, axis, scenario, estimate, progress) for axis in AXES}
     if not any(found.values()):
         return {}
     return {"X": found["X"] or _borrow(found["Y"], "X"), "Y": found["Y"] or _borrow(found["X"], "Y")}
 
 
-def _on_axis(floor: Floor, axis: Axis, scenario: str, period: float | None, progress: Progress) -> tuple[Demand, ...]:
+def _on_axis(floor: Floor, axis: Axis, scenario: str, estimate: _Estimate, progress: Progress) -> tuple[Demand, ...]:
     if scenario in ("as filled", "recorded") and floor.records.get(axis):
         return tuple(_recorded(floor, axis, one, progress) for one in floor.records[axis])
     if scenario in ("as filled", "given") and axis in floor.pfa:
-        pfv, flags = _velocity(floor.pfa[axis], floor.pfv.get(axis, math.nan), period)
+        pfv, flags = estimate(floor.pfa[axis], floor.pfv.get(axis, math.nan))
         return (Demand(floor=floor, axis=axis, source="given", pfa=floor.pfa[axis], pfv=pfv, flags=flags),)
     return ()
 
@@ -218,11 +231,15 @@ def _recorded(floor: Floor, axis: Axis, one: FloorRecord, progress: Progress) ->
     )  # fmt: skip
 
 
-def _velocity(pfa: float, pfv: float, period: float | None) -> tuple[float, tuple[str, ...]]:
-    """Return PFV with its flag: as given, else by T1, else NaN."""
-    if math.isnan(pfv) and period is not None:
-        return estimate_pfv(pfa, period), ("pfv_estimated",)
-    return pfv, ()
+def _velocity(
+    pfa: float, pfv: float, period: float | None, ground_pgv: float | None
+) -> tuple[float, tuple[str, ...]]:
+    """Return PFV with its flags: as given, else by T1, at most what Ground PGV allows, else NaN."""
+    if not math.isnan(pfv) or period is None:
+        return pfv, ()
+    estimate = estimate_pfv(pfa, period)
+    cap = math.inf if ground_pgv is None else cap_pfv(ground_pgv)
+    return (cap, ("pfv_estimated", "pfv_capped")) if estimate > cap else (estimate, ("pfv_estimated",))
 
 
 def _borrow(demands: tuple[Demand, ...], axis: Axis) -> tuple[Demand, ...]:
@@ -273,7 +290,7 @@ def serve_by_profile(
     ratio = min(floor.elevation / ground.roof, 1.0) if floor.elevation > 0 else 0.0
     amplification = profile.amplification(ratio, period, ductility_reduction=ductility_reduction)
     pfa = ground.pga * amplification
-    pfv, flags = _velocity(pfa, math.nan, period)
+    pfv, flags = _velocity(pfa, math.nan, period, ground.pgv)
     one = Demand(
         floor=floor, axis="X", source="profile", pfa=pfa, pfv=pfv, flags=("code_profile", *flags),
         profile=profile, clause=profile.cite(period), height_ratio=ratio, amplification=amplification,

@@ -10,7 +10,7 @@ from assess.errors import Problem, Severity
 from assess.i18n import Text, fill, join
 from assess.model import AXES, Axis, Floor, Inventory
 from assess.motion.record import treat
-from assess.motion.scenario import PGA_OF_SDS, Profile
+from assess.motion.scenario import PGA_OF_SDS, Profile, cap_pfv
 from assess.motion.target import estimate_period
 from assess.pipeline.demand import Demands, find_ground, serve_by_profile
 from assess.units import GRAVITY, ROUNDING, VELOCITY
@@ -71,6 +71,7 @@ def _on_shaking(inventory: Inventory, demands: Demands, scenario: str, ductility
             yield from _set_aside(floor, axis, demands, scenario)
     yield from _profile_below_known(inventory, demands, ductility_reduction)
     yield from _ground_values(inventory, demands, scenario)
+    yield from _ground_velocity(inventory, demands)
 
 
 def list_floors(demands: Demands, source: str) -> list[str]:
@@ -289,6 +290,30 @@ def _mixed(demands: Demands) -> Iterator[Problem]:
 
 def _in_g(pfa: float) -> Text:
     return fill("{pfa:.3f} g", pfa=pfa / GRAVITY)
+
+
+def _ground_velocity(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+    """Report a Ground PGV that caps no estimate, and one that is too small for the PFV of a floor."""
+    pgv, cell = inventory.building.ground_pgv, inventory.building.cell("ground_pgv")
+    if pgv is None:
+        return
+    every = [one for parallel in demands.values() for one in parallel]
+    if not any("pfv_estimated" in one.flags for one in every):
+        why = fill("no PFV is estimated")
+        yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=fill("Ground PGV"), why=why))
+        return
+    known = [one for one in every if one.source in ("record", "given") and "pfv_estimated" not in one.flags]
+    fastest = max((one for one in known if one.pfv > cap_pfv(pgv) * (1 + ROUNDING)), key=lambda one: one.pfv, default=None)
+    if fastest is not None:
+        message = fill(
+            "Ground PGV {pgv} caps the PFV that is estimated at {cap}, but the PFV of floor '{floor}' is {pfv}: the "
+            "estimate for other floors may be too low.",
+            pgv=_in_cm_s(pgv),
+            cap=_in_cm_s(cap_pfv(pgv)),
+            floor=fastest.floor.floor,
+            pfv=_in_cm_s(fastest.pfv),
+        )
+        yield Problem("warning", "Building", cell, message, fill("Check Ground PGV in Building."))
 
 
 def _in_cm_s(pfv: float) -> Text:

@@ -10,15 +10,16 @@ import numpy as np
 from assess.annual_results import AnnualRow
 from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
-from assess.model import AXES, Floor, Inventory, Item
+from assess.model import AXES, Building, Floor, Inventory, Item
 from assess.motion.record import Record, treatment
-from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile
+from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile, cap_pfv, estimate_pfv
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand
 from assess.pipeline.versions import versions
 from assess.results import (
     CaseTable,
     EnsembleRow,
+    EstimateRow,
     FitRow,
     FloorRow,
     ItemRow,
@@ -27,7 +28,7 @@ from assess.results import (
     Provenance,
     SuiteInfo,
 )
-from assess.units import ACCELERATION, LENGTH, VELOCITY, to_edge
+from assess.units import ACCELERATION, GRAVITY, LENGTH, VELOCITY, to_edge
 from assess.version import __version__
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
     joints = assessment.joints
     rows = []
     for index, demand in enumerate(demands):
-        row = build_motion(index, demand)
+        row = replace(build_motion(index, demand), estimate=_describe_estimate(assessment.inventory.building, demand))
         joint = joints.get(demand)
         rows.append(row if joint is None else replace(row, ensemble=_ensemble(assessment, joint)))
     return tuple(rows)
@@ -98,6 +99,14 @@ def build_motion(index: int, demand: Demand) -> MotionRow:
         record=demand.name,
     )
     return row if demand.record is None else _add_record(row, demand.record)
+
+
+def _describe_estimate(building: Building, demand: Demand) -> EstimateRow | None:
+    """Return what an estimated PFV was made from, where Ground PGV caps it; None for all others."""
+    if "pfv_estimated" not in demand.flags or demand.between or building.period is None or building.ground_pgv is None:
+        return None
+    cap = demand.scale * cap_pfv(building.ground_pgv)
+    return EstimateRow(ratio=_sure(estimate_pfv(GRAVITY, building.period), "cm/s"), largest_cm_s=_sure(cap, "cm/s"))
 
 
 def _add_record(row: MotionRow, record: Record) -> MotionRow:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
-from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY
+from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
 from assess.rocking.draws import CUT, Uncertainty
 from assess.units import ALIASES, GRAVITY, QUANTITIES
 from assess.workbook import formulas as live
@@ -40,6 +40,7 @@ LISTED = ("length", "acceleration", "velocity", "time", "share")
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
     ("Floors", "pfa_x"), ("Floors", "pfa_y"), ("Floors", "pfv_x"), ("Floors", "pfv_y"), ("Building", "period"),
+    ("Building", "ground_pgv"),
     ("Items", "centre_of_gravity"), ("Catalogue", "centre_of_gravity"),
 )  # fmt: skip
 
@@ -117,7 +118,8 @@ class ListsWriter:
         formula = f'=IF(OR({",".join(f"ISTEXT({size})" for size in sizes)}),"{gettext(NO_UNIT)}","")'
         self._define("sizes_unit", at, row, gettext("unknown unit of a size"), formula, "")
         self._write_strongest(row + 1, at)
-        self._write_scenario(row + 2, at)
+        self._write_largest_estimate(row + 2, at)
+        self._write_scenario(row + 3, at)
         return at + 2
 
     def _write_strongest(self, row: int, at: int) -> None:
@@ -126,6 +128,12 @@ class ListsWriter:
         uncertainty = f"{gettext(BUILDING.name)}!$B${_line('motion_uncertainty')}"
         formula = f'=EXP({CUT!r}*IF({uncertainty}="",{default.motion!r},{uncertainty}))'
         self._define("strongest", at, row, gettext("largest factor on the motion"), formula, default.largest)
+
+    def _write_largest_estimate(self, row: int, at: int) -> None:
+        """Write the PFV [cm/s] that no estimate exceeds; nothing where Ground PGV is no number with a known unit."""
+        pgv = f"{gettext(BUILDING.name)}!$B${_line('ground_pgv')}"
+        formula = f'=IF(ISNUMBER({pgv}),IFERROR({pgv}*unit_building_ground_pgv*{cap_pfv(100)!r},""),"")'
+        self._define("largest_estimate", at, row, gettext("largest PFV that is estimated"), formula, "")
 
     def _write_scenario(self, row: int, at: int) -> None:
         """Write the kind of scenario as choices are compared, and whether floors' own values serve it."""
@@ -171,7 +179,9 @@ class ListsWriter:
         for axis in "xy":
             pfa, pfv = cells[f"own_pfa_{axis}"], self._floor(f"pfv_{axis}", row)
             frequency = f"MIN(1/(period*unit_building_period),{HIGHEST_FLOOR_FREQUENCY!r})"
-            estimate = f'IF(ISNUMBER(period),{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency}),"")'
+            by_period = f"{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency})"
+            capped = f"IF(ISNUMBER(largest_estimate),MIN({by_period},largest_estimate),{by_period})"
+            estimate = f'IF(ISNUMBER(period),{capped},"")'
             given = f'IF(ISTEXT(unit_floors_pfv_{axis}),"{gettext(NO_UNIT)}",{pfv}*unit_floors_pfv_{axis}*100)'
             yield f'IF(ISNUMBER({pfa}),IF({pfv}<>"",{given},{estimate}),"")'
 

@@ -46,7 +46,9 @@ def test_unknown_velocity():
 
 
 def test_estimated_velocity():
-    assert raised(evaluate(pfv=0.5, pfv_estimated=True)) == {"pfv_estimated"}
+    assert raised(evaluate(pfv=0.5, pfv_estimated=True)) == {"pfv_estimated", "rests_on_estimated_pfv"}
+    assert raised(evaluate(pfv=0.05, pfv_estimated=True)) == {"pfv_estimated"}, "low all the same"
+    assert not raised(evaluate(pfv=0.5))
 
 
 def test_a_stocky_piece_does_not_rock():

@@ -124,6 +124,19 @@ class TestUnknownVelocity:
         assert evaluate(**at_frequency(0.5, 1.0), pfv_estimated=True).flags["pfv_estimated"][0]
         assert raised(evaluate(pfa=3.0, pfv_estimated=True)) == {"pfv_unknown_upper_bound"}
 
+    def test_a_class_that_an_estimated_velocity_raises_is_flagged(self):
+        """Φ(ln 0.6/0.2) = 0.005 by acceleration, low; by velocity Φ(ln 0.5/0.5) = 0.08, medium, or 0.008, low."""
+        given = {"pfa": 0.6 * MEDIAN_PFA, "pfv_estimated": True}
+        higher, alike = evaluate(**given, pfv=0.5 * MEDIAN_PFV), evaluate(**given, pfv=0.3 * MEDIAN_PFV)
+        assert [one.detail["branch"][0] for one in (higher, alike)] == ["pfv", "pfv"]
+        assert raised(higher) == {"pfv_estimated", "rests_on_estimated_pfv"}
+        assert raised(alike) == {"pfv_estimated"}
+        assert raised(evaluate(pfa=0.6 * MEDIAN_PFA, pfv=0.5 * MEDIAN_PFV)) == set()
+
+    def test_a_class_by_the_acceleration_line_rests_on_no_estimate(self):
+        slow = evaluate(**at_frequency(0.5, 1.5), pfv_estimated=True)
+        assert (slow.detail["branch"][0], raised(slow)) == ("pfa", {"pfv_estimated"})
+
 
 class TestSettings:
     def test_zetas(self):

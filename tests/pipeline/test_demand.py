@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,8 @@ import assess
 from assess.model import Building, Floor, FloorRecord, Inventory
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.pipeline.demand import Demand, build_demands, find_ground
+from assess.motion.scenario import ROOF_FACTOR
+from assess.pipeline.demand import Demand, build_demands, find_ground, scale_demands
 from tests.workbooks import RECORDS
 
 G = 9.80665
@@ -79,6 +81,51 @@ def test_pfv_is_unknown_without_a_period(tmp_path):
     demand = _one(build_demands(_inventory(tmp_path, Floor(row=2, floor="1", pfa={"X": 3.0})), "as filled"), "1", "X")
     assert math.isnan(demand.pfv)
     assert demand.flags == ()
+
+
+def test_an_estimate_is_capped_by_the_ground(tmp_path):
+    """575 Market Street: T1 6 s and 218.1 cm/s2 give 208 cm/s where 40.4 were recorded, 3.93 x 23.03 cm/s 90.5."""
+    floor, building = Floor(row=2, floor="42", pfa={"X": 2.181, "Y": 0.5}), {"period": 6.0, "ground_pgv": 0.2303}
+    bare = build_demands(_inventory(tmp_path, floor, period=6.0), "as filled")
+    capped = build_demands(_inventory(tmp_path, floor, **building), "as filled")
+    assert 100 * _one(bare, "42", "X").pfv == pytest.approx(208.3, abs=0.1)
+    assert 100 * _one(capped, "42", "X").pfv == pytest.approx(90.5, abs=0.05)
+    assert _one(capped, "42", "X").flags == ("pfv_estimated", "pfv_capped")
+    below = _one(capped, "42", "Y")
+    assert (below.pfv, below.flags) == (_one(bare, "42", "Y").pfv, ("pfv_estimated",))
+    for pga, flags in ((6.0, ("pfv_estimated", "pfv_capped")), (0.3, ("pfv_estimated",))):
+        profiled = build_demands(_inventory(tmp_path, ROOF, ground_pga=pga, **building), "as filled")
+        assert _one(profiled, "R", "X").flags == ("code_profile", *flags)
+        assert _one(profiled, "R", "X").pfv <= 3.93 * 0.2303
+
+
+def test_a_given_and_a_recorded_pfv_are_not_capped(tmp_path):
+    floors = Floor(row=2, floor="1", pfa={"X": 3.0}, pfv={"X": 0.4}), Floor(row=3, floor="2", records={"X": (_record(SMC),)})
+    for floor in floors:
+        bare, capped = (
+            build_demands(_inventory(tmp_path, floor, period=2.0, ground_pgv=pgv), "as filled") for pgv in (None, 0.01)
+        )
+        one, other = _one(bare, floor.floor, "X"), _one(capped, floor.floor, "X")
+        assert (one.pfv, one.flags) == (other.pfv, other.flags)
+
+
+def test_the_cap_scales_with_the_motion_and_is_carried_between_floors(tmp_path):
+    floors = [Floor(row=at, floor=str(at), elevation=4.0 * at, pfa={"X": 3.0 + at} if at != 3 else {}) for at in (2, 3, 4)]
+    demands = build_demands(_inventory(tmp_path, *floors, period=6.0, ground_pgv=0.2), "as filled")
+    twice = scale_demands(demands, 2.0)
+    assert _one(demands, "3", "X").flags == ("interpolated", "pfv_estimated", "pfv_capped")
+    assert [_one(demands, at, "X").pfv for at in "234"] == pytest.approx([3.93 * 0.2] * 3, rel=1e-12)
+    assert [_one(twice, at, "X").pfv for at in "234"] == pytest.approx([3.93 * 0.4] * 3, rel=1e-12)
+
+
+@given(pfa=st.floats(0, 30), period=st.floats(0.02, 20), pgv=st.floats(1e-4, 10))
+def test_a_cap_never_raises_an_estimate(tmp_path_factory, pfa, period, pgv):
+    inventory = _inventory(tmp_path_factory.getbasetemp(), Floor(row=2, floor="1", pfa={"X": pfa}), period=period)
+    bare = _one(build_demands(inventory, "as filled"), "1", "X")
+    inventory = replace(inventory, building=replace(inventory.building, ground_pgv=pgv))
+    capped = _one(build_demands(inventory, "as filled"), "1", "X")
+    assert capped.pfv == min(bare.pfv, ROOF_FACTOR * pgv)
+    assert ("pfv_capped" in capped.flags) == (capped.pfv < bare.pfv)
 
 
 def test_parallel_records_all_stand(tmp_path):

@@ -57,6 +57,25 @@ def test_ground_motion_that_no_floor_needs_is_kept_not_used(tmp_path, scenario, 
     }
 
 
+@pytest.mark.parametrize("floor", [{"pfa_x": 0.3}, {"pfa_x": 0.3, "pfv_x": 40}])
+def test_a_ground_velocity_that_caps_no_estimate_is_not_used(tmp_path, floor):
+    period = 2.0 if "pfv_x" in floor else None
+    remarks = _remarks(tmp_path, [{"floor": "1", **floor}], ground_pgv=23, period=period)
+    assert remarks == {"Building!B19: Ground PGV is not used: no PFV is estimated.": "note"}
+
+
+@pytest.mark.parametrize(("pgv", "is_small"), [(10, True), (11, False)])
+def test_a_ground_velocity_too_small_for_a_floor_is_told(tmp_path, pgv, is_small):
+    """3.93 x 10 = 39.3 cm/s is below the 40 cm/s of floor 2, 3.93 x 11 = 43.2 cm/s above."""
+    floors = [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_x": 0.2, "pfv_x": 40}]
+    text = (
+        "Building!B19: Ground PGV 10.0 cm/s caps the PFV that is estimated at 39.3 cm/s, but the PFV of floor '2' is "
+        "40.0 cm/s: the estimate for other floors may be too low. Check Ground PGV in Building."
+    )
+    remarks = _remarks(tmp_path, floors, ground_pgv=pgv, period=2.0)
+    assert remarks == ({text: "warning"} if is_small else {})
+
+
 @pytest.mark.parametrize(("sds", "severity"), [(0.5, None), (0.503, None), (0.6, "warning"), (0.4, "note")])
 def test_ground_pga_comes_before_an_sds_that_differs(tmp_path, sds, severity):
     """0.4 x 0.503 = 0.2012 differs from 0.2 by 0.6 %; 0.24 would shake more, 0.16 less."""

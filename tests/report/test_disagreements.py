@@ -125,7 +125,19 @@ class TestKnownRows:
 
     def test_an_estimated_velocity_is_said_once(self, tmp_path):
         _, reasons = one(tmp_path, 45.7, 182.9, 0.165, None, period=0.7)
-        assert reasons.count("cm/s was not given: it is an estimate from PFA and the building's period T1") == 1
+        assert reasons.count("cm/s was not given: it is an estimate from PFA, the building's period T1 and") == 1
+
+    def test_a_class_that_an_estimated_velocity_raises_says_so(self, tmp_path):
+        """FEMA P-58 goes by velocity alone: 0.3 g and T1 2 s give 93.6 cm/s."""
+        for pfv, words in ((None, ", rests on an estimated PFV"), (93.6, "")):
+            (group,) = found(run(tmp_path, [(30, 90, 0.3, pfv)], period=2.0)).groups
+            assert group.highest == f"FEMA P-58 contents: ■ very high, 88.5 %{words}"
+            assert group.lowest.startswith("Kaneko-Hayashi formula: ○ low, ")
+            assert "estimated" not in group.lowest
+
+    def test_rows_that_rest_on_an_estimate_and_others_are_not_one_group(self, tmp_path):
+        groups = found(run(tmp_path, [(30, 90, 0.3, None), (30, 90, 0.3, 93.6)], period=2.0)).groups
+        assert sorted("estimated" in one.highest for one in groups) == [False, True]
 
     def test_methods_that_agree_are_left_out(self, tmp_path):
         assert found(run(tmp_path, [(30, 200, 0.8, 150)])).groups == ()

@@ -69,12 +69,20 @@ class Group:
     @property
     def highest(self) -> str:
         """The higher method, its class and its range of values."""
-        return _describe([row.highest for row in self.rows])
+        return self._describe([row.highest for row in self.rows])
 
     @property
     def lowest(self) -> str:
         """The lower method, its class and its range of values."""
-        return _describe([row.lowest for row in self.rows])
+        return self._describe([row.lowest for row in self.rows])
+
+    def _describe(self, verdicts: Sequence[Verdict]) -> str:
+        """Return a method, its class and its values, and whether an estimated PFV raises the class."""
+        first = verdicts[0]
+        said = f"{first.title}: {words.risk_label(first.risk)}, {words.percents([one.value for one in verdicts])}"
+        if not _rests_on_estimate(self.rows[0], first):
+            return said
+        return _("{verdict}, rests on an estimated PFV", verdict=said)
 
     @property
     def reasons(self) -> Sequence[str]:
@@ -211,21 +219,22 @@ def group_disagreements(disagreements: Iterable[Disagreement]) -> Sequence[Group
     groups: dict[tuple[object, ...], list[Disagreement]] = {}
     for one in disagreements:
         reasons = tuple((method.key, reason.text) for method, reason in one.reasons)
-        key = (one.highest.method.key, one.highest.risk, one.lowest.method.key, one.lowest.risk, reasons)
+        rests = [_rests_on_estimate(one, verdict) for verdict in (one.highest, one.lowest)]
+        key = (one.highest.method.key, one.highest.risk, one.lowest.method.key, one.lowest.risk, reasons, *rests)
         groups.setdefault(key, []).append(one)
     for rows in groups.values():
         rows.sort(key=lambda row: -int(row.result.adopted.upper))
     return tuple(map(Group, sorted(groups.values(), key=_rank)))
 
 
+def _rests_on_estimate(row: Disagreement, verdict: Verdict) -> bool:
+    """Tell whether an estimated PFV raises the class that a method gives."""
+    return "rests_on_estimated_pfv" in row.result.governing.methods[verdict.method.key].flags
+
+
 def _rank(rows: Sequence[Disagreement]) -> tuple[bool, int, int, int]:
     first = rows[0]
     return first.model is not None, -first.spread, -int(first.highest.risk), -len(rows)
-
-
-def _describe(verdicts: Sequence[Verdict]) -> str:
-    first = verdicts[0]
-    return f"{first.title}: {words.risk_label(first.risk)}, {words.percents([one.value for one in verdicts])}"
 
 
 def _summarise(found: Sequence[Disagreement], rows: int) -> str:

@@ -17,7 +17,11 @@ ENVELOPES = fill(
 MOST_PLACES = 20
 """Floors and axes of a source that are named."""
 
-_OWN = {"one_axis_only": MOTION_FLAGS["one_axis_only"], "pfv_estimated": fill("PFV estimated from T1")}
+_OWN = {
+    "one_axis_only": MOTION_FLAGS["one_axis_only"],
+    "pfv_estimated": fill("PFV estimated from T1"),
+    "pfv_capped": fill("PFV capped by Ground PGV"),
+}
 _CARRIED = _OWN | {"one_axis_only": fill("one axis only")}
 """Flags next to a source: of the floor itself, and of a neighbouring floor."""
 

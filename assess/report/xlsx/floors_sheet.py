@@ -86,12 +86,19 @@ def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
             cell = _cell(f"{peak}_{other}", row)
             formula = f'=IF({cell}="","",{cell})'
         elif peak == "pfv" and value is not None and "pfv_estimated" in motion.flags and not motion.between:
-            formula = f"={_cell(f'pfa_{axis}', row)}*{value / motion.pfa_g!r}"  # the estimate is proportional to PFA
+            formula = _estimate(motion, value, _cell(f"pfa_{axis}", row))
         if formula:
             page.write_formula(row, at, formula, pen.style("live", _CODES[peak]), "" if value is None else value)
         else:
             pen.put(page, row, at, value, pen.style("input", _CODES[peak]))
     pen.put(page, row, FLOOR_AT[f"source_{axis}"], _source(motion), pen.style("text"))
+
+
+def _estimate(motion: MotionRow, pfv: float, pfa: str) -> str:
+    """Return the formula of an estimated PFV: it is proportional to PFA, up to the cap by Ground PGV."""
+    if motion.estimate is None:
+        return f"={pfa}*{pfv / motion.pfa_g!r}"
+    return f"=MIN({pfa}*{motion.estimate.ratio!r},{motion.estimate.largest_cm_s!r})"
 
 
 def _write_as_run(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
