@@ -152,10 +152,13 @@ class EnsembleRow:
 
 @dataclass(frozen=True, slots=True)
 class EstimateRow:
-    """What a PFV was estimated from: its ratio to PFA [cm/s for each g], and the most that it may be [cm/s]."""
+    """What a PFV was estimated from: its ratio to PFA [cm/s for each g], and the most that it may be [cm/s].
+
+    The latter is None where Ground PGV is not known.
+    """
 
     ratio: float
-    largest_cm_s: float
+    largest_cm_s: float | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -187,7 +190,7 @@ class MotionRow:
     treatment : str
         What was done to the record.
     estimate : EstimateRow, optional
-        What its PFV follows when its PFA is edited; None where it is not estimated, or Ground PGV is not known.
+        What its PFV follows when its PFA is edited; None where it is not estimated from a PFA of its own.
     ensemble : EnsembleRow, optional
         What pieces were simulated under; None where none was.
     """

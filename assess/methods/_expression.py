@@ -167,10 +167,12 @@ def note_estimate(example: Example) -> list[Text]:
     """Return the note that PFV is an estimate, where it is."""
     if "pfv_estimated" not in example.flags:
         return []
-    return [fill(
-            "PFV = {PFV:.6g} cm/s is an estimate from PFA, the building's period T1 and, where it is known, Ground PGV.",
+    return [
+        fill(
+            "PFV = {PFV:.6g} cm/s is an estimate from PFA, the building's period T1 and, where known, Ground PGV.",
             PFV=example.pfv,
-        )]
+        )
+    ]
 
 
 def compare(symbol: str, peak: float, limit: Any, unit: str, *, is_above: bool) -> Text:

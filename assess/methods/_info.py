@@ -102,7 +102,7 @@ FACTS: Mapping[str, str] = {
 
 
 ESTIMATED = (
-    "PFV {pfv_cm_s} cm/s was not given: it is an estimate from PFA, the building's period T1 and, where it is known, "
+    "PFV {pfv_cm_s} cm/s was not given: it is an estimate from PFA, the building's period T1 and, where known, "
     "Ground PGV, on which every method that depends on velocity relies."
 )
 """The reason that several methods give where the flag ``pfv_estimated`` is raised."""

@@ -28,8 +28,8 @@ from assess.settings import Settings
 
 __all__ = [
     "ALIKE", "ESTIMATED", "NORMAL_CDF", "PFV_FLAGS", "RESTS_ON_ESTIMATE", "BoolArray", "Cases", "Column", "Ensemble",
-    "Example", "FittedOn", "FloatArray", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome", "Parameter",
-    "Range", "Reason", "Reference", "normal_cdf", "rests_on_estimate",
+    "Example", "FittedOn", "FloatArray", "Joint", "LiveCells", "Method", "MethodInfo", "Motions", "Outcome",
+    "Parameter", "Range", "Reason", "Reference", "normal_cdf", "rests_on_estimate",
 ]  # fmt: skip
 
 if TYPE_CHECKING:

@@ -193,7 +193,7 @@ the first mode, as if both peaked together."""
 def cap_pfv(ground_pgv: float) -> float:
     """Return the most that `estimate_pfv` is taken for [m/s], on every floor, from the ground's PGV [m/s].
 
-    Over the recorded floors of the package PFV is 1.0 to 2.4 times PGV. Of the roofs of shear beams on the FEMA P-695
+    On the recorded floors of the package PFV is 0.91 to 2.14 times PGV. Of the roofs of shear beams on the FEMA P-695
     far-field motions, T1 0.3 to 6 s, 2 % exceed it.
 
     References

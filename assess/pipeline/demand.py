@@ -231,9 +231,7 @@ def _recorded(floor: Floor, axis: Axis, one: FloorRecord, progress: Progress) ->
     )  # fmt: skip
 
 
-def _velocity(
-    pfa: float, pfv: float, period: float | None, ground_pgv: float | None
-) -> tuple[float, tuple[str, ...]]:
+def _velocity(pfa: float, pfv: float, period: float | None, ground_pgv: float | None) -> tuple[float, tuple[str, ...]]:
     """Return PFV with its flags: as given, else by T1, at most what Ground PGV allows, else NaN."""
     if not math.isnan(pfv) or period is None:
         return pfv, ()

@@ -303,7 +303,9 @@ def _ground_velocity(inventory: Inventory, demands: Demands) -> Iterator[Problem
         yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=fill("Ground PGV"), why=why))
         return
     known = [one for one in every if one.source in ("record", "given") and "pfv_estimated" not in one.flags]
-    fastest = max((one for one in known if one.pfv > cap_pfv(pgv) * (1 + ROUNDING)), key=lambda one: one.pfv, default=None)
+    fastest = max(
+        (one for one in known if one.pfv > cap_pfv(pgv) * (1 + ROUNDING)), key=lambda one: one.pfv, default=None
+    )
     if fastest is not None:
         message = fill(
             "Ground PGV {pgv} caps the PFV that is estimated at {cap}, but the PFV of floor '{floor}' is {pfv}: the "

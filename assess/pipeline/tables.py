@@ -102,11 +102,11 @@ def build_motion(index: int, demand: Demand) -> MotionRow:
 
 
 def _describe_estimate(building: Building, demand: Demand) -> EstimateRow | None:
-    """Return what an estimated PFV was made from, where Ground PGV caps it; None for all others."""
-    if "pfv_estimated" not in demand.flags or demand.between or building.period is None or building.ground_pgv is None:
+    """Return what a PFV was estimated from; None where it was not, or is interpolated."""
+    if "pfv_estimated" not in demand.flags or demand.between or building.period is None:
         return None
-    cap = demand.scale * cap_pfv(building.ground_pgv)
-    return EstimateRow(ratio=_sure(estimate_pfv(GRAVITY, building.period), "cm/s"), largest_cm_s=_sure(cap, "cm/s"))
+    cap = None if building.ground_pgv is None else demand.scale * cap_pfv(building.ground_pgv)
+    return EstimateRow(_sure(estimate_pfv(GRAVITY, building.period), "cm/s"), edge(cap, "cm/s"))
 
 
 def _add_record(row: MotionRow, record: Record) -> MotionRow:

@@ -100,7 +100,10 @@ def test_an_estimate_is_capped_by_the_ground(tmp_path):
 
 
 def test_a_given_and_a_recorded_pfv_are_not_capped(tmp_path):
-    floors = Floor(row=2, floor="1", pfa={"X": 3.0}, pfv={"X": 0.4}), Floor(row=3, floor="2", records={"X": (_record(SMC),)})
+    floors = (
+        Floor(row=2, floor="1", pfa={"X": 3.0}, pfv={"X": 0.4}),
+        Floor(row=3, floor="2", records={"X": (_record(SMC),)}),
+    )
     for floor in floors:
         bare, capped = (
             build_demands(_inventory(tmp_path, floor, period=2.0, ground_pgv=pgv), "as filled") for pgv in (None, 0.01)
@@ -110,7 +113,9 @@ def test_a_given_and_a_recorded_pfv_are_not_capped(tmp_path):
 
 
 def test_the_cap_scales_with_the_motion_and_is_carried_between_floors(tmp_path):
-    floors = [Floor(row=at, floor=str(at), elevation=4.0 * at, pfa={"X": 3.0 + at} if at != 3 else {}) for at in (2, 3, 4)]
+    floors = [
+        Floor(row=at, floor=str(at), elevation=4.0 * at, pfa={"X": 3.0 + at} if at != 3 else {}) for at in (2, 3, 4)
+    ]
     demands = build_demands(_inventory(tmp_path, *floors, period=6.0, ground_pgv=0.2), "as filled")
     twice = scale_demands(demands, 2.0)
     assert _one(demands, "3", "X").flags == ("interpolated", "pfv_estimated", "pfv_capped")

@@ -1,5 +1,7 @@
 """An edit of a PFA, a size or a class limit gives what a run of the edited workbook would, charts included."""
 
+import dataclasses
+import math
 import re
 import zipfile
 
@@ -10,7 +12,7 @@ import pytest
 
 from assess.risk import RiskClass
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells, write_report
-from tests.workbooks import assessed
+from tests.workbooks import UNVERIFIED, assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -154,3 +156,84 @@ def test_charts_have_the_colours_of_the_classes_and_patterns(path):
     for risk in RiskClass:
         assert text.count(risk.fill.removeprefix("#").upper()) >= 3
     assert text.count("<a:pattFill") >= 6
+
+
+GROUND = {"period": 6.0, "ground_pgv": 12.0}
+"""3.93 x 12 = 47.2 cm/s is the PFV that T1 gives of 0.0504 g: floors above it are capped, and those below are not."""
+
+
+@pytest.fixture(scope="module")
+def capped(tmp_path_factory):
+    """A report whose floors have a PFA alone: two that are capped, one borrowed, one that is not; and its results."""
+    folder = tmp_path_factory.mktemp("capped")
+    results = _run_capped(folder, [0.3, 0.2, 0.03], 1.5)
+    write_report(results, folder / "r.xlsx")
+    return results, folder / "r.xlsx"
+
+
+def _run_capped(folder, pfa, scale=1.0):
+    floors = [{"floor": str(at), "pfa_x": one} for at, one in enumerate(pfa)]
+    items = [
+        {"item": f"{at}-{b}", "floor": str(at), "breadth": b, "width": 120, "height": 150, "axis": "X"}
+        for at in range(len(pfa)) for b in (20, 40, 60)
+    ]  # fmt: skip
+    settings = dataclasses.replace(UNVERIFIED, scale=scale)
+    return assessed(folder / "w.xlsx", items, floors, settings=settings, **GROUND)
+
+
+def _edit_pfa(path, pfa, out):
+    book = openpyxl.load_workbook(path)
+    for row, value in enumerate(pfa, 2):
+        book["Floors"][f"C{row}"] = value
+    book.save(out)
+    return out
+
+
+def _shown_capped(read, path):
+    letters = {cell.value: cell.column_letter for cell in openpyxl.load_workbook(path)["Items"][1]}
+    velocities = [read("Floors", f"{column}{row}") for column in "DG" for row in (2, 3, 4)]
+    return velocities, [read("Items", f"{letters['Kaneko-Hayashi']}{row}") for row in range(2, 11)]
+
+
+def _expected_capped(results):
+    velocities = [results.motions_of(str(at), axis)[0].pfv_cm_s for axis in "XY" for at in range(3)]
+    return velocities, [one.governing.methods["kaneko_hayashi"].value for one in results]
+
+
+def test_an_estimated_velocity_as_run_is_capped_and_scaled(capped):
+    results, path = capped
+    velocities, _chances = _expected_capped(results)
+    assert velocities == pytest.approx(2 * [1.5 * 47.16, 1.5 * 47.16, 1.5 * 28.094], rel=1e-3)
+    cells = stored_cells(path)
+    assert _shown_capped(lambda sheet, cell: cells[sheet, cell], path) == tuple(
+        pytest.approx(one, abs=1e-9) for one in _expected_capped(results)
+    )
+
+
+EDITED = [0.06, 0.6, 0.09]
+"""PFA to which the floors are edited: from capped to not and from not to capped, as scaled by 1.5."""
+
+
+@pytest.mark.parametrize(
+    "by", ["formualizer", pytest.param("libreoffice", marks=[pytest.mark.libreoffice, needs_libreoffice])]
+)
+def test_an_edited_acceleration_is_capped_as_in_a_run(capped, tmp_path, by):
+    edited = _edit_pfa(capped[1], EDITED, tmp_path / "edited.xlsx")
+    if by == "libreoffice":
+        cells = stored_cells(libreoffice(edited, tmp_path / "again.xlsx"))
+        found = _shown_capped(lambda sheet, cell: cells.get((sheet, cell)), edited)
+    else:
+        book = formualizer.load_workbook(str(edited))
+        book.evaluate_all()
+        found = _shown_capped(lambda sheet, cell: book.get_value(sheet, *_split(cell)), edited)
+    expected = _expected_capped(_run_capped(tmp_path, [one / 1.5 for one in EDITED], 1.5))
+    assert expected[0][:3] == pytest.approx([56.19, 70.74, 70.74], rel=1e-3)
+    assert found == tuple(pytest.approx(one, abs=1e-9) for one in expected)
+
+
+def test_an_estimate_of_a_floor_at_rest_follows_an_edit(tmp_path):
+    results = assessed(tmp_path / "w.xlsx", ITEMS[:1], [{"floor": "1", "pfa_x": 0}], period=1.0)
+    write_report(results, tmp_path / "r.xlsx")
+    book = formualizer.load_workbook(str(_edit_pfa(tmp_path / "r.xlsx", [0.5], tmp_path / "edited.xlsx")))
+    book.evaluate_all()
+    assert book.get_value("Floors", 2, 4) == pytest.approx(0.5 * 980.665 / (2 * math.pi), abs=1e-9)

@@ -14,7 +14,7 @@ from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion
 from assess.report.xlsx.items_sheet import HEAD
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, with_unit
-from assess.results import MotionRow
+from assess.results import EstimateRow, MotionRow
 
 _WIDTHS = {"floor": 12, "name": 22, "pfa": 12, "pfv": 14, "source": 44, "elevation": 12, "edited": 10}
 _CODES = {"pfa": "0.000", "pfv": "0.0"}
@@ -85,8 +85,8 @@ def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
         if motion.is_borrowed:  # what serves this axis is the other one's: it follows when that is edited
             cell = _cell(f"{peak}_{other}", row)
             formula = f'=IF({cell}="","",{cell})'
-        elif peak == "pfv" and value is not None and "pfv_estimated" in motion.flags and not motion.between:
-            formula = _estimate(motion, value, _cell(f"pfa_{axis}", row))
+        elif peak == "pfv" and motion.estimate is not None:
+            formula = _estimate(motion, motion.estimate, _cell(f"pfa_{axis}", row))
         if formula:
             page.write_formula(row, at, formula, pen.style("live", _CODES[peak]), "" if value is None else value)
         else:
@@ -94,11 +94,12 @@ def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
     pen.put(page, row, FLOOR_AT[f"source_{axis}"], _source(motion), pen.style("text"))
 
 
-def _estimate(motion: MotionRow, pfv: float, pfa: str) -> str:
+def _estimate(motion: MotionRow, estimate: EstimateRow, pfa: str) -> str:
     """Return the formula of an estimated PFV: it is proportional to PFA, up to the cap by Ground PGV."""
-    if motion.estimate is None:
-        return f"={pfa}*{pfv / motion.pfa_g!r}"
-    return f"=MIN({pfa}*{motion.estimate.ratio!r},{motion.estimate.largest_cm_s!r})"
+    if estimate.largest_cm_s is not None:
+        return f"=MIN({pfa}*{estimate.ratio!r},{estimate.largest_cm_s!r})"
+    ratio = motion.pfv_cm_s / motion.pfa_g if motion.pfv_cm_s and motion.pfa_g else estimate.ratio
+    return f"={pfa}*{ratio!r}"
 
 
 def _write_as_run(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
