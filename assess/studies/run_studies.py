@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from assess.progress import SILENT, Progress
 from assess.risk import LIMITS, RiskClass
+from assess.studies.released_blocks import describe_released
 from assess.studies.study import Finding, Options, Study, Table
 from assess.studies.study_files import write_files
 from assess.studies.study_pages import render_page
@@ -56,4 +57,5 @@ def build_page(studies: Sequence[Study], findings: Mapping[str, Finding], option
         "validation",
         found=[(study, findings[study.name]) for study in studies],
         options=options, version=__version__, classes=list(RiskClass), limits=LIMITS, folder=folder, describe=describe,
+        **describe_released(),
     )  # fmt: skip
