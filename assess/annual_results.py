@@ -4,6 +4,7 @@ A chance a year counts all earthquakes of the site's hazard curve, strong and we
 those in one scenario.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -113,3 +114,21 @@ class AnnualTables:
     def is_evaluated(self) -> bool:
         """Whether there are annual chances."""
         return not self.missing
+
+
+@dataclass(frozen=True, slots=True)
+class AnnualWays:
+    """Annual rows of routes and rooms by name; `routes_if_anchors_fail` where anchored pieces can reach the route."""
+
+    routes: Mapping[str, AnnualRow]
+    routes_if_anchors_fail: Mapping[str, AnnualRow]
+    rooms: Mapping[str, AnnualRow]
+
+
+@dataclass(frozen=True, slots=True)
+class Annual:
+    """Annual chances: those of the building, of its pieces by index, of its routes and rooms."""
+
+    tables: AnnualTables
+    items: Mapping[int, AnnualRow]
+    ways: AnnualWays

@@ -22,7 +22,7 @@ LAYERS = {
     "rocking": 3, "rates": 3,
     "methods": 4,
     "model": 5,
-    "results": 6, "route_results": 6, "fields": 7, "route_fields": 7, "frames": 7,
+    "results": 6, "route_results": 6, "annual_results": 6, "fields": 7, "route_fields": 7, "frames": 7,
     "workbook": 8,
     "routes": 9,
     "pipeline": 10,

@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from assess.annual_results import AnnualRow, AnnualTables
+from assess.annual_results import Annual, AnnualRow, AnnualTables, AnnualWays
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill
 from assess.methods import Cases
 from assess.methods._method import BoolArray, FloatArray
 from assess.pipeline.annual_integral import STEP, Integral, space
-from assess.pipeline.annual_ways import AnnualWays, evaluate_ways
+from assess.pipeline.annual_ways import evaluate_ways
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import find_ground
 from assess.pipeline.level_falls import find_falls
@@ -30,15 +30,6 @@ from assess.rocking.draws import MOTION, STILL, Uncertainty
 from assess.routes.chances import Falls
 from assess.settings import AUTO, RUNS, Settings
 from assess.units import GRAVITY
-
-
-@dataclass(frozen=True, slots=True)
-class Annual:
-    """Annual chances: those of the building, of its pieces by index, of its routes and rooms."""
-
-    tables: AnnualTables
-    items: Mapping[int, AnnualRow]
-    ways: AnnualWays
 
 
 def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progress) -> Annual | None:
@@ -69,7 +60,7 @@ def _find_missing(assessment: Assessment, ground: float | None) -> Text | str:
             "same earthquake as the floors' motions"
         )
     if not (assessment.cases.ensemble >= 0).any():
-        return fill("no piece was simulated: run with --verify all")
+        return fill("no piece was simulated, which annual chances need: simulate them")
     return ""
 
 
@@ -180,10 +171,13 @@ class _Annual:
             expected_low=None if spread is None else max(0.0, expected * (1 - spread)),
             expected_high=None if spread is None else expected * (1 + spread),
             life_safety_pieces=sum(quantity[item] for item in safety),
-            life_safety=integrate.of_draws(
-                np.any([fell[item] for item in safety], axis=0), at_least=any(items[item].at_least for item in safety)
-            )
-            if safety
-            else None,
+            life_safety=_join([fell[item] for item in safety], [items[item] for item in safety], integrate),
             remarks=integrate.list_remarks(falls / max(everything, 1)),
         )
+
+
+def _join(fell: Sequence[BoolArray], rows: Sequence[AnnualRow], integrate: Integral) -> AnnualRow | None:
+    """Return the annual row of any of some pieces falling; None where there are none."""
+    if not rows:
+        return None
+    return integrate.of_draws(np.any(fell, axis=0), at_least=any(one.at_least for one in rows))

@@ -1,11 +1,11 @@
 """How often a year routes are blocked and rooms lose every exit, from how pieces fall at each level of shaking."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from assess.annual_results import AnnualRow
+from assess.annual_results import AnnualRow, AnnualWays
 from assess.methods import interval_width
 from assess.pipeline.annual_integral import Integral
 from assess.pipeline.assessment import Assessment
@@ -19,15 +19,6 @@ from assess.settings import Settings
 
 Happens = Callable[[Scene, Draws], int]
 """Returns of a scene and some draws the set of those in which something happens."""
-
-
-@dataclass(frozen=True, slots=True)
-class AnnualWays:
-    """Annual rows of routes and rooms by name; `routes_if_anchors_fail` where anchored pieces can reach the route."""
-
-    routes: Mapping[str, AnnualRow]
-    routes_if_anchors_fail: Mapping[str, AnnualRow]
-    rooms: Mapping[str, AnnualRow]
 
 
 def evaluate_ways(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.annual_results import Annual
 from assess.errors import Problem
 from assess.methods import Cases, Method, Outcome, simulation
 from assess.methods._method import BoolArray, Joint
@@ -17,7 +18,6 @@ from assess.settings import Settings
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
-    from assess.pipeline.annual import Annual
     from assess.routes.obstructions import Obstructions
 
 
@@ -73,7 +73,7 @@ class Assessment:
     governing: NDArray[np.intp]
     obstructions: "Sequence[Obstructions]"
     problems: tuple[Problem, ...]
-    annual: "Annual | None" = None
+    annual: Annual | None = None
 
     @property
     def joints(self) -> Mapping[Demand, Joint]:

@@ -41,8 +41,8 @@ from assess.route_results import RouteTables
 from assess.settings import SCENARIOS, Settings, change_settings
 
 if TYPE_CHECKING:
+    from assess.annual_results import Annual
     from assess.motion.suite import Suite
-    from assess.pipeline.annual import Annual
     from assess.routes.obstructions import Obstructions
 
 SERIES = "series.npz"
@@ -132,7 +132,8 @@ def compute(
     """Return the arrays of a run; parameters and errors are those of `run`."""
     every = _join_methods(methods)
     settings = settings if suite is None else replace(settings, runs=len(suite))
-    return progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress))
+    assessment = progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress))
+    return replace(assessment, annual=_evaluate_annual(assessment, jobs, progress))
 
 
 def _compute(
@@ -155,7 +156,7 @@ def _compute(
     adopted = adopt(outcomes, cases, settings)
     adoption, united = unite_axes(adopted, outcomes, inventory, case_item, case_demand, settings)
     remarks = [*remark(inventory, filled, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
-    assessment = Assessment(
+    return Assessment(
         inventory=inventory,
         settings=settings,
         scenario=scenario,
@@ -173,7 +174,6 @@ def _compute(
         obstructions=obstructions,
         problems=(*inventory.problems, *map(inventory.place, (*remarks, *_route_problems(inventory, obstructions)))),
     )
-    return replace(assessment, annual=_evaluate_annual(assessment, jobs, progress))
 
 
 def build_results(
@@ -301,7 +301,7 @@ def _evaluate_annual(assessment: Assessment, jobs: int | None, progress: Progres
         return None
     from assess.pipeline.annual import evaluate_annual
 
-    return evaluate_annual(assessment, jobs=jobs, progress=progress)
+    return progress.wait_for(lambda: evaluate_annual(assessment, jobs=jobs, progress=progress))
 
 
 # ---------------------------------------------------------------- routes, imported only where there are any

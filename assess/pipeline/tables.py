@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from assess.annual_results import AnnualRow
+from assess.annual_results import AnnualRow, AnnualWays
 from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
 from assess.model import AXES, Building, Floor, Inventory, Item
@@ -34,7 +34,6 @@ from assess.version import __version__
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
     from assess.motion.target_fit import Fit
-    from assess.pipeline.annual_ways import AnnualWays
     from assess.route_results import RouteTables
 
 _FACTORS: Mapping[str, float] = {**LENGTH, **ACCELERATION, **VELOCITY}
@@ -236,7 +235,7 @@ def _item(
     )
 
 
-def add_annual(tables: "RouteTables", ways: "AnnualWays") -> "RouteTables":
+def add_annual(tables: "RouteTables", ways: AnnualWays) -> "RouteTables":
     """Return the tables of routes with how often a year routes are blocked and rooms lose every exit."""
     fail = ways.routes_if_anchors_fail
     return replace(

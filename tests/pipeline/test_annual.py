@@ -204,7 +204,10 @@ def test_without_a_hazard_file_there_is_nothing(tmp_path):
 
 @pytest.mark.parametrize(
     ("building", "settings", "why"),
-    [({"ground_pga": None}, SETTINGS, "fill in Ground PGA in Building"), ({}, Settings(verify="none"), "--verify all")],
+    [
+        ({"ground_pga": None}, SETTINGS, "fill in Ground PGA in Building"),
+        ({}, Settings(verify="none"), "no piece was simulated"),
+    ],
 )
 def test_what_is_missing_is_named(tmp_path, building, settings, why):
     results, rows = rows_of(assessed(tmp_path, settings=settings, **building))

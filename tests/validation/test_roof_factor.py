@@ -17,7 +17,7 @@ from assess.workbook.schema import BUILDING
 
 def _ground(building):
     """The largest PGV along each axis [m/s]."""
-    found = {}
+    found: dict[str, float] = {}
     for one in building.channels:
         if one.level in GROUND:
             found[one.axis] = max(found.get(one.axis, 0.0), one.read().pfv)
@@ -59,7 +59,7 @@ def test_the_42nd_floor_of_575_market_street():
 
 
 def test_shear_beams_on_the_ground_motions_of_the_package():
-    ratios = {0.5: [], 1.0: []}
+    ratios: dict[float, list[float]] = {0.5: [], 1.0: []}
     for one in list_beams():
         ratios[one.beam.place].append(one.read().pfv / treat(read_records(one.file)[0]).pfv)
     middle, roof = (np.array(one) for one in ratios.values())
