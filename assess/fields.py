@@ -17,8 +17,9 @@ from assess.model import ANCHORED, AXES, IMPORTANCE
 from assess.results import BASES, CaseRow, ItemRow, MotionRow, Results, Simulation
 from assess.risk import RiskClass
 
-Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "records"]
-"""What a field holds: a share lies in [0, 1]; a class is one of `RiskClass`; records are rows within the row."""
+Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "signs", "records"]
+"""What a field holds: a share lies in [0, 1]; a class is one of `RiskClass`; signs are a list of 1 and -1; records are
+rows within the row."""
 Where = Literal["json", "csv", "excel", "pieces", "risky", "methods"]
 """The last three are lists of the pages (HTML, PDF and its lines): all pieces, those at high risk, every method."""
 DATA: frozenset[Where] = frozenset(("json", "csv"))
@@ -421,6 +422,10 @@ def _ensemble(name: str, kind: Kind, **more: Any) -> Field:
     )  # fmt: skip
 
 
+def _signs(row: MotionRow) -> list[int] | None:
+    return None if row.ensemble is None or row.ensemble.signs is None else list(row.ensemble.signs)
+
+
 def _profile(name: str) -> Callable[[MotionRow], Any]:
     return lambda row: None if row.profile is None else getattr(row.profile, name)
 
@@ -477,6 +482,12 @@ MOTION_FIELDS = (
     _ensemble(
         "weak_motions", "flag",
         help="Whether the motions are weaker than the floor's, so that they may not lower a class.",
+    ),
+    Field(
+        key="ensemble_signs", read=_signs, path=("ensemble", "signs"), kind="signs", is_optional=True,
+        help="Whether the motions move as the phases that all floors share (1) or against them (-1), by octave from "
+        "0.1 to 25.6 Hz: as the records of two floors or more of one earthquake on one clock do; null where no such "
+        "records are known.",
     ),
     _fit("matched_to_s", fill("Matched from 0.05 s to"), "0.00", "s"),
     _fit("mean_deviation", fill("Mean deviation"), "0.0%"),

@@ -137,6 +137,8 @@ class EnsembleRow:
 
     `cases` is the number of pieces (rows) that were simulated, `fell_in_record` of how many it is known that they
     overturn under the record itself, None where there is no record. `is_generated` is False for the user's own motions.
+    `signs` tells by octave, with centres of 0.1 to 25.6 Hz, whether they move as the shared phases say (1) or against
+    them (-1); None where that is not known, and they move as the phases say.
     """
 
     motions: int
@@ -148,6 +150,7 @@ class EnsembleRow:
     cases: int
     fell_in_record: int | None
     fit: FitRow | None
+    signs: tuple[int, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)

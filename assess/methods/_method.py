@@ -56,6 +56,11 @@ class Ensemble(Protocol):
         ...
 
     @property
+    def signs(self) -> tuple[int, ...] | None:
+        """By which the phases that all floors share are turned, 1 or -1 by octave; None where they are not known."""
+        ...
+
+    @property
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion (n,) [m/s2] and its time step [s], where one is known."""
         ...

@@ -387,7 +387,8 @@ METHOD = Method(
         "centre of gravity and restitution of each piece are drawn; their means and dispersions are assumed. Normal "
         "numbers are cut at 3 standard deviations.",
         "Draw k has one scale for the whole building, and its motions have the same random phases on every floor along "
-        "an axis. The signs of modes from floor to floor are not known.",
+        "an axis. Between floors that have records of one earthquake on one clock the sign of each octave is that of "
+        "the records; elsewhere the signs of modes are not known.",
         "Motions are linear between samples. A block at rest can start again. After the end of a motion it is followed "
         "until it can no longer fall.",
         "The interval is Wilson's, 95 % (z = 1.96): it covers the number of draws only, not the model of the block, "

@@ -1,26 +1,39 @@
 """Signs between the floors of a building: whether two of them move together or against each other, octave by octave.
 
 In a mode of vibration all floors move at the same moment, some of them the other way. Motions that are generated with
-the same phases on all floors lose that sign. Where two floors have records along one axis of the building, made in one
-earthquake and on one clock, the real part of their cross spectrum has it: the sign of its sum over each octave is kept.
-A floor without a record has no sign.
+the same phases on all floors lose that sign. Where floors have records along one axis of the building, made in one
+earthquake and on one clock, the real parts of their cross spectra have it. A floor without a record has no sign.
+
+Two floors may both move with a third one, or both against it, and still be compared better with each other: a floor
+near a node of a mode hardly moves in it. So no floor is compared with one reference. In each octave floors are joined
+in the order of how coherent they are, the most coherent two first, until all are joined or no more is known.
+
+References
+----------
+Bendat JS, Piersol AG (2010). Random data: analysis and measurement procedures, 4th ed. Wiley. Section 8.4 (the standard
+deviation of the correlation of unrelated noise of bandwidth B over a time T is 1/sqrt(2 B T)).
 """
 
 import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from assess.motion.envelope import PAD, octaves, split
+from assess.motion.envelope import PAD, husid_envelopes, octaves, split
 from assess.motion.record import FloatArray
+
+DEVIATIONS = 2.0
+"""Coherence below as many standard deviations of that of unrelated noise has no sign [-]."""
+SPACING = 0.1
+"""Envelopes are compared at this spacing [s]: they are smoothed over five times as much."""
 
 
 def find_coherence(accelerations: FloatArray, time_step: float) -> FloatArray:
-    """Return how alike floors move with their reference, by octave: the real part of the coherence [-], (k, b).
+    """Return how alike floors move, by octave: the real part of the coherence of each two [-], (k, k, b).
 
     It is the sum over the octave of the real part of the cross spectrum, over the root of the product of the sums of
-    the two spectra: 1 where two floors move alike, -1 where one moves against the other. The reference is the floor of
-    the largest PFA, the first of several; its own row is 1.
+    the two spectra: 1 where two floors move alike, -1 where one moves against the other.
 
     Parameters
     ----------
@@ -34,42 +47,101 @@ def find_coherence(accelerations: FloatArray, time_step: float) -> FloatArray:
     ValueError
         If there is no floor, or a record is not finite or without motion.
     """
-    rows = np.asarray(accelerations, dtype=np.float64)
-    if rows.ndim != 2 or not rows.size or not np.isfinite(rows).all() or not rows.any(axis=1).all():
-        raise ValueError(f"accelerations have shape {rows.shape}, expected (k, n) finite samples, each row with motion")
-    from scipy.fft import next_fast_len, rfft
+    rows = _check(accelerations)
+    from scipy.fft import rfft
 
-    count = rows.shape[1]
-    length = next_fast_len(count + math.ceil(PAD / time_step), real=True)
+    length, weights = _weigh(rows.shape[1], time_step)
     spectra = rfft(rows, length, axis=1)
-    reference = spectra[np.abs(rows).max(axis=1).argmax()]
-    weights = split(np.asarray(np.fft.rfftfreq(length, time_step), dtype=np.float64), octaves())
-    cross = (spectra * reference.conj()).real @ weights.T
-    own, other = (np.square(np.abs(one)) @ weights.T for one in (spectra, reference))
-    return np.asarray(cross / np.sqrt(np.maximum(own * other, 1e-300)), dtype=np.float64)
+    cross = np.stack([((spectra * one) @ spectra.conj().T).real for one in weights], axis=2)
+    own = np.sqrt(np.maximum(np.einsum("iib->ib", cross), 1e-300))
+    return np.asarray(cross / (own[:, None] * own), dtype=np.float64)
 
 
-def find_signs(accelerations: FloatArray, time_step: float) -> NDArray[np.int64]:
-    """Return the signs of floors relative to the floor of the largest PFA: 1 or -1, (k, b), by octave of `octaves`.
+def find_levels(accelerations: FloatArray, time_step: float) -> FloatArray:
+    """Return which coherence of each two floors unrelated noise stays below, in size, in 95 % of cases [-], (k, k, b).
+
+    It is two standard deviations of the correlation of unrelated noise (Bendat and Piersol 2010) of the octave's
+    bandwidth, over the time in which both floors shake in that octave.
 
     Parameters and errors are those of `find_coherence`.
     """
-    return np.where(find_coherence(accelerations, time_step) < 0, -1, 1).astype(np.int64)
+    rows = _check(accelerations)
+    every = max(1, round(SPACING / time_step))
+    powers = np.stack([husid_envelopes(row, time_step).values[:, ::every] ** 2 for row in rows])
+    together = np.einsum("ibt,jbt->ijb", powers, powers) / powers.shape[2]
+    length, weights = _weigh(rows.shape[1], time_step)
+    bandwidths = weights.sum(axis=1) ** 2 / np.square(weights).sum(axis=1) / (length * time_step)
+    return np.asarray(DEVIATIONS * np.sqrt(together / (2 * bandwidths * rows.shape[1] * time_step)), dtype=np.float64)
 
 
-def turn_phases(frequencies: FloatArray, signs: NDArray[np.int64]) -> NDArray[np.complex128]:
+def find_signs(accelerations: FloatArray, time_step: float) -> NDArray[np.int64]:
+    """Return the signs of floors: 1 or -1, (k, b), by octave of `octaves`.
+
+    Two floors whose coherence is clear have the product of their signs as its sign, unless two chains of floors
+    disagree: the more coherent one decides then. Signs are relative: that of the floor of the largest PFA is 1 in every
+    octave. Where the coherence is below that of unrelated noise (`find_levels`) there is none to be known: floors, or
+    groups of them, that are joined to no other keep 1, each group at its own floor of the largest PFA.
+
+    Parameters and errors are those of `find_coherence`.
+    """
+    coherence = find_coherence(accelerations, time_step)
+    is_clear = np.abs(coherence) > find_levels(accelerations, time_step)
+    peaks = np.abs(np.asarray(accelerations)).max(axis=1)
+    return np.stack([_join(coherence[..., at], is_clear[..., at], peaks) for at in range(coherence.shape[2])], axis=1)
+
+
+def _check(accelerations: FloatArray) -> FloatArray:
+    rows = np.asarray(accelerations, dtype=np.float64)
+    if rows.ndim != 2 or not rows.size or not np.isfinite(rows).all() or not rows.any(axis=1).all():
+        raise ValueError(f"accelerations have shape {rows.shape}, expected (k, n) finite samples, each row with motion")
+    return rows
+
+
+def _weigh(count: int, time_step: float) -> tuple[int, FloatArray]:
+    """Return the length of transforms, and the weight of each octave at their frequencies [-], (b, f)."""
+    from scipy.fft import next_fast_len
+
+    length = int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
+    return length, split(np.asarray(np.fft.rfftfreq(length, time_step), dtype=np.float64), octaves())
+
+
+def _join(coherence: FloatArray, is_clear: NDArray[np.bool_], peaks: FloatArray) -> NDArray[np.int64]:
+    """Return the signs (k,) of floors in one octave; `coherence` and `is_clear` are (k, k), `peaks` (k,)."""
+    signs, groups = np.ones(len(peaks), dtype=np.int64), np.arange(len(peaks))
+    for one, other in _by_coherence(coherence):
+        if is_clear[one, other] and groups[one] != groups[other]:
+            joined = groups == groups[other]
+            if signs[one] * signs[other] * coherence[one, other] < 0:
+                signs[joined] *= -1
+            groups[joined] = groups[one]
+    for group in np.unique(groups):
+        members = np.flatnonzero(groups == group)
+        signs[members] *= signs[members[peaks[members].argmax()]]
+    return signs
+
+
+def _by_coherence(coherence: FloatArray) -> Iterator[tuple[int, int]]:
+    """Yield each two floors, the most coherent first."""
+    ones, others = np.triu_indices(len(coherence), 1)
+    order = np.argsort(-np.abs(coherence[ones, others]), kind="stable")
+    yield from zip(ones[order].tolist(), others[order].tolist(), strict=True)
+
+
+def turn_phases(frequencies: FloatArray, signs: Sequence[int] | ArrayLike) -> NDArray[np.complex128]:
     """Return the factors (f,) of modulus 1 that give motions of common phases the signs (b,) of one floor.
 
     At the centre of an octave the factor is its sign. Between two centres of opposite signs the phase turns by half a
-    cycle, so that no amplitude is lost there, which it would be if one octave faded into the other.
+    cycle, so that no amplitude is lost there, which it would be if one octave faded into the other. It always turns the
+    same way, so that two floors that both turn there keep their relation.
 
     Parameters
     ----------
     frequencies : (f,) array
         [Hz]
-    signs : (b,) integer array
+    signs : (b,) integers
         By octave of `octaves`, 1 or -1.
     """
     places = np.log2(np.maximum(frequencies, 1e-9))
-    turned = np.interp(places, np.log2(octaves()), np.pi * (np.asarray(signs) < 0))
+    half_cycles = np.cumsum(np.abs(np.diff(np.asarray(signs), prepend=1)) // 2)
+    turned = np.interp(places, np.log2(octaves()), np.pi * half_cycles)
     return np.asarray(np.exp(1j * turned), dtype=np.complex128)

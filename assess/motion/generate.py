@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from assess.motion.calibrate import Bench, find_corrections, find_filter
-from assess.motion.noise import Transforms, draw_noise
+from assess.motion.noise import Signs, Transforms, draw_noise
 from assess.motion.recipe import Recipe
 from assess.motion.rows import GROUP, run_rows
 from assess.motion.sweep import Single
@@ -44,7 +44,7 @@ class Generator:
     ----------
     target : Target
         As matched: where a PFV was given to a generic spectrum, it is capped to meet it.
-    grid, seed, axis, threads, progress
+    grid, seed, axis, threads, progress, signs
         As given to `build_generator`.
     recipe : Recipe
         What turns noise into motions.
@@ -66,11 +66,13 @@ class Generator:
     made: Single
     fit: Fit
     spectra: Spectra
+    signs: Signs | None = None
 
     def realise(self, first: int = 0, count: int = CALIBRATED) -> Single:
         """Return realisations `first` to `first + count - 1`: accelerations [m/s2], (count, n), in single precision.
 
-        A realisation is the same whatever else is made with it, and has the same phases on all floors of a building.
+        A realisation is the same whatever else is made with it. It has the same phases on all floors of a building but
+        for the signs of those that have any.
 
         Raises
         ------
@@ -92,12 +94,20 @@ class Generator:
 
     def _draw(self, group: int) -> Transforms:
         return draw_noise(
-            self.target.envelopes, self.grid, seed=self.seed, axis=self.axis, group=group, progress=self.progress
-        )
+            self.target.envelopes, self.grid, seed=self.seed, axis=self.axis, group=group, progress=self.progress,
+            signs=self.signs,
+        )  # fmt: skip
 
 
 def build_generator(
-    target: Target, grid: Grid, *, seed: int, axis: str, threads: int = 1, progress: Progress = SILENT
+    target: Target,
+    grid: Grid,
+    *,
+    seed: int,
+    axis: str,
+    threads: int = 1,
+    progress: Progress = SILENT,
+    signs: Signs | None = None,
 ) -> Generator:
     """Find the filter, the bending and the wavelets that make an ensemble meet its target.
 
@@ -115,6 +125,8 @@ def build_generator(
         Number of threads that share the work; it does not change a result.
     progress : Progress
         Asked often, here and in `Generator.realise`, whether to stop.
+    signs : (b,) tuple of int, optional
+        Of the floor, 1 or -1 by octave, from `assess.motion.floor_signs.find_signs`.
 
     Raises
     ------
@@ -127,7 +139,9 @@ def build_generator(
     noise: list[Transforms] = [np.empty((0, 0), np.complex64)] * (CALIBRATED // GROUP)
 
     def draw(group: int) -> None:
-        noise[group] = draw_noise(target.envelopes, grid, seed=seed, axis=axis, group=group, progress=progress)
+        noise[group] = draw_noise(
+            target.envelopes, grid, seed=seed, axis=axis, group=group, progress=progress, signs=signs
+        )
 
     run_rows(draw, len(noise), threads, progress)
     recipe = Recipe.of(target, grid)
@@ -136,5 +150,5 @@ def build_generator(
     fit, spectra = measure_match(target, motions, grid.time_step, threads, progress)
     return Generator(
         target=target, grid=grid, seed=seed, axis=axis, threads=threads, progress=progress,
-        recipe=recipe, made=motions, fit=fit, spectra=spectra,
+        recipe=recipe, made=motions, fit=fit, spectra=spectra, signs=signs,
     )  # fmt: skip

@@ -1,7 +1,8 @@
 """White noise in octaves, each at a sampling rate of its own, and its transforms under the envelopes of a floor.
 
 The noise of a realisation comes from (seed, axis, number) only: it is drawn once for all floors of a building along an
-axis, and kept while there is room.
+axis, and kept while there is room. Where the signs of floors are known (`assess.motion.floor_signs`), the phases of a
+floor are turned by them before anything else is done to the noise.
 """
 
 import math
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from assess.compiled import compiled
 from assess.motion.envelope import PAD, STRETCH, Envelopes, octaves, split
+from assess.motion.floor_signs import turn_phases
 from assess.motion.record import FloatArray
 from assess.motion.rows import GROUP
 from assess.motion.target import Grid
@@ -32,6 +34,9 @@ PHASES = 4096
 """Random phases are multiples of a turn over this number."""
 KEPT = 96_000_000
 """Noise that is kept for further floors, in bytes: 200 motions of 12,000 samples on two axes are 55 million."""
+
+Signs = tuple[int, ...]
+"""1 or -1 by octave."""
 
 _AXES = {"X": 0, "Y": 1}
 
@@ -113,23 +118,26 @@ def forget() -> None:
         _STORE.held.clear()
 
 
-def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress) -> Bands:
+def draw_bands(grid: Grid, seed: int, axis: str, group: int, progress: Progress, signs: Signs | None = None) -> Bands:
     """Return white noise of random phases, the same on all floors, and how the time of each motion is stretched.
+
+    Where a floor has `signs`, its phases are turned by them; with 1 in every octave the noise is that of all floors.
 
     Raises
     ------
     KeyError
         If the axis is not "X" or "Y".
     """
-    key = (grid, seed, _AXES[axis], group)
+    signs = signs if signs is not None and min(signs) < 0 else None
+    key = (grid, seed, _AXES[axis], group, signs)
     bands = _STORE.find(key)
     if bands is None:
-        bands = _draw(grid, seed, _AXES[axis], group, progress)
+        bands = _draw(grid, seed, _AXES[axis], group, progress, signs)
         _STORE.keep(key, bands)
     return bands
 
 
-def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress) -> Bands:
+def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress, signs: Signs | None) -> Bands:
     from scipy.fft import irfft
 
     rates = find_rates(grid)
@@ -140,6 +148,8 @@ def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress) -> B
         draw = np.random.default_rng([seed, axis, group * GROUP + row])
         stretches[row] = math.exp(STRETCH * draw.standard_normal())
         turns.take(draw.integers(0, PHASES, rates.frequencies.size, dtype=np.uint16), out=white[row], mode="wrap")
+    if signs is not None:
+        white *= turn_phases(rates.frequencies, signs).astype(np.complex64)
     bands = []
     for weights, depth in zip(rates.weights, rates.depths, strict=True):
         progress.check()
@@ -148,8 +158,17 @@ def _draw(grid: Grid, seed: int, axis: int, group: int, progress: Progress) -> B
     return Bands(stretches, tuple(bands))
 
 
-def draw_noise(envelopes: Envelopes, grid: Grid, *, seed: int, axis: str, group: int, progress: Progress) -> Transforms:
-    """Return the transforms of a group of white noise under the envelopes of a floor.
+def draw_noise(
+    envelopes: Envelopes,
+    grid: Grid,
+    *,
+    seed: int,
+    axis: str,
+    group: int,
+    progress: Progress,
+    signs: Signs | None = None,
+) -> Transforms:
+    """Return the transforms of a group of white noise under the envelopes of a floor, turned by its signs.
 
     Returns
     -------
@@ -158,7 +177,7 @@ def draw_noise(envelopes: Envelopes, grid: Grid, *, seed: int, axis: str, group:
     """
     from scipy.fft import rfft
 
-    rates, bands = find_rates(grid), draw_bands(grid, seed, axis, group, progress)
+    rates, bands = find_rates(grid), draw_bands(grid, seed, axis, group, progress, signs)
     noise = np.zeros((GROUP, rates.frequencies.size), np.complex64)
     for number, (band, depth) in enumerate(zip(bands.octaves, rates.depths, strict=True)):
         progress.check()

@@ -72,6 +72,8 @@ class Record:
         the samples carry the instrument's offset (K-NET, SAC, miniSEED), it is that about their mean.
     notes : tuple of str
         What reading changed, in plain words.
+    recorder : str
+        Number of the recorder, whose channels share one clock; "" where the file does not say.
 
     Raises
     ------
@@ -94,6 +96,7 @@ class Record:
     file_pfa: float
     header_pfa: float | None
     notes: tuple[str, ...] = ()
+    recorder: str = ""
 
     def __post_init__(self) -> None:
         check_samples(self.acceleration)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from assess.model import Building
 from assess.motion.record import FloatArray
 from assess.pipeline.demand import Demand, Demands
+from assess.pipeline.phase_signs import find_phase_signs
 from assess.progress import SILENT, Progress
 
 if TYPE_CHECKING:
@@ -53,6 +54,8 @@ class GeneratedEnsemble:
         Of the phases.
     period, height : float, optional
         T1 [s] and height [m] of the building, by which a generic spectrum is shaped.
+    signs : tuple of int, optional
+        By which its phases are turned, 1 or -1 by octave; None where they are not known.
     """
 
     demand: Demand
@@ -60,6 +63,7 @@ class GeneratedEnsemble:
     seed: int
     period: float | None = None
     height: float | None = None
+    signs: tuple[int, ...] | None = None
 
     @property
     def is_generic(self) -> bool:
@@ -91,8 +95,9 @@ class GeneratedEnsemble:
         from assess.motion.generate import build_generator
 
         generator = build_generator(
-            self.build_target(), self.grid, seed=self.seed, axis=self.demand.axis, threads=threads, progress=progress
-        )
+            self.build_target(), self.grid, seed=self.seed, axis=self.demand.axis, threads=threads, progress=progress,
+            signs=self.signs,
+        )  # fmt: skip
         step = self.grid.time_step
         fit = generator.fit
         is_weak = fit is not None and fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
@@ -111,6 +116,7 @@ class SuiteEnsemble:
     factor: float = 1.0
     is_generic: bool = False
     is_unshaped: bool = False
+    signs: tuple[int, ...] | None = None
 
     @property
     def peaks(self) -> tuple[float, float]:
@@ -158,7 +164,10 @@ def _record(demand: Demand) -> tuple[FloatArray, float] | None:
 def build_ensembles(
     chosen: Sequence[Demand], demands: Demands, building: Building, *, seed: int
 ) -> tuple[GeneratedEnsemble, ...]:
-    """Return one ensemble a demand of `chosen`, on the grid that all `demands` of the building share."""
+    """Return one ensemble a demand of `chosen`, on the grid that all `demands` of the building share.
+
+    Their signs are found among all `demands`, so that they do not depend on which are chosen.
+    """
     from assess.motion.target import build_grid, estimate_period
 
     every = {id(one): one for parallel in demands.values() for one in parallel}.values()
@@ -167,4 +176,5 @@ def build_ensembles(
         has_generic=any(one.motion is None for one in every),
         period=building.period or estimate_period(building.height),
     )
-    return tuple(GeneratedEnsemble(one, grid, seed, building.period, building.height) for one in chosen)
+    signs = find_phase_signs(every, grid, building.azimuth_deg)
+    return tuple(GeneratedEnsemble(one, grid, seed, building.period, building.height, signs.get(one)) for one in chosen)

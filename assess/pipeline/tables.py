@@ -156,6 +156,7 @@ def _ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
         cases=int(joint.cases.size),
         fell_in_record=int(known.sum()) if known.size else None,
         fit=None if joint.fit is None else _fit(joint.fit),
+        signs=ensemble.signs,
     )
 
 

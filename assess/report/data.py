@@ -160,7 +160,8 @@ def write_npz(results: Results, path: Path, progress: Progress = SILENT) -> None
     """Write outcomes.npz: under which motions each piece overturned, for those who count what falls together.
 
     Draw k is one earthquake for every floor of the building, by its scale and, along one axis, by the phases of its
-    motions; the signs of modes are not known. Two pieces fall together in draw k where both have bit k set.
+    motions. Between floors that have records of one earthquake on one clock the sign of each octave is kept; elsewhere
+    the signs of modes are not known. Two pieces fall together in draw k where both have bit k set.
 
     Arrays: ``item``, ``row`` (of the sheet Items), ``axis``, ``source`` and ``governs`` (m,) describe the m simulated
     cases (a piece under one floor motion), most of which have k motions; ``runs`` (m,) how many motions each was

@@ -106,6 +106,7 @@ def _or_null(schema: Schema) -> Schema:
 _KINDS: Mapping[str, Schema] = {
     "text": TEXT, "number": {"type": "number"}, "count": COUNT, "share": SHARE, "flag": {"type": "boolean"},
     "class": {"enum": [risk.word for risk in RiskClass]}, "list": _list(TEXT),
+    "signs": _list({"enum": [1, -1]}),
 }  # fmt: skip
 _GROUPS_OR_NULL = {("verification",), ("verification", "record"), ("ensemble",), ("ensemble", "fit"), ("annual",)}
 

@@ -154,12 +154,12 @@ def list_limits(results: Results) -> Sequence[str]:
         ),
         *(f"{_(results.formula.title)}: {_(text)}" for text in results.formula.assumptions),
         _("A piece marked as anchored is not classified: it depends on its anchors; its free-standing risk is shown."),
-        *(_limits_of_simulation() if results.has_simulated else ()),
+        *(_limits_of_simulation(results) if results.has_simulated else ()),
         *(_limits_of_routes() if results.has_routes else ()),
     ]
 
 
-def _limits_of_simulation() -> tuple[str, ...]:
+def _limits_of_simulation(results: Results) -> tuple[str, ...]:
     return (
         _(
             "A simulated chance is that of the rigid block under motions that match the floor's spectrum and peak. Its "
@@ -169,10 +169,7 @@ def _limits_of_simulation() -> tuple[str, ...]:
             "How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "
             "nominal sizes, centre of gravity and restitution, is assumed, not measured on furniture."
         ),
-        _(
-            "The motions of a draw have the same random phases on all floors along an axis; the signs of modes from "
-            "floor to floor are not known. What falls together on several floors is therefore an estimate."
-        ),
+        *(() if results.provenance.suite else (motions.say_signs(results),)),
         _(
             "Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
             "The behaviour under the recorded motion itself is therefore shown next to the chance."

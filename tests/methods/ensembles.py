@@ -29,6 +29,7 @@ class MadeUp:
     is_unshaped: bool = False
     is_weak: bool = False
     has_record: bool = False
+    signs: tuple[int, ...] | None = None
     fit: Fit | None = None
     spectra: Spectra | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)

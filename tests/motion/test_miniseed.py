@@ -16,7 +16,7 @@ def test_channels() -> None:
     assert [record.channel for record in records] == ["HNE", "HNN", "HNZ"]
     assert [(record.azimuth_deg, record.vertical) for record in records] == [(90.0, False), (0.0, False), (None, True)]
     record = records[0]
-    assert (record.station, record.start, record.corrected) == ("NP.TOWN", "2018-11-30 17:28:10 UTC", False)
+    assert (record.station, record.start, record.corrected) == ("NP.TOWN", "2018-11-30 17:28:10.000 UTC", False)
     assert record.notes == (
         'the file does not give its unit: taken as m/s2, which ObsPy\'s remove_response(output="ACC") leaves',
     )
@@ -69,7 +69,7 @@ def test_obspy_writes_what_is_read(encoding: str, order: str) -> None:
     (record,) = miniseed.read(target.getvalue(), "made")
     (own,) = obspy.read(io.BytesIO(target.getvalue()))
     np.testing.assert_array_equal(record.acceleration, own.data)
-    assert (record.time_step, record.start) == (own.stats.delta, "2018-11-30 17:28:10 UTC")
+    assert (record.time_step, record.start) == (own.stats.delta, "2018-11-30 17:28:10.000 UTC")
 
 
 @pytest.mark.parametrize("encoding", ["STEIM1", "STEIM2", "INT32"])

@@ -23,7 +23,7 @@ def read_one(data: bytes) -> Record:
 def test_header() -> None:
     record = read_one(write(unit="m/s2"))
     assert (record.channel, record.azimuth_deg, record.vertical) == ("HNE", 90.0, False)
-    assert (record.station, record.event, record.start) == ("CJ.TOWN", "Made-up", "2019-07-06 03:19:52 UTC")
+    assert (record.station, record.event, record.start) == ("CJ.TOWN", "Made-up", "2019-07-06 03:19:52.000 UTC")
     assert record.notes == ("the unit is that of the header's field KUSER0: m/s2",)
     assert read_one(write(UP, unit="m/s2")).vertical
 
@@ -95,7 +95,7 @@ def test_obspy_writes_what_is_read() -> None:
     trace.write(target, format="SAC")
     record = read_one(target.getvalue())
     np.testing.assert_array_equal(record.acceleration, trace.data)
-    assert (record.event, record.start) == ("A longer name", "2019-07-06 03:19:54 UTC")
+    assert (record.event, record.start) == ("A longer name", "2019-07-06 03:19:54.500 UTC")
 
 
 def test_a_header_without_a_date() -> None:

@@ -244,7 +244,7 @@ def test_the_summary_says_what_was_varied_and_what_it_changes(mixed):
     up = "2 pieces" if is_high else "1 piece"
     assert f"With a dispersion of 0.6, {up} would be in a higher class." in text
     assert "base × N(0.97, 0.05), its height × N(1, 0.02), its centre of gravity N(as given, 0.05)" in text
-    assert "Motion k has the same phases on every floor along an axis; the signs of modes" in text
+    assert "have the same random phases on all floors along an axis; the signs of modes from floor to floor are" in text
 
 
 def test_a_dispersion_of_the_workbook_is_not_called_assumed(tmp_path):

@@ -58,6 +58,7 @@ def build_record(
     header_pfa: float | None = None,
     has_offset: bool = False,
     notes: Sequence[str] = (),
+    recorder: str = "",
 ) -> Record:
     """Return the record of one channel; see `Record` for the parameters that are not named here.
 
@@ -94,6 +95,7 @@ def build_record(
         file_pfa=file_pfa,
         header_pfa=header_pfa,
         notes=(*series.notes, *notes, *_note_peak(header_pfa, file_pfa)),
+        recorder=recorder,
     )
 
 

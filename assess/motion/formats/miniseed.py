@@ -201,7 +201,7 @@ def _read_channel(file: str, parts: Sequence[_Part], notes: Sequence[str], whole
         direction=direction_of_code(code),
         location=location,
         station=".".join(filter(None, (network, station))),
-        start=f"{first.start:%Y-%m-%d %H:%M:%S} UTC",
+        start=f"{first.start.isoformat(sep=' ', timespec='milliseconds')} UTC",
         has_offset=True,
         notes=(_TAKEN,),
     )

@@ -184,7 +184,7 @@ def _read_start(header: _Header) -> str:
         )
     except (ValueError, OverflowError):
         return ""
-    return f"{start:%Y-%m-%d %H:%M:%S} UTC"
+    return f"{start.isoformat(sep=' ', timespec='milliseconds')} UTC"
 
 
 FORMAT = Format(key="sac", title=TITLE, recognises=recognises, read=read)

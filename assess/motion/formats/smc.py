@@ -40,7 +40,7 @@ INTEGER, REAL, DATA = Columns(8, 10), Columns(5, 15), Columns(8, 10)
 LINE = 80
 
 # Places in the two blocks of numbers, counted from 0; the format's description counts from 1.
-VERTICAL_ANGLE, AZIMUTH, COMMENT_LINES, DATA_COUNT, PROBLEM, FLOOR = 12, 13, 15, 16, 17, 24
+RECORDER, VERTICAL_ANGLE, AZIMUTH, COMMENT_LINES, DATA_COUNT, PROBLEM, FLOOR = 7, 12, 13, 15, 16, 17, 24
 SAMPLING_RATE = 1
 
 HEADER = fields(
@@ -89,6 +89,7 @@ def _read_channel(section: Section, file: str) -> Record:
         start=_start(header),
         header_pfa=read_peak(header["peak"], CM_S2),
         notes=notes,
+        recorder=_recorder(numbers),
     )
     if numbers.integers[PROBLEM] != 1:
         return record
@@ -220,6 +221,11 @@ def _start(header: dict[str, str]) -> str:
         return ""
     date = f"{header['year']}-{int(header['month']):02d}-{int(header['day']):02d}"
     return f"{date} {header['hour']}:{header['minute']} UTC"
+
+
+def _recorder(header: _Numbers) -> str:
+    number = header.integers[RECORDER]
+    return "" if number is None else str(number)
 
 
 def _location(header: _Numbers) -> str:

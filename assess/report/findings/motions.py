@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
+from assess.model import AXES
 from assess.report import words
 from assess.results import MOTION_FLAGS, MotionRow, ProfileInfo, Results
 
@@ -64,6 +65,32 @@ def describe_origin(motion: MotionRow) -> str:
         return words.DASH
     azimuth = "" if motion.azimuth_deg is None else f", {number(motion.azimuth_deg, 'g')}°"
     return f"{words.cut(motion.record, 60)}: {words.cut(motion.station, 60)}{azimuth}"
+
+
+def say_signs(results: Results) -> str:
+    """Return what the motions of a draw have in common from floor to floor."""
+    floors = _signed_floors(results)
+    if not floors:
+        return _(
+            "The motions of a draw have the same random phases on all floors along an axis; the signs of modes from "
+            "floor to floor are not known. What falls together on several floors is therefore an estimate."
+        )
+    return _(
+        "The motions of a draw have the same random phases on all floors along an axis. Between floors that have "
+        "records of one earthquake on one clock ({floors}), the sign of each octave is that of the records. Elsewhere "
+        "the signs of modes are not known, and what falls together on several floors is an estimate.",
+        floors=words.name_first(floors, MOST_PLACES),
+    )
+
+
+def _signed_floors(results: Results) -> list[str]:
+    """Return the floors and axes whose signs are known, along each axis where that is of two floors at least."""
+    found = []
+    for axis in AXES:
+        motions = [one for one in results.motions if one.axis == axis and one.ensemble and one.ensemble.signs]
+        floors = list(dict.fromkeys(words.cut(one.floor, 20) for one in motions))
+        found += [f"{floor} {axis}" for floor in floors] if len(floors) > 1 else []
+    return found
 
 
 def factors(motion: MotionRow) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.report import words
-from assess.report.findings.motions import describe_suite
+from assess.report.findings.motions import describe_suite, say_signs
 from assess.report.findings.uncertain import say_source
 from assess.report.findings.verified import Verified, name_some
 from assess.results import EnsembleRow, ItemResult, MotionRow, Results, SuiteInfo
@@ -103,15 +103,14 @@ def _describe_motions(results: Results) -> str:
             motions=describe_suite(results),
         )
     runs = results.settings.runs
-    return _(
+    made = _(
         "On each floor and axis {motions} were generated (seed {seed}). Their mean 5 % response spectrum matches that "
         "of the floor's recorded motion, or a generic one where only peaks are known. They differ by their random "
-        "phases alone, which is less than earthquakes differ. Motion k has the same phases on every floor along an "
-        "axis; the signs of modes from floor to floor are not known, so what falls together on several floors is an "
-        "estimate.",
+        "phases alone, which is less than earthquakes differ.",
         motions=_("as many motions as are needed") if runs == AUTO else words.plural(int(runs), "motion"),
         seed=results.settings.seed,
     )
+    return f"{made} {say_signs(results)}"
 
 
 def _describe_draws(results: Results) -> str:
