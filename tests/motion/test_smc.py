@@ -37,6 +37,7 @@ def test_smc_corrected() -> None:
     assert (record.station, record.location) == ("CA:Berkeley;Great Western Sav", "Roof, east core")
     assert (record.event, record.start) == ("22 KM SE OF BERKELEY, CA", "2018-01-04 10:39 UTC")
     assert (record.time_step, record.acceleration.size, record.notes) == (0.005, 8200, ())
+    assert record.recorder == "164"
     assert record.header_pfa == pytest.approx(0.514)
     assert record.acceleration[:3] == pytest.approx([6.4470e-5, -1.34e-4, -6.0292e-4])
 
