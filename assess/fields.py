@@ -485,6 +485,7 @@ MOTION_FIELDS = (
     ),
     Field(
         key="ensemble_signs", read=_signs, path=("ensemble", "signs"), kind="signs", is_optional=True,
+        flat=lambda value: value or [],
         help="Whether the motions move as the phases that all floors share (1) or against them (-1), by octave from "
         "0.1 to 25.6 Hz: as the records of two floors or more of one earthquake on one clock do; null where no such "
         "records are known.",

@@ -412,7 +412,10 @@ def test_motions_of_ones_own(tmp_path, suite, scaled):
     ensembles = [one["ensemble"] for floor in done.found["floors"] for one in floor["demands"] if one["axis"] == "X"]
     weak = [one.pop("weak_motions") for one in ensembles]
     assert any(weak), "some floors shake more than these, or faster"
-    assert ensembles == [{"motions": 5, "generic_spectrum": False, "unknown_period": False, "fit": None}] * 5
+    assert (
+        ensembles
+        == [{"motions": 5, "generic_spectrum": False, "unknown_period": False, "signs": None, "fit": None}] * 5
+    )
     assert {item["verification"]["runs"] for item in done.items.values() if item["verification"]} == {5}
     still = done.items["stands"]["verification"]["overturned"]
     assert still == 0 if scaled else still > 0, "scaled to the 0.05 g of its floor, nothing rocks"
