@@ -14,7 +14,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.methods import MethodInfo
 from assess.model import ANCHORED, AXES, IMPORTANCE
-from assess.results import BASES, CaseRow, ItemRow, MotionRow, Results, Simulation
+from assess.results import BASES, BRANCHES, CaseRow, ItemRow, MotionRow, Results, Simulation
 from assess.risk import RiskClass
 
 Kind = Literal["text", "number", "count", "share", "flag", "class", "list", "signs", "records"]
@@ -256,6 +256,35 @@ ANNUAL_FIELDS = (
 """How often a year it falls: together null where that was not evaluated."""
 
 
+def _sliding(name: str, label: str, **more: Any) -> Field:
+    def read(row: Any) -> Any:
+        found = row.governing.sliding
+        return None if found is None else getattr(found, name)
+
+    return Field(
+        key=f"sliding_{name}", read=read, path=("sliding", name), label=label, is_optional=True,
+        **more,
+    )  # fmt: skip
+
+
+SLIDING_FIELDS = (
+    _sliding(
+        "branch", fill("Starts to (as run)"), choices=BRANCHES, width=12,
+        help="What it does first at the floor's PFA (Shenton 1996); `sliding` is null where no friction is given.",
+    ),
+    _sliding(
+        "slip_median_cm", fill("Peak slip, median (as run)"), unit="cm", kind="number", format="0.0",
+        help="Of a block that slides and does not rock (Newmark 1965), under the draws of the simulation; null where "
+        "it cannot slide, or nothing was simulated.",
+    ),
+    _sliding(
+        "slip_84_cm", fill("Peak slip, 84 % (as run)"), unit="cm", kind="number", format="0.0",
+        help="Not exceeded in 84 % of the draws.",
+    ),
+)  # fmt: skip
+"""How a piece of known friction slides: together null in results.json where no friction is given."""
+
+
 _IN_ALL_LISTS: frozenset[Where] = EVERYWHERE | {"risky", "methods"}
 
 PIECE_FIELDS = (
@@ -293,6 +322,20 @@ PIECE_FIELDS = (
     _of_item(
         "friction", fill("Friction"), kind="number", is_optional=True,
         help="The one used: the piece's own, else the building's.",
+    ),
+    *SLIDING_FIELDS,
+    _of_item(
+        "against_wall", fill("Against wall"), kind="flag", is_optional=True, width=8,
+        help="Whether a long side stands against a wall; null: not known.",
+    ),
+    _of_item(
+        "falls_toward_deg", fill("Falls toward"), kind="number", unit="deg", is_optional=True, shows=DATA,
+        help="Direction in which a piece against a wall falls, anticlockwise from X; null: it may fall either way.",
+    ),
+    Field(
+        key="one_sided_chance", read=attrgetter("governing.one_sided"), label=fill("Chance with a wall at its back"),
+        kind="share", format="0.0%", is_optional=True, width=10,
+        help="Simulated beside the adopted chance, which it does not change: turning away from the wall alone.",
     ),
     Field(
         key="importance", read=lambda one: one.item.importance or None, label=fill("Importance"), is_optional=True,
@@ -517,7 +560,7 @@ def floor_fields(results: Results) -> tuple[Field, ...]:
 # ---------------------------------------------------------------- records and tables
 
 
-_GROUPS = ("verification", "ensemble", "annual")
+_GROUPS = ("verification", "ensemble", "sliding", "annual")
 """Groups of fields that are None together where nothing in them is known, such as where no simulation ran."""
 
 

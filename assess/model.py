@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Axis = Literal["X", "Y"]
+Outline = tuple[tuple[float, float], ...]
+"""Corners of a polygon on the plan of a floor [m], in order; the last one is joined to the first."""
 AXES: tuple[Axis, Axis] = ("X", "Y")
 ANCHORED = ("no", "yes", "partly", "unknown")
 IMPORTANCE = ("life safety", "function", "property")
@@ -33,7 +35,8 @@ ASSUMABLE = ("breadth", "width", "height", "centre_of_gravity", "axis", "frictio
 
 _FRAMED = (
     "item", "floor", "room", "description", "type", "quantity", "breadth", "width", "height", "centre_of_gravity",
-    "axis", "angle_deg", "x", "y", "friction", "importance", "anchored", "route", "segment", "edge_distance", "notes",
+    "axis", "angle_deg", "x", "y", "against_wall", "friction", "importance", "anchored", "route", "segment",
+    "edge_distance", "notes",
 )  # fmt: skip
 """Fields in the order of `Inventory.frame`."""
 
@@ -221,7 +224,8 @@ class Floor:
 class Item:
     """One row of furniture. Sizes, positions and distances in m; `angle_deg` anticlockwise from X to Breadth.
 
-    `centre_of_gravity` is its height above the floor as a share of the piece's height [-].
+    `centre_of_gravity` is its height above the floor as a share of the piece's height [-]. `against_wall`: whether one
+    of its long sides stands against a wall, None where that is not known.
     `assumed` names the fields that were blank in the workbook and were filled in: sizes and the centre of gravity from
     the catalogue, the axis from the angle. A blank `friction` is the building's: see `Inventory.complete`.
     `extra` holds what stood in columns that `assess` does not know; `more` the values of columns of the schema that
@@ -249,6 +253,7 @@ class Item:
     segment: str = ""
     edge_distance: float | None = None
     importance: str = ""
+    against_wall: bool | None = None
     notes: str = ""
     assumed: tuple[str, ...] = ()
     extra: tuple[str, ...] = ()
@@ -257,7 +262,7 @@ class Item:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Place:
-    """A room, door, stair or exit; position in m."""
+    """A room, door, stair or exit; position in m. `outline` holds the corners of its walls on the plan [m]."""
 
     row: int
     place: str
@@ -265,6 +270,7 @@ class Place:
     x: float | None = None
     y: float | None = None
     kind: str = ""
+    outline: Outline = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

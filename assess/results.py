@@ -36,13 +36,18 @@ Detail = float | str | bool | None
 BASES = ("formula", "simulated", "unconfirmed")
 """What an adopted risk rests on: the formula, where nothing was simulated; the simulation; or the formula, where
 simulation gave a lower class that cannot be relied on. Lists, counts and sums do not mix them."""
+BRANCHES = ("rest", "slide", "rock", "slide and rock")
+"""How a piece starts to move, in words."""
 PIECE_FLAGS = (
-    "does_not_rock", "slides", "fell_in_record", "ideal_higher", "either_axis", "generic_spectrum", "unknown_period",
-    "weak_motions", "undecided", "unconfirmed",
+    "does_not_rock", "slides", "shenton_extended", "wall_higher", "fell_in_record", "ideal_higher", "either_axis",
+    "generic_spectrum", "unknown_period", "weak_motions", "undecided", "unconfirmed",
 )  # fmt: skip
 """Flags that belong to a piece rather than to one method, in the order in which they are listed."""
 PIECE_FLAG_TEXTS: Mapping[str, str] = {
-    "slides": fill("friction is below B/H: the piece slides before it rocks, which no method here takes into account"),
+    "slides": fill(
+        "at the floor's PFA the piece slides, or slides and rocks (Shenton 1996); that lowers neither its chance nor "
+        "its class"
+    ),
     "unconfirmed": fill(
         "simulation gave a lower class, which is not adopted, as its motions may be too weak: the formula's stands"
     ),
@@ -249,9 +254,10 @@ class ItemRow:
 
     `friction` is the one that was used: the piece's own, else the building's. `extra` holds the texts of the columns
     that `assess` does not know, `more` the values of those that nothing is computed with, by their fields. `routes` are
-    those that it names, or has a segment of which it can reach. `governing`, `first_case` and `last_case` are places in
-    `Results.cases`: the case that governs, and those of the item. `annual` is how often a year it falls if it stands
-    free, None where that was not evaluated.
+    those that it names, or has a segment of which it can reach. `falls_toward_deg` is the direction in which a piece
+    against a wall falls, anticlockwise from X, None where it is not known on which side its wall is. `governing`,
+    `first_case` and `last_case` are places in `Results.cases`: the case that governs, and those of the item. `annual` is
+    how often a year it falls if it stands free, None where that was not evaluated.
     """
 
     index: int
@@ -285,6 +291,8 @@ class ItemRow:
     governing: int
     first_case: int
     last_case: int
+    against_wall: bool | None = None
+    falls_toward_deg: float | None = None
     annual: AnnualRow | None = None
 
     def field(self, key: str) -> Any:
@@ -347,6 +355,24 @@ class Simulation:
 
 
 @dataclass(frozen=True, slots=True)
+class Sliding:
+    """How a piece of known friction starts to move, and how far it slides.
+
+    Parameters
+    ----------
+    branch : str
+        What it does first at the floor's PFA by Shenton's limits: rest, slide, rock, slide and rock.
+    slip_median_cm, slip_84_cm : float, optional
+        Peak slip that half, and 84 %, of the draws do not exceed [cm]; None where it cannot slide, or no motions were
+        there.
+    """
+
+    branch: str
+    slip_median_cm: float | None
+    slip_84_cm: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Adopted:
     """The risk that a report goes by.
 
@@ -381,13 +407,19 @@ class Adopted:
 
 @dataclass(frozen=True, slots=True)
 class CaseRow:
-    """One piece under one motion: every method's result by key, the simulation where one ran, and the adopted risk."""
+    """One piece under one motion: every method's result by key, the simulation where one ran, and the adopted risk.
+
+    `sliding` is None where no friction is given. `one_sided` is the simulated chance with a wall at its back [-], None
+    where there is no wall or no simulation.
+    """
 
     index: int
     motion: MotionRow
     methods: Mapping[str, MethodResult]
     simulation: Simulation | None
     adopted: Adopted
+    sliding: Sliding | None = None
+    one_sided: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -554,7 +586,11 @@ class _CaseReader:
         methods = {key: read(case) for key, read in self._methods.items()}
         motion, value = self._motions[self._motion[case]], methods[self._simulation].value
         simulation = None if value is None else self._simulated(case, value)
-        return CaseRow(case, motion, methods, simulation, self._adopt(case, methods, motion))
+        found = self._found
+        branch = found["sliding_branch"][case]
+        slip = found["slip_median_cm"][case], found["slip_84_cm"][case]
+        sliding, adopted = Sliding(branch, *slip) if branch else None, self._adopt(case, methods, motion)
+        return CaseRow(case, motion, methods, simulation, adopted, sliding, found["one_sided"][case])
 
     def _simulated(self, case: int, probability: float) -> Simulation:
         found = {name: values[case] for name, values in self._found.items()}

@@ -40,6 +40,8 @@ BoolArray = NDArray[np.bool_]
 
 ALIKE = 9
 """Decimals to which two PFA [g] or two probabilities are held against each other when one of them has to govern."""
+NO_WALL, SIDE_UNKNOWN = 0, 2
+"""Of `Cases.wall`: nothing at the back of a piece, or a wall of which the side is not known."""
 
 
 class Ensemble(Protocol):
@@ -115,6 +117,11 @@ class Cases:
         Height of the centre of gravity as a share of the piece's [-].
     name : (n,) integer array
         The piece, from `assess.rocking.draws.name_number`: by it what is not known of it is drawn.
+    slides_under : (n,) integer array
+        Which of `ensembles` the slip of the piece is to be found under; -1 where it is not.
+    wall : (n,) integer array
+        `NO_WALL`; else the direction along the motion in which a wall at its back leaves it free to turn, 1 or -1; or
+        `SIDE_UNKNOWN`.
     ensembles : sequence of Ensemble
         Motions of floors.
     uncertainty : Uncertainty
@@ -131,6 +138,8 @@ class Cases:
     ensemble: NDArray[np.intp]
     centre: FloatArray
     name: NDArray[np.int64]
+    slides_under: NDArray[np.intp]
+    wall: NDArray[np.int8]
     ensembles: Sequence[Ensemble] = ()
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
 
@@ -148,17 +157,21 @@ class Cases:
         ensemble: ArrayLike = -1,
         centre: ArrayLike = MIDDLE,
         name: ArrayLike = 0,
+        slides_under: ArrayLike = -1,
+        wall: ArrayLike = NO_WALL,
         ensembles: Sequence[Ensemble] = (),
         uncertainty: Uncertainty | None = None,
     ) -> Self:
         """Build a batch from numbers and arrays, brought to one length; what is left out is unknown."""
         given = np.broadcast_arrays(
-            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, centre, pfv_estimated, ensemble, name)
-        )
+            *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, centre, pfv_estimated, ensemble, name,
+                           slides_under, wall)
+        )  # fmt: skip
         b, h, a, v, mu, eta, z = (np.array(values, dtype=np.float64) for values in given[:7])
         estimated, which = np.array(given[7], dtype=np.bool_), np.array(given[8], dtype=np.intp)
-        names = np.array(given[9], dtype=np.int64)
-        return cls(b, h, a, v, mu, estimated, eta, which, z, names, ensembles, uncertainty or Uncertainty())
+        names, slides = np.array(given[9], dtype=np.int64), np.array(given[10], dtype=np.intp)
+        walls, drawn = np.array(given[11], dtype=np.int8), uncertainty or Uncertainty()
+        return cls(b, h, a, v, mu, estimated, eta, which, z, names, slides, walls, ensembles, drawn)
 
     @property
     def breadth_to_height(self) -> FloatArray:

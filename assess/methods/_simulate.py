@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from assess.methods._method import BoolArray, Cases, FloatArray, Motions
 from assess.progress import SILENT, Progress
 from assess.risk import NORMAL_95
-from assess.rocking.draws import draw_bodies, draw_earthquakes
+from assess.rocking.draws import DrawnBodies, draw_bodies, draw_earthquakes
 from assess.settings import AUTO, Settings
 
 LOOKS = (125, 250, 500, 1000, 2500, 5000)
@@ -71,6 +71,14 @@ def rock_cases(
     return found.overturned, found.rotation
 
 
+def draw_body(cases: Cases, own: NDArray[np.intp], seed: int, first: int, count: int) -> DrawnBodies:
+    """Return the bodies of the cases `own` in each draw, (m, k) each: as given where pieces are not uncertain."""
+    shape = cases.breadth[own], cases.height[own], cases.centre[own], cases.restitution[own]
+    if cases.uncertainty.piece:
+        return draw_bodies(*shape, cases.name[own], seed=seed, first=first, count=count)
+    return DrawnBodies(*(np.repeat(one[:, None], count, axis=1) for one in shape))
+
+
 def rock_draws(
     cases: Cases,
     own: NDArray[np.intp],
@@ -91,12 +99,8 @@ def rock_draws(
     from assess.rocking.ensemble import rock_blocks
 
     count = len(motions)
-    shape = cases.breadth[own], cases.height[own], cases.centre[own], cases.restitution[own]
-    if cases.uncertainty.piece:
-        drawn = draw_bodies(*shape, cases.name[own], seed=seed, first=first, count=count)
-        b, h, z, eta = drawn.breadth, drawn.height, drawn.centre, drawn.restitution
-    else:
-        b, h, z, eta = (np.repeat(one[:, None], count, axis=1) for one in shape)
+    drawn = draw_body(cases, own, seed, first, count)
+    b, h, z, eta = drawn.breadth, drawn.height, drawn.centre, drawn.restitution
     scales = [np.exp(one * draw_earthquakes(seed, first, count)) for one in dispersions]
     every = len(dispersions), 1
     found = rock_blocks(

@@ -30,6 +30,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.i18n import Text, fill
+from assess.methods._beside import (
+    Beside,
+    BesideFound,
+    find_branch,
+    find_extended,
+    find_walled,
+    name_branch,
+)
 from assess.methods._expression import number, show
 from assess.methods._method import (
     BoolArray,
@@ -66,7 +74,7 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
     known = (cases.ensemble >= 0) & ~cases.is_stocky & ~np.isnan(cases.threshold)
     found = _Found.empty(cases.breadth.size)
     owns = [(number, np.flatnonzero(known & (cases.ensemble == number))) for number in range(len(cases.ensembles))]
-    owns = [(number, own) for number, own in owns if own.size]
+    owns = [(number, own) for number, own in owns if own.size or (cases.slides_under == number).any()]
     side_by_side = min(threads, len(owns))
     stage = stage or Stage(SILENT, "verification", "", len(cases.ensembles))
 
@@ -76,7 +84,7 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
     joints = []
     for rocked in run_side_by_side(work, owns, side_by_side):
         found.take(rocked, cases.ensembles[rocked.joint.ensemble])
-        joints.append(rocked.joint)
+        joints += [rocked.joint] if rocked.joint.cases.size else []
     return _summarise(found, cases, settings, joints)
 
 
@@ -94,9 +102,15 @@ def _summarise(found: "_Found", cases: Cases, settings: Settings, joints: list[J
         },
         "record_overturned": found.record_fell,
         "record_rotation": found.record_rotation,
+        "sliding_branch": name_branch(find_branch(cases)),
+        "slip_median_cm": found.slip_median,
+        "slip_84_cm": found.slip_high,
+        "one_sided": found.one_sided,
     }
     flags = {
         "fell_in_record": found.record_fell == 1,
+        "shenton_extended": find_extended(cases),
+        "wall_higher": found.one_sided > (ideal if settings.ideal else drawn)[1],
         "generic_spectrum": found.generic,
         "unknown_period": found.unshaped,
         "weak_motions": found.weak,
@@ -120,6 +134,7 @@ class _Rocked:
     joint: Joint
     tried: NDArray[np.int64]
     record: tuple[FloatArray, FloatArray]
+    beside: BesideFound
 
 
 @dataclass(slots=True)
@@ -132,15 +147,19 @@ class _Found:
     tried: NDArray[np.int64]
     record_fell: FloatArray
     record_rotation: FloatArray
+    slip_median: FloatArray
+    slip_high: FloatArray
+    one_sided: FloatArray
     generic: BoolArray
     unshaped: BoolArray
     weak: BoolArray
 
     @classmethod
     def empty(cls, count: int) -> "_Found":
-        none, no, unknown = np.zeros(count, dtype=np.int64), np.zeros(count, dtype=np.bool_), np.full(count, np.nan)
-        tried = np.zeros((len(TRIED), count), dtype=np.int64)
-        return cls(none, none.copy(), none.copy(), tried, unknown, unknown.copy(), no, no.copy(), no.copy())
+        runs, overturned, ideal = (np.zeros(count, dtype=np.int64) for _ in range(3))
+        unknown = (np.full(count, np.nan) for _ in range(5))
+        no = (np.zeros(count, dtype=np.bool_) for _ in range(3))
+        return cls(runs, overturned, ideal, np.zeros((len(TRIED), count), dtype=np.int64), *unknown, *no)
 
     def take(self, rocked: _Rocked, ensemble: Ensemble) -> None:
         joint = rocked.joint
@@ -148,6 +167,9 @@ class _Found:
         self.runs[own], self.overturned[own] = joint.runs, joint.fell.sum(axis=1)
         self.ideal[own], self.tried[:, own] = joint.ideal.sum(axis=1), rocked.tried
         self.record_fell[own], self.record_rotation[own] = rocked.record
+        beside = rocked.beside
+        self.slip_median[beside.sliders], self.slip_high[beside.sliders] = beside.slip_median_cm, beside.slip_high_cm
+        self.one_sided[beside.walled] = beside.one_sided
         self.generic[own], self.unshaped[own] = ensemble.is_generic, ensemble.is_unshaped
         self.weak[own] = joint.is_weak
 
@@ -178,16 +200,18 @@ class _Run:
         count, runs = self.own.size, np.zeros(self.own.size, dtype=np.int64)
         fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
         rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
-        size, going = min(BATCH, max(1, MOST_PAIRS // count)), np.arange(count)
+        size, going, beside = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count), self._beside()
         for first, last in zip((0, *checks), checks, strict=False):
             wider = ((0, 0), (0, last - first))
             fell, ideal, rotation = np.pad(fell, wider), np.pad(ideal, wider), np.pad(rotation, wider)
             for at, batch, time_step in make_batches(motions, first, last, size):
                 here = slice(at, at + len(batch))
-                drawn, turned = self._rock_draws(self.own[going], batch, time_step, at)
-                fell[going, here], rotation[going, here] = drawn[0], turned[0]
-                tried[:, going] += drawn[1:].sum(axis=2)
-                ideal[going, here], _ = self._rock(self.own[going], batch, time_step)
+                if going.size:
+                    drawn, turned = self._rock_draws(self.own[going], batch, time_step, at)
+                    fell[going, here], rotation[going, here] = drawn[0], turned[0]
+                    tried[:, going] += drawn[1:].sum(axis=2)
+                    ideal[going, here], _ = self._rock(self.own[going], batch, time_step)
+                beside.add(batch, time_step, at, self.threads, self.progress)
                 self.stage.at(here.stop / checks[-1], self.number)
             runs[going] = last
             going = going[_is_open((ideal if self.settings.ideal else fell)[going], self.settings)]
@@ -199,11 +223,15 @@ class _Run:
             examples=_examples(motions, fell.shape[1]), fit=motions.fit,
             spectra=motions.spectra and motions.spectra.first(fell.shape[1]), is_weak=motions.is_weak,
         )  # fmt: skip
-        return _Rocked(joint, tried, self._rock_under_record())
+        return _Rocked(joint, tried, self._rock_under_record(), beside.finish())
+
+    def _beside(self) -> Beside:
+        sliders = np.flatnonzero(self.cases.slides_under == self.number)
+        return Beside(self.cases, self.settings, sliders, self.own[find_walled(self.cases)[self.own]])
 
     def _rock_under_record(self) -> tuple[FloatArray, FloatArray]:
         """Return whether each case overturns under the record itself, and how far it turns; NaN without a record."""
-        if self.ensemble.record is None:
+        if self.ensemble.record is None or not self.own.size:
             return np.full(self.own.size, np.nan), np.full(self.own.size, np.nan)
         motion, time_step = self.ensemble.record
         fell, rotation = self._rock(self.own, motion[np.newaxis], time_step)
@@ -342,6 +370,10 @@ METHOD = Method(
         Column("dispersion_0.6", "Chance with a dispersion of the motion of 0.6"),
         Column("record_overturned", "Overturns under the record", kind="truth", format=".0f"),
         Column("record_rotation", "Largest rotation under the record over the critical angle", format=".2f"),
+        Column("sliding_branch", "How it starts to move", kind="text", format=""),
+        Column("slip_median_cm", "Peak slip, median", "cm", ".1f"),
+        Column("slip_84_cm", "Peak slip, 84 %", "cm", ".1f"),
+        Column("one_sided", "Chance with a wall at its back"),
     ),
     reasons=(
         Reason(
@@ -393,6 +425,13 @@ METHOD = Method(
         "until it can no longer fall.",
         "The interval is Wilson's, 95 % (z = 1.96): it covers the number of draws only, not the model of the block, "
         "how well the floor's motion is known, or the assumed dispersions.",
+        "The chance is that of a piece that does not slide. How it starts to move at the floor's PFA is shown beside, "
+        "by Shenton's limits (1996), resting and sliding friction being equal. So is the peak slip of a block that "
+        "slides and does not rock (Newmark 1965), under the same draws: it depends on the friction and the floor alone, "
+        "and is 0 in draws in which the piece, by its size, does not slide. Neither lowers a chance or a class.",
+        "With a wall at its back, a piece turns away from it alone and rebounds as by Sorrentino et al. (2011), to be "
+        "checked against the printed paper. The wall moves with the floor and does not pound. Where the side of the "
+        "wall is not known, the larger chance of the two directions counts. It is shown beside, and lowers nothing.",
         'With N "auto", motions are added at 125, 250, 500, 1,000, 2,500 and 5,000, and a piece is done once its '
         "interval (z = 2.64: 95 % for all six checks together) lies within one class.",
     ),
@@ -411,6 +450,9 @@ METHOD = Method(
         "unknown_period": "neither T1 nor the building's height is known, so that the generic spectrum may be too weak "
         "at long periods: simulation may raise a class, never lower it",
         "weak_motions": "the motions are weaker than the floor's: simulation may raise a class, never lower it",
+        "shenton_extended": "Shenton's limits hold for a centre of gravity at mid-height: how this piece starts to move "
+        "is derived in the same way for its own",
+        "wall_higher": "with a wall at its back it falls in more draws than without one; its class is that without",
         "undecided": "after 5,000 motions its interval still reaches over more than one class",
         "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",
     },

@@ -25,7 +25,8 @@ Departures
   slightly thinner piece may come out safer there. Flagged within 10 % of the switch; the 10 % is our choice.
 * PFV unknown: the largest R that any PFV gives, α·max[Φ(ln k/ζ_A), Φ(ln k/ζ_V)], k = PFA/exp(λ_A); on the velocity
   branch F_f > F_b means PFV/exp(λ_V) < k.
-* α is the setting everywhere; friction below B/H is only flagged.
+* α is the setting everywhere; a piece that slides, or slides and rocks, at the floor's PFA by Shenton's limits is only
+  flagged.
 """
 
 import math
@@ -35,6 +36,7 @@ from typing import Any
 import numpy as np
 
 from assess.i18n import Text, fill
+from assess.methods._beside import find_sliding
 from assess.methods._expression import G, note_estimate, number, show, show_pfa, show_ratio
 from assess.methods._method import (
     ESTIMATED,
@@ -122,7 +124,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
         "pfv_estimated": known & cases.pfv_estimated & (branch != "bound"),
         "rests_on_estimated_pfv": (branch == "pfv") & rests_on_estimate(value, cases, without=by_acceleration),
         "near_switch": known & (np.abs(np.log(F_f / F_b)) <= math.log(NEAR_SWITCH) * (1 + ROUNDING)),
-        "slides": known & (cases.friction < B / H * (1 - ROUNDING)),
+        "slides": known & find_sliding(cases),
     }
     return Outcome(value, detail, flags)
 
@@ -271,14 +273,15 @@ METHOD = Method(
         "The formula jumps at F_f = F_b, because ζ_A and ζ_V differ: near it a small change of size or motion may "
         "change the result much. Pieces with F_f within 10 % of F_b are flagged; the 10 % is our choice.",
         "Where PFV is unknown, the largest risk that any PFV could give is shown.",
-        "How α falls with friction is not printed: below B/H, α stays as set and the piece is flagged.",
+        "How α falls with friction is not printed: α stays as set, and a piece that slides by the limits of Shenton "
+        "(1996) is flagged.",
     ),
     flags={
         "pfv_unknown_upper_bound": "peak floor velocity unknown: the largest risk over every velocity is shown",
         "pfv_estimated": PFV_FLAGS["pfv_estimated"],
         **RESTS_ON_ESTIMATE,
         "near_switch": "within 10 % of the frequency at which the formula jumps from acceleration to velocity",
-        "slides": "friction is below B/H: the piece would slide before it rocks, which the result does not count in "
-        "its favour",
+        "slides": "at the floor's PFA the piece slides, or slides and rocks (Shenton 1996), which the result does not "
+        "count in its favour",
     },
 )

@@ -4,7 +4,7 @@ import math
 import shutil
 import tempfile
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.errors import InputError, OutputError
+from assess.errors import InputError, OutputError, Problem
 from assess.i18n import fill
 from assess.methods import Cases, Method, all_methods, simulation
+from assess.methods._method import NO_WALL, SIDE_UNKNOWN
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
 from assess.pipeline.assessment import Assessment
@@ -38,6 +39,7 @@ from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
 from assess.rocking.draws import name_number
 from assess.route_results import RouteTables
+from assess.routes.walls import find_walls, remark_on_walls
 from assess.settings import SCENARIOS, Settings, change_settings
 
 if TYPE_CHECKING:
@@ -292,6 +294,8 @@ def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple
         ensemble=np.full(len(items), -1, dtype=np.intp),
         centre=column([item.centre_of_gravity for item in items]),
         name=np.array([names[item.item] for item in items], dtype=np.int64),
+        slides_under=np.full(len(items), -1, dtype=np.intp),
+        wall=_list_walls(inventory, case_item, case_demand),
         uncertainty=find_uncertainty(building),
     )
 
@@ -302,6 +306,15 @@ def _evaluate_annual(assessment: Assessment, jobs: int | None, progress: Progres
     from assess.pipeline.annual import evaluate_annual
 
     return progress.wait_for(lambda: evaluate_annual(assessment, jobs=jobs, progress=progress))
+
+
+def _list_walls(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]) -> NDArray[np.int8]:
+    """Return `Cases.wall`: the direction along its axis in which each case can turn, where there is a wall."""
+    walls, found = find_walls(inventory), np.full(case_item.size, NO_WALL, dtype=np.int8)
+    for case, item in enumerate(case_item.tolist()):
+        if item in walls:
+            found[case] = walls[item].sense(case_demand[case].axis) or SIDE_UNKNOWN
+    return found
 
 
 # ---------------------------------------------------------------- routes, imported only where there are any
@@ -328,12 +341,13 @@ def _evaluate_routes(assessment: Assessment, progress: Progress) -> RouteTables:
     return found if assessment.annual is None else add_annual(found, assessment.annual.ways)
 
 
-def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Any:
-    if not inventory.routes:
-        return ()
-    from assess.routes.obstructions import find_route_problems
+def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Iterator[Problem]:
+    """Yield what is to be said of walls and, where there are routes, of the pieces beside them."""
+    yield from remark_on_walls(inventory)
+    if inventory.routes:
+        from assess.routes.obstructions import find_route_problems
 
-    return find_route_problems(inventory, obstructions)
+        yield from find_route_problems(inventory, obstructions)
 
 
 def _on_route(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> NDArray[np.bool_]:

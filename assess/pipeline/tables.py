@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from assess.annual_results import AnnualRow, AnnualWays
+from assess.annual_results import AnnualWays
 from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
 from assess.model import AXES, Building, Floor, Inventory, Item
@@ -28,6 +28,7 @@ from assess.results import (
     Provenance,
     SuiteInfo,
 )
+from assess.routes.walls import find_walls
 from assess.units import ACCELERATION, GRAVITY, LENGTH, VELOCITY, to_edge
 from assess.version import __version__
 
@@ -183,22 +184,17 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
     firsts = np.searchsorted(assessment.case_item, np.arange(len(inventory.items) + 1)).tolist()
     annual = {} if assessment.annual is None else assessment.annual.items
     governing, named = assessment.governing.tolist(), _list_routes(inventory, routes)
-    return tuple(
-        _item(
-            inventory.complete(item),
-            index,
-            governing[index],
-            (firsts[index], firsts[index + 1]),
-            named.get(index),
-            annual.get(index),
-        )
+    toward = {at: wall.falls_toward for at, wall in find_walls(inventory).items()}
+    rows = (
+        _item(inventory.complete(item), index, governing[index], (firsts[index], firsts[index + 1]), named.get(index))
         for index, item in enumerate(inventory.items)
     )
+    return tuple(replace(row, falls_toward_deg=toward.get(row.index), annual=annual.get(row.index)) for row in rows)
 
 
 def _item(
     item: Item, index: int, governing: int, cases: tuple[int, int],
-    routes: tuple[str, ...] | None, annual: AnnualRow | None,
+    routes: tuple[str, ...] | None,
 ) -> ItemRow:  # fmt: skip
     return ItemRow(
         index=index,
@@ -216,6 +212,7 @@ def _item(
         breadth_to_height=item.breadth / item.height,
         axis_given=item.axis,
         angle_deg=item.angle_deg,
+        against_wall=item.against_wall,
         x_m=item.x,
         y_m=item.y,
         friction=item.friction,
@@ -232,7 +229,6 @@ def _item(
         governing=governing,
         first_case=cases[0],
         last_case=cases[1],
-        annual=annual,
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from assess.errors import InputError, Problem
 from assess.i18n import Text, fill, join
 from assess.methods import LOOKS, Cases, Outcome, simulation
+from assess.methods._beside import may_slide
 from assess.methods._method import BoolArray
 from assess.model import Building
 from assess.pipeline.demand import Demand, Demands
@@ -43,17 +44,22 @@ def choose_motions(
     settings: Settings,
     suite: "Suite | None",
 ) -> Cases:
-    """Return the cases with the motions under which those `chosen` (n,) that can rock are to be integrated."""
-    chosen = chosen & ~cases.is_stocky
-    wanted = list(dict.fromkeys(demand for demand, one in zip(case_demand, chosen, strict=True) if one))
+    """Return the cases with the motions under which those `chosen` (n,) that can rock are to be integrated.
+
+    Those that may slide, too stocky ones too, are to slide under the same.
+    """
+    rocks, slides = chosen & ~cases.is_stocky, chosen & may_slide(cases, settings)
+    used = rocks | slides
+    wanted = list(dict.fromkeys(demand for demand, one in zip(case_demand, used, strict=True) if one))
     ensembles: tuple[FloorEnsemble, ...]
     if suite is None:
         ensembles = build_ensembles(wanted, demands, building, seed=settings.seed) if wanted else ()
     else:
         ensembles = tuple(SuiteEnsemble(demand, suite, settings.scale_motions, settings.scale) for demand in wanted)
     place = {demand: at for at, demand in enumerate(wanted)}
-    which = [place[demand] if one else -1 for demand, one in zip(case_demand, chosen, strict=True)]
-    return replace(cases, ensemble=np.array(which, dtype=np.intp), ensembles=ensembles)
+    which = np.array([place.get(demand, -1) for demand in case_demand], dtype=np.intp)
+    own, under = (np.where(chosen, which, -1) for chosen in (rocks, slides))
+    return replace(cases, ensemble=own, slides_under=under, ensembles=ensembles)
 
 
 def remark_suite(suite: "Suite | None", cases: Cases) -> list[Problem]:
@@ -102,8 +108,8 @@ def verify(
     InputError
         If the results would need too much memory.
     """
-    chosen = cases.ensemble >= 0
-    check_pairs(int(chosen.sum()), settings)
+    check_pairs(int((cases.ensemble >= 0).sum()), settings)
+    chosen = (cases.ensemble >= 0) | (cases.slides_under >= 0)
     pieces = len(np.unique(case_item[chosen]))
     floors = len({case_demand[one].floor.floor for one in np.flatnonzero(chosen)})
     evaluate, threads, parts = simulation().evaluate, jobs or count_processors(), len(cases.ensembles)

@@ -108,7 +108,9 @@ _KINDS: Mapping[str, Schema] = {
     "class": {"enum": [risk.word for risk in RiskClass]}, "list": _list(TEXT),
     "signs": _list({"enum": [1, -1]}),
 }  # fmt: skip
-_GROUPS_OR_NULL = {("verification",), ("verification", "record"), ("ensemble",), ("ensemble", "fit"), ("annual",)}
+_GROUPS_OR_NULL = {
+    ("verification",), ("verification", "record"), ("ensemble",), ("sliding",), ("ensemble", "fit"), ("annual",),
+}  # fmt: skip
 
 
 def _of_fields(chosen: Iterable[Field]) -> Schema:

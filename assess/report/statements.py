@@ -144,8 +144,12 @@ def list_limits(results: Results) -> Sequence[str]:
             "do not. A top-heavy piece falls sooner, a bottom-heavy one later."
         ),
         _(
-            "No piece slides. On a smooth floor (friction below B/H) a piece slides before it rocks, and may still hit "
-            "people or block a way."
+            "Chances and classes leave sliding out. How a piece of known friction starts to move, and how far it would "
+            "slide if it did not rock, is shown beside them: a piece that slides may still hit people or block a way."
+        ),
+        _(
+            "A wall at the back of a piece lowers neither its chance nor its class, as the wall's own motion and "
+            "pounding feed in energy that is left out. The chance with the wall is shown beside."
         ),
         _("Vertical motion is left out."),
         _(
@@ -185,7 +189,8 @@ def _limits_of_routes() -> tuple[str, ...]:
         ),
         _(
             "A route that is below the chosen risk in this scenario is not shown to be safe, and a segment that is not "
-            "evaluated is not known to be. The direction of a recorded motion is not used: a piece may fall either way."
+            "evaluated is not known to be. The direction of a recorded motion is not used: a piece may fall either "
+            "way, unless it stands against a wall and the outline of its room tells on which side that is."
         ),
     )
 

@@ -163,6 +163,21 @@ def under_record(one: ItemResult) -> str:
     return _("{ratio:.2f} of critical", ratio=most)
 
 
+LEAST_SLIP = 1.0
+"""Slip [cm] exceeded in 16 % of the draws from which a piece's row tells of it."""
+
+
+def list_beside(one: ItemResult) -> list[str]:
+    """Return what is said beside the class of a piece and does not change it: how far it slides, falls from a wall."""
+    sliding, one_sided, texts = one.governing.sliding, one.governing.one_sided, []
+    if sliding is not None and sliding.slip_median_cm is not None and (sliding.slip_84_cm or 0.0) >= LEAST_SLIP:
+        texts.append(_("slides up to {median} cm (median), {high} cm (84 %)",
+                       median=fixed(sliding.slip_median_cm, 0), high=fixed(sliding.slip_84_cm, 0)))  # fmt: skip
+    if one_sided is not None:
+        texts.append(_("with the wall at its back {chance}", chance=percent(one_sided)))
+    return texts
+
+
 def risk_words(one: ItemResult) -> str:
     """Return the class in words, with its notes; of a piece that stands apart, on what it rests."""
     words = ", ".join([apart_words(one) or risk_word(one.adopted.risk), *risk_notes(one)])

@@ -2,8 +2,9 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,26 +70,46 @@ class Shape:
     flags: tuple[str, ...]
 
 
-def build_shapes(items: Sequence[Item], floors: Collection[str], progress: Progress = SILENT) -> dict[int, Shape]:
-    """Return the shapes of the pieces on some floors that have a position, by their index."""
+def build_shapes(
+    items: Sequence[Item],
+    floors: Collection[str],
+    progress: Progress = SILENT,
+    *,
+    away: Mapping[int, float | None] = MappingProxyType({}),
+) -> dict[int, Shape]:
+    """Return the shapes of the pieces on some floors that have a position, by their index.
+
+    `away` holds, of the pieces against a wall, the direction in which each falls [deg]; None: that is not known.
+    """
     placed = ((at, item, item.x, item.y) for at, item in enumerate(items) if item.floor in floors)
     found = {}
     for at, item, x, y in placed:
         progress.check()
         if x is not None and y is not None:
-            found[at] = _shape(item, (x, y))
+            found[at] = _shape(item, (x, y), away.get(at))
+            if at in away:
+                flag = "wall_side_unknown" if away[at] is None else "falls_from_wall"
+                found[at] = replace(found[at], flags=(*found[at].flags, flag))
     return found
 
 
-def _shape(item: Item, at: Point) -> Shape:
+def _shape(item: Item, at: Point, away: float | None) -> Shape:
     from shapely import Polygon, union_all
 
     across, turns = item.width or item.breadth, tuple(_turns(item))
     standing = union_all([Polygon(rectangle(at, a, (-item.breadth / 2, item.breadth / 2), across)) for a in turns])
-    falls = [Polygon(one) for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
+    ways = [one for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
+    if away is not None:
+        ways = [ways[0] if abs(angle_apart(away, turn(item))) < 90 else ways[1]]
+    falls = [Polygon(one) for one in ways]
     doubts = {"direction_unknown": len(turns) > 1, "width_assumed": item.width is None}
     flags = tuple(flag for flag, holds in doubts.items() if holds)
     return Shape(standing, tuple(falls), union_all([standing, *falls]), flags)
+
+
+def angle_apart(one: float, other: float) -> float:
+    """Return how far a direction is from another, -180 to 180 [deg]."""
+    return (one - other + 180.0) % 360.0 - 180.0
 
 
 def _turns(item: Item) -> Iterator[float]:

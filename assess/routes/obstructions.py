@@ -2,7 +2,8 @@
 
 No publication gives a closed rule for this; the one used here is for screening. A fallen piece covers Height x Width
 outward from its tipping edge, and where it stood. Where the plan gives the position of piece and segment, what is
-covered follows from it, and a piece that could fall either way covers whatever of both ways lies in the segment. Else
+covered follows from it, and a piece that could fall either way covers whatever of both ways lies in the segment; one
+against a wall falls away from it, where it is known on which side that is: see `assess.routes.walls`. Else
 it covers Height - Edge distance of the width, on an unknown side and at an unknown place along the segment: it may face
 any other. Walls are known only where Routes names the Room: placed pieces of other rooms cannot reach the segment then.
 """
@@ -21,6 +22,7 @@ from assess.route_results import BesideRow
 from assess.routes.chances import Key
 from assess.routes.gaps import SIDES, Gaps, Obstacle, build_gaps
 from assess.routes.geometry import Band, Shape, build_bands, build_shapes
+from assess.routes.walls import find_walls
 from assess.routes.widths import NARROWER
 from assess.workbook.names import key
 from assess.workbook.schema import DEFAULT_WIDTH
@@ -96,7 +98,8 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
         return ()
     clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
     bands = build_bands(inventory, clear)
-    shapes = build_shapes(inventory.items, {inventory.routes[at].floor for at in bands}, progress)
+    away = {at: wall.falls_toward for at, wall in find_walls(inventory).items()}
+    shapes = build_shapes(inventory.items, {inventory.routes[at].floor for at in bands}, progress, away=away)
     progress.check()
     named, near = _find_named(inventory), _find_near(inventory, shapes, bands)
     found = []

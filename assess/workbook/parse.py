@@ -409,7 +409,7 @@ class _Parser:
         """Return a cell's value in SI, None where it is blank or wrong."""
         if value is None and not column.required:
             return None
-        if column.kind == "number" and column.name in self.blind and value is not UNSAVED:
+        if column.name in self.blind and value is not UNSAVED:
             return None  # the unit in the header is not known, and has been reported there
         try:
             found, remark = read_cell(column, value, self.units[column.name])

@@ -12,7 +12,7 @@ from assess.model import ANCHORED, AXES, IMPORTANCE
 from assess.settings import SCENARIOS
 from assess.units import QUANTITIES
 
-Kind = Literal["text", "number", "count", "choice", "flag", "language", "date", "file", "records"]
+Kind = Literal["text", "number", "count", "choice", "flag", "language", "date", "file", "records", "outline"]
 
 PLACES = ("room", "corridor", "door", "stair", "exit")
 LANGUAGES = ("English", "Italiano")
@@ -211,8 +211,8 @@ ITEMS = Sheet(
                default="the worse of both", width=6),
         Column("anchored", "Anchored", "choice", "Fixed to wall or floor? partly and unknown count as free-standing.",
                choices=ANCHORED, default="unknown", width=10),
-        Column("friction", "Friction", "number", "Coefficient of friction with the floor. Below B/H a piece slides "
-               "before it rocks.", low=0.01, high=2, default="the building's, else no sliding", width=9),
+        Column("friction", "Friction", "number", "Coefficient of friction with the floor: tells whether, and how far, "
+               "the piece slides. It lowers no chance.", low=0.01, high=2, default="the building's, else no sliding", width=9),
         Column("x", "X", "number", "Centre of the piece on the plan.", **_METRES),
         Column("y", "Y", "number", "Centre of the piece on the plan.", **_METRES),
         Column("angle_deg", "Angle", "number", "Anticlockwise from X to Breadth; within 15 of X or Y it sets a blank "
@@ -227,6 +227,9 @@ ITEMS = Sheet(
         Column("centre_of_gravity", "Centre of gravity", "number", "Height of the centre of gravity above the floor, "
                "as a share of the piece's height, with what it holds. Above 50: top-heavy, falls sooner.", **_CENTRE,
                default="the Type's in the Catalogue, else 50", width=10),
+        Column("against_wall", "Against wall", "flag", "yes: one of its long sides stands against a wall, so that it "
+               "falls away from it. Which side that is follows from X, Y, Angle and the Outline of its room in Places.",
+               choices=(YES, NO), default="not known: it may fall either way", width=10),
         Column("notes", "Notes", "text", "Anything else.", width=30),
     ),
 )  # fmt: skip
@@ -242,6 +245,9 @@ PLACES_SHEET = Sheet(
         Column("y", "Y", "number", "Position on the plan.", **_METRES),
         Column("kind", "Kind", "choice", "What it is. A room needs a way to an exit, or to a stair.", choices=PLACES,
                default="a point that routes pass"),
+        Column("outline", "Outline", "outline", "Corners of its walls on the plan, in order round it, as x y; x y; x y: "
+               "by them it is known which way pieces against a wall fall.", quantity="length", unit="m", imperial="ft",
+               default="its walls are not known", width=30),
     ),
 )  # fmt: skip
 

@@ -11,9 +11,11 @@ from collections.abc import Callable, Mapping
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, find_language
+from assess.model import Outline
 from assess.units import QUANTITIES
 from assess.workbook.names import find_choice, find_near, plain, say_choices
 from assess.workbook.open import UNSAVED
+from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.schema import YES, Column
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
@@ -23,6 +25,10 @@ _NUMERAL = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)\s*")
 _UNSEEN = frozenset("\u200e\u200f\u061c\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200b\u2060\ufeff")
 _ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
 _SHOWN = 60
+_WRITE_OUTLINE = fill(
+    "Write the corners in order round the room, x and y with a space between and a point as decimal sign: "
+    "0 0; 6.5 0; 6.5 4; 0 4."
+)
 _UNIT_NAMES = {
     "cm": fill("centimetres"), "m": fill("metres"), "mm": fill("millimetres"), "in": fill("inches"), "ft": fill("feet"),
 }  # fmt: skip
@@ -207,6 +213,15 @@ def _read_date(column: Column, value: object, unit: str) -> str:
     return read_text(value.date() if isinstance(value, datetime.datetime) else value)
 
 
+def _read_outline(column: Column, value: object, unit: str) -> Outline:
+    """Return the corners of an outline [m]."""
+    try:
+        return parse_outline(read_text(value), QUANTITIES[column.quantity][unit])
+    except OutlineError as error:
+        fault = fill("{label}: {fault}", label=column.label, fault=error.message)
+        raise CellError(fault, _WRITE_OUTLINE) from None
+
+
 READERS: Mapping[str, Callable[[Column, object, str], object]] = {
     "text": _read_plain,
     "file": _read_plain,
@@ -217,6 +232,7 @@ READERS: Mapping[str, Callable[[Column, object, str], object]] = {
     "flag": _read_flag,
     "language": _read_language,
     "date": _read_date,
+    "outline": _read_outline,
 }
 
 

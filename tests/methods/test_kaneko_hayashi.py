@@ -156,9 +156,11 @@ class TestSettings:
         assert f"α is {Settings().slide_coefficient:g} unless" in words
 
     @pytest.mark.parametrize(
-        ("friction", "slides"), [(math.nan, False), (0.5, False), (0.3, False), (0.299, True), (0.1, True)]
+        ("friction", "slides"),
+        [(math.nan, False), (0.5, False), (0.303, False), (0.301, True), (0.299, True), (0.1, True)],
     )
-    def test_friction_below_breadth_to_height_is_flagged_and_changes_nothing(self, friction, slides):
+    def test_a_piece_that_slides_by_shentons_limits_is_flagged_and_nothing_changes(self, friction, slides):
+        """At 0.306 g its critical friction is 0.3026: between B/H, 0.3, and that it slides and rocks."""
         outcome = evaluate(breadth=0.54, pfa=3.0, pfv=0.3, friction=friction)  # 0.54/1.8 is a little above 0.3
         assert outcome.flags["slides"][0] == slides
         assert outcome.value[0] == evaluate(breadth=0.54, pfa=3.0, pfv=0.3).value[0]

@@ -193,7 +193,7 @@ def _position(place: Place, floor: str) -> Point | None:
 
 def _piece(one: ItemResult, at: Point) -> Piece:
     item, risk, is_outside = one.item, one.adopted.risk, one.is_anchored or bool(one.apart)
-    breadth, height = item.breadth_cm / 100, item.height_cm / 100
+    breadth = item.breadth_cm / 100
     across, angle = (item.width_cm or item.breadth_cm) / 100, turn(item)
     falls = not one.is_anchored and max(risk, one.adopted.upper) >= RiskClass.MEDIUM
     return Piece(
@@ -209,7 +209,7 @@ def _piece(one: ItemResult, at: Point) -> Piece:
         side=min(breadth, across),
         at=at,
         corners=rectangle(at, angle, (-breadth / 2, breadth / 2), across),
-        fallen=fallen(at, angle, breadth, across, height) if falls else (),
+        fallen=_ways_to_fall(item, at) if falls else (),
     )
 
 
@@ -231,6 +231,15 @@ def rectangle(at: Point, angle: float, along: tuple[float, float], across: float
     local = ((near, -half), (far, -half), (far, half), (near, half))
     one, two, three, four = ((x + u * cos - v * sin, y + u * sin + v * cos) for u, v in local)
     return one, two, three, four
+
+
+def _ways_to_fall(item: ItemRow, at: Point) -> tuple[Corners, ...]:
+    """Return what a piece covers beyond its footprint, each way that it may fall: away from a wall alone."""
+    across, angle = (item.width_cm or item.breadth_cm) / 100, turn(item)
+    ahead, behind = fallen(at, angle, item.breadth_cm / 100, across, item.height_cm / 100)
+    if item.falls_toward_deg is None:
+        return ahead, behind
+    return (ahead,) if math.cos(math.radians(item.falls_toward_deg - angle)) > 0 else (behind,)
 
 
 def fallen(at: Point, angle: float, breadth: float, width: float, height: float) -> tuple[Corners, Corners]:

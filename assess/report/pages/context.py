@@ -269,6 +269,7 @@ FILTERS: Mapping[str, Any] = {
     "in_g": words.in_g,
     "in_m": words.in_m,
     "in_whole": lambda value: number(value, ",d"),
+    "list_beside": words.list_beside,
     "list_flags": list_flags,
     "is_blocked_standing": route_words.is_blocked_standing,
     "percent": words.percent,

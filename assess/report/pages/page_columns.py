@@ -172,7 +172,7 @@ def _of_piece(field: Field, where: Where, method: "MethodInfo | None") -> PageCo
         "verification_record_overturned": {"text": words.under_record},
         "verification_ideal_probability": {"text": words.ideal_chance, "places": 25, "is_wide": True},
         "adopted_class": {"text": words.risk_words, "sort": _rank},
-        "adopted_flags": {"text": lambda one: ", ".join(map(_say_flag, one.adopted.flags))},
+        "adopted_flags": {"text": lambda one: ", ".join([*map(_say_flag, one.adopted.flags), *words.list_beside(one)])},
     }
     return replace(column, **composed.get(field.key, {}))
 

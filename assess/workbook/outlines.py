@@ -1,0 +1,115 @@
+"""The outline of a place in a cell, ``x y; x y; x y``: its corners, or what is wrong with it."""
+
+import math
+import re
+from itertools import combinations
+from math import hypot
+
+from assess.i18n import Text, fill
+from assess.model import Outline
+from assess.units import ROUNDING
+
+LEAST, MOST = 3, 200
+"""Corners of an outline."""
+FARTHEST = 1e5
+"""Largest coordinate [m], as of positions."""
+SAME = 1e-3
+"""Distance up to which two corners are the same [m]."""
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)")
+
+Corner = tuple[float, float]
+
+
+class OutlineError(Exception):
+    """An outline that cannot be used; `message` tells why."""
+
+    def __init__(self, message: Text) -> None:
+        super().__init__(message)
+        self.message = message
+
+
+def parse_outline(text: str, factor: float) -> Outline:
+    """Return the corners of an outline [m]; its last corner may repeat the first.
+
+    Parameters
+    ----------
+    text : str
+        ``x y; x y; x y``
+    factor : float
+        From its unit to m.
+
+    Raises
+    ------
+    OutlineError
+        If a corner is not two numbers, two that follow each other are the same, there are fewer than three or more
+        than 200, or its sides cross or touch each other.
+    """
+    parts = [part.split() for part in text.replace("\n", ";").split(";") if part.strip()]
+    corners = [_read_corner(at, part, factor) for at, part in enumerate(parts, 1)]
+    if len(corners) > LEAST and _is_same(corners[0], corners[-1]):
+        corners.pop()
+    if not LEAST <= len(corners) <= MOST:
+        raise OutlineError(
+            fill("it has {n:,} corners, expected {least} to {most}.", n=len(corners), least=LEAST, most=MOST)
+        )
+    for at, corner in enumerate(corners):
+        if _is_same(corner, corners[at - 1]):
+            raise OutlineError(fill("corner {n} is the same as the one before it.", n=at + 1))
+    _check_sides(corners)
+    return tuple(corners)
+
+
+def _read_corner(number: int, part: list[str], factor: float) -> Corner:
+    if len(part) != 2 or not all(_NUMBER.fullmatch(one) for one in part):
+        shown = " ".join(part)[:40]
+        raise OutlineError(fill("corner {n} is '{text}', expected two numbers, x and y.", n=number, text=shown))
+    x, y = (float(one) * factor for one in part)
+    if max(abs(x), abs(y)) > FARTHEST:
+        raise OutlineError(fill("corner {n} lies more than {most:,} km away.", n=number, most=int(FARTHEST / 1000)))
+    return x, y
+
+
+def _is_same(one: Corner, other: Corner) -> bool:
+    return hypot(one[0] - other[0], one[1] - other[1]) <= SAME
+
+
+def _check_sides(corners: list[Corner]) -> None:
+    """Raise OutlineError where two sides meet other than at the corner that they share, or fold back there."""
+    count = len(corners)
+    sides = [(corners[at], corners[(at + 1) % count]) for at in range(count)]
+    for one, other in combinations(range(count), 2):
+        is_next = other - one == 1 or (one == 0 and other == count - 1)
+        if _fold_back(sides, one, other) if is_next else _meet(*sides[one], *sides[other]):
+            names = {"one": one + 1, "other": other + 1}
+            raise OutlineError(fill("its sides {one} and {other} cross or touch each other.", **names))
+
+
+def _fold_back(sides: list[tuple[Corner, Corner]], one: int, other: int) -> bool:
+    """Tell whether two sides that share a corner lie on each other."""
+    first, last = (one, other) if other - one == 1 else (other, one)
+    (a, b), (_, c) = sides[first], sides[last]
+    back, on = (a[0] - b[0], a[1] - b[1]), (c[0] - b[0], c[1] - b[1])
+    turn = back[0] * on[1] - back[1] * on[0]
+    along = back[0] * on[0] + back[1] * on[1]
+    return along > 0 and abs(turn) <= ROUNDING * math.hypot(*back) * math.hypot(*on)
+
+
+def _meet(a: Corner, b: Corner, c: Corner, d: Corner) -> bool:
+    """Tell whether the sides a to b and c to d have a point in common."""
+    turns = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
+    if turns[0] * turns[1] < 0 and turns[2] * turns[3] < 0:
+        return True
+    ends = ((a, b, c), (a, b, d), (c, d, a), (c, d, b))
+    return any(turn == 0 and _is_between(*end) for turn, end in zip(turns, ends, strict=True))
+
+
+def _turn(a: Corner, b: Corner, c: Corner) -> float:
+    """Return above 0 where c lies to the left of the line from a to b, 0 on it, but for rounding."""
+    cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    size = hypot(b[0] - a[0], b[1] - a[1]) * hypot(c[0] - a[0], c[1] - a[1])
+    return 0.0 if abs(cross) <= ROUNDING * size else cross
+
+
+def _is_between(a: Corner, b: Corner, c: Corner) -> bool:
+    """Tell whether c, which lies on the line through a and b, lies between them."""
+    return all(min(one, two) - SAME <= at <= max(one, two) + SAME for one, two, at in zip(a, b, c, strict=True))
