@@ -427,8 +427,8 @@ METHOD = Method(
         "how well the floor's motion is known, or the assumed dispersions.",
         "The chance is that of a piece that does not slide. How it starts to move at the floor's PFA is shown beside, "
         "by Shenton's limits (1996), resting and sliding friction being equal. So is the peak slip of a block that "
-        "slides and does not rock (Newmark 1965), under the same draws: it depends on the friction and the floor alone, "
-        "and is 0 in draws in which the piece, by its size, does not slide. Neither lowers a chance or a class.",
+        "slides and does not rock (Newmark 1965), under the same draws: it depends on the friction and the floor "
+        "alone, and is 0 in draws in which the piece, by its size, does not slide. Neither lowers a chance or a class.",
         "With a wall at its back, a piece turns away from it alone and rebounds as by Sorrentino et al. (2011), to be "
         "checked against the printed paper. The wall moves with the floor and does not pound. Where the side of the "
         "wall is not known, the larger chance of the two directions counts. It is shown beside, and lowers nothing.",
@@ -450,8 +450,8 @@ METHOD = Method(
         "unknown_period": "neither T1 nor the building's height is known, so that the generic spectrum may be too weak "
         "at long periods: simulation may raise a class, never lower it",
         "weak_motions": "the motions are weaker than the floor's: simulation may raise a class, never lower it",
-        "shenton_extended": "Shenton's limits hold for a centre of gravity at mid-height: how this piece starts to move "
-        "is derived in the same way for its own",
+        "shenton_extended": "Shenton's limits hold for a centre of gravity at mid-height: how this piece starts to "
+        "move is derived in the same way for its own",
         "wall_higher": "with a wall at its back it falls in more draws than without one; its class is that without",
         "undecided": "after 5,000 motions its interval still reaches over more than one class",
         "does_not_rock": "B/H is 1.41 or more: too stocky to rock, direct integration and FEMA P-58 do not apply",

@@ -106,7 +106,8 @@ def rock(
 def _rests(horizontal: FloatArray, vertical: FloatArray, place: int, tan: float) -> bool:  # pragma: no cover
     """Tell whether no edge lifts at either end of a sample, and so nowhere in it: most samples of most motions."""
     first = abs(horizontal[place]) - tan * (1.0 + vertical[place])
-    return first <= 0.0 and abs(horizontal[place + 1]) - tan * (1.0 + vertical[place + 1]) <= 0.0
+    last = abs(horizontal[place + 1]) - tan * (1.0 + vertical[place + 1])
+    return bool(max(first, last) <= 0.0)
 
 
 @compiled_into
