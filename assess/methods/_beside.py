@@ -57,13 +57,18 @@ def may_slide(cases: Cases, settings: Settings) -> BoolArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BesideFound:
-    """What was found of the `sliders` (p,) and the `walled` (q,): median and 84 % slip [cm], one-sided chance [-]."""
+    """What was found of the `sliders` (p,) and the `walled` (q,): median and 84 % slip [cm], one-sided chance [-].
+
+    In `draws` draws; `is_ideal`: without uncertainty of the motion and of the piece.
+    """
 
     sliders: NDArray[np.intp]
     walled: NDArray[np.intp]
     slip_median_cm: FloatArray
     slip_high_cm: FloatArray
     one_sided: FloatArray
+    draws: int
+    is_ideal: bool
 
 
 @dataclass(slots=True)
@@ -116,7 +121,8 @@ class Beside:
         slips = np.concatenate(self._slips, axis=1) if self._slips else np.zeros((0, 1))
         fell = np.concatenate(self._fell, axis=2) if self._fell else np.zeros((2, 0, 1))
         middle, high = np.quantile(slips / LENGTH["cm"], (0.5, HIGH), axis=1)
-        return BesideFound(self.sliders, self.walled, middle, high, fell.mean(axis=2).max(axis=0))
+        one_sided, draws = fell.mean(axis=2).max(axis=0), fell.shape[2]
+        return BesideFound(self.sliders, self.walled, middle, high, one_sided, draws, self.settings.ideal)
 
     def _slide(
         self, motions: FloatArray, time_step: float, scale: FloatArray, threads: int, progress: Progress

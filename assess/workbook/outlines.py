@@ -46,7 +46,7 @@ def parse_outline(text: str, factor: float) -> Outline:
     """
     parts = [part.split() for part in text.replace("\n", ";").split(";") if part.strip()]
     corners = [_read_corner(at, part, factor) for at, part in enumerate(parts, 1)]
-    if len(corners) > LEAST and _is_same(corners[0], corners[-1]):
+    if len(corners) > 1 and _is_same(corners[0], corners[-1]):
         corners.pop()
     if not LEAST <= len(corners) <= MOST:
         raise OutlineError(
