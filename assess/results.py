@@ -36,7 +36,7 @@ Detail = float | str | bool | None
 BASES = ("formula", "simulated", "unconfirmed")
 """What an adopted risk rests on: the formula, where nothing was simulated; the simulation; or the formula, where
 simulation gave a lower class that cannot be relied on. Lists, counts and sums do not mix them."""
-BRANCHES = ("rest", "slide", "rock", "slide and rock")
+BRANCHES: tuple[str, ...] = (fill("rest"), fill("slide"), fill("rock"), fill("slide and rock"))
 """How a piece starts to move, in words."""
 PIECE_FLAGS = (
     "does_not_rock", "slides", "shenton_extended", "wall_higher", "fell_in_record", "ideal_higher", "either_axis",

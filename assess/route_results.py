@@ -18,7 +18,7 @@ FLAGS: Mapping[str, str] = {
     "side_unknown": "placed by its Edge distance alone: its side is unknown, so it may face any other piece",
     "direction_unknown": "neither Axis nor Angle is given: it may fall in any direction",
     "falls_from_wall": "it stands against a wall and falls away from it",
-    "wall_side_unknown": "it stands against a wall, but on which side that is is not known: it may fall either way",
+    "wall_side_unknown": "it stands against a wall, but its side is not known: it may fall either way",
     "width_assumed": "no Width is given: its Breadth is used",
     "nearer_than_plan": "its Edge distance is smaller than its position on the plan gives: the distance counts",
     "standing_inside": "it stands in the route with nothing fallen",

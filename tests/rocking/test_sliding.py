@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from assess.errors import CancelledError
 from assess.motion.formats import read_records
 from assess.motion.record import treat
+from assess.results import BRANCHES
 from assess.rocking.sliding import UNKNOWN, Branch, branch, critical_friction, is_outside_shenton, peak_slip
 from assess.units import GRAVITY as G
 from tests.stopping import StopsAt
@@ -279,3 +280,7 @@ def test_how_it_starts_needs_no_compiler():
     code = "import sys, assess.rocking.sliding; print([one for one in ('numba', 'scipy') if one in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_results_name_the_same_branches():
+    assert tuple(one.word for one in Branch) == BRANCHES
