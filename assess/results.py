@@ -256,8 +256,8 @@ class ItemRow:
     that `assess` does not know, `more` the values of those that nothing is computed with, by their fields. `routes` are
     those that it names, or has a segment of which it can reach. `falls_toward_deg` is the direction in which a piece
     against a wall falls, anticlockwise from X, None where it is not known on which side its wall is. `governing`,
-    `first_case` and `last_case` are places in `Results.cases`: the case that governs, and those of the item. `annual` is
-    how often a year it falls if it stands free, None where that was not evaluated.
+    `first_case` and `last_case` are places in `Results.cases`: the case that governs, and those of the item.
+    `annual` is how often a year it falls if it stands free, None where that was not evaluated.
     """
 
     index: int

@@ -24,7 +24,7 @@ from assess.risk import RiskClass
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
-VERSION = "4.0"
+VERSION = "4.1"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
