@@ -224,6 +224,8 @@ class Floor:
 class Item:
     """One row of furniture. Sizes, positions and distances in m; `angle_deg` anticlockwise from X to Breadth.
 
+    `weight` is in kg, `bracket_height` in m above the floor, `bracket_capacity` in N; None where blank.
+
     `centre_of_gravity` is its height above the floor as a share of the piece's height [-]. `against_wall`: whether one
     of its long sides stands against a wall, None where that is not known.
     `assumed` names the fields that were blank in the workbook and were filled in: sizes and the centre of gravity from
@@ -243,6 +245,9 @@ class Item:
     width: float | None = None
     height: float
     centre_of_gravity: float = MIDDLE
+    weight: float | None = None
+    bracket_height: float | None = None
+    bracket_capacity: float | None = None
     axis: Axis | None = None
     anchored: str = "unknown"
     friction: float | None = None

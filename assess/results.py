@@ -272,6 +272,9 @@ class ItemRow:
     width_cm: float | None
     height_cm: float
     centre_of_gravity: float
+    weight_kg: float | None
+    bracket_height_cm: float | None
+    bracket_capacity_kn: float | None
     breadth_to_height: float
     axis_given: str | None
     angle_deg: float | None

@@ -1,7 +1,8 @@
 """Units: one constant of gravity, one table of factors to SI.
 
-Inside the program every length is in m, every acceleration in m/s2, every velocity in m/s. Angles that describe how
-a thing lies (azimuths, the turn of a piece on the plan) stay in degrees and say so in their names.
+Inside the program every length is in m, every acceleration in m/s2, every velocity in m/s, masses in kg, forces in N.
+Angles that describe how a thing lies (azimuths, the turn of a piece on the plan) stay in degrees and say so in their
+names.
 """
 
 from collections.abc import Mapping
@@ -18,6 +19,8 @@ VELOCITY: Mapping[str, float] = {"cm/s": 0.01, "m/s": 1.0, "in/s": 0.0254}
 ANGLE: Mapping[str, float] = {"deg": 1.0}
 TIME: Mapping[str, float] = {"s": 1.0}
 SHARE: Mapping[str, float] = {"%": 0.01}
+MASS: Mapping[str, float] = {"kg": 1.0, "lb": 0.45359237}
+FORCE: Mapping[str, float] = {"kN": 1000.0, "N": 1.0, "lbf": 4.4482216152605}
 
 QUANTITIES: Mapping[str, Mapping[str, float]] = {
     "length": LENGTH,
@@ -26,18 +29,21 @@ QUANTITIES: Mapping[str, Mapping[str, float]] = {
     "angle": ANGLE,
     "time": TIME,
     "share": SHARE,
+    "mass": MASS,
+    "force": FORCE,
 }
 
 
 ALIASES: Mapping[str, str] = {
     "inch": "in", "inches": "in", "in.": "in", "feet": "ft", "foot": "ft", "ft.": "ft",
+    "kn": "kN", "n": "N", "lbs": "lb",
     "m/s²": "m/s2", "m/s^2": "m/s2", "cm/s²": "cm/s2", "cm/s^2": "cm/s2",
 }  # fmt: skip
 """Other spellings that are understood."""
 
 
 def read_unit(text: str) -> str:
-    """Return `text` as the tables above spell units: lower case, no spaces, no other spelling."""
+    """Return `text` as the tables above spell units: no spaces, no other spelling."""
     spelt = "".join(text.split()).lower()
     return ALIASES.get(spelt, spelt)
 

@@ -19,7 +19,7 @@ LAYERS = {
     "version": 0, "units": 0, "errors": 0, "risk": 0, "resources": 0, "compiled": 0, "settings": 1, "i18n": 1,
     "progress": 1,
     "motion": 2, "fragility": 2, "hazard": 2,
-    "rocking": 3, "rates": 3,
+    "rocking": 3, "rates": 3, "bracket": 3,
     "methods": 4,
     "model": 5,
     "results": 6, "route_results": 6, "annual_results": 6, "fields": 7, "route_fields": 7, "frames": 7,

@@ -29,7 +29,7 @@ from assess.results import (
     SuiteInfo,
 )
 from assess.routes.walls import find_walls
-from assess.units import ACCELERATION, GRAVITY, LENGTH, VELOCITY, to_edge
+from assess.units import ACCELERATION, FORCE, GRAVITY, LENGTH, VELOCITY, to_edge
 from assess.version import __version__
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from assess.motion.target_fit import Fit
     from assess.route_results import RouteTables
 
-_FACTORS: Mapping[str, float] = {**LENGTH, **ACCELERATION, **VELOCITY}
+_FACTORS: Mapping[str, float] = {**LENGTH, **ACCELERATION, **VELOCITY, **FORCE}
 
 
 def edge(value: float | None, unit: str) -> float | None:
@@ -209,6 +209,9 @@ def _item(
         width_cm=edge(item.width, "cm"),
         height_cm=_sure(item.height, "cm"),
         centre_of_gravity=item.centre_of_gravity,
+        weight_kg=item.weight,
+        bracket_height_cm=edge(item.bracket_height, "cm"),
+        bracket_capacity_kn=edge(item.bracket_capacity, "kN"),
         breadth_to_height=item.breadth / item.height,
         axis_given=item.axis,
         angle_deg=item.angle_deg,

@@ -110,6 +110,7 @@ _KINDS: Mapping[str, Schema] = {
 }  # fmt: skip
 _GROUPS_OR_NULL = {
     ("verification",), ("verification", "record"), ("ensemble",), ("sliding",), ("ensemble", "fit"), ("annual",),
+    ("anchor",),
 }  # fmt: skip
 
 

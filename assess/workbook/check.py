@@ -196,8 +196,26 @@ def check_items(tables: Tables) -> Iterator[Problem]:
         yield from _check_sizes(table, row, sizes)
         yield from _check_position(table, row)
         yield from _check_axis(table, row)
+        yield from _check_bracket(table, row, sizes.get("height"))
     for name, rows in lacking.items():
         yield _describe_no_column(table, name, rows)
+
+
+def _check_bracket(table: Table, row: Row, height: float | None) -> Iterator[Problem]:
+    """Report a bracket above the piece that it holds, and one of a piece that is said to have none."""
+    at, label = row.get("bracket_height"), table.label("bracket_height")
+    if at is not None and height is not None and at > height * (1 + ROUNDING):
+        message = fill(
+            "{label} {at:g} cm is greater than {other} {height:g} cm.",
+            label=label, at=at * 100, other=table.label("height"), height=height * 100,
+        )  # fmt: skip
+        yield table.problem("bracket_height", row, message, fill("A bracket holds a piece at its top or below."))
+    given = next((name for name in ("bracket_height", "bracket_capacity") if row.get(name) is not None), None)
+    if given is not None and row.get("anchored") == "no":
+        values = {"label": table.label(given), "anchored": table.label("anchored")}
+        message = fill("{label} is given, but {anchored} is no.", **values)
+        fix = fill("Set {anchored} to yes or partly, or clear {label}.", **values)
+        yield table.problem(given, row, message, fix, "warning")
 
 
 def _describe_no_column(table: Table, name: str, rows: Sequence[Row]) -> Problem:

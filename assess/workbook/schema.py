@@ -230,6 +230,13 @@ ITEMS = Sheet(
         Column("against_wall", "Against wall", "flag", "yes: one of its long sides stands against a wall, so that it "
                "falls away from it. Which side that is follows from X, Y, Angle and the Outline of its room in Places.",
                choices=(YES, NO), default="not known: it may fall either way", width=10),
+        Column("weight", "Weight", "number", "With what it holds. Kept with the results.", quantity="mass", unit="kg",
+               imperial="lb", low=0.1, high=20000, usual_low=1, usual_high=3000, width=9),
+        Column("bracket_height", "Bracket height", "number", "Height above the floor at which its bracket holds it, at "
+               "most its own. Kept with the results.", **_LENGTH | {"unit": "cm", "imperial": "in", "low": 1, "high": 600},
+               width=9),
+        Column("bracket_capacity", "Bracket capacity", "number", "Tension that its bracket holds. Kept with the "
+               "results.", quantity="force", unit="kN", imperial="lbf", low=0.01, high=200, width=9),
         Column("notes", "Notes", "text", "Anything else.", width=30),
     ),
 )  # fmt: skip

@@ -52,8 +52,8 @@ def test_given_sets_a_record_aside_and_recorded_a_pfa(tmp_path):
 def test_ground_motion_that_no_floor_needs_is_kept_not_used(tmp_path, scenario, why):
     remarks = _remarks(tmp_path, [{"floor": "1", "pfa_x": 0.3}], scenario, ground_pga=0.2, sds=0.5)
     assert remarks == {
-        f"Building!B18: Ground PGA is not used: {why}.": "note",
-        f"Building!B20: SDS is not used: {why}.": "note",
+        f"Building!B20: Ground PGA is not used: {why}.": "note",
+        f"Building!B22: SDS is not used: {why}.": "note",
     }
 
 
@@ -61,7 +61,7 @@ def test_ground_motion_that_no_floor_needs_is_kept_not_used(tmp_path, scenario, 
 def test_a_ground_velocity_that_caps_no_estimate_is_not_used(tmp_path, floor):
     period = 2.0 if "pfv_x" in floor else None
     remarks = _remarks(tmp_path, [{"floor": "1", **floor}], ground_pgv=23, period=period)
-    assert remarks == {"Building!B19: Ground PGV is not used: no PFV is estimated.": "note"}
+    assert remarks == {"Building!B21: Ground PGV is not used: no PFV is estimated.": "note"}
 
 
 @pytest.mark.parametrize(("pgv", "is_small"), [(10, True), (11, False)])
@@ -69,7 +69,7 @@ def test_a_ground_velocity_too_small_for_a_floor_is_told(tmp_path, pgv, is_small
     """3.93 x 10 = 39.3 cm/s is below the 40 cm/s of floor 2, 3.93 x 11 = 43.2 cm/s above."""
     floors = [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_x": 0.2, "pfv_x": 40}]
     text = (
-        "Building!B19: Ground PGV 10.0 cm/s caps the PFV that is estimated at 39.3 cm/s, but the PFV of floor '2' is "
+        "Building!B21: Ground PGV 10.0 cm/s caps the PFV that is estimated at 39.3 cm/s, but the PFV of floor '2' is "
         "40.0 cm/s: the estimate for other floors may be too low. Check Ground PGV in Building."
     )
     remarks = _remarks(tmp_path, floors, ground_pgv=pgv, period=2.0)
@@ -81,7 +81,7 @@ def test_ground_pga_comes_before_an_sds_that_differs(tmp_path, sds, severity):
     """0.4 x 0.503 = 0.2012 differs from 0.2 by 0.6 %; 0.24 would shake more, 0.16 less."""
     remarks = _remarks(tmp_path, [{"floor": "1", "elevation": 3}], ground_pga=0.2, sds=sds)
     values = f"0.4 SDS is {0.4 * sds:.3f} g, Ground PGA 0.200 g is used"
-    text = f"Building!B20: SDS is not used: {values}. Correct one of them, or clear it."
+    text = f"Building!B22: SDS is not used: {values}. Correct one of them, or clear it."
     assert remarks == ({text: severity} if severity else {})
 
 
@@ -159,7 +159,7 @@ def test_in_a_building_of_basements_no_floor_is_above_the_roof(tmp_path):
 def test_a_height_that_does_not_fit_the_storeys_is_told(tmp_path, storeys, each):
     floors = [{"floor": "1", "elevation": 27}]
     text = (
-        f"Building!B6: Height 30 m over {storeys} storeys is {each} m a storey, outside 2.5 to 6 m; too large a Height "
+        f"Building!B8: Height 30 m over {storeys} storeys is {each} m a storey, outside 2.5 to 6 m; too large a Height "
         "lowers the profile. Check Height and Storeys."
     )
     building = {"storeys": storeys} if storeys else {}
@@ -168,7 +168,7 @@ def test_a_height_that_does_not_fit_the_storeys_is_told(tmp_path, storeys, each)
 
 
 def test_a_height_far_above_the_floors_listed_is_noted(tmp_path):
-    text = "Building!B6: z/h is taken against Height 131 m; the highest floor listed is at 36 m."
+    text = "Building!B8: z/h is taken against Height 131 m; the highest floor listed is at 36 m."
     floors = [{"floor": "1", "elevation": 36}]
     assert _remarks(tmp_path, floors, ground_pga=0.2, height=131) == {text: "note"}
     assert _remarks(tmp_path, floors, ground_pga=0.2, height=54) == {}
@@ -180,7 +180,7 @@ def test_a_period_that_does_not_fit_the_height_is_told(tmp_path, scenario, effec
     """0.0488 x 16^0.75 = 0.3904 s; x 0.3 = 0.117 s, x 4 = 1.56 s."""
     remarks = _remarks(tmp_path, [{"floor": "1", "elevation": 16}], scenario, ground_pga=0.2, period=period)
     text = (
-        f"Building!B7: Period T1 {period:g} s is outside 0.117 to 1.56 s, 0.3 to 4 times 0.0488 h^0.75 (ASCE 7-22 Eq. "
+        f"Building!B9: Period T1 {period:g} s is outside 0.117 to 1.56 s, 0.3 to 4 times 0.0488 h^0.75 (ASCE 7-22 Eq. "
         f"12.8-7) for a height h of 16 m; a longer T1 {effect}. Check Period T1 and Height."
     )
     assert remarks == ({text: "warning"} if odd else {})

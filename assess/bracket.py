@@ -1,0 +1,122 @@
+"""The force that an anchored piece brings to its bracket, and the force that the code asks for.
+
+A piece of weight W turns about its toe; a bracket at height h holds it back. For a horizontal acceleration k and an
+upward one k_v, both as shares of g, moments about the toe give the tension T = W [k z - (1 - k_v) B/2]/h, and nothing
+where the weight alone holds it. What the base has to carry is k W - T: friction carries at most mu (1 - k_v) W of it.
+
+References
+----------
+ASCE/SEI 7-22, Minimum Design Loads and Associated Criteria for Buildings and Other Structures, section 13.3.1:
+F_p = 0.4 S_DS I_p W (H_f/R_mu)(C_AR/R_po), at least 0.3 and at most 1.6 S_DS I_p W. Read in public implementations of
+it; the standard's own text was not.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from assess.motion.scenario import PROFILES
+
+FloatArray = NDArray[np.float64]
+
+LEAST, MOST = 0.3, 1.6
+"""Limits of F_p over S_DS I_p W [-]."""
+LEAST_DUCTILITY = 1.3
+"""R_mu is at least this above grade; 1 at or below it [-]."""
+
+
+def find_tension(
+    *, weight: ArrayLike, acceleration: ArrayLike, breadth: ArrayLike, centre: ArrayLike, height: ArrayLike,
+    vertical: ArrayLike = 0.0,
+) -> FloatArray:  # fmt: skip
+    """Return the tension in a bracket, at least 0, in the unit of `weight`.
+
+    Parameters
+    ----------
+    weight : array
+        W, any force.
+    acceleration : array
+        k, horizontal, over g [-]: PFA/g, or F_p/W.
+    breadth : array
+        B, the side parallel to the motion [m].
+    centre : array
+        z, height of the centre of gravity above the floor [m].
+    height : array
+        h, of the bracket above the floor, above 0 [m].
+    vertical : array
+        k_v, upward, over g [-].
+
+    Raises
+    ------
+    ValueError
+        If a bracket is not above the floor.
+    """
+    w, k, b, z, h, up = (np.asarray(one, float) for one in (weight, acceleration, breadth, centre, height, vertical))
+    _check_height(h)
+    return np.asarray(np.maximum(w * (k * z - (1 - up) * b / 2) / h, 0.0))
+
+
+def find_tension_without_weight(
+    *, weight: ArrayLike, acceleration: ArrayLike, centre: ArrayLike, height: ArrayLike
+) -> FloatArray:
+    """Return the tension if the weight helped nothing, k W z/h: a bound; parameters and errors as `find_tension`."""
+    w, k, z, h = (np.asarray(one, float) for one in (weight, acceleration, centre, height))
+    _check_height(h)
+    return np.asarray(w * k * z / h)
+
+
+def find_needed_friction(
+    *, weight: ArrayLike, acceleration: ArrayLike, tension: ArrayLike, vertical: ArrayLike = 0.0
+) -> FloatArray:
+    """Return the coefficient of friction below which an anchored piece slides out at its base [-].
+
+    `tension` is that of its bracket; the other parameters are as in `find_tension`. Infinite where k_v is 1 or more.
+    """
+    w, k, t, up = (np.asarray(one, float) for one in (weight, acceleration, tension, vertical))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.where(up < 1, np.maximum(k - t / w, 0) / (1 - up), np.inf))
+
+
+def find_code_demand(
+    *,
+    sds: float,
+    height_ratio: float,
+    resonance: float,
+    strength: float,
+    importance: float = 1.0,
+    ductility: float = LEAST_DUCTILITY,
+    period: float | None = None,
+) -> float:
+    """Return F_p/W by ASCE 7-22, 13.3.1 [-].
+
+    Parameters
+    ----------
+    sds : float
+        S_DS, over g [-].
+    height_ratio : float
+        z/h of the floor, 0 to 1; 0 is at or below grade.
+    resonance, strength : float
+        C_AR and R_po of the piece [-].
+    importance : float
+        I_p [-].
+    ductility : float
+        R_mu of the building [-]: taken as at least 1.3 above grade, and as 1 at or below it.
+    period : float, optional
+        T_a of the building [s]; None where it is not known.
+
+    Raises
+    ------
+    ValueError
+        If the height ratio is not between 0 and 1.
+    """
+    if not 0 <= height_ratio <= 1:
+        raise ValueError(f"height_ratio is {height_ratio}, expected 0 to 1")
+    is_above = height_ratio > 0
+    reduction = max(ductility, LEAST_DUCTILITY) if is_above else 1.0
+    amplification = PROFILES["ASCE 7-22"].amplification(height_ratio, period)
+    share = 0.4 * amplification / reduction * resonance / strength
+    return sds * importance * min(max(share, LEAST), MOST)
+
+
+def _check_height(height: FloatArray) -> None:
+    if not (height > 0).all():
+        raise ValueError("the height of a bracket must be above 0")

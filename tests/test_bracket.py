@@ -1,0 +1,66 @@
+"""Check values of physics.md F: the tension in a bracket, the friction that its base needs, and the code's demand."""
+
+import numpy as np
+import pytest
+
+from assess.bracket import find_code_demand, find_needed_friction, find_tension, find_tension_without_weight
+
+PIECE = {"weight": 1.2, "centre": 0.90, "height": 1.70}
+"""A cabinet of 1.2 kN, 0.40 m deep, held at 1.70 m."""
+
+
+@pytest.mark.parametrize(("vertical", "tensions"), [(0.0, [0.0494, 0.2400, 0.4941]), (0.2, [0.0776, 0.2682, 0.5224])])
+def test_tension_of_physics_f(vertical, tensions):
+    found = find_tension(**PIECE, acceleration=[0.3, 0.6, 1.0], breadth=0.40, vertical=vertical)
+    assert found == pytest.approx(tensions, abs=5e-5)
+
+
+def test_tension_without_the_weight_of_physics_f():
+    found = find_tension_without_weight(**PIECE, acceleration=[0.3, 0.6, 1.0])
+    assert found == pytest.approx([0.1906, 0.3812, 0.6353], abs=5e-5)
+
+
+def test_friction_that_the_base_needs_of_physics_f():
+    tension = find_tension(**PIECE, acceleration=0.6, breadth=0.40, vertical=0.2)
+    found = find_needed_friction(weight=1.2, acceleration=0.6, tension=tension, vertical=0.2)
+    assert found == pytest.approx(0.471, abs=5e-4)
+
+
+def test_where_the_weight_holds_it_alone_there_is_no_tension():
+    """Below B/(2 z) it does not start to turn."""
+    limit = 0.40 / 2 / 0.90
+    found = find_tension(**PIECE, acceleration=[0.5 * limit, limit, 1.01 * limit], breadth=0.40)
+    assert found[:2] == pytest.approx([0, 0], abs=1e-12)
+    assert found[2] > 0
+
+
+def test_a_base_that_hangs_needs_any_friction():
+    assert find_needed_friction(weight=1.0, acceleration=0.5, tension=0.1, vertical=1.0) == np.inf
+
+
+@pytest.mark.parametrize(("height_ratio", "share"), [(0, 0.300), (0.5, 0.3335), (1, 0.6154)])
+def test_demand_of_the_code_of_physics_f(height_ratio, share):
+    found = find_code_demand(sds=1, height_ratio=height_ratio, period=0.8, ductility=1.3, resonance=1, strength=1.5)
+    assert found == pytest.approx(share, abs=5e-5)
+
+
+@pytest.mark.parametrize(("height_ratio", "share"), [(0, 0.560), (0.5, 0.969), (1, 1.508)])
+def test_demand_of_the_code_where_the_period_is_not_known_of_physics_f(height_ratio, share):
+    found = find_code_demand(sds=1, height_ratio=height_ratio, importance=1.5, resonance=1.4, strength=1.5)
+    assert found == pytest.approx(share, abs=5e-4)
+
+
+def test_demand_has_a_least_and_a_most():
+    low, high = (find_code_demand(sds=1, height_ratio=1, resonance=one, strength=1.5) for one in (0.1, 20))
+    assert [low, high] == pytest.approx([0.3, 1.6])
+
+
+@pytest.mark.parametrize("height", [0.0, -1.0, np.nan])
+def test_a_bracket_stands_above_the_floor(height):
+    with pytest.raises(ValueError, match="above 0"):
+        find_tension(weight=1, acceleration=1, breadth=0.4, centre=0.9, height=height)
+
+
+def test_a_floor_lies_in_the_building():
+    with pytest.raises(ValueError, match="expected 0 to 1"):
+        find_code_demand(sds=1, height_ratio=1.2, resonance=1, strength=1.5)
