@@ -35,6 +35,8 @@ class AnnualRow:
         Its largest difference from a share.
     at_least : bool
         Whether the rate is a lower bound, as the motions may be too weak.
+    ends_matter : bool
+        Whether more than 5 % of the rate comes, or could come, from outside the hazard curve.
     """
 
     rate: float
@@ -47,6 +49,7 @@ class AnnualRow:
     dispersion: float | None
     misfit: float | None
     at_least: bool
+    ends_matter: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

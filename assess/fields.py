@@ -252,6 +252,8 @@ ANNUAL_FIELDS = (
     _annual("misfit", fill("Misfit"), "share", is_optional=True,
             help="Largest difference between the lognormal and a share."),
     _annual("at_least", fill("Lower bound"), "flag", help="Whether the motions may be too weak: a lower bound then."),
+    _annual("ends_matter", fill("Ends of the curve matter"), "flag",
+            help="Whether more than 5 % of the rate comes, or could come, from outside the hazard curve."),
 )  # fmt: skip
 """How often a year it falls: together null where that was not evaluated."""
 

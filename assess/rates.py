@@ -57,6 +57,16 @@ class AnnualRate:
     beyond: float
     below: float
 
+    @property
+    def ends_matter(self) -> bool:
+        """Whether more than `MOST_OUTSIDE` of it comes, or could come, from outside the curve."""
+        return self.below > MOST_OUTSIDE or self.beyond > MOST_OUTSIDE or self.could_be_more
+
+    @property
+    def could_be_more(self) -> bool:
+        """Whether it would be more by over `MOST_OUTSIDE` if all beyond the last point made it fall."""
+        return self.most > 0 and self.most - self.rate > MOST_OUTSIDE * self.most
+
     def chance_within(self, years: float) -> float:
         """Return the chance of at least once in so many years [-]: 1 - exp(-rate years)."""
         return -math.expm1(-self.rate * years)
@@ -155,7 +165,7 @@ def _remark_on_ends(curve: HazardCurve, found: AnnualRate) -> Iterator[Text]:
             pga=first,
             percent=100 * found.below,
         )
-    if found.most > 0 and found.most - found.rate > MOST_OUTSIDE * found.most:
+    if found.could_be_more:
         yield fill(
             "the hazard curve ends at {pga:.3g} g; the annual rate is {rate:.2g} and could be up to {most:.2g}: give "
             "the curve up to a higher PGA",

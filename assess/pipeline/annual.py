@@ -9,14 +9,14 @@ one scale for the whole building, as the level is: so it is not drawn, but share
 What is not simulated has no annual chance. Under motions that may be too weak, a rate is a lower bound.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from assess.annual_results import Annual, AnnualRow, AnnualTables, AnnualWays
 from assess.hazard import HazardCurve
-from assess.i18n import Text, fill
+from assess.i18n import Text, fill, nfill
 from assess.methods import Cases
 from assess.methods._method import BoolArray, FloatArray
 from assess.pipeline.annual_integral import STEP, Integral, space
@@ -172,7 +172,7 @@ class _Annual:
             expected_high=None if spread is None else expected * (1 + spread),
             life_safety_pieces=sum(quantity[item] for item in safety),
             life_safety=_join([fell[item] for item in safety], [items[item] for item in safety], integrate),
-            remarks=integrate.list_remarks(falls / max(everything, 1)),
+            remarks=(*integrate.list_remarks(falls, everything), *_remark_on_ends(quantity, items)),
         )
 
 
@@ -181,3 +181,14 @@ def _join(fell: Sequence[BoolArray], rows: Sequence[AnnualRow], integrate: Integ
     if not rows:
         return None
     return integrate.of_draws(np.any(fell, axis=0), at_least=any(one.at_least for one in rows))
+
+
+def _remark_on_ends(quantity: Mapping[int, int], items: Mapping[int, AnnualRow]) -> Iterator[Text]:
+    """Say for how many of the counted pieces the ends of the curve matter."""
+    found = sum(count for item, count in quantity.items() if items[item].ends_matter)
+    if found:
+        yield nfill(
+            "for {n:,} piece more than 5 % of the annual rate comes, or could come, from outside the curve",
+            "for {n:,} pieces more than 5 % of the annual rate comes, or could come, from outside the curve",
+            found,
+        )

@@ -7,7 +7,7 @@ without the error of drawing it, of which rare strong scales would make the most
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -100,6 +100,7 @@ class Integral:
             dispersion=fitted.dispersion if is_fitted else None,
             misfit=fitted.misfit if is_fitted else None,
             at_least=at_least,
+            ends_matter=found.ends_matter,
         )
 
     def find_spread(self, happened: NDArray[Any]) -> float | None:
@@ -113,7 +114,13 @@ class Integral:
             NORMAL_95 * float(rates.std(ddof=1)) / math.sqrt(rates.size) / mean if mean > 0 and rates.size > 1 else None
         )
 
-    def list_remarks(self, happened: FloatArray) -> tuple[Text, ...]:
-        """Return what a reader has to know of the curve, by what happened at each level and draw, on average."""
-        shares = np.clip(self.average @ happened.mean(axis=1), 0, 1)
-        return list_remarks(self.curve, integrate_table(self.curve, self.points, shares))
+    def list_remarks(self, falls: FloatArray, pieces: int) -> tuple[Text, ...]:
+        """Return what a reader has to know of the curve and its ends, by how many of so many pieces fall.
+
+        `falls` (n, draws) are their numbers at each level and draw.
+        """
+        if not pieces:
+            return self.curve.remarks
+        shares = np.clip(self.average @ falls.mean(axis=1) / pieces, 0, 1)
+        found = integrate_table(self.curve, self.points, shares)
+        return list_remarks(self.curve, replace(found, rate=pieces * found.rate, most=pieces * found.most))

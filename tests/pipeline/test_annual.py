@@ -76,6 +76,7 @@ def test_a_piece_falls_as_often_as_its_lognormal_says(tmp_path):
     assert row.chance_a_year == pytest.approx(1 - np.exp(-row.rate))
     assert row.chance_in_50_years == pytest.approx(1 - np.exp(-50 * row.rate))
     assert row.low < row.rate < row.high
+    assert not row.ends_matter
 
 
 def test_at_the_scenarios_own_ground_pga_it_is_what_the_run_finds(several):
@@ -162,6 +163,15 @@ def test_a_route_and_a_room_are_lost_as_often_as_the_piece_that_blocks_them_fall
     assert route.annual_if_anchors_fail is None
 
 
+def test_where_all_pieces_are_anchored_nothing_is_counted(tmp_path):
+    write_hazard(tmp_path, 0.01, 0.3)
+    results, (row,) = rows_of(assessed(tmp_path, {**CABINET, "anchored": "yes", "importance": "life safety"}))
+    found = results.annual
+    assert row.rate > 0
+    assert (found.pieces, found.expected_falls, found.expected_low, found.life_safety) == (0, 0, None, None)
+    assert found.remarks == ()
+
+
 def test_a_route_that_anchored_pieces_reach_has_a_rate_if_they_fail(tmp_path):
     items = {**CABINET, **BLOCKS}, {**CABINET, **BLOCKS, "item": "b", "breadth": 35, "anchored": "yes"}
     results, rows = rows_of(assessed(tmp_path, *items, routes=True))
@@ -190,7 +200,10 @@ def test_what_cannot_fall_within_the_curve_has_a_rate_of_0(tmp_path):
 )
 def test_it_is_remarked_on_where_the_ends_of_the_curve_matter(tmp_path, first, last, word):
     write_hazard(tmp_path, first, last)
-    assert any(word in one for one in rows_of(assessed(tmp_path))[0].annual.remarks)
+    results, (row,) = rows_of(assessed(tmp_path))
+    assert any(word in one for one in results.annual.remarks)
+    assert row.ends_matter
+    assert results.annual.remarks[-1].startswith("for 1 piece more than 5 % of the annual rate comes")
 
 
 # --- what is missing

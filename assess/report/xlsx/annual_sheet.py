@@ -56,6 +56,7 @@ def _numbers() -> Iterator[Column]:
         yield Column(label, 12, _reader(name), format_)
     yield Column(_("Once in [years]"), 10, lambda one: 1 / one[1].row.rate if one[1].row.rate > 0 else None, COUNT)
     yield Column(_("Lower bound"), 8, lambda one: _("yes") if one[1].row.at_least else _("no"))
+    yield Column(_("Ends of the curve matter"), 10, lambda one: _("yes") if one[1].row.ends_matter else _("no"))
     yield Column(_("Integrated"), 12, lambda one: _(one[1].row.fit))
     for label, name in (
         (_("Median ground PGA [g]"), "median_g"), (_("Dispersion"), "dispersion"), (_("Misfit"), "misfit"),
