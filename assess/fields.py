@@ -358,6 +358,22 @@ PIECE_FIELDS = (
 )  # fmt: skip
 
 
+ANCHOR_FIELDS = (
+    _of_item("weight_kg", fill("Weight"), unit="kg", kind="number", is_optional=True),
+    Field(
+        key="bracket_height_cm", read=attrgetter("item.bracket_height_cm"), path=("anchor", "bracket_height_cm"),
+        label=fill("Bracket height"), unit="cm", kind="number", is_optional=True,
+        help="`anchor` is null where neither is given.",
+    ),
+    Field(
+        key="bracket_capacity_kn", read=attrgetter("item.bracket_capacity_kn"),
+        path=("anchor", "bracket_capacity_kn"), label=fill("Bracket capacity"), unit="kN", kind="number",
+        is_optional=True, help="Tension that its bracket holds.",
+    ),
+)  # fmt: skip
+"""What the workbook says of the weight and the bracket of a piece."""
+
+
 def _axis_record(case: CaseRow, methods: Sequence[MethodInfo]) -> dict[str, Any]:
     return {
         "axis": case.motion.axis,
@@ -396,17 +412,7 @@ def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Fiel
         Field(
             key="segment", read=lambda one: one.item.segment or None, label=fill("Segment"), width=24, is_optional=True
         ),
-        _of_item("weight_kg", fill("Weight"), unit="kg", kind="number", is_optional=True, shows=DATA),
-        Field(
-            key="bracket_height_cm", read=attrgetter("item.bracket_height_cm"), path=("anchor", "bracket_height_cm"),
-            label=fill("Bracket height"), unit="cm", kind="number", is_optional=True, shows=DATA,
-            help="`anchor` is null where neither is given.",
-        ),
-        Field(
-            key="bracket_capacity_kn", read=attrgetter("item.bracket_capacity_kn"),
-            path=("anchor", "bracket_capacity_kn"), label=fill("Bracket capacity"), unit="kN", kind="number",
-            is_optional=True, shows=DATA, help="Tension that its bracket holds.",
-        ),
+        *ANCHOR_FIELDS,
         _of_item("edge_distance_m", fill("Edge distance"), unit="m", kind="number", is_optional=True, shows=DATA),
         _of_item("notes", fill("Notes"), width=40),
         Field(

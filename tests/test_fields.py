@@ -58,7 +58,7 @@ def test_a_group_of_which_nothing_is_known_is_null(results):
 
 def test_units_of_keys_and_headings_agree(results):
     """``breadth_cm`` is "Breadth [cm]": what a key ends in is the unit of its heading."""
-    marks = {"cm": "cm", "m": "m", "g": "g", "cm/s": "cm_s", "deg": "deg", "Hz": "hz", "s": "s"}
+    marks = {"cm": "cm", "m": "m", "g": "g", "cm/s": "cm_s", "deg": "deg", "Hz": "hz", "s": "s", "kg": "kg", "kN": "kn"}
     for one in (*item_fields(results), *MOTION_FIELDS):
         if one.unit:
             assert one.heading() == f"{one.label} [{one.unit}]"

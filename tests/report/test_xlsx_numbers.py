@@ -116,15 +116,15 @@ def _counts(results, basis):
 
 
 def test_a_new_field_shows_without_a_change_to_the_report(tmp_path, monkeypatch):
-    weight = fields.Field(key="weight_kg", read=lambda one: 2.5 * one.item.row, label="Weight", unit="kg", format="0.0",
-                          kind="number")  # fmt: skip
-    monkeypatch.setattr(fields, "PIECE_FIELDS", (*fields.PIECE_FIELDS, weight))
+    load = fields.Field(key="load_kg", read=lambda one: 2.5 * one.item.row, label="Load", unit="kg", format="0.0",
+                        kind="number")  # fmt: skip
+    monkeypatch.setattr(fields, "PIECE_FIELDS", (*fields.PIECE_FIELDS, load))
     written = write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ["xlsx", "json", "csv"])
     sheet = openpyxl.load_workbook(written["xlsx"])["Items"]
-    at = next(cell.column for cell in sheet[1] if cell.value == "Weight [kg]")
+    at = next(cell.column for cell in sheet[1] if cell.value == "Load [kg]")
     assert (sheet.cell(2, at).value, sheet.cell(2, at).number_format) == (5.0, "0.0")
-    assert json.loads(written["json"].read_text(encoding="utf-8"))["items"][0]["weight_kg"] == 5.0
-    assert "weight_kg" in written["csv"].read_text(encoding="utf-8-sig").splitlines()[0].split(",")
+    assert json.loads(written["json"].read_text(encoding="utf-8"))["items"][0]["load_kg"] == 5.0
+    assert "load_kg" in written["csv"].read_text(encoding="utf-8-sig").splitlines()[0].split(",")
 
 
 def test_counts_are_those_of_the_results(run, made):

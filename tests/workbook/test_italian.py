@@ -407,7 +407,7 @@ def test_an_italian_slip_in_an_english_workbook(tmp_path: Path) -> None:
     assert errors_of(path) == {"Items!E1: the column 'Ancoratto' is not known. Did you mean Ancorato?"}
 
 
-@pytest.mark.parametrize("header", ["Peso [kg]", "Colore", "Proprietario", "Anno", "Z [m]", "Marca"])
+@pytest.mark.parametrize("header", ["Massa [kg]", "Colore", "Proprietario", "Anno", "Z [m]", "Marca"])
 def test_italian_headers_that_are_no_slip(tmp_path: Path, header: str) -> None:
     assert read(tmp_path, [[*ITEMS[0], header], [*ITEMS[1], 80]]).extra_columns == (header,)
 

@@ -133,17 +133,17 @@ def test_a_row_without_an_entry_is_left_out(tmp_path: Path) -> None:
     assert remarks(inventory, "warning") == {"Items!E3: stands in a row without an entry; the row is left out."}
 
 
-@pytest.mark.parametrize("header", ["Weight [kg]", "Weight", "Colour", "Owner", "Age [years]", "Z [m]", "Depth [cm]"])
+@pytest.mark.parametrize("header", ["Mass [kg]", "Mass", "Colour", "Owner", "Age [years]", "Z [m]", "Depth [cm]"])
 def test_headers_that_are_no_slip(tmp_path: Path, header: str) -> None:
     assert read(tmp_path, [[*ITEMS[0], header], [*ITEMS[1], 80]]).extra_columns == (header,)
 
 
 def test_weight_in_place_of_height(tmp_path: Path) -> None:
-    """Where Height itself is missing, Weight in a unit of weight is still no slip, but Weight [cm] is."""
+    """Where Height itself is missing, Weight is no slip; in a unit of length it is one."""
     types: Sheet = [["Type", "Height [cm]"], ["T", 180]]
     header = ["Type", "Breadth [cm]"]
     assert read_item(tmp_path, [*header, "Weight [kg]"], ["T", 40, 80], Catalogue=types).height == 1.8
-    with pytest.raises(WorkbookError, match=re.escape("Items!E1: the column 'Weight [cm]' is not known. Did you mean")):
+    with pytest.raises(WorkbookError, match=re.escape("Items!E1: the unit 'cm' of Weight is not known.")):
         read_item(tmp_path, [*header, "Weight [cm]"], ["T", 40, 80], Catalogue=types)
 
 
