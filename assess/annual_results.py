@@ -21,20 +21,22 @@ class AnnualRow:
     rate : float
         Times a year.
     low, high : float, optional
-        95 % sampling interval of the rate: it covers the number of draws only. None where it happened in no draw at any
-        level of shaking.
+        95 % sampling interval of the rate: it covers the number of draws only. None where it happened in no draw, where
+        not all was simulated, or where the hazard curve does not reach far enough.
     chance_a_year, chance_in_50_years : float
         Chance of at least once.
     fit : str
         What was integrated: a lognormal fitted to the shares, or the table of shares where that is not near enough.
     median_g : float, optional
-        Ground PGA at which it happens in half of the draws [g], by the lognormal; None where that was not used.
+        Ground PGA at which it happens in half of the draws [g], by the lognormal; None where that was not used, or half
+        was not reached within the curve.
     dispersion : float, optional
-        Logarithmic standard deviation of the lognormal.
+        Logarithmic standard deviation of the lognormal; None likewise.
     misfit : float, optional
         Its largest difference from a share.
     at_least : bool
-        Whether the rate is a lower bound, as the motions may be too weak.
+        Whether the rate is a lower bound: the motions may be too weak, the hazard curve does not reach far enough, or
+        several pieces of one row were taken to fall together.
     ends_matter : bool
         Whether more than 5 % of the rate comes, or could come, from outside the hazard curve.
     """
@@ -76,8 +78,9 @@ class AnnualTables:
         Draws at each level.
     factors : tuple of float
         Factors on the motions of the scenario under which every piece was rocked.
-    pieces, not_evaluated : int
-        Free-standing pieces that are counted, and those that are not, as they were not simulated.
+    pieces, not_evaluated, cannot_rock : int
+        Free-standing pieces that are counted, those that are not, as they were not simulated, and those that are too
+        stocky to rock.
     at_least : int
         Those of the counted ones whose rate is a lower bound.
     expected_falls : float
@@ -85,7 +88,7 @@ class AnnualTables:
     expected_low, expected_high : float, optional
         95 % sampling interval of that; None where nothing fell.
     life_safety_pieces : int
-        Counted pieces whose Importance is life safety.
+        Counted pieces whose Importance is life safety; those of one row fall together.
     life_safety : AnnualRow, optional
         Any of those falls; None where there are none.
     remarks : tuple of str
@@ -105,6 +108,7 @@ class AnnualTables:
     factors: tuple[float, ...] = ()
     pieces: int = 0
     not_evaluated: int = 0
+    cannot_rock: int = 0
     at_least: int = 0
     expected_falls: float = 0.0
     expected_low: float | None = None
@@ -112,6 +116,11 @@ class AnnualTables:
     life_safety_pieces: int = 0
     life_safety: AnnualRow | None = None
     remarks: tuple[str, ...] = ()
+
+    @property
+    def is_lower_bound(self) -> bool:
+        """Whether the expected falls are a lower bound."""
+        return self.at_least > 0 or self.not_evaluated > 0
 
     @property
     def is_evaluated(self) -> bool:

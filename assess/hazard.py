@@ -218,7 +218,7 @@ def _check_point(line: int, pga: float, rate: float) -> None:
     if not 0 < pga <= MOST_PGA:
         raise InputError(
             fill(
-                "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}: is the unit g?",
+                "line {line}: pga_g is {pga:g}, expected above 0 and at most {most:g}, in g",
                 line=line,
                 pga=pga,
                 most=MOST_PGA,
@@ -241,8 +241,8 @@ def _check_order(line: int, pga_before: float, rate_before: float, pga: float, r
     if rate > rate_before:
         raise InputError(
             fill(
-                "line {line}: annual_rate rises from {before:g} to {rate:g}: it has to fall as PGA rises. Is it a "
-                "return period?",
+                "line {line}: annual_rate rises from {before:g} to {rate:g}, but it has to fall as PGA rises; it is no "
+                "return period",
                 line=line,
                 before=rate_before,
                 rate=rate,

@@ -60,7 +60,12 @@ class AnnualRate:
     @property
     def ends_matter(self) -> bool:
         """Whether more than `MOST_OUTSIDE` of it comes, or could come, from outside the curve."""
-        return self.below > MOST_OUTSIDE or self.beyond > MOST_OUTSIDE or self.could_be_more
+        return self.is_cut or self.beyond > MOST_OUTSIDE
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether it is a lower bound, as the curve begins too late or ends too early."""
+        return self.below > MOST_OUTSIDE or self.could_be_more
 
     @property
     def could_be_more(self) -> bool:

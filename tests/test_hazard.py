@@ -82,7 +82,7 @@ def test_rates_may_be_level_in_places():
         ("pga_g,annual_rate\n0,0.02\n0.1,0.01\n", "curve.csv: line 2: pga_g is 0, expected above 0 and at most 50"),
         (
             "pga_g,annual_rate\n5,0.02\n98.1,0.01\n",
-            "curve.csv: line 3: pga_g is 98.1, expected above 0 and at most 50: is",
+            "curve.csv: line 3: pga_g is 98.1, expected above 0 and at most 50, in g",
         ),
         ("pga_g,annual_rate\n0.05,0.02\n0.1,0\n", "curve.csv: line 3: annual_rate is 0, expected above 0"),
         ("pga_g,annual_rate\n0.05,0.02\n0.1,-1e-3\n", "curve.csv: line 3: annual_rate is -0.001, expected above 0"),
@@ -90,7 +90,7 @@ def test_rates_may_be_level_in_places():
         ("pga_g,annual_rate\n0.1,0.02\n0.1,0.01\n", "curve.csv: line 3: pga_g 0.1 does not rise from 0.1"),
         (
             "pga_g,annual_rate\n0.1,50\n0.2,475\n",
-            "curve.csv: line 3: annual_rate rises from 50 to 475: it has to fall as",
+            "curve.csv: line 3: annual_rate rises from 50 to 475, but it has to fall as",
         ),
         ("pga_g,annual_rate\n0.1,0.01\n0.2,0.01\n", "curve.csv: the annual rate is the same in every row"),
     ],

@@ -19,17 +19,23 @@ from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
 from assess.methods import Cases
 from assess.methods._method import BoolArray, FloatArray
-from assess.pipeline.annual_integral import STEP, Integral, space
+from assess.pipeline.annual_integral import MOST_LEVELS, STEP, Integral, space
 from assess.pipeline.annual_ways import evaluate_ways
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import find_ground
+from assess.pipeline.demand import Ground, find_ground
 from assess.pipeline.level_falls import find_falls
 from assess.pipeline.levels import RockedLevels, rock_levels
+from assess.pipeline.verify import MOST_PAIRS
 from assess.progress import Progress
 from assess.rocking.draws import MOTION, STILL, Uncertainty
 from assess.routes.chances import Falls
 from assess.settings import AUTO, RUNS, Settings
-from assess.units import GRAVITY
+from assess.units import GRAVITY, ROUNDING
+
+LOWER = 6
+"""Levels that are added below at a time."""
+MOST_RUNS, LEAST_RUNS = 1000, 50
+"""Draws at a level: those of the run, but at most so many, and fewer where the results would need too much memory."""
 
 
 def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progress) -> Annual | None:
@@ -39,28 +45,32 @@ def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progr
     ------
     CancelledError
         If the caller stops the work.
-    InputError
-        If the results would need too much memory.
     """
-    curve, ground = assessment.inventory.hazard, find_ground(assessment.inventory).pga
+    curve, ground = assessment.inventory.hazard, find_ground(assessment.inventory)
     if curve is None:
         return None
     missing = _find_missing(assessment, ground)
-    if missing or ground is None:
+    if missing or ground.pga is None:
         tables = replace(_describe_curve(curve), missing=missing)
         return Annual(tables, {}, AnnualWays({}, {}, {}))
-    return _Annual(assessment, curve, assessment.settings.scale * ground).evaluate(jobs, progress)
+    return _Annual(assessment, curve, assessment.settings.scale * ground.pga).evaluate(jobs, progress)
 
 
-def _find_missing(assessment: Assessment, ground: float | None) -> Text | str:
+def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
     """Return what an annual chance needs and does not have, and how to give it; "" where all is there."""
-    if ground is None:
+    cases, suite = assessment.cases, assessment.suite
+    if assessment.settings.verify == "none":
+        return fill("no piece was simulated, which chances a year need")
+    if not (cases.ensemble >= 0).any():
+        return fill("there is no piece that was simulated and can rock")
+    if suite is not None and not assessment.settings.scale_motions:
+        return fill("the user's own motions are not scaled to the floors, so that their ground PGA is not known")
+    sources = {assessment.case_demand[case].source for case in np.flatnonzero(cases.ensemble >= 0)}
+    if ground.pga is None or (ground.is_from_sds and sources != {"profile"}):
         return fill(
             "the peak ground acceleration of this scenario is not known: fill in Ground PGA in Building, that of the "
             "same earthquake as the floors' motions"
         )
-    if not (assessment.cases.ensemble >= 0).any():
-        return fill("no piece was simulated, which annual chances need: simulate them")
     return ""
 
 
@@ -93,28 +103,43 @@ class _Annual:
     @property
     def settings(self) -> Settings:
         """The settings, with a number of draws."""
-        settings = self.assessment.settings
-        return replace(settings, runs=RUNS) if settings.runs == AUTO else settings
+        settings, pairs = self.assessment.settings, MOST_LEVELS * int((self.assessment.cases.ensemble >= 0).sum())
+        runs = RUNS if settings.runs == AUTO else int(settings.runs)
+        return replace(settings, runs=min(runs, MOST_RUNS, max(LEAST_RUNS, MOST_PAIRS // pairs)))
+
+    @property
+    def floor(self) -> float:
+        """The lowest level that matters, as ground PGA [m/s2]: scattered motions of the first point of the curve."""
+        return float(self.curve.pga[0]) / self.cases.uncertainty.largest
 
     def find_levels(self) -> FloatArray:
-        """Return rising levels, as ground PGA [m/s2]: from where nothing can rock to beyond the end of the curve."""
+        """Return rising levels, as ground PGA [m/s2]: from where about nothing rocks to beyond the end of the curve."""
         cases = self.cases
         rocked = cases.ensemble >= 0
         start = STILL * GRAVITY * cases.threshold[rocked] / cases.pfa[rocked]
-        largest = cases.uncertainty.largest
-        last = float(self.curve.pga[-1]) * largest
-        first = float(np.clip(self.ground * start.min(), self.curve.pga[0] / largest, last / STEP))
-        return space(first, last)
+        last = float(self.curve.pga[-1]) * cases.uncertainty.largest
+        return space(float(np.clip(self.ground * start.min(), self.floor, last / STEP)), last)
 
     def evaluate(self, jobs: int | None, progress: Progress) -> Annual:
-        """Rock every piece at every level, and integrate."""
-        levels, cases, assessment = self.find_levels(), self.cases, self.assessment
+        """Rock every piece at every level, and integrate; where some fall at the lowest one, at lower ones too."""
+        levels = self.find_levels()
+        rocked = self._rock(levels, jobs, progress)
+        while levels[0] > self.floor * (1 + ROUNDING) and any(one.fell[0].any() for one in rocked):
+            lower = space(max(levels[0] / STEP**LOWER, self.floor), levels[0])[:-1]
+            levels = np.concatenate([lower, levels])
+            rocked = [
+                replace(one, fell=np.concatenate([below.fell, one.fell]))
+                for below, one in zip(self._rock(lower, jobs, progress), rocked, strict=True)
+            ]
+        return progress.wait_for(lambda: self._integrate(levels, rocked, progress))
+
+    def _rock(self, levels: FloatArray, jobs: int | None, progress: Progress) -> list[RockedLevels]:
+        cases, assessment = self.cases, self.assessment
         factors = np.repeat((levels / self.ground)[np.newaxis], len(cases.ensembles), axis=0)
-        rocked = rock_levels(
+        return rock_levels(
             cases, assessment.case_item, assessment.case_demand, factors, self.settings,
             dispersion=0.0, jobs=jobs, progress=progress,
         )  # fmt: skip
-        return progress.wait_for(lambda: self._integrate(levels, rocked, progress))
 
     def _integrate(self, levels: FloatArray, rocked: Sequence[RockedLevels], progress: Progress) -> Annual:
         assessment, cases = self.assessment, self.cases
@@ -124,7 +149,8 @@ class _Annual:
         fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
         items = {item: integrate.of_draws(own, at_least=item in doubtful) for item, own in fell.items()}
         counted = [item for item in items if assessment.inventory.items[item].anchored != "yes"]
-        ways = evaluate_ways(assessment, falls, integrate, doubtful, self.settings, progress)
+        several = {at for at, item in enumerate(assessment.inventory.items) if item.quantity > 1}
+        ways = evaluate_ways(assessment, falls, integrate, doubtful | several, self.settings, progress)
         return Annual(self._describe(levels, integrate, items, fell, counted), items, ways)
 
     def _find_falls(self, at: int, level: float, rocked: Sequence[RockedLevels]) -> Falls:
@@ -156,8 +182,8 @@ class _Annual:
         spread = integrate.find_spread(falls) if counted else None
         safety = [item for item in counted if inventory.items[item].importance == "life safety"]
         at_least = [item for item in counted if items[item].at_least]
+        everything, stocky = sum(quantity.values()), self._count_stocky()
         standing = sum(one.quantity for one in inventory.items if one.anchored != "yes")
-        everything = sum(quantity.values())
         return replace(
             _describe_curve(self.curve),
             ground_pga_g=self.ground / GRAVITY,
@@ -165,22 +191,38 @@ class _Annual:
             runs=integrate.runs,
             factors=tuple((levels / self.ground).tolist()),
             pieces=everything,
-            not_evaluated=standing - everything,
+            not_evaluated=standing - everything - stocky,
+            cannot_rock=stocky,
             at_least=sum(quantity[item] for item in at_least),
             expected_falls=expected,
             expected_low=None if spread is None else max(0.0, expected * (1 - spread)),
             expected_high=None if spread is None else expected * (1 + spread),
             life_safety_pieces=sum(quantity[item] for item in safety),
-            life_safety=_join([fell[item] for item in safety], [items[item] for item in safety], integrate),
+            life_safety=self._join({item: fell[item] for item in safety}, items, integrate),
             remarks=(*integrate.list_remarks(falls, everything), *_remark_on_ends(quantity, items)),
         )
 
+    def _count_stocky(self) -> int:
+        """Count the free-standing pieces that are too stocky to rock."""
+        stocky = {int(item) for item in self.assessment.case_item[self.cases.is_stocky]}
+        items = (self.assessment.inventory.items[at] for at in stocky)
+        return sum(one.quantity for one in items if one.anchored != "yes")
 
-def _join(fell: Sequence[BoolArray], rows: Sequence[AnnualRow], integrate: Integral) -> AnnualRow | None:
-    """Return the annual row of any of some pieces falling; None where there are none."""
-    if not rows:
-        return None
-    return integrate.of_draws(np.any(fell, axis=0), at_least=any(one.at_least for one in rows))
+    def _join(
+        self, fell: Mapping[int, BoolArray], items: Mapping[int, AnnualRow], integrate: Integral
+    ) -> AnnualRow | None:
+        """Return the annual row of any life-safety piece falling; None where none was simulated.
+
+        A lower bound where one of them is, where pieces of a row fall together, and where some were not simulated.
+        """
+        if not fell:
+            return None
+        stocky = set(self.assessment.case_item[self.cases.is_stocky].tolist())
+        every = enumerate(self.assessment.inventory.items)
+        wanted = {at for at, one in every if one.importance == "life safety" and one.anchored != "yes"} - stocky
+        several = any(self.assessment.inventory.items[item].quantity > 1 for item in fell)
+        at_least = several or bool(wanted - fell.keys()) or any(items[item].at_least for item in fell)
+        return integrate.of_draws(np.any(list(fell.values()), axis=0), at_least=at_least)
 
 
 def _remark_on_ends(quantity: Mapping[int, int], items: Mapping[int, AnnualRow]) -> Iterator[Text]:

@@ -79,16 +79,29 @@ class Integral:
         at_points = [integrate_table(self.curve, self.points, one).rate for one in np.eye(self.points.size)]
         return np.asarray(np.array(at_points) @ self.average)
 
+    @property
+    def never(self) -> AnnualRow:
+        """The annual row of what cannot happen."""
+        return AnnualRow(
+            rate=0.0, low=None, high=None, chance_a_year=0.0, chance_in_50_years=0.0, fit="table", median_g=None,
+            dispersion=None, misfit=None, at_least=False, ends_matter=False,
+        )  # fmt: skip
+
     def of_draws(self, happened: BoolArray, *, at_least: bool) -> AnnualRow:
         """Return the annual row of what happened at each level and draw, (levels, draws)."""
         return self.of_shares(happened.mean(axis=1), self.find_spread(happened), at_least=at_least)
 
     def of_shares(self, shares: FloatArray, spread: float | None, *, at_least: bool) -> AnnualRow:
-        """Return the annual row of shares (levels,); `spread` is the half width of the interval over the rate."""
+        """Return the annual row of shares (levels,); `spread` is the half width of the interval over the rate.
+
+        Where the curve does not reach far enough it is a lower bound, without an interval.
+        """
         at_points = np.clip(self.average @ shares, 0, 1)
         fitted = fit_fragility(self.points, at_points * self.runs, np.full(self.points.size, self.runs))
         found = evaluate_rate(self.curve, fitted)
-        is_fitted = fitted.is_lognormal
+        is_fitted, is_cut = fitted.is_lognormal, found.is_cut
+        has_half = is_fitted and at_points.min() <= 0.5 <= at_points.max()
+        spread = None if is_cut else spread
         return AnnualRow(
             rate=found.rate,
             low=None if spread is None else max(0.0, found.rate * (1 - spread)),
@@ -96,10 +109,10 @@ class Integral:
             chance_a_year=found.chance_within(1),
             chance_in_50_years=found.chance_within(YEARS),
             fit="lognormal" if is_fitted else "table",
-            median_g=fitted.median / GRAVITY if is_fitted else None,
-            dispersion=fitted.dispersion if is_fitted else None,
+            median_g=fitted.median / GRAVITY if has_half else None,
+            dispersion=fitted.dispersion if has_half else None,
             misfit=fitted.misfit if is_fitted else None,
-            at_least=at_least,
+            at_least=at_least or is_cut,
             ends_matter=found.ends_matter,
         )
 

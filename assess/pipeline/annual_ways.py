@@ -40,7 +40,7 @@ def evaluate_ways(
     integral : Integral
         Over the hazard curve, at the same levels.
     doubtful : collection of int
-        Pieces (by index) whose motions may be too weak.
+        Pieces (by index) whose falls are rather too few: what rests on them is a lower bound.
     settings : Settings
         Of the draws.
     progress : Progress
@@ -97,6 +97,9 @@ class _Ways:
     def find(self, segments: Collection[int], happens: Happens, *, anchors_fail: bool = False) -> AnnualRow:
         """Return the annual row of what happens on some segments."""
         every = [(scene, scene.couplings(segments, anchors_fail=anchors_fail)) for scene in self.scenes]
+        last, own = every[-1]
+        if not happens(last, own.ends):
+            return self.integral.never
         shares = np.array([_share(scene, own, happens) for scene, own in every])
         spread = None
         if all(own.is_joint for _, own in every):

@@ -30,13 +30,13 @@ class RockedLevels:
     Parameters
     ----------
     own : (m,) integer array
-        The cases.
+        The cases; none where the motions serve slip alone.
     fell : (levels, m, runs) boolean array
         Whether each overturns; False at levels at which it was not rocked.
     is_weak : bool
         Whether the motions are weaker than the floor's.
     pfa, pfv : float
-        Mean peaks of the motions before any factor [m/s2], [m/s].
+        Mean peaks of the motions before any factor [m/s2], [m/s]; NaN without cases.
     """
 
     own: NDArray[np.intp]
@@ -89,9 +89,10 @@ def rock_levels(
     threads, parts = jobs or count_processors(), len(cases.ensembles)
     owns = [np.flatnonzero(cases.ensemble == number) for number in range(parts)]
     check_pairs(sum(map(len, owns)), settings, factors.shape[1])
+    tasks = [(number, own) for number, own in enumerate(owns) if own.size]
     pieces = {int(case_item[case]) for own in owns for case in own}
-    floors = {case_demand[own[0]].floor.floor for own in owns}
-    side_by_side = max(1, min(threads, parts))
+    floors = {case_demand[own[0]].floor.floor for _, own in tasks}
+    side_by_side = max(1, min(threads, len(tasks)))
     each = max(1, threads // side_by_side)
     with progress.stage("rocking", describe_work(len(pieces), len(floors)), parts) as stage:
 
@@ -99,7 +100,9 @@ def rock_levels(
             every = np.ones((len(own), factors.shape[1]), dtype=np.bool_) if wanted is None else wanted[own]
             return _Run(cases, own, settings, dispersion, each, stage).rock(number, factors[number], every)
 
-        return list(run_side_by_side(work, list(enumerate(owns)), side_by_side))
+        done = dict(zip((number for number, _ in tasks), run_side_by_side(work, tasks, side_by_side), strict=True))
+    none = np.zeros((factors.shape[1], 0, int(settings.runs)), dtype=np.bool_)
+    return [done.get(at) or RockedLevels(own, none, False, np.nan, np.nan) for at, own in enumerate(owns)]
 
 
 def find_factor(value: float, of: float) -> float:

@@ -252,9 +252,9 @@ def _odd_period(inventory: Inventory, demands: Demands, roof: float) -> Iterator
 
 
 def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
-    """Report which of Ground PGA and SDS is not used."""
+    """Report which of Ground PGA and SDS is not used; with a hazard file chances a year refer to the former."""
     building = inventory.building
-    given = {"ground_pga": building.ground_pga, "sds": building.sds}
+    given = {"ground_pga": None if inventory.hazard else building.ground_pga, "sds": building.sds}
     if not list_floors(demands, "profile"):
         for name, label in (("ground_pga", "Ground PGA"), ("sds", "SDS")):
             if given[name] is not None:

@@ -138,5 +138,5 @@ def check_pairs(cases: int, settings: Settings, repeats: int = 1) -> None:
         )
         fix = fill("Use fewer motions, or split the workbook.")
         if repeats > 1:
-            fix = fill("Use fewer motions, fewer values of PFA, or split the workbook.")
+            fix = fill("Use fewer motions, fewer levels of shaking, or split the workbook.")
         raise InputError(join(" ", (fault, fix)))

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
-from assess.model import AXES, Axis, Inventory, Item, Outline, Place
+from assess.model import AXES, Axis, Inventory, Item, Outline, Place, axis_of
 from assess.routes.geometry import Point, turn
 from assess.workbook.names import key
 
@@ -29,7 +29,7 @@ ACROSS = 0.1
 MOST_NAMED = 3
 """Pieces that a problem names."""
 
-UNPLACED, NO_OUTLINE, OUTSIDE, NO_WALL_NEAR, BOTH = range(5)
+UNPLACED, NO_OUTLINE, OUTSIDE, NO_WALL_NEAR, BOTH, CONTRARY = range(6)
 """Why the side of a wall is not known."""
 REASONS: Mapping[int, Text] = {
     UNPLACED: fill("its position or its direction on the plan is not filled in"),
@@ -37,6 +37,7 @@ REASONS: Mapping[int, Text] = {
     OUTSIDE: fill("it stands outside the outline"),
     NO_WALL_NEAR: fill("no side of the outline runs along it within {gap:.2f} m of one of its long faces", gap=GAP),
     BOTH: fill("sides of the outline run along both of its long faces"),
+    CONTRARY: fill("its Axis and its Angle contradict each other"),
 }
 
 
@@ -92,6 +93,9 @@ def _find_wall(item: Item, outlined: Sequence[Place], edge: _Edge | None) -> Wal
     x, y = item.x, item.y
     if x is None or y is None or (item.axis is None and item.angle_deg is None):
         return Wall(None, UNPLACED)
+    along = None if item.angle_deg is None else axis_of(item.angle_deg)
+    if item.axis is not None and along is not None and along != item.axis:
+        return Wall(None, CONTRARY)
     if edge is None:
         return Wall(None, NO_OUTLINE)
     around = _find_room(item, (x, y), outlined) or edge

@@ -1,5 +1,6 @@
 """Annual chances of a workbook with a hazard file, held against integrals of their own and against the run itself."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,13 +10,17 @@ import pytest
 import assess
 from assess.fragility import lognormal_chance
 from assess.hazard import read_hazard
+from assess.motion.suite import read_suite
+from assess.pipeline.annual import evaluate_annual
 from assess.pipeline.levels import rock_levels
 from assess.pipeline.run import build_results, compute
+from assess.progress import SILENT
 from assess.rates import integrate_lognormal
 from assess.settings import Settings
 from assess.units import GRAVITY
 from assess.workbook.template import Content, write_workbook
 from tests.hazards import K_0, K, write_hazard
+from tests.shaking import write_records
 
 RUNS = 60
 SETTINGS = Settings(runs=RUNS, seed=3)
@@ -29,15 +34,21 @@ BLOCKS = {"route": "A", "edge_distance": 0}
 
 
 def assessed(
-    folder: Path, *items: dict[str, Any], settings: Settings = SETTINGS, routes: bool = False, **building: Any
+    folder: Path,
+    *items: dict[str, Any],
+    settings: Settings = SETTINGS,
+    routes: bool = False,
+    floors: Any = FLOORS,
+    suite: Any = None,
+    **building: Any,
 ):
-    rows: dict[str, Any] = {"Building": [BUILDING | building], "Floors": FLOORS, "Items": list(items) or [CABINET]}
+    rows: dict[str, Any] = {"Building": [BUILDING | building], "Floors": floors, "Items": list(items) or [CABINET]}
     rows |= {"Places": PLACES, "Routes": [CORRIDOR]} if routes else {}
     if not (folder / "hazard.csv").exists():
         write_hazard(folder)
     path = folder / "w.xlsx"
     write_workbook(path, Content(rows=rows), "si")
-    return compute(assess.read_inventory(path), settings)
+    return compute(assess.read_inventory(path), settings, suite=suite)
 
 
 def rows_of(assessment):
@@ -135,6 +146,41 @@ def test_a_square_piece_falls_along_either_axis(tmp_path):
     assert 1.02 * max(x, y) < either < x + y
 
 
+def test_where_motions_serve_slip_alone_nothing_is_rocked(tmp_path):
+    """A floor whose only piece is too stocky to rock, but slides."""
+    floors = [*FLOORS, {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5}]
+    block = {"item": "z", "floor": "2", "breadth": 145, "width": 145, "height": 100, "friction": 0.2}
+    results, rows = rows_of(assessed(tmp_path, CABINET, block, floors=floors))
+    assert rows[0].rate == pytest.approx(rows_of(assessed(tmp_path, CABINET))[1][0].rate, rel=0.15)
+    assert rows[1] is None
+    assert (results.annual.pieces, results.annual.cannot_rock) == (1, 1)
+
+
+def test_no_level_cuts_off_motions_that_are_stronger_than_the_floor(tmp_path):
+    """Where pieces fall at the lowest level, lower ones follow until none does."""
+    assessment = assessed(tmp_path)
+    weak = replace(assessment.cases, pfa=assessment.cases.pfa / 5)
+    shifted = evaluate_annual(replace(assessment, cases=weak), jobs=1, progress=SILENT)
+    (row,) = rows_of(assessment)[1]
+    assert shifted.items[0].rate == pytest.approx(row.rate, rel=0.1), "the levels begin five times too high"
+
+
+def test_the_users_own_motions_have_to_be_scaled_to_the_floors(tmp_path):
+    (tmp_path / "own").mkdir()
+    write_records(tmp_path / "own", "fast", "slow", "pulse")
+    suite = read_suite(tmp_path / "own")
+    results, rows = rows_of(assessed(tmp_path, suite=suite))
+    assert "are not scaled to the floors" in results.annual.missing
+    assert rows == [None]
+    scaled = assessed(tmp_path, suite=suite, settings=Settings(scale_motions=True))
+    assert rows_of(scaled)[1][0].rate > 0
+    assert scaled.annual.tables.runs == 3
+
+
+def test_many_draws_are_more_than_a_rate_needs(tmp_path):
+    assert assessed(tmp_path, settings=Settings(runs=1001)).annual.tables.runs == 1000
+
+
 # --- the building
 
 
@@ -142,7 +188,9 @@ def test_the_building_adds_up_its_free_standing_pieces(several):
     results, rows = rows_of(several)
     found = results.annual
     assert rows[4] is None, "it cannot rock: it was not simulated"
-    assert (found.pieces, found.not_evaluated, found.at_least, found.life_safety_pieces) == (5, 2, 0, 2)
+    assert (found.pieces, found.not_evaluated, found.cannot_rock) == (5, 0, 2)
+    assert (found.at_least, found.life_safety_pieces) == (0, 2)
+    assert not found.is_lower_bound
     assert found.expected_falls == pytest.approx(rows[0].rate + rows[1].rate + 3 * rows[2].rate)
     assert found.expected_low < found.expected_falls < found.expected_high
     one, other = rows[0].rate, rows[1].rate
@@ -153,6 +201,25 @@ def test_the_building_adds_up_its_free_standing_pieces(several):
     assert found.factors[-1] == pytest.approx(3.0 / 0.15 * np.exp(3 * 0.4)), (
         "beyond the end of the curve, as it scatters"
     )
+
+
+def test_pieces_of_one_row_fall_together_so_that_any_of_them_is_a_lower_bound(tmp_path):
+    row = {**CABINET, **BLOCKS, "quantity": 5, "importance": "life safety"}
+    results, (one,) = rows_of(assessed(tmp_path, row, routes=True))
+    assert not one.at_least
+    assert results.annual.life_safety.at_least
+    assert results.route_tables.routes[0].annual.at_least
+
+
+def test_pieces_that_were_not_simulated_make_sums_lower_bounds(tmp_path):
+    still = {**CABINET, "item": "b", "floor": "2", "breadth": 60, "importance": "life safety"}
+    first, floors = {**CABINET, "importance": "life safety"}, [*FLOORS, {"floor": "2", "pfa_x": 0.12, "pfa_y": 0.12}]
+    settings = Settings(runs=RUNS, verify="high")
+    results, rows = rows_of(assessed(tmp_path, first, still, floors=floors, settings=settings))
+    assert [row is None for row in rows] == [False, True]
+    assert results.annual.not_evaluated == 1
+    assert results.annual.is_lower_bound
+    assert results.annual.life_safety.at_least
 
 
 def test_a_route_and_a_room_are_lost_as_often_as_the_piece_that_blocks_them_falls(several):
@@ -170,6 +237,12 @@ def test_where_all_pieces_are_anchored_nothing_is_counted(tmp_path):
     assert row.rate > 0
     assert (found.pieces, found.expected_falls, found.expected_low, found.life_safety) == (0, 0, None, None)
     assert found.remarks == ()
+
+
+def test_ground_pga_is_used_where_chances_a_year_rest_on_it(tmp_path):
+    used, unused = ([str(one) for one in assessed(tmp_path, hazard=name).problems] for name in ("hazard.csv", None))
+    assert not any("Ground PGA is not used" in one for one in used)
+    assert any("Ground PGA is not used" in one for one in unused)
 
 
 def test_a_route_that_anchored_pieces_reach_has_a_rate_if_they_fail(tmp_path):
@@ -191,6 +264,7 @@ def test_what_cannot_fall_within_the_curve_has_a_rate_of_0(tmp_path):
     write_hazard(tmp_path, 0.001, 0.004, 5)
     results, (row,) = rows_of(assessed(tmp_path))
     assert (row.rate, row.low, row.high, row.fit) == (0, None, None, "table")
+    assert row.at_least, "beyond the end of the curve it may fall"
     assert results.annual.expected_falls == 0
     assert results.annual.expected_high is None
 
@@ -229,10 +303,14 @@ def test_what_is_missing_is_named(tmp_path, building, settings, why):
     assert rows == [None]
 
 
-def test_sds_stands_in_for_the_ground_pga(tmp_path):
-    results, (row,) = rows_of(assessed(tmp_path, ground_pga=None, sds=0.375))
-    assert results.annual.ground_pga_g == pytest.approx(0.15)
-    assert row.rate == pytest.approx(rows_of(assessed(tmp_path))[1][0].rate)
+def test_sds_stands_in_for_the_ground_pga_only_where_floors_follow_a_profile(tmp_path):
+    """A floor with a PFA of its own may be of another earthquake than the code's."""
+    assert "fill in Ground PGA" in rows_of(assessed(tmp_path, ground_pga=None, sds=0.375))[0].annual.missing
+    profile = [{"floor": "1", "elevation": 6}]
+    by_sds = rows_of(assessed(tmp_path, floors=profile, ground_pga=None, sds=0.375, height=12))
+    by_pga = rows_of(assessed(tmp_path, floors=profile, height=12))
+    assert by_sds[0].annual.ground_pga_g == pytest.approx(0.15)
+    assert by_sds[1][0].rate == pytest.approx(by_pga[1][0].rate)
 
 
 def test_auto_takes_the_usual_number_of_draws(tmp_path):

@@ -232,7 +232,7 @@ def test_what_it_cannot_do(tmp_path):
     with pytest.raises(assess.InputError, match="a fixed number of generated motions"):
         fragility(assessment, 0.3)
     many = assessed(tmp_path, settings=replace(SETTINGS, runs=100_000))
-    with pytest.raises(assess.InputError, match=r"^runs is 100,000: 500,000,000 results .* fewer values of PFA"):
+    with pytest.raises(assess.InputError, match=r"^runs is 100,000: 500,000,000 results .* fewer levels of shaking"):
         fragility(many, *np.linspace(0.1, 1, 5000))
 
 

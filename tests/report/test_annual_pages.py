@@ -57,7 +57,8 @@ def test_the_page_says_them(folder):
     years = f"{100 * results['a'].item.annual.chance_in_50_years:.1f} %"
     assert section.count(years) >= 3, "piece, route and room"
     assert "1 free-standing piece is counted" in section
-    assert "1 more is not: it was not simulated" in section
+    assert "1 more is too stocky to rock" in section
+    assert "Anchored pieces are not counted." in section
     assert "unless it is called a chance a year" in text
     assert '<a href="#annual">' in text[: text.index('<section id="annual">')]
 
@@ -73,10 +74,53 @@ def test_the_sheet_annual_lists_them(folder):
     assert any(row[0] and "as run" in str(row[0]) for row in rows)
 
 
+def read_section(folder):
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    return text[text.index('<section id="annual">') :].split("</section>")[0]
+
+
+def test_a_curve_that_does_not_reach_far_enough_is_told_beside_the_number(tmp_path):
+    write_hazard(tmp_path, 0.5, 3.0)
+    assessed(tmp_path)
+    results = assess.run(tmp_path / "w.xlsx", SETTINGS)
+    assess.write_reports(results, tmp_path / "out", formats=("html",))
+    text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "at least" in text[: text.index('<section id="annual">')], "in the summary as well"
+    section = read_section(tmp_path / "out")
+    assert "begins at 0.5 g" in section
+    assert "≥" in section
+    row = results["a"].item.annual
+    assert (row.at_least, row.low, row.median_g) == (True, None, None)
+
+
+def test_a_route_is_shown_with_anchors_that_fail(tmp_path):
+    assessed(tmp_path, {**CABINET, **BLOCKS, "anchored": "yes"}, routes=True)
+    results = assess.run(tmp_path / "w.xlsx", SETTINGS)
+    assess.write_reports(results, tmp_path / "out", formats=("html", "xlsx"))
+    (route,) = results.route_tables.routes
+    assert (route.annual.rate, route.annual.at_least) == (0, False)
+    share = f"{100 * route.annual_if_anchors_fail.chance_in_50_years:.1f} %"
+    assert share in read_section(tmp_path / "out")
+    assert "There is no free-standing piece that was simulated and can rock." in read_section(tmp_path / "out")
+    rows = list(openpyxl.load_workbook(tmp_path / "out" / "report.xlsx", read_only=True)["Annual"].values)
+    at = rows[0].index("If anchors fail (50 years)")
+    assert rows[1][at] == pytest.approx(route.annual_if_anchors_fail.chance_in_50_years)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"), [(0, "which is assumed"), (None, "which is assumed"), (0.3, "of the workbook")]
+)
+def test_where_the_scatter_comes_from_is_said(tmp_path, given, words):
+    assessed(tmp_path, motion_uncertainty=given)
+    results = assess.run(tmp_path / "w.xlsx", SETTINGS)
+    assess.write_reports(results, tmp_path / "out", formats=("html",))
+    assert words in read_section(tmp_path / "out")
+
+
 def test_what_is_missing_is_said(tmp_path):
     write_hazard(tmp_path)
-    assessed(tmp_path, ground_pga=None, settings=Settings(verify="none"))
-    results = assess.run(tmp_path / "w.xlsx", Settings(verify="none"))
+    assessed(tmp_path, ground_pga=None, settings=SETTINGS)
+    results = assess.run(tmp_path / "w.xlsx", SETTINGS)
     assess.write_reports(results, tmp_path / "out", formats=("html",))
     text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert text.count("Chances a year were not evaluated: ") == 2

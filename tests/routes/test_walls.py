@@ -7,6 +7,7 @@ import pytest
 from assess.routes.obstructions import find_obstructions
 from assess.routes.walls import (
     BOTH,
+    CONTRARY,
     GAP,
     NO_OUTLINE,
     NO_WALL_NEAR,
@@ -62,6 +63,7 @@ def test_it_falls_away_from_the_side_of_its_room_that_it_stands_at(x, y, angle, 
         (against(4, 0.8), OUTSIDE),
         (against(None, None), UNPLACED),
         (against(4, 1.3, angle_deg=None), UNPLACED),
+        (against(4, 1.3, axis="X"), CONTRARY),
     ],
 )
 def test_where_the_side_is_not_known(item, reason):

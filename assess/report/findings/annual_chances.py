@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from assess.annual_results import YEARS, AnnualRow, AnnualTables
 from assess.i18n import gettext as _
@@ -19,12 +19,16 @@ LEAST, MOST = 1e-5, 0.999
 
 @dataclass(frozen=True, slots=True)
 class AnnualLine:
-    """One line of a table: its name, what and where it is, and its chances; `row` has the numbers."""
+    """One line of a table: its name, what and where it is, and its chances; `row` has the numbers.
+
+    `fail` are those with anchored pieces taken as free-standing, of a route that they reach.
+    """
 
     name: str
     what: str
     where: str
     row: AnnualRow
+    fail: AnnualRow | None = None
 
     @property
     def a_year(self) -> str:
@@ -45,6 +49,11 @@ class AnnualLine:
     def interval(self) -> str:
         """The 95 % sampling interval of the chance in 50 years."""
         return say_interval(self.row)
+
+    @property
+    def if_anchors_fail(self) -> str:
+        """The chance in 50 years with anchored pieces taken as free-standing; a dash where there are none."""
+        return words.DASH if self.fail is None else say_share(self.fail.chance_in_50_years, self.fail)
 
     @property
     def median(self) -> str:
@@ -77,10 +86,18 @@ def build_annual(results: Results, rows: Sequence[ItemResult]) -> AnnualChances 
     if not found.is_evaluated:
         return AnnualChances(False, (_say_missing(found),), tuple(map(_, found.remarks)), (), (), ())
     ways = results.route_tables
-    routes = (AnnualLine(one.route, "", ", ".join(one.floors), one.annual) for one in ways.routes if one.annual)
+    routes = (
+        AnnualLine(one.route, "", ", ".join(one.floors), one.annual, one.annual_if_anchors_fail)
+        for one in ways.routes
+        if one.annual
+    )
     return AnnualChances(
         is_evaluated=True,
-        paragraphs=(" ".join(_say_building(found)), " ".join(_say_basis(found)), " ".join(_say_counted(found))),
+        paragraphs=(
+            " ".join(_say_building(found)),
+            " ".join(_say_basis(found, results)),
+            " ".join(_say_counted(found)),
+        ),
         remarks=tuple(map(_, found.remarks)),
         pieces=_sort(_pieces(rows)),
         routes=_sort(routes),
@@ -108,15 +125,37 @@ def _sort(lines: Iterable[AnnualLine]) -> tuple[AnnualLine, ...]:
 
 
 def _say_building(found: AnnualTables) -> Iterator[str]:
-    low, high = found.expected_low, found.expected_high
+    yield from _say_falls(found)
+    yield from _say_life_safety(found)
+    if found.is_lower_bound or (found.life_safety and found.life_safety.at_least):
+        yield _("At least: see why in the chapter on chances a year.")
+
+
+def _say_falls(found: AnnualTables) -> Iterator[str]:
+    """Say how many pieces are expected to fall a year."""
+    if not found.pieces:
+        yield _("There is no free-standing piece that was simulated and can rock.")
+        return
+    low, high, falls = found.expected_low, found.expected_high, _say_number(found.expected_falls)
+    if found.is_lower_bound:
+        yield _(
+            "Over all earthquakes that the hazard curve counts, at least {falls} free-standing pieces are expected to "
+            "fall a year.",
+            falls=falls,
+        )
+        return
     text = _(
         "Over all earthquakes that the hazard curve counts, {falls} free-standing pieces are expected to fall a year",
-        falls=_say_number(found.expected_falls),
+        falls=falls,
     )
     if low is not None and high is not None:
         interval = _("95 % sampling interval {low} to {high}", low=_say_number(low), high=_say_number(high))
         text = f"{text} ({interval})"
     yield f"{text}."
+
+
+def _say_life_safety(found: AnnualTables) -> Iterator[str]:
+    """Say how likely any life-safety piece falls."""
     row = found.life_safety
     if row is None:
         yield _("No simulated free-standing piece has the Importance life safety.")
@@ -128,7 +167,23 @@ def _say_building(found: AnnualTables) -> Iterator[str]:
     )
 
 
-def _say_basis(found: AnnualTables) -> Iterator[str]:
+def _say_scatter(found: AnnualTables, results: Results) -> str:
+    """Say how the motions scatter at a ground PGA, and where that comes from."""
+    given = results.building.motion_uncertainty
+    if given:
+        return _(
+            "At a given ground PGA the motions of the floors scatter, with the logarithmic standard deviation of "
+            "{beta:.2g} of the workbook.",
+            beta=found.motion_dispersion,
+        )
+    return _(
+        "At a given ground PGA the motions of the floors scatter, with a logarithmic standard deviation of {beta:.2g}, "
+        "which is assumed, also where the scenario is taken as exactly known.",
+        beta=found.motion_dispersion,
+    )
+
+
+def _say_basis(found: AnnualTables, results: Results) -> Iterator[str]:
     yield _(
         "The hazard curve is that of the file {file}, from {first} to {last} g.", file=found.file,
         first=number(found.curve_pga_g[0], ".3g"), last=number(found.curve_pga_g[-1], ".3g"),
@@ -140,18 +195,14 @@ def _say_basis(found: AnnualTables) -> Iterator[str]:
             place = f"{place}, {far}"
         yield f"{place}."
     yield _(
-        "Every piece was rocked in {runs:,} draws under the motions of this scenario times each of {levels} factors, "
-        "from {first:.2g} to {last:.2g}: the motions of all floors were taken to grow in proportion to the ground PGA, "
-        "which is {ground:.3g} g in this scenario. Damage to the building, which changes how its floors move, is left "
-        "out.",
-        runs=found.runs, levels=len(found.factors), first=found.factors[0], last=found.factors[-1],
-        ground=found.ground_pga_g or 0.0,
+        "Every piece that can rock was rocked in {runs:,} draws under the motions of the simulation times each of "
+        "{levels} factors, from {first} to {last}: the motions of all floors were taken to grow in proportion to the "
+        "ground PGA, which is {ground:.3g} g in this scenario. Damage to the building, which changes how its floors "
+        "move, is left out.",
+        runs=found.runs, levels=len(found.factors), first=_say_number(found.factors[0]),
+        last=_say_number(found.factors[-1]), ground=found.ground_pga_g or 0.0,
     )  # fmt: skip
-    yield _(
-        "At a given ground PGA the motions of the floors still scatter, with a logarithmic standard deviation of "
-        "{beta:.2g}.",
-        beta=found.motion_dispersion,
-    )
+    yield _say_scatter(found, results)
     yield _(
         "The shares that fall were integrated over the curve by the lognormal that fits them, or as a table where that "
         "misses a share by more than 0.05."
@@ -162,15 +213,20 @@ def _say_counted(found: AnnualTables) -> Iterator[str]:
     yield ngettext("{n:,} free-standing piece is counted.", "{n:,} free-standing pieces are counted.", found.pieces)
     if found.not_evaluated:
         yield ngettext(
-            "{n:,} more is not: it was not simulated.", "{n:,} more are not: they were not simulated.",
+            "{n:,} more was not simulated and is not counted.", "{n:,} more were not simulated and are not counted.",
             found.not_evaluated,
         )  # fmt: skip
-    if found.at_least:
+    if found.cannot_rock:
         yield ngettext(
-            "The motions of {n:,} piece may be too weak: its chance, marked ≥, is a lower bound.",
-            "The motions of {n:,} pieces may be too weak: their chances, marked ≥, are lower bounds.",
-            found.at_least,
+            "{n:,} more is too stocky to rock and has no chance here; beside a route it falls by the formula.",
+            "{n:,} more are too stocky to rock and have no chance here; beside a route they fall by the formula.",
+            found.cannot_rock,
         )  # fmt: skip
+    yield _("Anchored pieces are not counted.")
+    yield _(
+        "≥ marks a lower bound: the motions may be too weak, the hazard curve does not reach far enough, pieces of one "
+        "row (Quantity) were taken to fall together, or some were not simulated."
+    )
     yield _("The intervals cover the number of draws only, not what is not known of the hazard.")
 
 
@@ -180,8 +236,10 @@ def _say_counted(found: AnnualTables) -> Iterator[str]:
 def say_share(value: float, row: AnnualRow) -> str:
     """Return a chance with two significant digits; lower bounds are marked."""
     mark = "≥ " if row.at_least else ""
+    if value < LEAST and row.at_least:
+        return _("not known")
     if value == 0:
-        return f"{mark}0 %"
+        return "0 %"
     if value < LEAST:
         return f"< {number(100 * LEAST, '.3f')} %"
     if value > MOST:
@@ -203,8 +261,13 @@ def say_interval(row: AnnualRow) -> str:
     if row.low is None or row.high is None:
         return words.DASH
     low, high = (-math.expm1(-YEARS * rate) for rate in (row.low, row.high))
-    return _("{low} to {high}", low=say_share(low, row), high=say_share(high, row))
+    plain = replace(row, at_least=False)
+    return _("{low} to {high}", low=say_share(low, plain), high=say_share(high, plain))
 
 
 def _say_number(value: float) -> str:
-    return number(float(f"{value:.2g}"), ".12g")
+    """Return a number with two significant digits, without an exponent."""
+    rounded = float(f"{value:.2g}")
+    if rounded == 0 or rounded >= 10:
+        return number(rounded, ",.0f")
+    return number(rounded, f".{1 - math.floor(math.log10(rounded))}f")

@@ -58,6 +58,10 @@ def _numbers() -> Iterator[Column]:
     yield Column(_("Lower bound"), 8, lambda one: _("yes") if one[1].row.at_least else _("no"))
     yield Column(_("Ends of the curve matter"), 10, lambda one: _("yes") if one[1].row.ends_matter else _("no"))
     yield Column(_("Integrated"), 12, lambda one: _(one[1].row.fit))
+    yield Column(
+        _("If anchors fail (50 years)"), 10,
+        lambda one: None if one[1].fail is None else one[1].fail.chance_in_50_years, "0.0%",
+    )  # fmt: skip
     for label, name in (
         (_("Median ground PGA [g]"), "median_g"), (_("Dispersion"), "dispersion"), (_("Misfit"), "misfit"),
     ):  # fmt: skip
