@@ -82,7 +82,10 @@ class AnnualTables:
         Free-standing pieces that are counted, those that are not, as they were not simulated, and those that are too
         stocky to rock.
     at_least : int
-        Those of the counted ones whose rate is a lower bound.
+        Those of the counted ones whose motions may be too weak.
+    is_lower_bound : bool
+        Whether the expected falls are a lower bound: for that, because some pieces were not simulated, or because the
+        hazard curve does not reach far enough.
     expected_falls : float
         Free-standing pieces that fall a year, on average.
     expected_low, expected_high : float, optional
@@ -110,17 +113,13 @@ class AnnualTables:
     not_evaluated: int = 0
     cannot_rock: int = 0
     at_least: int = 0
+    is_lower_bound: bool = False
     expected_falls: float = 0.0
     expected_low: float | None = None
     expected_high: float | None = None
     life_safety_pieces: int = 0
     life_safety: AnnualRow | None = None
     remarks: tuple[str, ...] = ()
-
-    @property
-    def is_lower_bound(self) -> bool:
-        """Whether the expected falls are a lower bound."""
-        return self.at_least > 0 or self.not_evaluated > 0
 
     @property
     def is_evaluated(self) -> bool:

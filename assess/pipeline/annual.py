@@ -9,7 +9,7 @@ one scale for the whole building, as the level is: so it is not drawn, but share
 What is not simulated has no annual chance. Under motions that may be too weak, a rate is a lower bound.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,7 @@ from assess.pipeline.level_falls import find_falls
 from assess.pipeline.levels import RockedLevels, rock_levels
 from assess.pipeline.verify import MOST_PAIRS
 from assess.progress import Progress
+from assess.rates import list_remarks
 from assess.rocking.draws import MOTION, STILL, Uncertainty
 from assess.routes.chances import Falls
 from assess.settings import AUTO, RUNS, Settings
@@ -151,7 +152,7 @@ class _Annual:
         counted = [item for item in items if assessment.inventory.items[item].anchored != "yes"]
         several = {at for at, item in enumerate(assessment.inventory.items) if item.quantity > 1}
         ways = evaluate_ways(assessment, falls, integrate, doubtful | several, self.settings, progress)
-        return Annual(self._describe(levels, integrate, items, fell, counted), items, ways)
+        return Annual(self._describe(levels, integrate, items, fell, counted, doubtful), items, ways)
 
     def _find_falls(self, at: int, level: float, rocked: Sequence[RockedLevels]) -> Falls:
         pfa = self.assessment.cases.pfa * (level / self.ground)
@@ -171,36 +172,33 @@ class _Annual:
         items: Mapping[int, AnnualRow],
         fell: Mapping[int, BoolArray],
         counted: Sequence[int],
+        doubtful: Collection[int],
     ) -> AnnualTables:
-        """Return what stands for the building: `counted` are its free-standing pieces that were simulated."""
+        """Return what stands for the building.
+
+        `counted` are its free-standing pieces that were simulated, `doubtful` those whose motions may be too weak.
+        """
         inventory = self.assessment.inventory
         quantity = {item: inventory.items[item].quantity for item in counted}
-        falls = np.zeros((levels.size, integrate.runs))
-        for item in counted:
-            falls += quantity[item] * fell[item]
-        expected = sum(quantity[item] * items[item].rate for item in counted)
-        spread = integrate.find_spread(falls) if counted else None
-        safety = [item for item in counted if inventory.items[item].importance == "life safety"]
-        at_least = [item for item in counted if items[item].at_least]
+        safety = {item: fell[item] for item in counted if inventory.items[item].importance == "life safety"}
         everything, stocky = sum(quantity.values()), self._count_stocky()
-        standing = sum(one.quantity for one in inventory.items if one.anchored != "yes")
-        return replace(
+        unknown = sum(one.quantity for one in inventory.items if one.anchored != "yes") - everything - stocky
+        weak = sum(quantity[item] for item in counted if item in doubtful)
+        found = replace(
             _describe_curve(self.curve),
             ground_pga_g=self.ground / GRAVITY,
             motion_dispersion=self.cases.uncertainty.motion,
             runs=integrate.runs,
             factors=tuple((levels / self.ground).tolist()),
             pieces=everything,
-            not_evaluated=standing - everything - stocky,
+            not_evaluated=unknown,
             cannot_rock=stocky,
-            at_least=sum(quantity[item] for item in at_least),
-            expected_falls=expected,
-            expected_low=None if spread is None else max(0.0, expected * (1 - spread)),
-            expected_high=None if spread is None else expected * (1 + spread),
+            at_least=weak,
+            is_lower_bound=bool(weak or unknown),
             life_safety_pieces=sum(quantity[item] for item in safety),
-            life_safety=self._join({item: fell[item] for item in safety}, items, integrate),
-            remarks=(*integrate.list_remarks(falls, everything), *_remark_on_ends(quantity, items)),
+            life_safety=self._join(safety, items, integrate),
         )
+        return _add_falls(found, integrate, quantity, items, fell) if counted else found
 
     def _count_stocky(self) -> int:
         """Count the free-standing pieces that are too stocky to rock."""
@@ -223,6 +221,29 @@ class _Annual:
         several = any(self.assessment.inventory.items[item].quantity > 1 for item in fell)
         at_least = several or bool(wanted - fell.keys()) or any(items[item].at_least for item in fell)
         return integrate.of_draws(np.any(list(fell.values()), axis=0), at_least=at_least)
+
+
+def _add_falls(
+    found: AnnualTables,
+    integrate: Integral,
+    quantity: Mapping[int, int],
+    items: Mapping[int, AnnualRow],
+    fell: Mapping[int, BoolArray],
+) -> AnnualTables:
+    """Return the tables with how many of the pieces in `quantity` fall a year, and what the ends of the curve do."""
+    falls = np.zeros((integrate.levels.size, integrate.runs))
+    for item, count in quantity.items():
+        falls += count * fell[item]
+    total, spread = integrate.add_up(falls, found.pieces), integrate.find_spread(falls)
+    expected = sum(count * items[item].rate for item, count in quantity.items())
+    return replace(
+        found,
+        is_lower_bound=found.is_lower_bound or total.is_cut,
+        expected_falls=expected,
+        expected_low=None if spread is None else max(0.0, expected * (1 - spread)),
+        expected_high=None if spread is None else expected * (1 + spread),
+        remarks=(*list_remarks(integrate.curve, total), *_remark_on_ends(quantity, items)),
+    )
 
 
 def _remark_on_ends(quantity: Mapping[int, int], items: Mapping[int, AnnualRow]) -> Iterator[Text]:

@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from assess.annual_results import YEARS, AnnualRow
 from assess.fragility import fit_fragility
 from assess.hazard import HazardCurve
-from assess.i18n import Text
 from assess.methods._method import BoolArray, FloatArray
-from assess.rates import evaluate_rate, integrate_table, list_remarks
+from assess.rates import AnnualRate, evaluate_rate, integrate_table
 from assess.risk import NORMAL_95
 from assess.rocking.draws import CUT
 from assess.units import GRAVITY
@@ -127,13 +126,11 @@ class Integral:
             NORMAL_95 * float(rates.std(ddof=1)) / math.sqrt(rates.size) / mean if mean > 0 and rates.size > 1 else None
         )
 
-    def list_remarks(self, falls: FloatArray, pieces: int) -> tuple[Text, ...]:
-        """Return what a reader has to know of the curve and its ends, by how many of so many pieces fall.
+    def add_up(self, falls: FloatArray, pieces: int) -> AnnualRate:
+        """Return how many of so many pieces, 1 or more, fall a year, by the table.
 
         `falls` (n, draws) are their numbers at each level and draw.
         """
-        if not pieces:
-            return self.curve.remarks
         shares = np.clip(self.average @ falls.mean(axis=1) / pieces, 0, 1)
         found = integrate_table(self.curve, self.points, shares)
-        return list_remarks(self.curve, replace(found, rate=pieces * found.rate, most=pieces * found.most))
+        return replace(found, rate=pieces * found.rate, most=pieces * found.most)

@@ -128,7 +128,7 @@ def _say_building(found: AnnualTables) -> Iterator[str]:
     yield from _say_falls(found)
     yield from _say_life_safety(found)
     if found.is_lower_bound or (found.life_safety and found.life_safety.at_least):
-        yield _("At least: see why in the chapter on chances a year.")
+        yield _("Why these are lower bounds is said in the chapter on chances a year.")
 
 
 def _say_falls(found: AnnualTables) -> Iterator[str]:
