@@ -13,7 +13,8 @@ from tests.alike import differences, flatten, strip_numbers
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*extension is not supported")]
 
-CLASS = re.compile(r"/(class|class_upper|lowered_from|flags/\d+)$")
+SKIPPED = re.compile(r"/(class|class_upper|lowered_from|flags/\d+|overturned)$")
+"""Classes are held against their limits; of 200 draws the share is held, not the count."""
 CLASS_WORD = re.compile(r"low|medium|high|[■▲◇○]", re.IGNORECASE)
 
 
@@ -93,7 +94,7 @@ def test_results_are_those_of_the_sample(results):
             assert is_at_a_limit(one["adopted"], other["adopted"]), (one["item"], "run: make samples")
     moved = find_moved(now, then)
     first, second = (
-        [f"{place} {value}" for place, value in flatten(comparable(found, moved)) if not CLASS.search(place)]
+        [f"{place} {value}" for place, value in flatten(comparable(found, moved)) if not SKIPPED.search(place)]
         for found in (now, then)
     )
     assert differences(first, second) == [], "run: make samples"
