@@ -2,6 +2,7 @@
 
 import csv
 import json
+from contextlib import closing
 
 import openpyxl
 import pytest
@@ -65,13 +66,17 @@ def test_the_page_says_them(folder):
 
 def test_the_sheet_annual_lists_them(folder):
     out, results = folder
-    sheet = openpyxl.load_workbook(out / "report.xlsx", read_only=True)["Annual"]
-    rows = list(sheet.iter_rows(values_only=True))
+    rows = read_sheets(out)["Annual"]
     heads = rows[0]
     listed = [dict(zip(heads, row, strict=True)) for row in rows[1:4]]
     assert [(one["What"], one["Name"]) for one in listed] == [("piece", "a"), ("route", "A"), ("room", "Room")]
     assert listed[0]["Times a year"] == pytest.approx(results["a"].item.annual.rate)
     assert any(row[0] and "as run" in str(row[0]) for row in rows)
+
+
+def read_sheets(folder):
+    with closing(openpyxl.load_workbook(folder / "report.xlsx", read_only=True)) as book:
+        return {sheet.title: list(sheet.values) for sheet in book}
 
 
 def read_section(folder):
@@ -102,7 +107,7 @@ def test_a_route_is_shown_with_anchors_that_fail(tmp_path):
     share = f"{100 * route.annual_if_anchors_fail.chance_in_50_years:.1f} %"
     assert share in read_section(tmp_path / "out")
     assert "There is no free-standing piece that was simulated and can rock." in read_section(tmp_path / "out")
-    rows = list(openpyxl.load_workbook(tmp_path / "out" / "report.xlsx", read_only=True)["Annual"].values)
+    rows = read_sheets(tmp_path / "out")["Annual"]
     at = rows[0].index("If anchors fail (50 years)")
     assert rows[1][at] == pytest.approx(route.annual_if_anchors_fail.chance_in_50_years)
 
@@ -133,4 +138,4 @@ def test_without_a_hazard_file_nothing_is_said(tmp_path):
     assess.write_reports(results, tmp_path / "out", formats=("html", "json", "xlsx"))
     assert "a year" not in (tmp_path / "out" / "report.html").read_text(encoding="utf-8").replace("years", "")
     assert json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["annual"] is None
-    assert "Annual" not in openpyxl.load_workbook(tmp_path / "out" / "report.xlsx", read_only=True).sheetnames
+    assert "Annual" not in read_sheets(tmp_path / "out")
