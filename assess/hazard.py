@@ -241,8 +241,8 @@ def _check_order(line: int, pga_before: float, rate_before: float, pga: float, r
     if rate > rate_before:
         raise InputError(
             fill(
-                "line {line}: annual_rate rises from {before:g} to {rate:g}, but it has to fall as PGA rises; it is no "
-                "return period",
+                "line {line}: annual_rate rises from {before:g} to {rate:g}, but it has to fall as PGA rises: give "
+                "rates, not return periods",
                 line=line,
                 before=rate_before,
                 rate=rate,

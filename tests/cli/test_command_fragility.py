@@ -13,10 +13,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from typer.testing import CliRunner
 
 import assess
-from assess.cli.app import app
 from assess.cli.fragility_figure import A_PANEL, MOST_PANELS, choose_drawn, paint, size
 from assess.cli.fragility_output import FORMATS, MOST_LINES, Curves
 from assess.fragility import fit_fragility, lognormal_chance
@@ -25,6 +23,7 @@ from assess.pipeline.piece_fragility import FloorMotions, PieceFragilities, Piec
 from assess.pipeline.run import compute
 from assess.units import GRAVITY
 from assess.workbook.template import Content, write_workbook
+from tests.cli.calling import error, run
 from tests.shaking import write_records
 
 SHAPE = {"width": 80, "axis": "X", "height": 180}
@@ -45,17 +44,6 @@ def write(folder: Path, **rows: Any) -> Path:
     content = {"Building": [{}], "Floors": FLOORS, "Items": ITEMS, "Catalogue": [{"type": "=Shelf"}], **rows}
     write_workbook(path, Content(rows=content), "si")
     return path
-
-
-def run(*words: object):
-    return CliRunner().invoke(app, [str(word) for word in words])
-
-
-def error(done):
-    """The message of a run that failed as it should: status 2, nothing printed, no traceback."""
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert done.exception is None or isinstance(done.exception, SystemExit)
-    return " ".join(re.sub(r"[│╭╮╰╯─\n]", " ", done.stderr).split())
 
 
 @pytest.fixture(scope="module")

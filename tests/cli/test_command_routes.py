@@ -13,11 +13,9 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from typer.testing import CliRunner
 
 import assess
 from assess.cli import command_routes
-from assess.cli.app import app
 from assess.cli.command_routes import PFA
 from assess.cli.route_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
 from assess.cli.route_output import Sweep
@@ -26,6 +24,7 @@ from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance
 from assess.units import GRAVITY
 from assess.workbook.template import Content, write_workbook
+from tests.cli.calling import error, run
 from tests.shaking import write_records
 
 ROOT = Path(__file__).parents[2]
@@ -52,17 +51,6 @@ def write(folder: Path, **rows: Any) -> Path:
     content = {"Building": [{"period": 1.0}], "Floors": FLOORS, "Items": ITEMS, "Routes": ROUTES, **rows}
     write_workbook(path, Content(rows=content), "si")
     return path
-
-
-def run(*words: object):
-    return CliRunner().invoke(app, [str(word) for word in words])
-
-
-def error(done):
-    """The message of a run that failed as it should: status 2, nothing printed, no traceback."""
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert done.exception is None or isinstance(done.exception, SystemExit)
-    return " ".join(re.sub(r"[│╭╮╰╯─\n]", " ", done.stderr).split())
 
 
 @pytest.fixture(scope="module")

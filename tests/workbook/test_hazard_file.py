@@ -69,7 +69,7 @@ def write(folder: Path, text: str) -> dict[str, str]:
     [
         ("pga,rate\n0.1,0.01\n", "pga_g,annual_rate"),
         ("pga_g,annual_rate\n0.1,0.01\n0.2,abc\n", "line 3: annual_rate is 'abc'"),
-        ("pga_g,annual_rate\n0.1,0.01\n0.2,475\n", "it is no return period"),
+        ("pga_g,annual_rate\n0.1,0.01\n0.2,475\n", "give rates, not return periods"),
         ("pga_g,annual_rate\n10,0.01\n98,0.001\n", "at most 50, in g"),
         ("pga_g,annual_rate\n0.1,0.01\n", "two or more"),
         ("", "there is no table"),

@@ -1,0 +1,19 @@
+"""The command line, called inside the process of the tests."""
+
+import re
+
+from typer.testing import CliRunner
+
+from assess.cli.app import app
+
+
+def run(*words: object):
+    """Call `assess` with some words."""
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def error(done):
+    """The message of a run that failed as it should: status 2, nothing printed, no traceback."""
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert done.exception is None or isinstance(done.exception, SystemExit)
+    return " ".join(re.sub(r"[│╭╮╰╯─\n]", " ", done.stderr).split())
