@@ -43,6 +43,30 @@ class Problem:
         return f"{self.place}: {text}" if self.place else text
 
 
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """A cell that was understood although it is not typed as its column asks.
+
+    Attributes
+    ----------
+    sheet, cell : str
+        Where: the sheet as the workbook calls it, and the address, ``H14``.
+    was : str
+        What the cell shows.
+    value : float, str or None
+        What belongs there: a number in the unit of its header, a text or a choice in the language of the workbook;
+        None for a cell that is to be blank.
+    why : str
+        What was done, such as "the unit cm is in the header".
+    """
+
+    sheet: str
+    cell: str
+    was: str
+    value: float | str | None
+    why: str
+
+
 class AssessError(Exception):
     """Whatever `assess` raises on purpose."""
 

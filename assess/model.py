@@ -9,7 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from assess.errors import Problem, RecordError
+from assess.errors import Correction, Problem, RecordError
 from assess.hazard import HazardCurve
 from assess.i18n import fill, find_language
 from assess.motion.formats import parse_records, select
@@ -342,6 +342,8 @@ class Inventory:
         The workbook's own names of its sheets, by the English ones.
     letters : mapping of str to mapping of str to str
         In which column of a sheet a field stands: letters by field, by the English name of the sheet.
+    corrections : tuple of Correction
+        Cells that were understood although they are not typed as their column asks.
     data : bytes, optional
         The workbook's bytes; neither compared nor pickled.
     """
@@ -361,6 +363,7 @@ class Inventory:
     language: str = "en"
     sheets: Mapping[str, str] = field(default_factory=dict)
     letters: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    corrections: tuple[Correction, ...] = ()
 
     data: bytes | None = field(default=None, compare=False)
 
