@@ -24,13 +24,17 @@ _ADDRESS = re.compile(r"[A-Z]{1,3}\d+(:[A-Z]{1,3}\d+)?")
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing to tell the user about the input: where it is, what is the matter, and how to fix it."""
+    """One thing to tell the user about the input: where it is, what is the matter, and how to fix it.
+
+    Problems of one `group` in a column of a sheet are of one habit and are shown as one; "" for a problem by itself.
+    """
 
     severity: Severity
     sheet: str
     cell: str
     message: str
     fix: str = ""
+    group: str = ""
 
     @property
     def place(self) -> str:

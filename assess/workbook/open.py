@@ -294,6 +294,8 @@ class SheetCells(_Part):
 
     limits = None
     header_rows, top = HEADER_ROWS, "A1"
+    title = ""
+    """The sheet as the workbook calls it."""
 
     @staticmethod
     def address(row: int, at: int | None = None) -> str:
@@ -522,4 +524,6 @@ class Book:
 
     def cells(self, sheet: str) -> SheetCells:
         """Return the cells of a sheet."""
-        return SheetCells(self._archive, self.sheets[sheet], self.name, self._shared, self.progress)
+        cells = SheetCells(self._archive, self.sheets[sheet], self.name, self._shared, self.progress)
+        cells.title = sheet
+        return cells

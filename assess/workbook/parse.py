@@ -10,13 +10,14 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 from typing import Any
 
-from assess.errors import Problem, Severity
+from assess.errors import Correction, Problem, Severity
 from assess.i18n import Text, fill
 from assess.units import QUANTITIES, read_unit
+from assess.workbook.habits import CellError, Remark
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
 from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells, column_letters
 from assess.workbook.schema import Column, Sheet
-from assess.workbook.values import CellError, is_blank, read_cell, read_text, shorten
+from assess.workbook.values import is_blank, read_cell, read_text, shorten
 
 _ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
 
@@ -27,7 +28,7 @@ _ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
 class CodeCells:
     """Rows given in code, as the cells of a sheet: keys are fields, in the units of an empty workbook, or headers."""
 
-    header_rows, top = 0, ""
+    header_rows, top, title = 0, "", ""
     last_row, far = 0, ""
     merged: Sequence[str] = ()
 
@@ -109,6 +110,8 @@ class Table:
         Fields whose header gives no known unit, which has been reported.
     failed : frozenset of str
         Addresses of the cells that have been reported as wrong.
+    corrections : tuple of Correction
+        Cells that were understood although they are not typed as their column asks.
     source : Source, optional
         Knows how messages call a cell.
     """
@@ -121,6 +124,7 @@ class Table:
     extra: tuple[str, ...] = ()
     blind: frozenset[str] = frozenset()
     failed: frozenset[str] = frozenset()
+    corrections: tuple[Correction, ...] = ()
     source: Source | None = None
 
     def cell(self, name: str, row: int) -> str:
@@ -143,7 +147,7 @@ class Table:
 
     def problem(self, name: str, row: Row, message: str, fix: str = "", severity: Severity = "error") -> Problem:
         """Return a problem of one field of a row."""
-        return Problem(severity, self.sheet.name, self.cell(name, row.number), message, fix)
+        return Problem(severity, self.sheet.name, self.cell(name, row.number), message, fix, group=name)
 
     def problem_at_top(self, message: str, fix: str, severity: Severity = "error") -> Problem:
         """Return a problem of the sheet as a whole, at its first cell."""
@@ -231,7 +235,7 @@ def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tu
     named = {column.name: column for column in parser.headers.values()}
     sheet = replace(own, columns=tuple(named.get(column.name, column) for column in own.columns))
     table = replace(table, sheet=sheet, blind=frozenset(parser.blind), places=parser.places, rows=tuple(read))
-    table = replace(table, extra=tuple(parser.others.values()))
+    table = replace(table, extra=tuple(parser.others.values()), corrections=tuple(parser.corrections))
     return table.with_failed(parser.problems), parser.problems
 
 
@@ -249,6 +253,7 @@ class _Parser:
     def __init__(self, english: Sheet, own: Sheet, source: Source) -> None:
         self.english, self.own, self.source = english, own, source
         self.problems: list[Problem] = []
+        self.corrections: list[Correction] = []
         self.headers: dict[str, Column] = {}  # by the address of the header
         self.columns: dict[int, Column] = {}
         self.others: dict[int, str] = {}
@@ -256,8 +261,8 @@ class _Parser:
         self.units: dict[str, str] = {}
         self.blind: set[str] = set()
 
-    def report(self, cell: str, message: str, fix: str = "", severity: Severity = "error") -> None:
-        self.problems.append(Problem(severity, self.own.name, cell, message, fix))
+    def report(self, cell: str, message: str, fix: str = "", severity: Severity = "error", group: str = "") -> None:
+        self.problems.append(Problem(severity, self.own.name, cell, message, fix, group))
 
     # ------------------------------------------------------------------ forms
 
@@ -412,16 +417,24 @@ class _Parser:
         if column.name in self.blind and value is not UNSAVED:
             return None  # the unit in the header is not known, and has been reported there
         try:
-            found, remark = read_cell(column, value, self.units[column.name])
+            found, remarks = read_cell(column, value, self.units[column.name])
         except CellError as error:
-            self.report(self.source.address(number, at), error.message, error.fix)
+            self.report(self.source.address(number, at), error.message, error.fix, group=column.name)
             return None
-        if remark is not None:
-            self.report(self.source.address(number, at), *remark, "warning")
+        for remark in remarks:
+            self._note(column, value, self.source.address(number, at), remark)
         if found is None and column.required:
             message = fill("{label} is blank.", label=column.label)
-            self.report(self.source.address(number, at), message, fill("Fill it in, or delete the row."))
+            fix = fill("Fill it in, or delete the row.")
+            self.report(self.source.address(number, at), message, fix, group=column.name)
         return found
+
+    def _note(self, column: Column, value: Any, cell: str, remark: Remark) -> None:
+        """Note a remark on a cell and, in a file, what belongs into the cell."""
+        group = f"{column.name}: {remark.habit}" if remark.habit else column.name
+        self.report(cell, remark.message, remark.fix, remark.severity, group)
+        if remark.value is not None and self.source.title:
+            self.corrections.append(Correction(self.source.title, cell, str(value), remark.value, remark.why))
 
 
 def _shown(value: Any) -> Any:

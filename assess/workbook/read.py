@@ -91,6 +91,7 @@ def _read(source: str | Path | bytes | Rows, path: Path, files: Files, stage: St
         sha256=hashlib.sha256(hashed).hexdigest(),
         data=data,
         problems=tuple(problems),
+        corrections=tuple(one for table in tables.values() for one in table.corrections),
         **_build(tables, reader),
     )
 

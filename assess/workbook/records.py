@@ -20,8 +20,9 @@ from assess.model import AXES, NEAR_AXIS, Axis, FloorRecord, angle_between, spli
 from assess.motion.formats import parse_records, read_bytes, select
 from assess.motion.record import Record
 from assess.progress import Progress
+from assess.workbook.habits import CellError
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.values import CellError, shorten
+from assess.workbook.values import shorten
 
 MAX_PICTURE = 10 * 2**20
 _PICTURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff")

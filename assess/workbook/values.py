@@ -10,18 +10,19 @@ import unicodedata
 from collections.abc import Callable, Mapping
 
 from assess.errors import InputError
-from assess.i18n import Text, fill, find_language
+from assess.i18n import fill, find_language
 from assess.model import Outline
 from assess.units import QUANTITIES
+from assess.workbook.habits import CellError, Remark
 from assess.workbook.names import find_choice, find_near, plain, say_choices
 from assess.workbook.open import UNSAVED
 from assess.workbook.outlines import OutlineError, parse_outline
+from assess.workbook.ranges import find_slip, is_unusual, is_within, span
 from assess.workbook.schema import YES, Column
+from assess.workbook.typed import understand
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _TIMES = (datetime.datetime, datetime.date, datetime.time)
-_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
-_NUMERAL = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)\s*")
 _UNSEEN = frozenset("\u200e\u200f\u061c\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200b\u2060\ufeff")
 _ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
 _SHOWN = 60
@@ -29,17 +30,6 @@ _WRITE_OUTLINE = fill(
     "Write the corners in order round the room, x and y with a space between and a point as decimal sign: "
     "0 0; 6.5 0; 6.5 4; 0 4."
 )
-_UNIT_NAMES = {
-    "cm": fill("centimetres"), "m": fill("metres"), "mm": fill("millimetres"), "in": fill("inches"), "ft": fill("feet"),
-}  # fmt: skip
-
-
-class CellError(Exception):
-    """A cell does not hold what its column needs; the text names the value, the rule and the likely slip."""
-
-    def __init__(self, message: Text, fix: Text | str = "") -> None:
-        super().__init__(message)
-        self.message, self.fix = message, fix
 
 
 def is_blank(value: object) -> bool:
@@ -86,8 +76,8 @@ def read_text(value: object) -> str:
     return clean(str(value))[0].strip()
 
 
-def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[Text, Text | str] | None]:
-    """Return a cell's value in SI, and what is remarkable about it with how to fix that.
+def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[Remark, ...]]:
+    """Return a cell's value in SI, and what is remarkable about it.
 
     `unit` is that of the column's header. The value of a blank cell is None, as of a text of unseen marks alone.
 
@@ -97,7 +87,7 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[T
         If the cell does not hold what the column needs.
     """
     if is_blank(value):
-        return None, None
+        return None, ()
     if value is UNSAVED:
         raise CellError(fill("the formula has no saved value."), fill("Open the workbook in Excel and save it."))
     if column.kind not in ("number", "count") and isinstance(value, str) and value.strip() in ERRORS:
@@ -105,25 +95,27 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[T
             fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
             fill("Correct the formula in the cell."),
         )
-    return READERS[column.kind](column, value, unit), _remark_on(column, value, unit)
+    meant, remark = understand(column, value, unit, shorten) if isinstance(value, str | bool) else (value, None)
+    found = READERS[column.kind](column, meant, unit)
+    return found, tuple(one for one in (remark, _remark_on(column, value, meant, unit)) if one)
 
 
-def _remark_on(column: Column, value: object, unit: str) -> tuple[Text, Text | str] | None:
-    """Return a remark on an unusual number, or on characters that are left out."""
-    if column.kind == "number" and isinstance(value, int | float) and _is_unusual(column, float(value), unit):
-        usual = _span(column.usual_low, column.usual_high, column, unit)
+def _remark_on(column: Column, typed: object, value: object, unit: str) -> Remark | None:
+    """Return a remark on an unusual number, or on characters of what was typed that are left out."""
+    if column.kind == "number" and isinstance(value, int | float) and is_unusual(column, float(value), unit):
+        usual = span(column.usual_low, column.usual_high, column, unit)
         message = fill(
             "{column} is {number:g} {unit}, usual is {usual}.",
             column=fill(column.label), number=value, unit=unit, usual=usual,
         )  # fmt: skip
-        return message, fill("Check the number and the unit.")
-    removed = clean(value)[1] if isinstance(value, str) and column.kind in ("text", "file", "records") else 0
+        return Remark(message, fill("Check the number and the unit."))
+    removed = clean(typed)[1] if isinstance(typed, str) and column.kind in ("text", "file", "records") else 0
     if not removed:
         return None
     message = fill(
         "{count} control or direction characters in {column} were taken out.", count=removed, column=fill(column.label)
     )
-    return message, ""
+    return Remark(message)
 
 
 def _read_plain(column: Column, value: object, unit: str) -> str | None:
@@ -132,11 +124,11 @@ def _read_plain(column: Column, value: object, unit: str) -> str | None:
 
 def _read_number(column: Column, value: object, unit: str) -> float:
     number = _read_typed(column.label, value, unit)
-    if not _is_within(column, number, unit):
-        expected = _span(column.low, column.high, column, unit)
+    if not is_within(column, number, unit):
+        expected = span(column.low, column.high, column, unit)
         typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
         message = fill("{label} is {typed}, expected {expected}.", label=column.label, typed=typed, expected=expected)
-        raise CellError(message, _likely_slip(column, number, unit))
+        raise CellError(message, find_slip(column, number, unit))
     return number * QUANTITIES[column.quantity][unit] if column.quantity else number
 
 
@@ -157,12 +149,6 @@ def _read_typed(label: str, value: object, unit: str) -> float:
     if value.strip() in ERRORS:
         message = fill("{label} holds the error {error}.", label=label, error=value.strip())
         raise CellError(message, fill("Correct the formula in the cell, or type the number."))
-    if _COMMA.fullmatch(value):
-        message = fill("{label} is the text {text} with a decimal comma, expected a number{unit}.", **named)
-        raise CellError(message, retype)
-    if _NUMERAL.fullmatch(value):
-        message = fill("{label} is {text} stored as text, expected a number{unit}.", **named)
-        raise CellError(message, fill("Clear the cell, set its format to General, and type the number again."))
     raise CellError(
         fill("{label} is the text {text}, expected a number{unit}.", **named), fill("Type the number alone.")
     )
@@ -234,47 +220,3 @@ READERS: Mapping[str, Callable[[Column, object, str], object]] = {
     "date": _read_date,
     "outline": _read_outline,
 }
-
-
-# ---------------------------------------------------------------- ranges
-
-
-def _scale(column: Column, unit: str) -> float:
-    """Factor from the header's unit to the unit in which the column's ranges are written."""
-    return QUANTITIES[column.quantity][unit] / column.factor if column.quantity else 1.0
-
-
-def _is_within(column: Column, number: float, unit: str) -> bool:
-    value = number * _scale(column, unit)
-    slack = 1e-9 * abs(value)
-    return (column.low is None or value >= column.low - slack) and (column.high is None or value <= column.high + slack)
-
-
-def _is_unusual(column: Column, number: float, unit: str) -> bool:
-    value = number * _scale(column, unit)
-    return (column.usual_low is not None and value < column.usual_low) or (
-        column.usual_high is not None and value > column.usual_high
-    )
-
-
-def _likely_slip(column: Column, number: float, unit: str) -> Text | str:
-    """Guess the unit that was meant: one in which the number would be usual."""
-    if number < 0:
-        return fill("Remove the minus sign.") if (column.low or 0) >= 0 else ""
-    if unit == "%" and number < 1 and _is_within(column, 100 * number, unit):
-        return fill("Write {percent:g} for {percent:g} %.", percent=100 * number)
-    first = ("in", "ft") if unit in ("in", "ft") else ()
-    for other in (*first, *_UNIT_NAMES, "g", "m/s2", "cm/s2", "m/s", "cm/s"):
-        is_known = other != unit and other in QUANTITIES.get(column.quantity, {})
-        if is_known and _is_within(column, number, other) and not _is_unusual(column, number, other):
-            return fill("Did you type {unit}?", unit=_UNIT_NAMES.get(other, other))
-    return fill("Check the number and the unit in the header.")
-
-
-def _span(low: float | None, high: float | None, column: Column, unit: str) -> Text:
-    scale, suffix = _scale(column, unit), f" {unit}" if unit else ""
-    if low is not None and high is not None:
-        return fill("{low:.4g} to {high:.4g}{unit}", low=low / scale, high=high / scale, unit=suffix)
-    if low is not None:
-        return fill("at least {low:.4g}{unit}", low=low / scale, unit=suffix)
-    return fill("at most {high:.4g}{unit}", high=(high or 0) / scale, unit=suffix)

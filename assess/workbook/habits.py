@@ -1,0 +1,177 @@
+"""How people type: what is remarked on a cell that was understood, and one message for the cells of one habit."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from assess.errors import Problem, Severity
+from assess.i18n import Text, fill, nfill
+
+SHOWN_CELLS = 3
+"""Cells of a group that its message names."""
+
+_BLANK = dict.fromkeys(("column", "text", "value", "cells"), "")
+
+_HABITS: Mapping[str, tuple[Text, Text]] = {
+    "unit": (
+        nfill("{column}: {text} holds its unit; it is read as {value}.",
+              "{column}: {n:,} cells hold their unit, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+        fill("The unit is in the header."),
+    ),
+    "percent": (
+        nfill("{column}: {text} is a percentage; it is read as {value}.",
+              "{column}: {n:,} cells hold a percentage, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+        fill("The percentage is converted to the unit of the column."),
+    ),
+    "comma": (
+        nfill("{column}: {text} has a decimal comma; it is read as {value}.",
+              "{column}: {n:,} cells have a decimal comma, such as {text}, which is read as {value} ({cells}).", 1,
+              **_BLANK),
+        fill("The decimal comma was typed into a text."),
+    ),
+    "thousands": (
+        nfill("{column}: {text} has separators between thousands; it is read as {value}.",
+              "{column}: {n:,} cells have separators between thousands, such as {text}, which is read as {value} "
+              "({cells}).", 1, **_BLANK),
+        fill("The separators between thousands were typed into a text."),
+    ),
+    "signs": (
+        nfill("{column}: {text} has look-alike signs or digits; it is read as {value}.",
+              "{column}: {n:,} cells have look-alike signs or digits, such as {text}, which is read as {value} "
+              "({cells}).", 1, **_BLANK),
+        fill("A dash or a digit only looks like the plain one."),
+    ),
+    "text": (
+        nfill("{column}: {text} is a number stored as text; it is read as {value}.",
+              "{column}: {n:,} cells hold a number stored as text, such as {text}, which is read as {value} ({cells}).",
+              1, **_BLANK),
+        fill("The number was stored as text."),
+    ),
+    "choice": (
+        nfill("{column}: {text} is read as {value}.",
+              "{column}: {n:,} cells hold a short form, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+        fill("The choice is written out."),
+    ),
+    "spaces": (
+        nfill("{column}: {text} has stray spaces; it is read as {value}.",
+              "{column}: {n:,} cells have stray spaces, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+        fill("The stray spaces are taken out."),
+    ),
+    "date": (
+        nfill("{column}: {text} is read as the date {value}.",
+              "{column}: {n:,} cells hold a date, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+        fill("The date is written as year-month-day."),
+    ),
+}  # fmt: skip
+"""By habit: what is said of one cell and of many, and what a correction says was done."""
+
+
+class CellError(Exception):
+    """A cell does not hold what its column needs; the text names the value, the rule and the likely slip."""
+
+    def __init__(self, message: Text, fix: Text | str = "") -> None:
+        super().__init__(message)
+        self.message, self.fix = message, fix
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """What is remarkable about a cell that can be read.
+
+    Attributes
+    ----------
+    message, fix : str
+        As in a `Problem`.
+    severity : str
+        A note where the cell was merely typed otherwise than asked for.
+    habit : str
+        Key of the habit, "" for none.
+    value : float or str, optional
+        What belongs into the cell instead, as in a `Correction`; None where nothing is to be corrected.
+    why : str
+        What the correction does.
+    """
+
+    message: Text
+    fix: Text | str = ""
+    severity: Severity = "warning"
+    habit: str = ""
+    value: float | str | None = None
+    why: Text | str = ""
+
+
+def note(habit: str, column: str, text: str, value: object, corrected: float | str) -> Remark:
+    """Return the note on a cell that shows a habit.
+
+    Parameters
+    ----------
+    habit : str
+        Key of the habit.
+    column : str
+        Header of the column, with its unit.
+    text : str
+        What the cell holds, in quotes.
+    value : object
+        What it is read as, as the note shows it.
+    corrected : float or str
+        What belongs into the cell.
+    """
+    said, why = _HABITS[habit]
+    message = nfill(said.template, said.many, 1, **{**_BLANK, "column": column, "text": text, "value": value})
+    return Remark(message, "", "note", habit, corrected, why)
+
+
+# ---------------------------------------------------------------- one message for one habit
+
+
+def group_problems(problems: Iterable[Problem]) -> list[Problem]:
+    """Return problems as they are shown: those of one kind, in one column of a sheet, as one.
+
+    It stands where the first of them stood and names that cell; its message counts the cells and names the first
+    three. Problems without a `group`, and those that name different things, stay apart.
+    """
+    grouped: dict[tuple[object, ...], list[Problem]] = {}
+    for at, problem in enumerate(problems):
+        grouped.setdefault(_kind(problem) if problem.group else (at,), []).append(problem)
+    return [_merge(alike) if len(alike) > 1 else alike[0] for alike in grouped.values()]
+
+
+def _kind(problem: Problem) -> tuple[object, ...]:
+    """Return by what problems belong together: sheet, column, kind of message, and the name that it is about."""
+    message, fix = problem.message, problem.fix
+    name = message.values.get("name") if isinstance(message, Text) else None
+    said = [one.template if isinstance(one, Text) else one for one in (message, fix)]
+    return problem.severity, problem.sheet, re.sub(r"\d+", "", problem.cell), problem.group, *said, name
+
+
+def _merge(alike: Sequence[Problem]) -> Problem:
+    """Return one problem for several of one kind."""
+    first, cells = alike[0], _list_cells(alike)
+    message = first.message
+    if isinstance(message, Text) and "cells" in message.values:
+        values = {name: value for name, value in message.values.items() if name != "n"}
+        merged = nfill(message.template, message.many, len(alike), **values | {"cells": cells})
+    else:
+        merged = fill("{message} The same in {n:,} cells: {cells}.", message=message, n=len(alike), cells=cells)
+    return replace(first, message=merged)
+
+
+def _list_cells(alike: Sequence[Problem]) -> str:
+    """Return the first cells of a group, with what each holds where that differs and is known."""
+    shown = alike[:SHOWN_CELLS]
+    held = [_held(one) for one in shown]
+    is_told = len(set(held)) > 1 and all(held)
+    cells = [f"{one.cell} {what}" if is_told else one.cell for one, what in zip(shown, held, strict=True)]
+    return ", ".join([*cells, *["..."] * (len(alike) > SHOWN_CELLS)])
+
+
+def _held(problem: Problem) -> str:
+    values: Mapping[str, Any] = problem.message.values if isinstance(problem.message, Text) else {}
+    return str(next((values[name] for name in ("text", "typed") if name in values), ""))
+
+
+def count_kinds(problems: Sequence[Problem], severity: Severity = "error") -> tuple[int, int]:
+    """Return how many kinds of problems of a severity there are, and how many problems."""
+    found = [one for one in problems if one.severity == severity]
+    return len(group_problems(found)), len(found)

@@ -1,0 +1,230 @@
+"""What a person means: a cell as it was typed, as the cell that its column asks for.
+
+`understand` takes what can be read in one way only, and says so in a note; what can be read in two ways is an error
+that offers both. Cells that are typed as asked for, numbers above all, do not come here.
+"""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+
+from assess.i18n import LANGUAGES, Text, fill
+from assess.units import GRAVITY, QUANTITIES, read_unit
+from assess.workbook.dates import read_date
+from assess.workbook.habits import CellError, Remark, note
+from assess.workbook.names import ENGLISH, find_choice, plain, say_choices
+from assess.workbook.schema import NO, YES, Column
+
+Quote = Callable[[object], str]
+
+LONGEST = 60
+"""Characters of a text that may be a number or a date."""
+
+_DASHES = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\ufe58\ufe63"
+_WIDE = {at: at - 0xFEE0 for at in range(0xFF01, 0xFF5F)}
+_PLAIN_SIGNS: dict[int, int | str] = {
+    **_WIDE,
+    **dict.fromkeys(map(ord, _DASHES), "-"),
+    ord("\u2019"): "'",
+    ord("\u02bc"): "'",
+}
+_NUMBER = re.compile(
+    r"(?P<sign>[-+]?) ?(?P<digits>\d[\d.,' ]*|[.,]\d+)(?P<power>[eE][-+]?\d{1,3})?(?P<unit>.*)", re.ASCII
+)
+_PLAIN = re.compile(r"\d+(?:[.,]\d*)?|[.,]\d+", re.ASCII)
+_GROUPED = re.compile(
+    r"([1-9]\d{0,2}(?P<mark>[ ',.])\d{3}(?:(?P=mark)\d{3})*)(?:(?P<point>[.,])(?P<rest>\d*))?", re.ASCII
+)
+
+
+def straighten(text: str) -> str:
+    """Return a text with plain spaces, dashes, apostrophes and digits in place of those that look alike."""
+    return " ".join(text.translate(_PLAIN_SIGNS).split())
+
+
+def understand(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+    """Return what belongs into a cell, and the note on that where it is not what the cell holds.
+
+    Parameters
+    ----------
+    column : Column
+        Its column.
+    value : str or bool
+        What it holds.
+    unit : str
+        That of the header: numbers are returned in it.
+    quote : callable
+        Returns a value as messages quote it.
+
+    Returns
+    -------
+    value : object
+        A number, a choice, a date or a name; `value` itself where nothing else can be meant.
+    remark : Remark, optional
+        The note.
+
+    Raises
+    ------
+    CellError
+        If the cell can be read in two ways, or holds a day that does not exist.
+    """
+    take = _TAKERS.get(column.kind)
+    return take(column, value, unit, quote) if take else (value, None)
+
+
+def _name_column(column: Column, unit: str) -> Text | str:
+    return fill("{label} [{unit}]", label=column.label, unit=unit) if unit else column.label
+
+
+# ---------------------------------------------------------------- numbers
+
+
+def _take_number(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+    if isinstance(value, bool) or len(value) > LONGEST:
+        return value, None
+    text = straighten(value)
+    match = _NUMBER.fullmatch(text)
+    factor = _find_factor(match["unit"].strip(), column, unit) if match else None
+    if match is None or factor is None:
+        return value, None
+    readings = [_convert(match, digits, factor) for digits in _read_digits(match["digits"].rstrip())]
+    if len(readings) == 2:
+        raise _describe_two(column, unit, quote(value), readings)
+    if not readings or not math.isfinite(readings[0]):
+        return value, None
+    number = readings[0]
+    typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
+    return number, note(_find_habit(column, value, match), _name_column(column, unit), quote(value), typed, number)
+
+
+def _read_digits(digits: str) -> list[float]:
+    """Return the ways to read digits with separators: none, one or two.
+
+    A single separator before exactly three digits can be a decimal sign or part thousands, except after 0.
+    """
+    found = [float(digits.replace(",", "."))] if _PLAIN.fullmatch(digits) else []
+    match = _GROUPED.fullmatch(digits)
+    if match and match["point"] != match["mark"]:
+        found.append(float(f"{re.sub(r'[ .,]', '', match[1].replace(chr(39), ''))}.{match['rest'] or 0}"))
+    return found
+
+
+def _convert(match: re.Match[str], digits: float, factor: float) -> float:
+    """Return a number in the header's unit, without the noise of binary fractions where it is converted."""
+    number = digits * float(f"1{match['power'] or 'e0'}") * (-1 if match["sign"] == "-" else 1)
+    return number if factor == 1 else float(f"{number * factor:.12g}")
+
+
+def _find_factor(typed: str, column: Column, unit: str) -> float | None:
+    """Return the factor from the unit in a cell to that of the header, None for a unit of something else."""
+    if not typed:
+        return 1.0
+    spelt, known = read_unit(typed.rstrip(".")), QUANTITIES.get(column.quantity, {})
+    if column.quantity == "acceleration" and spelt in ("%", "%g"):
+        return 0.01 * GRAVITY / known[unit]
+    if not column.quantity:
+        return 0.01 if spelt == "%" and column.kind == "number" else None
+    if spelt not in known:
+        return None
+    return 1.0 if spelt == unit else known[spelt] / known[unit]
+
+
+def _find_habit(column: Column, value: str, match: re.Match[str]) -> str:
+    """Return the habit that a typed number shows; of several the one that matters most."""
+    if unit := match["unit"].strip():
+        return "percent" if unit.startswith("%") and column.quantity != "share" else "unit"
+    digits = match["digits"].rstrip()
+    if _GROUPED.fullmatch(digits):
+        return "thousands"
+    if "," in digits:
+        return "comma"
+    return "text" if value.translate(_PLAIN_SIGNS) == value else "signs"
+
+
+def _describe_two(column: Column, unit: str, shown: str, readings: list[float]) -> CellError:
+    suffix = f" {unit}" if unit else ""
+    one, other = (fill("{number:.10g}{unit}", number=number, unit=suffix) for number in readings)
+    message = fill(
+        "{label} is the text {text}, which can be read as {one} or as {other}.",
+        label=column.label, text=shown, one=one, other=other,
+    )  # fmt: skip
+    return CellError(message, fill("Type the number without a separator between thousands."))
+
+
+# ---------------------------------------------------------------- choices
+
+
+def _take_choice(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+    if isinstance(value, bool):
+        if column.kind == "flag" or not {YES, NO} <= {*column.choices}:
+            return value, None
+        choice = YES if value else NO
+        word = say_choices((choice,), column.language)[0]
+    else:
+        found, word = find_meant(value, column.choices, column.language)
+        if found is None or not word:
+            return value, None
+        choice = found
+    return choice, note("choice", column.label, quote(value), word, word)
+
+
+@lru_cache(maxsize=4096)  # the same choices stand in row after row
+def find_meant(text: str, choices: tuple[str, ...], language: str) -> tuple[str | None, str]:
+    """Return the choice that a text means, in English, and the word that belongs into the cell.
+
+    The word is in the language of the column, and "" where the cell holds that choice as it is written in any
+    language. Understood are letter case, spaces and accents left out, and the first letters of one choice alone; of
+    these the words for yes and no come first.
+    """
+    typed = text.casefold()
+    if any(typed == choice.casefold() for choice in choices):
+        return find_choice(text, choices), ""
+    choice = find_choice(text, choices) or _find_short(plain(text), choices, language)
+    if choice is None or any(typed == word.casefold() for code in LANGUAGES for word in say_choices(choices, code)):
+        return choice, ""
+    return choice, say_choices(choices, language)[choices.index(choice)]
+
+
+def _find_short(typed: str, choices: tuple[str, ...], language: str) -> str | None:
+    """Return the one choice that begins with some letters: yes or no, else in the column's language, else in others."""
+    if not typed:
+        return None
+    for among in ((YES, NO), choices):
+        for code in dict.fromkeys((language, ENGLISH, *LANGUAGES)):
+            words = zip(choices, say_choices(choices, code), strict=True)
+            found = [choice for choice, word in words if choice in among and plain(word).startswith(typed)]
+            if found:
+                return found[0] if len(found) == 1 else None
+    return None
+
+
+# ---------------------------------------------------------------- dates and names
+
+
+def _take_date(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+    if isinstance(value, bool) or len(value) > LONGEST:
+        return value, None
+    date = read_date(column.label, straighten(value), quote(value))
+    if date is None or date == value:
+        return value, None
+    return date, note("date", column.label, quote(value), date, date)
+
+
+def _take_name(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+    """Take stray spaces out of a name that other cells compare with."""
+    if isinstance(value, bool) or not (column.required or column.source):
+        return value, None
+    name = " ".join(value.split())
+    return (value, None) if name == value else (name, note("spaces", column.label, quote(value), quote(name), name))
+
+
+_Taker = Callable[[Column, str | bool, str, Quote], tuple[object, Remark | None]]
+_TAKERS: Mapping[str, _Taker] = {
+    "number": _take_number,
+    "count": _take_number,
+    "choice": _take_choice,
+    "flag": _take_choice,
+    "date": _take_date,
+    "text": _take_name,
+}
