@@ -92,7 +92,7 @@ def _of_columns() -> Iterator[tuple[str, str]]:
     for sheet in SHEETS:
         yield sheet.name, "assess/workbook/schema.py"
         for column in sheet.columns:
-            for text in (column.label, column.help, column.default, *column.choices):
+            for text in (*column.labels, column.help, column.default, *column.choices):
                 if any(character.isalpha() for character in text):
                     yield text, "assess/workbook/schema.py"
     for label in (*LIVE, *WORKINGS):

@@ -16,12 +16,14 @@ _BLANK = dict.fromkeys(("column", "text", "value", "cells"), "")
 _HABITS: Mapping[str, tuple[Text, Text]] = {
     "unit": (
         nfill("{column}: {text} holds its unit; it is read as {value}.",
-              "{column}: {n:,} cells hold their unit, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+              "{column}: {n:,} cells hold their unit, such as {text}, which is read as {value} ({cells}).",
+              1, **_BLANK),
         fill("The unit is in the header."),
     ),
     "percent": (
         nfill("{column}: {text} is a percentage; it is read as {value}.",
-              "{column}: {n:,} cells hold a percentage, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+              "{column}: {n:,} cells hold a percentage, such as {text}, which is read as {value} ({cells}).",
+              1, **_BLANK),
         fill("The percentage is converted to the unit of the column."),
     ),
     "comma": (
@@ -33,13 +35,15 @@ _HABITS: Mapping[str, tuple[Text, Text]] = {
     "thousands": (
         nfill("{column}: {text} has separators between thousands; it is read as {value}.",
               "{column}: {n:,} cells have separators between thousands, such as {text}, which is read as {value} "
-              "({cells}).", 1, **_BLANK),
+              "({cells}).",
+              1, **_BLANK),
         fill("The separators between thousands were typed into a text."),
     ),
     "signs": (
         nfill("{column}: {text} has look-alike signs or digits; it is read as {value}.",
               "{column}: {n:,} cells have look-alike signs or digits, such as {text}, which is read as {value} "
-              "({cells}).", 1, **_BLANK),
+              "({cells}).",
+              1, **_BLANK),
         fill("A dash or a digit only looks like the plain one."),
     ),
     "text": (
@@ -50,17 +54,20 @@ _HABITS: Mapping[str, tuple[Text, Text]] = {
     ),
     "choice": (
         nfill("{column}: {text} is read as {value}.",
-              "{column}: {n:,} cells hold a short form, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+              "{column}: {n:,} cells hold a short form, such as {text}, which is read as {value} ({cells}).",
+              1, **_BLANK),
         fill("The choice is written out."),
     ),
     "spaces": (
         nfill("{column}: {text} has stray spaces; it is read as {value}.",
-              "{column}: {n:,} cells have stray spaces, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+              "{column}: {n:,} cells have stray spaces, such as {text}, which is read as {value} ({cells}).",
+              1, **_BLANK),
         fill("The stray spaces are taken out."),
     ),
     "date": (
         nfill("{column}: {text} is read as the date {value}.",
-              "{column}: {n:,} cells hold a date, such as {text}, which is read as {value} ({cells}).", 1, **_BLANK),
+              "{column}: {n:,} cells hold a date, such as {text}, which is read as {value} ({cells}).",
+              1, **_BLANK),
         fill("The date is written as year-month-day."),
     ),
 }  # fmt: skip

@@ -69,7 +69,10 @@ def translate(sheet: Sheet, code: str) -> Sheet:
     if code == ENGLISH:
         return sheet
     find = load_catalogue(code).find
-    columns = tuple(replace(column, label=find(column.label), language=code) for column in sheet.columns)
+    columns = tuple(
+        replace(one, label=find(one.label), aliases=tuple(map(find, one.aliases)), language=code)
+        for one in sheet.columns
+    )
     return replace(sheet, name=find(sheet.name), columns=columns)
 
 
@@ -79,9 +82,9 @@ def versions(sheet: Sheet) -> Iterator[Sheet]:
 
 
 def find_column(sheet: Sheet, label: str) -> Column | None:
-    """Return the column that a label names in any language, with its label in that language."""
+    """Return the column that a label, or an earlier one, names in any language, with its label in that language."""
     wanted = plain(label)
-    return next((one for said in versions(sheet) for one in said.columns if plain(one.label) == wanted), None)
+    return next((one for said in versions(sheet) for one in said.columns if wanted in map(plain, one.labels)), None)
 
 
 def find_near_column(sheet: Sheet, own: Sheet, header: str, labels: Collection[str]) -> Column | None:

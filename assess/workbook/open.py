@@ -37,6 +37,7 @@ _MAIN = ("sheet.main+xml", "template.main+xml", "sheet.macroEnabled.main+xml", "
 _STRICT = "http://purl.oclc.org/ooxml/spreadsheetml/main"
 _SMALL, _STRINGS = (8 * 2**20, 300_000), (24 * 2**20, 1_000_000)
 """Bytes and tags of the parts that are kept in memory."""
+_TRUE = ("1", "true")
 _DATES = frozenset({*range(14, 23), 45, 46, 47})
 """Numbers of the built-in formats that show a number as a date or a time."""
 
@@ -288,8 +289,8 @@ class SheetCells(_Part):
     """The cells of one sheet.
 
     `rows` yields them once, row by row. After that `last_row` is the last row that holds a value or a formula (0 in
-    an empty sheet), `far` the address of the first value right of the columns that are read ("" if there is none), and
-    `merged` the merged ranges, as in ``A1:C2``.
+    an empty sheet), `far` the address of the first value right of the columns that are read ("" if there is none),
+    `merged` the merged ranges, as in ``A1:C2``, and `hidden_rows` and `hidden_columns` (from 0) what is not shown.
     """
 
     limits = None
@@ -306,6 +307,7 @@ class SheetCells(_Part):
         super().__init__(archive, path, name, progress)
         self.shared = shared
         self.last_row, self.far, self.merged = 0, "", list[str]()
+        self.hidden_rows, self.hidden_columns = list[int](), set[int]()
         self._ready: list[tuple[int, Cells]] = []
         self._cells: Cells = {}
         self._number = self._at = self._count = 0
@@ -338,6 +340,8 @@ class SheetCells(_Part):
             self._open_row(attributes)
         elif tag == "mergeCell" and len(self.merged) < MAX_MERGED:
             self.merged.append(attributes.get("ref", ""))
+        elif tag == "col" and attributes.get("hidden") in _TRUE:
+            self._hide_columns(attributes)
         elif self._texts is not None:
             self._tags.add(tag)
             self._takes = tag == "v" or (tag == "t" and "rPh" not in self._tags)
@@ -370,8 +374,14 @@ class SheetCells(_Part):
         self._number = previous + 1 if number is None else int(number)
         if not previous < self._number <= SHEET_ROWS:
             raise _damaged(fill("the rows of {part} are out of order", part=self.path))
+        if attributes.get("hidden") in _TRUE and len(self.hidden_rows) < MAX_ROWS:
+            self.hidden_rows.append(self._number)
         self._row_start = self.parser.CurrentByteIndex
         self._cells, self._at, self._count = {}, 0, 0
+
+    def _hide_columns(self, attributes: dict[str, str]) -> None:
+        first, last = (min(int(attributes.get(name, "0")), MAX_COLUMNS) for name in ("min", "max"))
+        self.hidden_columns.update(range(first - 1, last))
 
     def _open_cell(self, attributes: dict[str, str]) -> None:
         self._address = attributes.get("r", "")
@@ -465,6 +475,8 @@ def _list_dates(styles: _Tree) -> list[str | None]:
 class Book:
     """An opened workbook: `sheets` tells the names of its worksheets in their order; use it in a ``with`` statement.
 
+    `hidden` holds the names of those that are not shown.
+
     Parameters
     ----------
     data : bytes
@@ -488,15 +500,17 @@ class Book:
             _check_kind(types, book)
             links = self._links()
             kinds = dict(links.values())
-            self.sheets = {}
+            self.sheets, self.hidden = {}, set[str]()
             for one in book.find("sheet"):
                 link = next((value for name, value in one.items() if name.endswith(":id")), "")
                 if links.get(link, ("",))[0] == "worksheet":
                     self.sheets[one.get("name", "")] = links[link][1]
+                    if one.get("state", "visible") != "visible":
+                        self.hidden.add(one.get("name", ""))
             self._shared = _Shared(
                 self._part(_Strings, kinds["sharedStrings"]).found if "sharedStrings" in kinds else [],
                 _list_dates(self._part(_Tree, kinds["styles"])) if "styles" in kinds else [],
-                any(one.get("date1904") in ("1", "true") for one in book.find("workbookPr")),
+                any(one.get("date1904") in _TRUE for one in book.find("workbookPr")),
             )
 
     def _links(self) -> dict[str, tuple[str, str]]:

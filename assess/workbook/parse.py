@@ -5,7 +5,8 @@ Every problem is collected with its cell and reading goes on, so that one run na
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 from typing import Any
@@ -17,6 +18,15 @@ from assess.workbook.habits import CellError, Remark
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
 from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells, column_letters
 from assess.workbook.schema import Column, Sheet
+from assess.workbook.sections import (
+    FIRST_COLUMNS,
+    describe_heading,
+    describe_hidden_columns,
+    describe_hidden_rows,
+    describe_repeated,
+    find_lone_text,
+    list_spanned,
+)
 from assess.workbook.values import is_blank, read_cell, read_text, shorten
 
 _ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
@@ -31,6 +41,8 @@ class CodeCells:
     header_rows, top, title = 0, "", ""
     last_row, far = 0, ""
     merged: Sequence[str] = ()
+    hidden_rows: Sequence[int] = ()
+    hidden_columns: frozenset[int] = frozenset()
 
     def __init__(self, sheet: Sheet, given: Sequence[Mapping[str, Any]]) -> None:
         self.sheet, self.given = sheet, given
@@ -196,6 +208,14 @@ class Table:
         return replace(self, rows=tuple(row for row in self.rows if row.number not in faulty_rows))
 
 
+def _repeats(cells: Cells, headers: Cells, needed: Sequence[int]) -> bool:
+    """Tell whether a row repeats the headers of the columns that are needed, and no less than two headers."""
+    return (
+        all(cells.get(at) == headers[at] for at in needed)
+        and sum(headers.get(at) == it for at, it in cells.items()) > 1
+    )
+
+
 def first_row(cell: str) -> int:
     """Return the number of the first row that an address names, 0 for none."""
     return next(iter(_row_numbers(cell)), 0)
@@ -297,14 +317,65 @@ class _Parser:
             return []
         number, cells = best
         self._read_headers(number, cells)
-        found = [row for at, one in body if at > number and at <= MAX_ROWS and (row := self._row(at, one))]
-        for reference in self.source.merged:
-            if _row_numbers(reference) and _row_numbers(reference)[-1] >= number:
-                message = fill("cells are merged inside the table.")
-                self.report(reference, message, fill("Unmerge them and fill each cell."))
+        found = self._read_rows(number, cells, body)
+        self._check_merged([number, *(row.number for row in found)])
+        self._note_hidden(found)
         if self.own.required and not found and not self._missing():
             self._report_no_rows(self.source.address(number + 1))
         return found
+
+    def _read_rows(self, header: int, headers: Cells, body: Iterable[tuple[int, Cells]]) -> list[Row]:
+        """Return the entries below the headers, with a note on every heading between them."""
+        known, first = {*self.columns, *self.others}, sorted(self.columns)[:FIRST_COLUMNS]
+        needed = [at for at, column in self.columns.items() if column.required]
+        found: dict[int, Row | None] = {}
+        lone: dict[int, tuple[int, Cells]] = {}
+        for number, cells in body:
+            if not header < number <= MAX_ROWS:
+                continue
+            if (at := find_lone_text(cells, known, first)) is not None:
+                lone[number] = at, cells
+            elif needed and cells.get(needed[0]) == headers[needed[0]] and _repeats(cells, headers, needed):
+                self.report(self.source.address(number, needed[0]), describe_repeated(), "", "note", "headers")
+            else:
+                found[number] = self._row(number, cells)
+        found |= self._read_lone(lone)
+        return [row for _, row in sorted(found.items()) if row]
+
+    def _read_lone(self, lone: Mapping[int, tuple[int, Cells]]) -> dict[int, Row | None]:
+        """Return the entries among the rows that hold a text alone: where a table asks for no more than that."""
+        found: dict[int, Row | None] = {}
+        spanned = list_spanned(self.source.merged)
+        needs_more = sum(column.required for column in self.own.columns) > 1
+        for number, (at, cells) in lone.items():
+            if self.source.top and (needs_more or number in spanned):
+                self.report(self.source.address(number, at), describe_heading(cells[at]), "", "note", "heading")
+            else:
+                found[number] = self._row(number, cells)
+        return found
+
+    def _check_merged(self, rows: Sequence[int]) -> None:
+        """Report merged cells in the header row and in entries; in headings between those they do no harm."""
+        for reference in self.source.merged:
+            merged = _row_numbers(reference)
+            at = bisect_left(rows, merged.start)
+            if at < len(rows) and rows[at] < merged.stop:
+                message = fill("cells are merged inside the table.")
+                self.report(reference, message, fill("Unmerge them and fill each cell."))
+
+    def _note_hidden(self, found: Sequence[Row]) -> None:
+        """Note the hidden rows and columns that are read."""
+        hidden = set(self.source.hidden_rows)
+        rows = [row.number for row in found if row.number in hidden] if hidden else []
+        if rows:
+            message = describe_hidden_rows(rows, is_furniture=self.own.columns[0].name == "item")
+            self.report(self.source.address(rows[0]), message, severity="note")
+        columns = [at for at in sorted(self.columns) if at in self.source.hidden_columns]
+        names = {at: self.columns[at].name for at in columns}
+        filled = [at for at in columns if any(row.get(names[at]) is not None for row in found)]
+        if filled:
+            message = describe_hidden_columns([self.columns[at].label for at in filled])
+            self.report(f"{column_letters(filled[0])}1", message, severity="note")
 
     def _best_row(self, top: Sequence[tuple[int, Cells]]) -> tuple[int, Cells] | None:
         """Return the first row that names most columns; other languages count where English falls short."""
@@ -312,7 +383,7 @@ class _Parser:
         known: set[str] = set()
         best = None
         for said in versions(self.english):
-            known |= {plain(column.label) for column in said.columns}
+            known |= {plain(label) for column in said.columns for label in column.labels}
             scores = [sum(label in known for label in labels) for labels in rows]
             best = scores.index(max(scores)) if any(scores) else None
             needed = {plain(column.label) for column in said.columns if column.required}

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -115,6 +115,7 @@ def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Ta
     """
     with Book(data, name, progress) as book:
         found, language, problems = _find_sheets(list(book.sheets))
+        problems += _note_hidden(found, book.hidden)
         return _parse({name: (book.cells(own), code) for name, (own, code) in found.items()}, language, problems)
 
 
@@ -154,6 +155,13 @@ def _find_sheets(present: Sequence[str]) -> tuple[dict[str, tuple[str, str]], st
 def find_language(codes: Sequence[str]) -> str:
     """Return the language of most of the sheets, English where no other has more than half."""
     return next((code for code in codes if codes.count(code) * 2 > len(codes)), ENGLISH)
+
+
+def _note_hidden(found: Mapping[str, tuple[str, str]], hidden: Collection[str]) -> Iterator[Problem]:
+    """Note every sheet that is read although it is hidden."""
+    for own, code in ((own, code) for own, code in found.values() if own in hidden):
+        name = next(said.name for sheet in SHEETS if plain((said := translate(sheet, code)).name) == plain(own))
+        yield Problem("note", name, "", fill("the sheet is hidden; it is read as well."))
 
 
 def _describe_twice(sheet: str, names: Sequence[str]) -> Problem:

@@ -56,6 +56,8 @@ class Column:
         Width in the empty workbook [characters].
     language : str
         Code of the language that `label` is in.
+    aliases : tuple of str
+        Earlier labels, by which a workbook may still call it.
     """
 
     name: str
@@ -75,11 +77,17 @@ class Column:
     default: str = ""
     width: int = 12
     language: str = "en"
+    aliases: tuple[str, ...] = ()
 
     def header(self, units: Literal["si", "imperial"] = "si") -> str:
         """Label with the unit in brackets, as the empty workbook writes it."""
         unit = self.imperial if units == "imperial" and self.imperial else self.unit
         return f"{self.label} [{unit}]" if unit else self.label
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Its label and its earlier ones."""
+        return (self.label, *self.aliases)
 
     @property
     def factor(self) -> float:
@@ -187,7 +195,7 @@ FLOORS = Sheet(
         Column("record_x", "Record X", "records", "Recorded motion along X: file, or file#channel, beside the "
                "workbook; parallel ones split by ;", width=24),
         Column("record_y", "Record Y", "records", "Recorded motion along Y, likewise.", width=24),
-        Column("plan", "Plan image", "file", "Picture of the floor plan; kept.", width=16),
+        Column("plan", "Plan", "file", "Picture of the floor plan; kept.", width=16, aliases=("Plan image",)),
     ),
 )  # fmt: skip
 
