@@ -67,8 +67,7 @@ def guard(command: Callable[..., None]) -> Callable[..., None]:
             _end(str(error))
         except WorkbookError as error:
             print_problems(error.problems)
-            errors = count(sum(problem.severity == "error" for problem in error.problems), "error")
-            typer.echo(f"{errors}; nothing was written.", err=True)
+            typer.echo(f"{count_errors(error.problems)}; nothing was written.", err=True)
             raise typer.Exit(2) from None
         except InputError as error:
             text = str(error) if isinstance(error, RecordError) else _name_option(str(error), command)
@@ -112,16 +111,29 @@ def print_error(message: str) -> None:
 
 
 def print_problems(problems: Sequence[Problem]) -> None:
-    """Print problems to standard error, the first `MOST_PRINTED` of them."""
-    for problem in problems[:MOST_PRINTED]:
+    """Print problems to standard error, those of one habit as one; the first `MOST_PRINTED` of them."""
+    from assess.workbook.habits import group_problems
+
+    shown = group_problems(problems)
+    for problem in shown[:MOST_PRINTED]:
         typer.echo(f"{problem.severity:<7}  {problem}", err=True)
-    if len(problems) > MOST_PRINTED:
-        typer.echo(f"... and {len(problems) - MOST_PRINTED:,} more.", err=True)
+    if len(shown) > MOST_PRINTED:
+        typer.echo(f"... and {len(shown) - MOST_PRINTED:,} more.", err=True)
 
 
 def print_warnings(problems: Sequence[Problem]) -> None:
     """Print the warnings among problems to standard error."""
     print_problems([problem for problem in problems if problem.severity == "warning"])
+
+
+def count_errors(problems: Sequence[Problem]) -> str:
+    """Return how many errors there are: "2 errors", or "3 kinds of error in 52 places" where some are of one habit."""
+    from assess.workbook.habits import count_kinds
+
+    kinds, errors = count_kinds(problems)
+    if kinds == errors:
+        return count(errors, "error")
+    return f"{kinds:,} {'kind' if kinds == 1 else 'kinds'} of error in {errors:,} places"
 
 
 def count(number: int, noun: str) -> str:

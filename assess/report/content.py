@@ -22,6 +22,7 @@ from assess.report.provenance import report_time, say_date, say_reference
 from assess.report.summary import FLOORS, FLOORS_BESIDE, Summary, build_summary, list_risky
 from assess.results import FloorRow, ItemResult, MotionRow, Results, WorkedMethod
 from assess.risk import LIMITS, RiskClass, classify
+from assess.workbook.habits import group_problems
 from assess.workbook.schema import BUILDING, NO, YES
 
 if TYPE_CHECKING:
@@ -121,8 +122,8 @@ class Content(ByBasis):
 
     @property
     def problems(self) -> Sequence[Problem]:
-        """Warnings and notes about the input."""
-        return self.run.problem_rows
+        """Warnings and notes about the input, those of one habit as one."""
+        return group_problems(self.run.problem_rows)
 
     @property
     def version(self) -> str:

@@ -60,11 +60,13 @@ def check_wildcards(table: Table) -> Iterator[Problem]:
             yield table.problem(name, row, message, fix, "warning")
 
 
-def check_references(table: Table, tables: Tables) -> Iterator[Problem]:
+def check_references(
+    table: Table, tables: Tables, is_spare: Callable[[Table, str, Row], bool] = lambda *_: False
+) -> Iterator[Problem]:
     """Report names that the first column of another sheet does not define.
 
     A missing column, or a missing sheet that is required, has been reported; a sheet that is not is reported here,
-    once for the whole column.
+    once for the whole column. A name that `is_spare`, by table, field and row, is warned of.
     """
     for column in table.sheet.columns:
         name = column.name
@@ -72,22 +74,32 @@ def check_references(table: Table, tables: Tables) -> Iterator[Problem]:
             source, named = tables[column.source], table.with_all(name)
             if source.found and source.sheet.columns[0].name in source.places:
                 known = defined(source)
-                yield from (
-                    _unknown(table, name, row, source, known) for row in named if key(row.get(name)) not in known
-                )
+                unknown = [row for row in named if key(row.get(name)) not in known]
+                near = {
+                    text: known.get(find_near(text, known) or "") for text in {key(row.get(name)) for row in unknown}
+                }
+                for row in unknown:
+                    names = source.sheet.name, near[key(row.get(name))]
+                    yield _unknown(table, name, row, *names, is_spare=is_spare(table, name, row))
             elif named and not source.found and not source.sheet.required:
-                yield _lacks_sheet(table, name, named, source.sheet.name)
+                spare = [row for row in named if is_spare(table, name, row)]
+                needed = [row for row in named if not is_spare(table, name, row)] if spare else named
+                yield from (_lacks_sheet(table, name, rows, source.sheet.name) for rows in (needed,) if rows)
+                yield from (_lacks_spare_sheet(table, name, rows, source.sheet.name) for rows in (spare,) if rows)
 
 
-def _unknown(table: Table, name: str, row: Row, source: Table, known: dict[str, str]) -> Problem:
-    values = {"label": table.label(name), "name": row.quote(name), "sheet": source.sheet.name}
-    fix, near = (
-        fill("Choose one of the {sheet} sheet, or add it there.", **values),
-        find_near(key(row.get(name)), known),
-    )
+def _unknown(table: Table, name: str, row: Row, sheet: str, near: str | None, *, is_spare: bool) -> Problem:
+    values = {"label": table.label(name), "name": row.quote(name), "sheet": sheet}
+    fix = fill("Choose one of the {sheet} sheet, or add it there.", **values)
     if near:
-        values["near"] = known[near]
+        values["near"] = near
         fix = fill("Choose one of the {sheet} sheet, or add it there. Did you mean {near}?", **values)
+    if is_spare:
+        message = fill(
+            "{label} {text} is not in the {sheet} sheet; the sizes typed in its row are used.",
+            label=table.label(name), text=row.quote(name), sheet=sheet,
+        )  # fmt: skip
+        return table.problem(name, row, message, fix, "warning")
     return table.problem(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
 
 
@@ -98,6 +110,16 @@ def _lacks_sheet(table: Table, name: str, named: Sequence[Row], sheet: str) -> P
         len(named), label=table.label(name), name=named[0].quote(name), sheet=sheet,
     )  # fmt: skip
     return table.problem(name, named[0], message, fill("Add the sheet, or clear the column."))
+
+
+def _lacks_spare_sheet(table: Table, name: str, named: Sequence[Row], sheet: str) -> Problem:
+    message = nfill(
+        "{label} {name} is named, but there is no {sheet} sheet; the sizes typed in its row are used.",
+        "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet; the sizes typed in those "
+        "rows are used.",
+        len(named), label=table.label(name), name=named[0].quote(name), sheet=sheet,
+    )  # fmt: skip
+    return table.problem(name, named[0], message, fill("Add the sheet, or clear the column."), "warning")
 
 
 # ---------------------------------------------------------------- catalogue and floors
@@ -173,7 +195,14 @@ def check_item_names(tables: Tables) -> Iterator[Problem]:
     """Check that items have names of their own, a floor that is there, and a type and a route that are."""
     table = tables["Items"]
     yield from check_unique(table)
-    yield from check_references(table, tables)
+    yield from check_references(table, tables, _has_own_sizes)
+
+
+def _has_own_sizes(table: Table, name: str, row: Row) -> bool:
+    """Tell whether a row does without what its type would give: the width counts where the piece may block a route."""
+    may_block = table.says(row, "x", "y", "route", "edge_distance")
+    sizes = ("breadth", "height", "width") if may_block else ("breadth", "height")
+    return name == "type" and all(table.says(row, size) for size in sizes)
 
 
 def check_items(tables: Tables) -> Iterator[Problem]:

@@ -17,7 +17,8 @@ _NUMBERS = re.compile(r"(\d{1,2}) ?([-/.]) ?(\d{1,2}) ?\2 ?(\d{4})", re.ASCII)
 _SHORT_YEAR = re.compile(r"\d{1,2} ?([-/.]) ?\d{1,2} ?\1 ?\d{2}", re.ASCII)
 _DAY_FIRST = re.compile(r"(\d{1,2})(?:st|nd|rd|th|[.º°])?[ -]*([^\W\d_]{3,12})[., -]*(\d{4})", re.ASCII)
 _MONTH_FIRST = re.compile(r"([^\W\d_]{3,12})[. -]*(\d{1,2})(?:st|nd|rd|th)?[, -]+(\d{4})", re.ASCII)
-_AS_ISO = fill("Write it as year-month-day: 2026-12-31.")
+_MONTH = re.compile(r"(?:([^\W\d_]{3,12})\.?,? |\d{1,2}/|)\d{4}|\d{4}-\d{1,2}", re.ASCII)
+AS_ISO = fill("Write it as year-month-day: 2026-12-31.")
 
 
 def read_date(label: str, text: str, shown: str) -> str | None:
@@ -41,7 +42,7 @@ def read_date(label: str, text: str, shown: str) -> str | None:
     """
     if _SHORT_YEAR.fullmatch(text):
         message = fill("{label} is {text}: the year has two digits.", label=label, text=shown)
-        raise CellError(message, _AS_ISO)
+        raise CellError(message, AS_ISO)
     found = list(dict.fromkeys(_list_readings(text)))
     if not found:
         return None
@@ -49,7 +50,7 @@ def read_date(label: str, text: str, shown: str) -> str | None:
     if not days:
         why = _build(*min(found, key=lambda reading: not 1 <= reading[1] <= 12))
         raise CellError(
-            fill("{label} is {text}, which is not a date: {why}.", label=label, text=shown, why=why), _AS_ISO
+            fill("{label} is {text}, which is not a date: {why}.", label=label, text=shown, why=why), AS_ISO
         )
     if len(days) > 1:
         one, other = (day.isoformat() for day in days)
@@ -59,6 +60,12 @@ def read_date(label: str, text: str, shown: str) -> str | None:
         )  # fmt: skip
         raise CellError(message, fill("Write {one} or {other}.", one=one, other=other))
     return days[0].isoformat()
+
+
+def is_month(text: str) -> bool:
+    """Tell whether a text is a month and its year, such as March 2026, or a year: a date without its day."""
+    match = _MONTH.fullmatch(text)
+    return match is not None and (not match[1] or bool(_find_month(match[1])))
 
 
 def _list_readings(text: str) -> Iterator[tuple[int, int, int]]:

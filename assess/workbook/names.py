@@ -18,6 +18,8 @@ from assess.units import QUANTITIES, read_unit
 from assess.workbook.schema import HELP, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 
 ENGLISH, *_OTHERS = LANGUAGES
+DASHES = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\ufe58\ufe63\uff0d"), "-")
+"""Signs that look like a hyphen or a minus sign."""
 _BRACKET = re.compile(r"^(?P<label>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$", re.DOTALL)
 
 
@@ -32,8 +34,8 @@ def split_header(header: str) -> tuple[str, str | None]:
 
 @lru_cache(maxsize=4096)  # the same floors and choices stand in row after row
 def key(text: str) -> str:
-    """Return a name as names are compared: letter case and the number of spaces ignored."""
-    return " ".join(unicodedata.normalize("NFKC", text).split()).casefold()
+    """Return a name as names are compared: letter case, the number of spaces and the kind of dash ignored."""
+    return " ".join(unicodedata.normalize("NFKC", text.translate(DASHES)).split()).casefold()
 
 
 def fold(text: str) -> str:

@@ -48,6 +48,11 @@ DAMAGE = (ValueError, TypeError, LookupError, OSError, EOFError, ArithmeticError
 UNSAVED = object()
 """The value of a cell that holds a formula without a saved result."""
 
+
+class Percent(float):
+    """A number that its cell shows as a percentage."""
+
+
 Cells = dict[int, Any]
 """The values of a row by column, from 0; blank cells are left out."""
 
@@ -262,8 +267,11 @@ class _Strings(_Part):
             self.found.append("".join(self.parts).replace("x005F_", ""))  # a sign by which programs escape a "_x"
 
 
-def _date_format(number: str, codes: Mapping[str, str]) -> str | None:
+def _special_format(number: str, codes: Mapping[str, str]) -> str | None:
+    """Return the format that shows a number as a date or a time, or as a percentage ("%"); else None."""
     code = codes.get(number, "")
+    if number in ("9", "10") or "%" in code:
+        return "%"
     if not code:
         return ("[h]" if number == "46" else "d") if number.isdigit() and int(number) in _DATES else None
     if not any(letter in "dmhys" for letter in code.lower()):
@@ -425,6 +433,8 @@ class SheetCells(_Part):
         code = self.shared.styles[style] if style < len(self.shared.styles) else None
         if code is None:
             return number
+        if code == "%":
+            return Percent(number)
         from openpyxl.styles.numbers import is_timedelta_format
         from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_excel
 
@@ -466,10 +476,10 @@ def _check_kind(types: _Tree, book: _Tree) -> None:
         raise unreadable(message, fill("In Excel: Save As, Excel Workbook (.xlsx), without Strict."))
 
 
-def _list_dates(styles: _Tree) -> list[str | None]:
-    """Return, by the number of a style, the format of one that shows a number as a date or a time, else None."""
+def _list_formats(styles: _Tree) -> list[str | None]:
+    """Return, by the number of a style, the format of one that shows a number otherwise, else None."""
     codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
-    return [_date_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
+    return [_special_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
 
 
 class Book:
@@ -509,7 +519,7 @@ class Book:
                         self.hidden.add(one.get("name", ""))
             self._shared = _Shared(
                 self._part(_Strings, kinds["sharedStrings"]).found if "sharedStrings" in kinds else [],
-                _list_dates(self._part(_Tree, kinds["styles"])) if "styles" in kinds else [],
+                _list_formats(self._part(_Tree, kinds["styles"])) if "styles" in kinds else [],
                 any(one.get("date1904") in _TRUE for one in book.find("workbookPr")),
             )
 

@@ -73,5 +73,5 @@ def _list_units(column: Column, number: float, unit: str) -> list[str]:
 def _say_reading(column: Column, number: float, other: str, unit: str) -> Text:
     converted = number * _scale(column, other) / _scale(column, unit)
     return fill(
-        "{number:.10g} {other} = {converted:.3g} {unit}", number=number, other=other, converted=converted, unit=unit
+        "{number:.10g} {other} = {converted:.4g} {unit}", number=number, other=other, converted=converted, unit=unit
     )

@@ -26,6 +26,7 @@ from assess.workbook.resolve import (
     resolve,
 )
 from assess.workbook.schema import SHEETS, Sheet
+from assess.workbook.spelling import correct_names
 
 IN_CODE = "inventory.xlsx"
 """What an inventory without a file is called in reports."""
@@ -243,8 +244,9 @@ def _check(tables: Tables, found: list[Problem], files: FileReader, *, strict: b
     WorkbookError
         If `strict` and there is an error.
     """
+    tables, notes = correct_names(tables)
     tables, more = check.run_checks(resolve(tables), _checks(files))
-    problems = [*found, *more]
+    problems = [*found, *notes, *more]
     if not any(one.severity == "error" for one in problems):
         return tables, problems
     order = {table.sheet.name: at for at, table in enumerate(tables.values())}

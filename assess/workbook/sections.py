@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Collection, Iterator, Sequence
-from itertools import islice
 
 from assess.i18n import Text, fill, join, nfill
 from assess.workbook.open import Cells
@@ -20,12 +19,15 @@ def find_lone_text(cells: Cells, known: Collection[int], first: Collection[int])
 
     Cells of columns that are not `known` do not count.
     """
-    filled = list(islice((at for at, value in cells.items() if at in known and not is_blank(value)), 2))
-    if len(filled) != 1 or filled[0] not in first:
-        return None
-    value = cells[filled[0]]
+    filled = None
+    for at, value in cells.items():
+        if at in known and not is_blank(value):
+            if filled is not None:
+                return None
+            filled = at
+    value = cells.get(filled) if filled in first and filled is not None else None
     is_text = isinstance(value, str) and value.strip() not in ERRORS and any(map(str.isalpha, value))
-    return filled[0] if is_text else None
+    return filled if is_text else None
 
 
 def list_spanned(merged: Sequence[str]) -> set[int]:

@@ -7,13 +7,16 @@ that offers both. Cells that are typed as asked for, numbers above all, do not c
 import math
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 
 from assess.i18n import LANGUAGES, Text, fill
 from assess.units import GRAVITY, QUANTITIES, read_unit
-from assess.workbook.dates import read_date
+from assess.workbook.dates import AS_ISO, is_month, read_date
 from assess.workbook.habits import CellError, Remark, note
-from assess.workbook.names import ENGLISH, find_choice, plain, say_choices
+from assess.workbook.names import DASHES, ENGLISH, find_choice, plain, say_choices
+from assess.workbook.open import Percent
+from assess.workbook.ranges import is_within
 from assess.workbook.schema import NO, YES, Column
 
 Quote = Callable[[object], str]
@@ -21,14 +24,8 @@ Quote = Callable[[object], str]
 LONGEST = 60
 """Characters of a text that may be a number or a date."""
 
-_DASHES = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\ufe58\ufe63"
 _WIDE = {at: at - 0xFEE0 for at in range(0xFF01, 0xFF5F)}
-_PLAIN_SIGNS: dict[int, int | str] = {
-    **_WIDE,
-    **dict.fromkeys(map(ord, _DASHES), "-"),
-    ord("\u2019"): "'",
-    ord("\u02bc"): "'",
-}
+_PLAIN_SIGNS: dict[int, int | str] = {**_WIDE, **DASHES, **dict.fromkeys(map(ord, "\u2019\u02bc"), "'")}
 _NUMBER = re.compile(
     r"(?P<sign>[-+]?) ?(?P<digits>\d[\d.,' ]*|[.,]\d+)(?P<power>[eE][-+]?\d{1,3})?(?P<unit>.*)", re.ASCII
 )
@@ -43,15 +40,20 @@ def straighten(text: str) -> str:
     return " ".join(text.translate(_PLAIN_SIGNS).split())
 
 
-def understand(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def is_free(column: Column) -> bool:
+    """Tell whether a column takes any text as it is."""
+    return column.kind == "text" and not (column.required or column.source)
+
+
+def understand(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
     """Return what belongs into a cell, and the note on that where it is not what the cell holds.
 
     Parameters
     ----------
     column : Column
         Its column.
-    value : str or bool
-        What it holds.
+    value : object
+        What it holds, if that is not a plain number.
     unit : str
         That of the header: numbers are returned in it.
     quote : callable
@@ -80,8 +82,10 @@ def _name_column(column: Column, unit: str) -> Text | str:
 # ---------------------------------------------------------------- numbers
 
 
-def _take_number(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
-    if isinstance(value, bool) or len(value) > LONGEST:
+def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+    if isinstance(value, Percent) and column.quantity == "share" and is_within(column, 100 * value, unit):
+        return 100 * value, _note_shown(column, value, unit)
+    if not isinstance(value, str) or len(value) > LONGEST:
         return value, None
     text = straighten(value)
     match = _NUMBER.fullmatch(text)
@@ -96,6 +100,13 @@ def _take_number(column: Column, value: str | bool, unit: str, quote: Quote) -> 
     number = readings[0]
     typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
     return number, note(_find_habit(column, value, match), _name_column(column, unit), quote(value), typed, number)
+
+
+def _note_shown(column: Column, value: Percent, unit: str) -> Remark:
+    """Return the note on a cell that shows a percentage; there is nothing to correct."""
+    typed = fill("{number:g}{unit}", number=100 * value, unit=f" {unit}")
+    found = note("percent", _name_column(column, unit), f"{value:.3%}", typed, 100 * value)
+    return replace(found, value=None)
 
 
 def _read_digits(digits: str) -> list[float]:
@@ -155,12 +166,14 @@ def _describe_two(column: Column, unit: str, shown: str, readings: list[float]) 
 # ---------------------------------------------------------------- choices
 
 
-def _take_choice(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def _take_choice(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
     if isinstance(value, bool):
         if column.kind == "flag" or not {YES, NO} <= {*column.choices}:
             return value, None
         choice = YES if value else NO
         word = say_choices((choice,), column.language)[0]
+    elif not isinstance(value, str):
+        return value, None
     else:
         found, word = find_meant(value, column.choices, column.language)
         if found is None or not word:
@@ -202,24 +215,31 @@ def _find_short(typed: str, choices: tuple[str, ...], language: str) -> str | No
 # ---------------------------------------------------------------- dates and names
 
 
-def _take_date(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
-    if isinstance(value, bool) or len(value) > LONGEST:
+def _take_date(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+    if not isinstance(value, str):
         return value, None
-    date = read_date(column.label, straighten(value), quote(value))
+    text = straighten(value[:LONGEST])
+    date = read_date(column.label, text, quote(value))
+    if date is None and not is_month(text):
+        message = fill(
+            "{label} is {text}, which is not read as a date; it is shown as typed.",
+            label=column.label, text=quote(value),
+        )  # fmt: skip
+        return value, Remark(message, AS_ISO)
     if date is None or date == value:
         return value, None
     return date, note("date", column.label, quote(value), date, date)
 
 
-def _take_name(column: Column, value: str | bool, unit: str, quote: Quote) -> tuple[object, Remark | None]:
+def _take_name(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
     """Take stray spaces out of a name that other cells compare with."""
-    if isinstance(value, bool) or not (column.required or column.source):
+    if not isinstance(value, str) or is_free(column):
         return value, None
     name = " ".join(value.split())
     return (value, None) if name == value else (name, note("spaces", column.label, quote(value), quote(name), name))
 
 
-_Taker = Callable[[Column, str | bool, str, Quote], tuple[object, Remark | None]]
+_Taker = Callable[[Column, object, str, Quote], tuple[object, Remark | None]]
 _TAKERS: Mapping[str, _Taker] = {
     "number": _take_number,
     "count": _take_number,

@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Callable, Mapping
 
 from assess.errors import InputError
-from assess.i18n import fill, find_language
+from assess.i18n import fill, find_language, nfill
 from assess.model import Outline
 from assess.units import QUANTITIES
 from assess.workbook.habits import CellError, Remark
@@ -19,7 +19,7 @@ from assess.workbook.open import UNSAVED
 from assess.workbook.outlines import OutlineError, parse_outline
 from assess.workbook.ranges import find_slip, is_unusual, is_within, span
 from assess.workbook.schema import YES, Column
-from assess.workbook.typed import understand
+from assess.workbook.typed import is_free, understand
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _TIMES = (datetime.datetime, datetime.date, datetime.time)
@@ -95,9 +95,11 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[R
             fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
             fill("Correct the formula in the cell."),
         )
-    meant, remark = understand(column, value, unit, shorten) if isinstance(value, str | bool) else (value, None)
-    found = READERS[column.kind](column, meant, unit)
-    return found, tuple(one for one in (remark, _remark_on(column, value, meant, unit)) if one)
+    meant, remark = value, None
+    if not (type(value) is float or type(value) is int or is_free(column)):
+        meant, remark = understand(column, value, unit, shorten)
+    found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
+    return found, () if remark is more is None else tuple(one for one in (remark, more) if one)
 
 
 def _remark_on(column: Column, typed: object, value: object, unit: str) -> Remark | None:
@@ -112,9 +114,11 @@ def _remark_on(column: Column, typed: object, value: object, unit: str) -> Remar
     removed = clean(typed)[1] if isinstance(typed, str) and column.kind in ("text", "file", "records") else 0
     if not removed:
         return None
-    message = fill(
-        "{count} control or direction characters in {column} were taken out.", count=removed, column=fill(column.label)
-    )
+    message = nfill(
+        "{n} control or direction character in {column} was taken out.",
+        "{n:,} control or direction characters in {column} were taken out.",
+        removed, column=fill(column.label),
+    )  # fmt: skip
     return Remark(message)
 
 

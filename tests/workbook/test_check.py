@@ -29,7 +29,7 @@ ROWS = [
     row("A4", Height=1.8),
     row("A5", Floor="9"),
     row("A2"),
-    row("A7", Type="Lokcer"),
+    row("A7", Type="Lokcer", Height=None),
     row("A8", Axis="Z"),
     row("A9", Breadth="#DIV/0!"),
     row("A10", Height="=2*90"),
@@ -37,7 +37,7 @@ ROWS = [
     row("A12"),
     row("A13", Route="R1"),
     row("A14", Route="R2"),
-    row("A15", Breadth="38,5"),
+    row("A15", Breadth="1,385"),
     row("A16", Width=datetime(2024, 3, 1)),
     row("A17", Breadth=90),
     row("A18", Quantity=0),
@@ -54,7 +54,7 @@ TYPES: Sheet = [["Type", "Breadth [cm]", "Height [cm]", "breadth [in]"], ["Locke
 EXPECTED = {
     "Items!G2: Height is the text 'high', expected a number [cm]. Type the number alone.",
     "Items!E3: Breadth is -40 cm, expected 5 to 600 cm. Remove the minus sign.",
-    "Items!G4: Height is 1.8 cm, expected 5 to 600 cm. Did you type metres?",
+    "Items!G4: Height is 1.8 cm, expected 5 to 600 cm. Did you mean 1.8 m = 180 cm?",
     "Items!B5: Floor '9' is not in the Floors sheet. Choose one of the Floors sheet, or add it there.",
     "Items!A6: duplicate Item 'A2', also in A2. Give each its own name.",
     "Items!C7: Type 'Lokcer' is not in the Catalogue sheet. Choose one of the Catalogue sheet, or add it there. "
@@ -65,8 +65,8 @@ EXPECTED = {
     "Items!J11:J12: cells are merged inside the table. Unmerge them and fill each cell.",
     "Items!I13: Route 'R1' and others are named in 2 rows, but there is no Routes sheet. "
     "Add the sheet, or clear the column.",
-    "Items!E15: Breadth is the text '38,5' with a decimal comma, expected a number [cm]. "
-    "Set the cell's format to General and type the number again.",
+    "Items!E15: Breadth is the text '1,385', which can be read as 1.385 cm or as 1385 cm. "
+    "Type the number without a separator between thousands.",
     "Items!F16: Width holds a date or time (2024-03-01 00:00:00), expected a number [cm]. "
     "Set the cell's format to General and type the number again.",
     "Items!E17: Breadth 90 cm is greater than Width 80 cm. Breadth is the shorter plan side: exchange the two.",
@@ -111,7 +111,7 @@ def test_every_fault_has_a_cell_and_a_mend(tmp_path: Path) -> None:
 
 
 def test_errors_come_first(tmp_path: Path) -> None:
-    severities = [problem.severity for problem in problems_of(write(tmp_path, [[*ITEMS[0], "Own"], ["A1"]]))]
+    severities = [problem.severity for problem in problems_of(write(tmp_path, [[*ITEMS[0], "Own"], ["A1", None, None, None, "x"]]))]
     assert severities == ["error", "error", "error", "note"]
 
 

@@ -275,7 +275,7 @@ def test_errors_name_the_workbooks_own_sheets_cells_and_labels(tmp_path: Path) -
         write(tmp_path, items, Percorsi=[["Percorso", "Tratto"]], Edificio=[["Tipo di scenario", "registrata"]])
     )
     assert found == {
-        "Arredi!D2: Altezza is 1.8 cm, expected 5 to 600 cm. Did you type metres?",
+        "Arredi!D2: Altezza is 1.8 cm, expected 5 to 600 cm. Did you mean 1.8 m = 180 cm?",
         "Arredi!E2: Ancorato is 'forse', expected one of: no, sì, in parte, non noto. Choose from the list.",
         "Arredi!E3: Ancorato is 'sii', expected one of: no, sì, in parte, non noto. Did you mean sì?",
         "Arredi!A3: duplicate Elemento 'A1', also in A2. Give each its own name.",

@@ -105,7 +105,7 @@ def test_the_example_in_code_is_the_example_of_a_file(tmp_path: Path) -> None:
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [
-    ({"height": 1.8}, "Items row 3 Height: Height is 1.8 cm, expected 5 to 600 cm. Did you type metres?"),
+    ({"height": 1.8}, "Items row 3 Height: Height is 1.8 cm, expected 5 to 600 cm. Did you mean 1.8 m = 180 cm?"),
     ({"height": "tall"}, "Items row 3 Height: Height is the text 'tall', expected a number [cm]. Type the number alone."),
     ({"floor": "9"}, "Items row 3 Floor: Floor '9' is not in the Floors sheet. Choose one of the Floors sheet, or add it "
                      "there."),
@@ -218,6 +218,6 @@ def test_errors_can_be_said_in_italian(tmp_path: Path) -> None:
     with speaking(load_catalogue("it")):
         said = [f"{gettext(one.message)} {gettext(one.fix)}" for one in caught.value.problems]
     assert said == [
-        "Altezza è 1,8 cm, atteso da 5 a 600 cm. È stato digitato in metri?",
+        "Altezza è 1,8 cm, atteso da 5 a 600 cm. Si intendeva 1,8 m = 180 cm?",
         "Piano '9' non è nel foglio Piani. Scegliere una voce del foglio Piani, oppure aggiungerla lì.",
     ]

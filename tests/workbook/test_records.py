@@ -167,7 +167,7 @@ def test_floor(tmp_path: Path) -> None:
     found = (floor.elevation, floor.pfa["X"], floor.pfa["Y"], floor.pfv["Y"])
     assert found == pytest.approx((3.048, 0.5 * GRAVITY, 3, 0.4))
     assert floor.plan == tmp_path / "plan.png"
-    assert remarks(inventory, "note") == {"Floors!G2: Plan image is kept, not drawn by this version."}
+    assert remarks(inventory, "note") == {"Floors!G2: Plan is kept, not drawn by this version."}
 
 
 @pytest.mark.parametrize("head", [PNG, b"\xff\xd8\xff\xe0" + bytes(100)])
