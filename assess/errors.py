@@ -15,7 +15,7 @@ AssessError
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 Severity = Literal["error", "warning", "note"]
 
@@ -45,6 +45,20 @@ class Problem:
     def __str__(self) -> str:
         text = f"{self.message} {self.fix}".strip()
         return f"{self.place}: {text}" if self.place else text
+
+
+class Gap(Problem):
+    """A problem that is no mistake: the workbook does not say yet how a floor shakes."""
+
+    __slots__ = ()
+    lacks: ClassVar[Literal["shaking", "furniture"]] = "shaking"
+
+
+class FurnitureGap(Gap):
+    """A problem that is no mistake: the workbook lists no furniture yet."""
+
+    __slots__ = ()
+    lacks = "furniture"
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,13 +105,19 @@ class SettingsError(InputError, ValueError):
 class WorkbookError(InputError):
     """The workbook cannot be used; `problems` holds all that was found, errors first.
 
-    `language` is the code of the workbook's language, as far as it was known.
+    `language` is the code of the workbook's language, as far as it was known. `is_incomplete` tells whether nothing is
+    wrong with what is filled in: every error is a `Gap`.
     """
 
     def __init__(self, problems: Sequence[Problem], language: str = "en") -> None:
         self.language = language
         self.problems = tuple(sorted(problems, key=lambda problem: problem.severity != "error"))
         super().__init__("\n".join(str(problem) for problem in self.problems))
+
+    @property
+    def is_incomplete(self) -> bool:
+        """Whether nothing that is filled in is wrong, and something is still to be filled in."""
+        return all(isinstance(one, Gap) for one in self.problems if one.severity == "error")
 
 
 class RecordError(InputError):

@@ -63,7 +63,8 @@ class Building:
     """The building and the earthquake; a blank text or None where the workbook says nothing.
 
     Lengths in m, `period` in s, accelerations in m/s2, velocities in m/s, `azimuth_deg` clockwise from north,
-    `latitude` and `longitude` in degrees, north and east positive. `hazard` is the name of the file with the curve.
+    `latitude` and `longitude` in degrees, north and east positive. `shaking` is a key of `assess.intensity.SHAKINGS`,
+    `hazard` the name of the file with the curve.
     `motion_uncertainty` is a standard deviation of the natural logarithm of PFA [-], `piece_uncertainty` whether pieces
     vary from one simulated earthquake to the next; None where blank. `cells` tells in which cell of the sheet a field
     stands.
@@ -91,6 +92,7 @@ class Building:
     ground_pga: float | None = None
     ground_pgv: float | None = None
     sds: float | None = None
+    shaking: str = ""
     hazard: str = ""
     friction: float | None = None
     restitution: float | None = None

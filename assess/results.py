@@ -71,6 +71,9 @@ MOTION_FLAGS: Mapping[str, str] = {
         caution=MAY_BE_LOWER,
     ),
     "code_profile": fill("PFA by a code's design profile: an envelope, not an expected value"),
+    "assumed_shaking": fill(
+        "the ground motion is the published median of an assumed intensity (Shaking), not a value known for this site"
+    ),
     "pfv_estimated": fill("PFV was not given: estimated from PFA and the building's period T1"),
     "pfv_capped": fill(
         "the estimate of PFV was larger than {factor:.2f} times Ground PGV, and is set to that", factor=ROOF_FACTOR
@@ -718,6 +721,46 @@ class SuiteInfo:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AssumedShaking:
+    """The intensity that stands in for a known motion of the ground.
+
+    Parameters
+    ----------
+    choice : str
+        The class of intensity, as the workbook offers it.
+    name : str
+        The class in short.
+    intensity : float
+        What it is taken for: MMI, or JMA instrumental intensity.
+    pga_g, pgv_cm_s : float
+        Published medians of the ground's peaks, before the settings' factor.
+    scatter, pgv_scatter : float
+        Standard deviation of ln PGA and of ln PGV given the intensity [-].
+    is_derived : bool
+        Whether PGA follows from PGV by way of MMI.
+    is_open : bool
+        Whether the class has no upper limit.
+    profile : str
+        The code's design profile over the height.
+    sources, references : tuple of str
+        The relations in short and in full.
+    """
+
+    choice: str
+    name: str
+    intensity: float
+    pga_g: float
+    pgv_cm_s: float
+    scatter: float
+    pgv_scatter: float
+    is_derived: bool
+    is_open: bool
+    profile: str
+    sources: tuple[str, ...]
+    references: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
     """What a run is made again from.
 
@@ -733,6 +776,8 @@ class Provenance:
         Where the floor motion came from, one of `assess.settings.SCENARIOS`.
     uncertainty : Uncertainty
         What was drawn of the earthquake and of the pieces.
+    shaking : AssumedShaking, optional
+        The intensity that was assumed; None where no floor rests on one.
     suite : SuiteInfo, optional
         The user's own motions.
     language : str
@@ -758,6 +803,7 @@ class Provenance:
     files: Mapping[str, str]
     scenario: str
     uncertainty: Uncertainty
+    shaking: AssumedShaking | None
     suite: SuiteInfo | None
     language: str
     sheets: Mapping[str, str]

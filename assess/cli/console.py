@@ -1,7 +1,8 @@
 """What the command line prints besides results: problems, progress, and the exit status.
 
-Exit status: 0 done; 1 done, but something could not be assessed or written (named); 2 bad input or usage, nothing
-written; 130 interrupted. Messages go to standard error, what was asked for to standard output.
+Exit status: 0 done; 1 done, but something could not be assessed or written (named), or `check` found a workbook that
+is not complete yet; 2 bad input or usage, nothing written; 130 interrupted. Messages go to standard error, what was
+asked for to standard output.
 """
 
 import _thread
@@ -67,6 +68,7 @@ def guard(command: Callable[..., None]) -> Callable[..., None]:
             _end(str(error))
         except WorkbookError as error:
             print_problems(error.problems)
+            print_ways(error.problems)
             typer.echo(f"{count_errors(error.problems)}; nothing was written.", err=True)
             raise typer.Exit(2) from None
         except InputError as error:
@@ -119,6 +121,14 @@ def print_problems(problems: Sequence[Problem]) -> None:
         typer.echo(f"{problem.severity:<7}  {problem}", err=True)
     if len(shown) > MOST_PRINTED:
         typer.echo(f"... and {len(shown) - MOST_PRINTED:,} more.", err=True)
+
+
+def print_ways(problems: Sequence[Problem]) -> None:
+    """Print to standard error what completes a workbook that lacks the shaking or the furniture."""
+    from assess.workbook.completing import list_ways
+
+    for number, way in enumerate(list_ways(problems), 1):
+        typer.echo(f"  {number}. {way}", err=True)
 
 
 def print_warnings(problems: Sequence[Problem]) -> None:

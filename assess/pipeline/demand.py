@@ -3,8 +3,9 @@
 Precedence, as filled: a floor's record on an axis, then its given PFA and PFV. Where one axis alone is known it serves
 both, flagged ``one_axis_only``. A floor of which nothing is known is interpolated between the nearest floors above and
 below of which something is, flagged ``interpolated``; where it does not lie between two such, a code's profile serves
-it from Ground PGA, flagged ``code_profile``. A PFV that is not given is estimated from T1, flagged ``pfv_estimated``;
-where Ground PGV is known, a larger estimate is capped by it, flagged ``pfv_capped``.
+it from Ground PGA, flagged ``code_profile``: else from 0.4 SDS, else from the published median of an assumed intensity
+(Shaking), flagged ``assumed_shaking``. A PFV that is not given is estimated from T1, flagged ``pfv_estimated``; where
+Ground PGV is known, or that of the assumed intensity, a larger estimate is capped by it, flagged ``pfv_capped``.
 """
 
 import math
@@ -13,8 +14,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
 
-from assess.errors import Problem, WorkbookError
+from assess.errors import Gap, Problem, WorkbookError
 from assess.i18n import fill
+from assess.intensity import SHAKINGS, Shaking
 from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
 from assess.motion.record import Motion, Record, treat
 from assess.motion.scenario import DEFAULT, PGA_OF_SDS, PROFILES, Profile, cap_pfv, estimate_pfv
@@ -47,6 +49,8 @@ class Demand:
         The floors below and above that it is interpolated between.
     profile : Profile, optional
         The code's profile, with its clause, the height ratio z/h and the amplification [-] that it gave.
+    shaking : Shaking, optional
+        The assumed intensity from which the profile starts.
     flags : tuple of str
         Keys of `assess.results.MOTION_FLAGS`.
     scale : float
@@ -66,6 +70,7 @@ class Demand:
     clause: str = ""
     height_ratio: float | None = None
     amplification: float | None = None
+    shaking: Shaking | None = None
     flags: tuple[str, ...] = ()
     scale: float = 1.0
 
@@ -86,12 +91,14 @@ class Demand:
 
     @property
     def label(self) -> str:
-        """Its source in short: the record's name, "given", the profile's code, or the two floors."""
+        """Its source in short: the record's name, "given", the profile's code with its intensity, or two floors."""
         if self.is_level:
             return fill("as floor {floor}", floor=self.between[0])
         if self.between:
             below, above = self.between
             return fill("interpolated between {below} and {above}", below=below, above=above)
+        if self.profile and self.shaking:
+            return fill("Shaking {intensity}, {code}", intensity=self.shaking.name, code=self.profile.key)
         return self.profile.key if self.profile else self.name or fill("given")
 
     @property
@@ -119,7 +126,7 @@ class Ground:
     Parameters
     ----------
     pga : float, optional
-        Peak ground acceleration [m/s2]; None where the workbook gives neither Ground PGA nor SDS.
+        Peak ground acceleration [m/s2]; None where the workbook gives neither Ground PGA nor SDS nor Shaking.
     is_from_sds : bool
         Whether it is 0.4 SDS.
     roof : float, optional
@@ -127,7 +134,9 @@ class Ground:
     is_highest_floor : bool
         Whether `roof` is the highest floor of the workbook, which makes z/h larger than the roof would.
     pgv : float, optional
-        Peak ground velocity [m/s], which caps the PFV that is estimated from T1.
+        Peak ground velocity [m/s] as filled in, which caps the PFV that is estimated from T1.
+    shaking : Shaking, optional
+        The assumed intensity that `pga` is the median of; its PGV caps as `pgv` does, on floors that follow a profile.
     """
 
     pga: float | None
@@ -135,6 +144,12 @@ class Ground:
     roof: float | None
     is_highest_floor: bool
     pgv: float | None = None
+    shaking: Shaking | None = None
+
+    @property
+    def profile_pgv(self) -> float | None:
+        """Peak ground velocity [m/s] that belongs to `pga`: as filled in, else that of the assumed intensity."""
+        return self.shaking.pgv if self.pgv is None and self.shaking else self.pgv
 
 
 def find_ground(inventory: Inventory) -> Ground:
@@ -142,12 +157,15 @@ def find_ground(inventory: Inventory) -> Ground:
     building = inventory.building
     highest = max((floor.elevation for floor in inventory.floors if floor.elevation is not None), default=None)
     by_sds = building.ground_pga is None and building.sds is not None
+    pga = PGA_OF_SDS * building.sds if by_sds and building.sds is not None else building.ground_pga
+    shaking = SHAKINGS.get(building.shaking) if pga is None else None
     return Ground(
-        pga=PGA_OF_SDS * building.sds if by_sds and building.sds is not None else building.ground_pga,
+        pga=shaking.pga if shaking else pga,
         is_from_sds=by_sds,
         roof=building.height if building.height is not None or highest is None else max(highest, 0.0),
         is_highest_floor=building.height is None,
         pgv=building.ground_pgv,
+        shaking=shaking,
     )
 
 
@@ -190,6 +208,11 @@ def build_demands(
     if problems:
         raise WorkbookError([inventory.place(problem) for problem in problems])
     return demands
+
+
+def find_shaking(demands: Demands) -> Shaking | None:
+    """Return the assumed intensity that serves a floor, of which a run has one at most."""
+    return next((one.shaking for parallel in demands.values() for one in parallel if one.shaking), None)
 
 
 def scale_demands(demands: Demands, factor: float) -> Demands:
@@ -288,10 +311,12 @@ def serve_by_profile(
     ratio = min(floor.elevation / ground.roof, 1.0) if floor.elevation > 0 else 0.0
     amplification = profile.amplification(ratio, period, ductility_reduction=ductility_reduction)
     pfa = ground.pga * amplification
-    pfv, flags = _velocity(pfa, math.nan, period, ground.pgv)
+    pfv, flags = _velocity(pfa, math.nan, period, ground.profile_pgv)
+    assumed = ("assumed_shaking",) if ground.shaking else ()
     one = Demand(
-        floor=floor, axis="X", source="profile", pfa=pfa, pfv=pfv, flags=("code_profile", *flags),
+        floor=floor, axis="X", source="profile", pfa=pfa, pfv=pfv, flags=("code_profile", *assumed, *flags),
         profile=profile, clause=profile.cite(period), height_ratio=ratio, amplification=amplification,
+        shaking=ground.shaking,
     )  # fmt: skip
     return {"X": (one,), "Y": (replace(one, axis="Y"),)}
 
@@ -302,10 +327,11 @@ def serve_by_profile(
 def _check_ground(inventory: Inventory, scenario: str, ground: Ground) -> Iterable[Problem]:
     if scenario in PROFILES and ground.pga is None:
         message = fill(
-            "Ground PGA and SDS are blank; the scenario '{scenario}' needs one of them.", scenario=fill(scenario)
+            "Ground PGA, SDS and Shaking are blank; the scenario '{scenario}' needs one of them.",
+            scenario=fill(scenario),
         )
-        fix = fill("Fill in Ground PGA, or choose another scenario.")
-        yield Problem("error", "Building", inventory.building.cell("ground_pga"), message, fix)
+        fix = fill("Fill in Ground PGA, choose Shaking, or choose another scenario.")
+        yield Gap("error", "Building", inventory.building.cell("ground_pga"), message, fix)
 
 
 def _missing(floor: Floor, scenario: str, ground: Ground) -> list[Problem]:
@@ -321,7 +347,7 @@ def _missing(floor: Floor, scenario: str, ground: Ground) -> list[Problem]:
     if scenario == "as filled":
         message, fix = describe_unserved(f"'{floor.floor}'", has_elevation=placed)
         where = "elevation" if ground.pga is not None and not placed else "pfa_x"
-        return [Problem("error", "Floors", floor.cell(where), message, fix)]
+        return [Gap("error", "Floors", floor.cell(where), message, fix)]
     wanted, where = {"recorded": (fill("record"), "record_x"), "given": ("PFA", "pfa_x")}[scenario]
     message = fill(
         "floor '{floor}' has no {wanted}, which the scenario '{scenario}' needs; it cannot be interpolated, as {why}.",

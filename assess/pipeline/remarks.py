@@ -12,6 +12,7 @@ from assess.model import AXES, Axis, Floor, Inventory
 from assess.motion.record import treat
 from assess.motion.scenario import PGA_OF_SDS, Profile, cap_pfv
 from assess.motion.target import estimate_period
+from assess.pipeline.assumed_shaking import remark_on_shaking
 from assess.pipeline.demand import Demands, find_ground, serve_by_profile
 from assess.units import GRAVITY, ROUNDING, VELOCITY
 
@@ -71,6 +72,7 @@ def _on_shaking(inventory: Inventory, demands: Demands, scenario: str, ductility
             yield from _set_aside(floor, axis, demands, scenario)
     yield from _profile_below_known(inventory, demands, ductility_reduction)
     yield from _ground_values(inventory, demands, scenario)
+    yield from remark_on_shaking(inventory, demands)
     yield from _ground_velocity(inventory, demands)
 
 

@@ -13,7 +13,7 @@ Where the motions may be too weak, the chances are lower bounds, and those piece
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -28,7 +28,7 @@ from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import GeneratedEnsemble
 from assess.pipeline.level_falls import find_falls
 from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
-from assess.pipeline.verify import choose_motions
+from assess.pipeline.verify import choose_motions, find_uncertainty
 from assess.progress import SILENT, Progress
 from assess.rocking.block import stocky_limit
 from assess.rocking.draws import Uncertainty
@@ -188,9 +188,9 @@ def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
     """Return the cases with the motions under which the pieces `beside` routes are to be rocked."""
     chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
     inventory, settings = assessment.inventory, assessment.settings
-    return choose_motions(
-        assessment.cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None
-    )
+    uncertainty = find_uncertainty(inventory.building)  # at a PFA: without the scatter of PGA given an intensity
+    cases = replace(assessment.cases, uncertainty=uncertainty)
+    return choose_motions(cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,7 +20,7 @@ from assess.methods._method import NO_WALL, SIDE_UNKNOWN
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
+from assess.pipeline.demand import Demand, Demands, build_demands, find_shaking, scale_demands
 from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.series import Arrays, build_series, write_series
@@ -150,7 +150,7 @@ def _compute(
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     demands = scale_demands(filled, settings.scale)
     (case_item, case_demand), obstructions = _pair(inventory, demands), _find_obstructions(inventory, progress)
-    cases = _cases(inventory, case_item, case_demand)
+    cases = _cases(inventory, demands, case_item, case_demand)
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
@@ -277,7 +277,9 @@ def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tup
     return np.array([index for index, _ in pairs], dtype=np.intp), tuple(demand for _, demand in pairs)
 
 
-def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]) -> Cases:
+def _cases(
+    inventory: Inventory, demands: Demands, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]
+) -> Cases:
     def column(values: list[float | None]) -> NDArray[np.float64]:
         return np.array(values, dtype=np.float64)
 
@@ -296,7 +298,7 @@ def _cases(inventory: Inventory, case_item: NDArray[np.intp], case_demand: tuple
         name=np.array([names[item.item] for item in items], dtype=np.int64),
         slides_under=np.full(len(items), -1, dtype=np.intp),
         wall=_list_walls(inventory, case_item, case_demand),
-        uncertainty=find_uncertainty(building),
+        uncertainty=find_uncertainty(building, find_shaking(demands)),
     )
 
 

@@ -14,9 +14,10 @@ from assess.model import AXES, Building, Floor, Inventory, Item
 from assess.motion.record import Record, treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile, cap_pfv, estimate_pfv
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import Demand
+from assess.pipeline.demand import Demand, Demands
 from assess.pipeline.versions import versions
 from assess.results import (
+    AssumedShaking,
     CaseTable,
     EnsembleRow,
     EstimateRow,
@@ -105,7 +106,10 @@ def _describe_estimate(building: Building, demand: Demand) -> EstimateRow | None
     """Return what a PFV was estimated from; None where it was not, or is interpolated."""
     if "pfv_estimated" not in demand.flags or demand.between or building.period is None:
         return None
-    cap = None if building.ground_pgv is None else demand.scale * cap_pfv(building.ground_pgv)
+    ground = building.ground_pgv
+    if ground is None and demand.shaking:
+        ground = demand.shaking.pgv
+    cap = None if ground is None else demand.scale * cap_pfv(ground)
     return EstimateRow(_sure(estimate_pfv(GRAVITY, building.period), "cm/s"), edge(cap, "cm/s"))
 
 
@@ -283,6 +287,7 @@ def build_provenance(assessment: Assessment) -> Provenance:
         files=dict(inventory.files),
         scenario=assessment.scenario,
         uncertainty=assessment.cases.uncertainty,
+        shaking=_describe_shaking(assessment.demands),
         suite=_suite(assessment.suite, assessment.settings.scale_motions),
         language=inventory.report_language,
         sheets=dict(inventory.sheets),
@@ -291,6 +296,27 @@ def build_provenance(assessment: Assessment) -> Provenance:
         interval_z=interval_width(assessment.settings),
         looks=LOOKS,
         profiles=tuple(map(describe_profile, PROFILES.values())),
+    )
+
+
+def _describe_shaking(demands: Demands) -> AssumedShaking | None:
+    found = next((one for parallel in demands.values() for one in parallel if one.shaking), None)
+    if found is None or found.shaking is None or found.profile is None:
+        return None
+    shaking = found.shaking
+    return AssumedShaking(
+        choice=shaking.choice,
+        name=shaking.name,
+        intensity=shaking.intensity,
+        pga_g=_sure(shaking.pga, "g"),
+        pgv_cm_s=_sure(shaking.pgv, "cm/s"),
+        scatter=shaking.scatter,
+        pgv_scatter=shaking.pgv_scatter,
+        is_derived=shaking.is_derived,
+        is_open=shaking.is_open,
+        profile=found.profile.key,
+        sources=shaking.sources,
+        references=shaking.references,
     )
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError, Problem
 from assess.i18n import Text, fill, join
+from assess.intensity import Shaking
 from assess.methods import LOOKS, Cases, Outcome, simulation
 from assess.methods._beside import may_slide
 from assess.methods._method import BoolArray
@@ -27,11 +28,16 @@ MOST_PAIRS = 400_000_000
 """Results of one motion on one piece that are kept at most: they take five bytes each."""
 
 
-def find_uncertainty(building: Building) -> Uncertainty:
-    """Return what is taken to be uncertain: what the workbook says, else the defaults."""
+def find_uncertainty(building: Building, shaking: Shaking | None = None) -> Uncertainty:
+    """Return what is taken to be uncertain: what the workbook says, else the defaults.
+
+    Where an assumed intensity serves a floor, the motion is at least as uncertain as PGA is given that intensity. That
+    scatter is the total one, of earthquakes and sites alike: it stands in for a smaller value, and adds to none.
+    """
     default, motion, piece = Uncertainty(), building.motion_uncertainty, building.piece_uncertainty
+    own = default.motion if motion is None else motion
     return Uncertainty(
-        motion=default.motion if motion is None else motion, piece=default.piece if piece is None else piece
+        motion=max(own, shaking.scatter) if shaking else own, piece=default.piece if piece is None else piece
     )
 
 

@@ -15,6 +15,7 @@ from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, co
 from assess.report.findings import cautions, motions, trials
 from assess.report.findings.annual_chances import AnnualChances, build_annual
 from assess.report.findings.apart import list_apart, list_parts
+from assess.report.findings.assumed_intensity import say_shaking
 from assess.report.findings.disagreements import Disagreements, find_disagreements
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
@@ -131,6 +132,11 @@ class Content(ByBasis):
         return self.run.provenance.version
 
     @property
+    def shaking(self) -> str:
+        """What an assumed intensity stands for, and whose relations say so; "" where none is assumed."""
+        return say_shaking(self.run)
+
+    @property
     def by_floor(self) -> Sequence[Counts]:
         """The counts of every floor."""
         return [page.counts for page in self.floors]
@@ -176,8 +182,10 @@ class Content(ByBasis):
 
     @property
     def references(self) -> Sequence[str]:
-        """Publications of the methods and of the interval."""
-        return list(dict.fromkeys((*(say_reference(method.reference) for method in self.methods), WILSON)))
+        """Publications of the methods, of the interval, and of an assumed intensity."""
+        shaking = self.run.provenance.shaking
+        others = (WILSON, *(shaking.references if shaking else ()))
+        return list(dict.fromkeys((*(say_reference(method.reference) for method in self.methods), *others)))
 
     @property
     def class_limits(self) -> Sequence[tuple[RiskClass, str]]:

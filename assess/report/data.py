@@ -75,6 +75,7 @@ def describe_run(results: Results) -> dict[str, Any]:
             "seed": results.settings.seed,
             "settings": asdict(results.settings) | {"scenario": origin.scenario},
             "uncertainty": asdict(origin.uncertainty),
+            "shaking": origin.shaking and asdict(origin.shaking),
             "platform": dict(origin.platform),
             "inputs": {
                 "workbook": origin.workbook,

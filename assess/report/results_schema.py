@@ -19,7 +19,7 @@ from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import Problem
 from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
 from assess.model import AXES
-from assess.results import Provenance
+from assess.results import AssumedShaking, Provenance
 from assess.risk import RiskClass
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
@@ -176,6 +176,8 @@ def _assess() -> Schema:
             "seed": COUNT | {"description": "Of the generated motions."},
             "settings": _of_row(Settings),
             "uncertainty": _of_row(UNCERTAINTY) | {"description": "What the draws of the simulation vary."},
+            "shaking": _or_null(_of_row(AssumedShaking))
+            | {"description": "The assumed intensity that stands in for a known motion of the ground; null: none."},
             "platform": _map(TEXT),
             "inputs": _object({"workbook": TEXT, "sha256": HASH, "records": _map(HASH), "motions": _map(HASH)}),
             "fitted_models": _map(fitted)
@@ -203,6 +205,8 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     (rows.BesideRow, "falls_while_blocked"): {"oneOf": [SHARE, {"type": "null"}]},
     (rows.RouteFixRow, "gain"): SHARE,
     (rows.RouteFixRow, "left"): SHARE,
+    (AssumedShaking, "sources"): _list(TEXT),
+    (AssumedShaking, "references"): _list(TEXT),
     (Settings, "scenario"): {"enum": list(SCENARIOS)},
     (Settings, "route_risk"): INSIDE,
     (Settings, "scale"): {"type": "number", "exclusiveMinimum": 0, "maximum": MOST_SCALE},

@@ -8,6 +8,7 @@ from assess.i18n import ngettext
 from assess.report import words
 from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
+from assess.report.findings.assumed_intensity import say_shaking
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
 from assess.report.findings.uncertain import say_assumed, say_sensitivity
 from assess.report.ranking import Fix, list_fixes
@@ -26,7 +27,7 @@ LEAST = 12
 class Summary:
     """A paragraph in plain words, the worst pieces, what to fix first, and the routes at risk.
 
-    `apart` are sentences on the pieces that are counted apart, with what settles them; `assumed` are what was assumed
+    `apart` are sentences on the pieces that are counted apart, with what settles them; `assumed` are the assumed shaking, what was assumed
     uncertain, and what other assumptions would change; `of_routes` are sentences on the routes, none where the workbook
     names none.
     """
@@ -47,7 +48,7 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
     return Summary(
         plainly=say_plainly(total, could_be, worst, fixes),
         apart=say_apart(rows),
-        assumed=[text for text in (say_assumed(results), say_sensitivity(results, rows)) if text],
+        assumed=[text for text in (say_shaking(results), say_assumed(results), say_sensitivity(results, rows)) if text],
         worst=worst,
         fixes=fixes,
         routes=list_routes_at_risk(results),

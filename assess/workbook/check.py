@@ -6,7 +6,7 @@ and notes the cells of errors, so that what has been reported once is not report
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from assess.errors import Problem
+from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, nfill
 from assess.model import AXES
 from assess.units import ROUNDING
@@ -140,7 +140,8 @@ def check_floors(tables: Tables) -> Iterator[Problem]:
     yield from check_unique(table)
     yield from check_wildcards(table)
     building = tables["Building"]  # what is filled in there counts, be it usable or not
-    yield from _check_demands(table, has_ground=any(building.says(row, "ground_pga", "sds") for row in building.rows))
+    has_ground = any(building.says(row, "ground_pga", "sds", "shaking") for row in building.rows)
+    yield from _check_demands(table, has_ground=has_ground)
 
 
 def _check_demands(table: Table, *, has_ground: bool) -> Iterator[Problem]:
@@ -157,7 +158,8 @@ def _check_demands(table: Table, *, has_ground: bool) -> Iterator[Problem]:
         if level is None or not (has_ground or has_neighbours or not is_sure):
             message, fix = describe_unserved(row.quote("floor"), has_elevation=level is not None)
             where = "elevation" if has_ground else "pfa_x"
-            yield table.problem(where if where in table.places else "floor", row, message, fix)
+            found = table.problem(where if where in table.places else "floor", row, message, fix)
+            yield Gap(found.severity, found.sheet, found.cell, found.message, found.fix)
 
 
 def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[Text, Text]:
@@ -165,15 +167,16 @@ def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[Text, Text]:
     if has_elevation:
         message = fill(
             "floor {floor} has neither a record nor a PFA, lies between no two floors that have one and an Elevation, "
-            "and Building gives no Ground PGA or SDS.",
+            "and Building gives neither Ground PGA nor SDS nor Shaking.",
             floor=floor,
         )
-        return message, fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA in Building.")
+        fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building.")
+        return message, fix
     message = fill(
         "floor {floor} has neither a record nor a PFA, and no Elevation from which its motion could be derived.",
         floor=floor,
     )
-    fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA in Building.")
+    fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA or Shaking in Building.")
     return message, fix
 
 

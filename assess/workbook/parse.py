@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain, islice
 from typing import Any
 
-from assess.errors import Correction, Problem, Severity
+from assess.errors import Correction, FurnitureGap, Gap, Problem, Severity
 from assess.i18n import Text, fill
 from assess.units import QUANTITIES, read_unit
 from assess.workbook.habits import CellError, Remark
@@ -463,9 +463,11 @@ class _Parser:
         """Report a table without rows: a building may have no furniture, yet no report can do without a floor."""
         if self.own.columns[0].name == "item":
             message = fill("the table has no rows: nothing is assessed.")
-            self.report(cell, message, fill("Fill in at least one."), "warning")
+            fix = fill("Fill in at least one.")
+            self.problems.append(FurnitureGap("warning", self.own.name, cell, message, fix))
         else:
-            self.report(cell, fill("the table has no rows."), fill("Fill in at least one."))
+            message = fill("the table has no rows.")
+            self.problems.append(Gap("error", self.own.name, cell, message, fill("Fill in at least one.")))
 
     def _row(self, number: int, cells: Cells) -> Row | None:
         if all(is_blank(cells.get(at)) for at in self.columns):

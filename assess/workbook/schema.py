@@ -8,6 +8,7 @@ A header is the label with its unit in brackets, ``Height [cm]``; the bracket is
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from assess.intensity import SHAKINGS
 from assess.model import ANCHORED, AXES, IMPORTANCE
 from assess.settings import SCENARIOS
 from assess.units import QUANTITIES
@@ -161,6 +162,10 @@ BUILDING = Sheet(
                **_GROUND_VELOCITY),
         Column("sds", "SDS", "number", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank "
                "Ground PGA.", **_ACCELERATION),
+        Column("shaking", "Shaking", "choice", "For those who know none of these: how strongly the ground shakes, as MMI or "
+               "as JMA of Japan. Its published median PGA and PGV then serve every floor without a motion of its own, "
+               "and the reports say that the shaking is assumed.", choices=tuple(SHAKINGS),
+               default="the shaking is known"),
         Column("hazard", "Hazard file", "file", "Hazard curve of the site beside the workbook, for chances a year: a CSV "
                "file with pga_g,annual_rate, or OpenQuake's hazard_curve-mean-PGA.csv.",
                default="chances a year are not evaluated"),

@@ -20,6 +20,7 @@ MOST_PLACES = 20
 
 _OWN = {
     "one_axis_only": MOTION_FLAGS["one_axis_only"],
+    "assumed_shaking": fill("assumed shaking"),
     "pfv_estimated": fill("PFV estimated from T1"),
     "pfv_capped": fill("PFV capped by Ground PGV"),
 }
@@ -177,6 +178,8 @@ def list_assumptions(results: Results) -> list[tuple[str, str]]:
     is_from_sds = building.ground_pga is None and building.sds is not None
     pga = served[0].pfa_g / (served[0].amplification or 1.0)
     source = _("0.4 SDS, as Ground PGA is blank") if is_from_sds else _("Ground PGA")
+    if shaking := results.provenance.shaking:
+        source = _("assumed: the median of {intensity}, as Ground PGA and SDS are blank", intensity=_(shaking.choice))
     lines = [
         (_("Motion of floors {floors}", floors=words.clip(floors, 300)), chosen),
         (_("Ground motion of the profile"),

@@ -9,8 +9,10 @@ from assess.risk import RiskClass, classify
 
 
 def list_conditions(results: Results) -> list[str]:
-    """Return what every page of a report says: that nothing is varied, that motions are not those of the workbook."""
+    """Return what every page of a report says: that shaking is assumed, that nothing is varied, that motions are not those of the workbook."""
     texts = []
+    if shaking := results.provenance.shaking:
+        texts.append(_("Assumed shaking: {intensity}", intensity=_(shaking.choice)))
     if results.settings.ideal and results.has_simulated:
         texts.append(_("Assumed: exactly this motion, and every piece exactly as given"))
     if results.settings.scale != 1:
@@ -42,6 +44,9 @@ def _say_motion(results: Results) -> str:
 
 def say_source(results: Results) -> str:
     """Return where the dispersion of the motions comes from."""
+    shaking, given = results.provenance.shaking, results.building.motion_uncertainty
+    if shaking and shaking.scatter == results.provenance.uncertainty.motion != given:
+        return _("scatter of ln PGA given the intensity, {sources}", sources=", ".join(shaking.sources))
     return _("assumed") if results.building.motion_uncertainty is None else _("as filled in")
 
 

@@ -247,8 +247,10 @@ def say_conditions(settings: Settings) -> list[str]:
     return texts
 
 
-def _say_conditions_shortly(settings: Settings) -> str:
-    texts = []
+def _say_conditions_shortly(run: Results) -> str:
+    settings, texts = run.settings, []
+    if run.provenance.shaking:
+        texts.append(_("assumed shaking, {intensity}", intensity=run.provenance.shaking.name))
     if settings.scale != 1:
         texts.append(_("motion × {scale:g}", scale=settings.scale))
     if settings.ideal:
@@ -263,7 +265,7 @@ def set_print(page: Any, title: str, sheet: str, run: Results) -> None:
     page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
     page.fit_to_pages(1, 0)
     pages = _plain(_("Page {page} of {pages}", page="\x01", pages="\x02"))
-    conditions = _plain(_say_conditions_shortly(run.settings))
+    conditions = _plain(_say_conditions_shortly(run))
     middle = f"&C&8 {conditions}" if conditions else ""
     page.set_header(f"&L&8 {_plain(words.cut(title, 80))}{middle}&R&8 {_plain(sheet)}")
     page.set_footer(

@@ -1,0 +1,49 @@
+"""Assumed shaking, in the words of reports: the intensity, what it stands for, whose relations say so."""
+
+from collections.abc import Iterator
+
+from assess.i18n import gettext as _
+from assess.i18n import number
+from assess.report import words
+from assess.results import AssumedShaking, Results
+
+
+def say_shaking(results: Results) -> str:
+    """Return that the shaking is assumed, with all it rests on, in a paragraph; "" where it is not."""
+    found = results.provenance.shaking
+    return "" if found is None else " ".join(_say(found))
+
+
+def _say(found: AssumedShaking) -> Iterator[str]:
+    yield _(
+        "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its published "
+        "median PGA of {pga} g and PGV of {pgv} cm/s ({sources}).",
+        intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
+        sources=", ".join(found.sources),
+    )  # fmt: skip
+    yield _(
+        "PGA scatters about it by {scatter} (standard deviation of ln PGA), which Motion uncertainty is at least. Over "
+        "the height the motion follows the design profile of {code}.",
+        scatter=number(found.scatter, "g"), code=found.profile,
+    )  # fmt: skip
+
+
+def list_assumptions(results: Results) -> list[tuple[str, str]]:
+    """Return what an assumed intensity rests on."""
+    found = results.provenance.shaking
+    if found is None:
+        return []
+    lines = [(_("Shaking"), say_shaking(results))]
+    if found.is_derived:
+        text = _(
+            "derived from PGV by way of MMI, as no published relation of the JMA class to PGA was at hand; the scatters "
+            "of all steps and the width of the class are added up as independent"
+        )
+        lines.append((_("PGA of the assumed shaking"), text))
+    if found.is_open:
+        text = _(
+            "open above: taken as {intensity}, the middle of a class of one whole degree; the ground can shake more",
+            intensity=number(found.intensity, "g"),
+        )
+        lines.append((_("Class of the assumed shaking"), text))
+    return lines

@@ -1,0 +1,92 @@
+"""Intensity to the motion of the ground: the published check values, and what must hold of every class."""
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from assess.intensity import MIDORIKAWA, SHAKINGS, WORDEN, WORDEN_PGA, WORDEN_PGV, invert_jma
+from assess.units import GRAVITY
+
+LEGEND = {
+    "MMI IV": (2.76, 1.4), "MMI V": (6.2, 4.7), "MMI VI": (11.5, 9.6), "MMI VII": (21.5, 20), "MMI VIII": (40.1, 41),
+    "MMI IX": (74.7, 86), "MMI X": (139, 178),
+}  # fmt: skip
+"""PGA [% g] and PGV [cm/s] as the legend of USGS ShakeMap prints them with Worden et al. (2012)."""
+CLASSES = {"JMA 4": (3.5, 4.5), "JMA 5-": (4.5, 5.0), "JMA 5+": (5.0, 5.5), "JMA 6-": (5.5, 6.0), "JMA 6+": (6.0, 6.5)}
+"""Limits of instrumental intensity: JMA notice of 1996."""
+LIMITS = {3.5: 3.0, 4.5: 11.4, 5.0: 22.3, 5.5: 43.6, 6.0: 85.2, 6.5: 166}
+"""PGV [cm/s] at the limits, by the equation of Midorikawa et al. (1999)."""
+BY_NAME = {one.name: one for one in SHAKINGS.values()}
+
+
+@pytest.mark.parametrize("name", LEGEND)
+def test_mmi_classes_are_those_of_the_legend_of_shakemap(name):
+    pga, pgv = LEGEND[name]
+    shaking = BY_NAME[name]
+    assert 100 * shaking.pga / GRAVITY == pytest.approx(pga, rel=0.01)
+    assert 100 * shaking.pgv == pytest.approx(pgv, rel=0.012)
+    assert not shaking.is_derived
+    assert shaking.references == (WORDEN,)
+
+
+@pytest.mark.parametrize("relation", [WORDEN_PGA, WORDEN_PGV])
+def test_a_relation_and_its_inverse_agree(relation):
+    for tenths in range(40, 110):
+        mmi = tenths / 10
+        if abs(mmi - relation.t2) > 0.1:  # the printed breaks in log Y and in MMI differ in the second decimal
+            assert relation.evaluate(relation.invert(mmi)) == pytest.approx(mmi)
+
+
+def test_jma_limits_by_midorikawa():
+    for intensity, pgv in LIMITS.items():
+        assert invert_jma(intensity) == pytest.approx(pgv, rel=0.01)
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_jma_classes_stand_for_their_middle(name):
+    low, high = CLASSES[name]
+    shaking = BY_NAME[name]
+    assert shaking.intensity == (low + high) / 2
+    assert invert_jma(low) < 100 * shaking.pgv < invert_jma(high)
+    assert shaking.references == (MIDORIKAWA, WORDEN)
+
+
+def test_pga_of_a_jma_class_goes_by_way_of_mmi():
+    """5 upper by hand: PGV 31.2 cm/s, MMI 2.89 + 3.16 log 31.2 = 7.61, log PGA = (7.61 + 1.60)/3.70, 309 cm/s2."""
+    shaking = BY_NAME["JMA 5+"]
+    assert 100 * shaking.pgv == pytest.approx(31.2, rel=0.002)
+    assert 100 * shaking.pga == pytest.approx(309, rel=0.005)
+    assert shaking.is_derived
+
+
+def test_an_open_class_does_not_stand_for_its_lower_limit():
+    """JMA 7 begins at 6.5, where PGV is 166 cm/s; MMI X at 9.5."""
+    seven, ten = BY_NAME["JMA 7"], BY_NAME["MMI X"]
+    assert (seven.is_open, seven.intensity, ten.is_open, ten.intensity) == (True, 7.0, True, 10.0)
+    assert 100 * seven.pgv > 1.9 * LIMITS[6.5]
+    assert [one.name for one in SHAKINGS.values() if one.is_open] == ["MMI X", "JMA 7"]
+
+
+def test_the_scatter_is_the_published_one_and_never_below_it():
+    for shaking in SHAKINGS.values():
+        published = 0.35 * math.log(10)
+        assert published <= shaking.scatter
+        if not shaking.is_derived:
+            assert shaking.scatter == 0.81
+            assert shaking.pgv_scatter == 0.88
+
+
+def test_the_scatter_of_a_derived_pga_adds_up_every_step():
+    """5 upper by hand: sqrt(0.144^2 + 0.21^2)/1.72 = 0.148; x 3.16 and with 0.63: 0.785 MMI; /3.70 and with 0.35."""
+    assert BY_NAME["JMA 5+"].scatter == pytest.approx(math.log(10) * math.hypot(0.785 / 3.70, 0.35), abs=0.011)
+    assert BY_NAME["JMA 4"].scatter > BY_NAME["JMA 5+"].scatter > BY_NAME["MMI VII"].scatter
+
+
+@pytest.mark.parametrize("scale", ["MMI", "JMA"])
+def test_a_stronger_class_shakes_more(scale):
+    own = [one for one in SHAKINGS.values() if one.name.startswith(scale)]
+    assert len(own) == {"MMI": 7, "JMA": 6}[scale]
+    for weaker, stronger in pairwise(own):
+        assert weaker.pga < stronger.pga
+        assert weaker.pgv < stronger.pgv
