@@ -353,8 +353,8 @@ PIECE_FIELDS = (
     ),
     Field(
         key="pfa_source", read=attrgetter("governing.motion.label"), shows=DATA,
-        help="The record, `given`, the code of a profile (with its assumed intensity: `Shaking MMI VII, ASCE 7-22`), or "
-        "the floors that it is interpolated between.",
+        help="The record, `given`, the code of a profile (with an assumed intensity: `Shaking MMI VII, ASCE 7-22`), "
+        "or the floors that it is interpolated between.",
     ),
 )  # fmt: skip
 

@@ -3,7 +3,7 @@
 The values are stored in a workbook next to the formulas, so that a viewer that does not calculate shows them too.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from assess.methods import Cases, adopted_formula
 from assess.methods._method import ALIKE
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.adopt import find_can_rock
-from assess.pipeline.demand import Demand, Demands, build_demands
+from assess.pipeline.demand import Demand, Demands, build_demands, find_shaking
 from assess.pipeline.verify import find_uncertainty
 from assess.risk import classify
 from assess.settings import SCENARIOS, Settings
@@ -40,14 +40,15 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     settings = Settings()
     kind = scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, kind, ductility_reduction=settings.ductility_reduction)
-    governing = [_find_governing(item, demands) for item in inventory.items]
+    live = {"given", "profile"} if _is_assumed(kind, demands) else {"given"}
+    governing = [_find_governing(item, demands, live) for item in inventory.items]
     cases = Cases.of(
         breadth=np.array([item.breadth for item in inventory.items], dtype=np.float64),
         height=np.array([item.height for item in inventory.items], dtype=np.float64),
         pfa=np.array([np.nan if one is None else one.pfa for one in governing], dtype=np.float64),
         pfv=np.array([np.nan if one is None else one.pfv for one in governing], dtype=np.float64),
         centre=np.array([item.centre_of_gravity for item in inventory.items], dtype=np.float64),
-        uncertainty=find_uncertainty(inventory.building),
+        uncertainty=find_uncertainty(inventory.building, find_shaking(demands)),
     )
     outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}
     formula = outcomes[adopted_formula().key]
@@ -59,10 +60,15 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     return [_write_row(*row) for row in rows]
 
 
-def _find_governing(item: Item, demands: Demands) -> Demand | None:
-    """Return the given motion with the larger PFA, the first of equal ones; None where one is not given."""
+def _is_assumed(kind: str, demands: Demands) -> bool:
+    """Return whether every floor follows the default profile from an assumed intensity."""
+    return kind == SCENARIOS[0] and all(one.shaking for parallel in demands.values() for one in parallel)
+
+
+def _find_governing(item: Item, demands: Demands, live: Collection[str]) -> Demand | None:
+    """Return the motion with the larger PFA, the first of equal ones; None where the sheet cannot know one."""
     every = [one for axis in ((item.axis,) if item.axis else AXES) for one in demands[item.floor, axis]]
-    if any(one.source != "given" for one in every):
+    if any(one.source not in live for one in every):
         return None
     return max(every, key=lambda one: round(one.pfa / GRAVITY, ALIKE))
 

@@ -15,6 +15,7 @@ from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
 from assess.rocking.draws import CUT, Uncertainty
 from assess.units import ALIASES, GRAVITY, QUANTITIES
 from assess.workbook import formulas as live
+from assess.workbook import live_shaking
 from assess.workbook.schema import BUILDING, LISTS, SHEETS
 
 Units = Literal["si", "imperial"]
@@ -40,7 +41,7 @@ LISTED = ("length", "acceleration", "velocity", "time", "share")
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
     ("Floors", "pfa_x"), ("Floors", "pfa_y"), ("Floors", "pfv_x"), ("Floors", "pfv_y"), ("Building", "period"),
-    ("Building", "ground_pgv"),
+    ("Building", "ground_pgv"), ("Building", "height"), ("Floors", "elevation"),
     ("Items", "centre_of_gravity"), ("Catalogue", "centre_of_gravity"),
 )  # fmt: skip
 
@@ -49,7 +50,8 @@ _OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "giv
 
 _SCENARIO_NAMES = ("scenario_typed", "scenario_kind", "scenario_is_own")
 
-_FLOOR_HELPERS = ("own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best")
+_FLOOR_HELPERS = ("own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", *live_shaking.HELPERS,
+                  "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best")  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +67,7 @@ class ListsWriter:
     def write(self) -> None:
         """Write everything, one block beside the other."""
         self.page.write_string(0, 0, gettext(LISTS_NOTE), self.title)
-        at = self._write_choices()
+        at = live_shaking.write_shakings(self.book, self.page, self._write_choices() + 1)
         at = self._write_units(at + 1)
         at = self._write_factors(at + 1)
         self._write_floors(at + 1)
@@ -120,13 +122,15 @@ class ListsWriter:
         self._write_strongest(row + 1, at)
         self._write_largest_estimate(row + 2, at)
         self._write_scenario(row + 3, at)
+        self._write_shaking(row + 3 + len(_SCENARIO_NAMES), at)
         return at + 2
 
     def _write_strongest(self, row: int, at: int) -> None:
         """Write the factor on a floor's motion that no drawn earthquake exceeds."""
         default = Uncertainty()
         uncertainty = f"{gettext(BUILDING.name)}!$B${_line('motion_uncertainty')}"
-        formula = f'=EXP({CUT!r}*IF({uncertainty}="",{default.motion!r},{uncertainty}))'
+        own = f'IF({uncertainty}="",{default.motion!r},{uncertainty})'
+        formula = f"=EXP({CUT!r}*MAX(shaking_scatter,1*{own}))"
         self._define("strongest", at, row, gettext("largest factor on the motion"), formula, default.largest)
 
     def _write_largest_estimate(self, row: int, at: int) -> None:
@@ -146,6 +150,15 @@ class ListsWriter:
         for line, (label, formula) in enumerate(zip(_SCENARIO_NAMES, formulas, strict=True), row):
             self._define(label, at, line, label, f"={formula}", 1 if formula is formulas[-1] else "")
 
+    def _write_shaking(self, row: int, at: int) -> None:
+        """Write what follows from an assumed intensity."""
+        fields = ("ground_pga", "sds", "shaking", "height")
+        building = {name: f"{gettext(BUILDING.name)}!$B${_line(name)}" for name in fields}
+        letter, last = LETTERS["Floors", "elevation"], self.last["Floors"]
+        elevations = f"{gettext('Floors')}!${letter}$2:${letter}${last}"
+        for line, (name, formula) in enumerate(live_shaking.list_names(building, elevations), row):
+            self._define(name, at, line, name, f"={formula}", "")
+
     # ------------------------------------------------------------------ floors
 
     def _write_floors(self, at: int) -> None:
@@ -155,7 +168,8 @@ class ListsWriter:
         self.page.write_row(0, at, _FLOOR_HELPERS)
         for row in range(2, last + 1):
             cells = {name: f"${letter}{row}" for name, letter in letters.items()}
-            formulas = (*self._own_pfa(row), *self._own_pfv(row, cells), *_serving(cells), _best(cells))
+            assumed = live_shaking.list_formulas(self._floor("elevation", row), cells)
+            formulas = (*self._own_pfa(row), *self._own_pfv(row, cells), *assumed, *_serving(cells), _best(cells))
             for place, formula in enumerate(formulas):
                 self.page.write_formula(row - 1, at + place, f"={formula}", None, "")
         for name, letter in letters.items():
@@ -211,8 +225,9 @@ def _serving(cells: Mapping[str, str]) -> list[str]:
     x, y = cells["own_pfa_x"], cells["own_pfa_y"]
     nothing = {"pfa": f'AND({x}="",{y}="")', "pfv": "FALSE"}
     return [
+        f"IF(ISNUMBER({cells['assumed_pfa']}),{cells[f'assumed_{what}']},"
         f'IF({nothing[what]},"{gettext(RUN_ASSESS)}",'
-        f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]}))'
+        f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]})))'
         for what in ("pfa", "pfv")
         for axis, other in ("xy", "yx")
     ]

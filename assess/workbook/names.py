@@ -147,14 +147,17 @@ def _live_labels(code: str) -> frozenset[str]:
 
 @lru_cache(maxsize=4096)  # the same choices stand in row after row
 def find_choice(text: str, choices: tuple[str, ...]) -> str | None:
-    """Return the choice, in English, that a text means in any language; None if none."""
+    """Return the choice, in English, that a text means in any language; None if none.
+
+    Of a choice with a comma what stands before it is enough: ``MMI VII``.
+    """
     if (choice := match_choice(text, choices)) is not None:
         return choice
     for code in _OTHERS:
         said = {_bare(word): choice for word, choice in zip(say_choices(choices, code), choices, strict=True)}
         if (word := match_choice(_bare(text), said)) is not None:
             return said[word]
-    return None
+    return next((choice for choice in choices if "," in choice and fold(choice.partition(",")[0]) == fold(text)), None)
 
 
 def say_choices(choices: tuple[str, ...], code: str) -> tuple[str, ...]:

@@ -157,7 +157,7 @@ def test_a_corrected_record_loses_nothing(tmp_path):
         ),
         ("given", Floor(row=7, floor="1", records={}), r"Floors!A7: floor '1' has no PFA, which .*'given'"),
         ("as filled", Floor(row=7, floor="1"), r"Floors!A7: floor '1' has neither a record nor a PFA, and no Elev"),
-        ("as filled", Floor(row=7, floor="1", elevation=3.0), r"lies between no two floors .* no Ground PGA or SDS"),
+        ("as filled", Floor(row=7, floor="1", elevation=3.0), r"lies between no two floors .* neither Ground PGA"),
         (
             "given",
             Floor(row=7, floor="1", elevation=3.0),
@@ -169,7 +169,7 @@ def test_a_corrected_record_loses_nothing(tmp_path):
             Floor(row=7, floor="1"),
             r"Floors!A7: floor '1' has no Elevation, which the scenario 'EN 1998-1'",
         ),
-        ("EN 1998-1", Floor(row=7, floor="1", elevation=3.0), r"Building: Ground PGA and SDS are blank; the scenario"),
+        ("EN 1998-1", Floor(row=7, floor="1", elevation=3.0), r"Building: Ground PGA, SDS and Shaking are blank; the"),
     ],
 )
 def test_a_floor_without_motion_is_named(tmp_path, scenario, floor, message):

@@ -115,12 +115,12 @@ def test_a_floor_without_motion(tmp_path: Path) -> None:
     floors: Sheet = [["Floor", "Name", "PFA X [g]", "PFV X [cm/s]"], ["1", "Ground", None, 30]]
     assert errors_of(write(tmp_path, floors=floors)) == {
         "Floors!C2: floor '1' has neither a record nor a PFA, and no Elevation from which its motion could be derived. "
-        "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA in Building."
+        "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA or Shaking in Building."
     }
 
 
-UNSERVED = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA in Building."
-UNPLACED = "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA in Building."
+UNSERVED = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building."
+UNPLACED = "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and Ground PGA or Shaking in Building."
 
 
 @pytest.mark.parametrize(
@@ -128,7 +128,7 @@ UNPLACED = "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and 
     [
         ((4, None), [], None),
         ((12, None), [], "C3: floor '2' has neither a record nor a PFA, lies between no two floors that have one and an "
-         f"Elevation, and Building gives no Ground PGA or SDS. {UNSERVED}"),
+         f"Elevation, and Building gives neither Ground PGA nor SDS nor Shaking. {UNSERVED}"),
         ((12, None), [["Ground PGA [g]", 0.2]], None),
         ((12, None), [["SDS [g]", 0.5]], None),
         ((None, None), [["SDS [g]", 0.5]],

@@ -16,8 +16,8 @@ def say_shaking(results: Results) -> str:
 
 def _say(found: AssumedShaking) -> Iterator[str]:
     yield _(
-        "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its published "
-        "median PGA of {pga} g and PGV of {pgv} cm/s ({sources}).",
+        "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
+        "published median PGA of {pga} g and PGV of {pgv} cm/s ({sources}).",
         intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
         sources=", ".join(found.sources),
     )  # fmt: skip
@@ -36,8 +36,8 @@ def list_assumptions(results: Results) -> list[tuple[str, str]]:
     lines = [(_("Shaking"), say_shaking(results))]
     if found.is_derived:
         text = _(
-            "derived from PGV by way of MMI, as no published relation of the JMA class to PGA was at hand; the scatters "
-            "of all steps and the width of the class are added up as independent"
+            "derived from PGV by way of MMI, as no published relation of the JMA class to PGA was at hand; the "
+            "scatters of all steps and the width of the class are added up as independent"
         )
         lines.append((_("PGA of the assumed shaking"), text))
     if found.is_open:

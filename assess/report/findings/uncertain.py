@@ -9,7 +9,7 @@ from assess.risk import RiskClass, classify
 
 
 def list_conditions(results: Results) -> list[str]:
-    """Return what every page of a report says: that shaking is assumed, that nothing is varied, that motions are not those of the workbook."""
+    """Return what every page of a report says: assumed shaking, nothing varied, motions times a factor."""
     texts = []
     if shaking := results.provenance.shaking:
         texts.append(_("Assumed shaking: {intensity}", intensity=_(shaking.choice)))

@@ -1,0 +1,77 @@
+"""The live columns of a building of which only an intensity is known: Excel formulas for the sheet Lists.
+
+They serve where Shaking is chosen, Ground PGA and SDS are blank, and no floor has a motion of its own: every floor then
+follows the default profile, ASCE 7-22, from its Elevation. With a floor that has a motion of its own others may be
+interpolated, which is the program's task.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name
+
+from assess.i18n import gettext
+from assess.intensity import SHAKINGS
+from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
+from assess.units import GRAVITY
+from assess.workbook.schema import LISTS
+
+HELPERS = ("height_ratio", "assumed_pfa", "assumed_pfv")
+"""Columns of Lists by floor."""
+
+
+def write_shakings(book: Any, page: Any, at: int) -> int:
+    """Write median PGA [g] and PGV [cm/s] and the scatter of every choice, in their order; return the next column."""
+    values = [(one.pga / GRAVITY, 100 * one.pgv, one.scatter) for one in SHAKINGS.values()]
+    for place, name in enumerate(("pga", "pgv", "scatter")):
+        page.write_column(2, at + place, (f"shaking {name}", *(row[place] for row in values)))
+        letter = xl_col_to_name(at + place)
+        book.define_name(f"shakings_{name}", f"={gettext(LISTS)}!${letter}$4:${letter}${3 + len(values)}")
+    return at + 3
+
+
+def list_names(building: Mapping[str, str], elevations: str) -> Iterator[tuple[str, str]]:
+    """Yield names and the formulas that they stand for, each from those before it.
+
+    Parameters
+    ----------
+    building : mapping of str to str
+        Cells of the sheet Building, by field.
+    elevations : str
+        The column Elevation of Floors.
+    """
+    blank = f'{building["ground_pga"]}="",{building["sds"]}="",OR(scenario_kind="",scenario_kind="asfilled")'
+    yield "shaking_at", f"IF(AND({blank}),IFERROR(MATCH(TRIM({building['shaking']}),list_shaking,0),0),0)"
+    yield "floors_owning", 'SUMPRODUCT(1-(floor_own_pfa_x="")*(floor_own_pfa_y=""))'
+    yield "floors_lacking", 'SUMPRODUCT((list_floors<>"")*(floor_own_pfa_x="")*(floor_own_pfa_y=""))'
+    yield "shaking_scatter", "IF(AND(shaking_at>0,floors_lacking>0),INDEX(shakings_scatter,shaking_at),0)"
+    yield "shaking_pga", 'IF(AND(shaking_at>0,floors_owning=0),INDEX(shakings_pga,shaking_at),"")'
+    highest = f"MAX(0,MAX({elevations})*unit_floors_elevation)"
+    height = f"{building['height']}*unit_building_height"
+    yield "shaking_roof", f'IFERROR(IF({building["height"]}="",{highest},{height}),"")'
+    yield "shaking_largest", f'IF(shaking_at>0,INDEX(shakings_pgv,shaking_at)*{cap_pfv(1)!r},"")'
+
+
+def list_formulas(elevation: str, cells: Mapping[str, str]) -> Sequence[str]:
+    """Return the expressions of `HELPERS` for a floor: z/h, PFA [g] and PFV [cm/s], "" where they are not known.
+
+    Parameters
+    ----------
+    elevation : str
+        The floor's cell.
+    cells : mapping of str to str
+        The floor's cells of Lists, by name.
+    """
+    ratio, pfa, period = cells["height_ratio"], cells["assumed_pfa"], "(period*unit_building_period)"
+    z = f"{elevation}*unit_floors_elevation"
+    # ASCE 7-22, Equations (13.3-4) and, T1 unknown, (13.3-5)
+    known = f"1+MIN(1/{period},2.5)*{ratio}+MAX(1-(0.4/{period})^2,0)*{ratio}^10"
+    factor = f"IF(ISNUMBER(period),{known},1+2.5*{ratio})"
+    frequency = f"MIN(1/{period},{HIGHEST_FLOOR_FREQUENCY!r})"
+    estimate = f"{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency})"
+    largest = "IF(ISNUMBER(largest_estimate),largest_estimate,shaking_largest)"
+    return (
+        f'IF(ISNUMBER({elevation}),IFERROR(IF({z}>0,MIN({z}/shaking_roof,1),0),""),"")',
+        f'IF(AND(ISNUMBER(shaking_pga),ISNUMBER({ratio})),IFERROR(shaking_pga*({factor}),""),"")',
+        f'IF(AND(ISNUMBER({pfa}),ISNUMBER(period)),MIN({estimate},{largest}),"")',
+    )
