@@ -74,6 +74,9 @@ MOTION_FLAGS: Mapping[str, str] = {
     "assumed_shaking": fill(
         "the ground motion is the published median of an assumed intensity (Shaking), not a value known for this site"
     ),
+    "assumed_elevation": fill(
+        "Elevation is blank: assumed as the floor's number, the ground floor being 0, times Height over Storeys"
+    ),
     "pfv_estimated": fill("PFV was not given: estimated from PFA and the building's period T1"),
     "pfv_capped": fill(
         "the estimate of PFV was larger than {factor:.2f} times Ground PGV, and is set to that", factor=ROOF_FACTOR

@@ -20,6 +20,7 @@ from assess.intensity import SHAKINGS, Shaking
 from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
 from assess.motion.record import Motion, Record, treat
 from assess.motion.scenario import DEFAULT, PGA_OF_SDS, PROFILES, Profile, cap_pfv, estimate_pfv
+from assess.motion.storeys import assume_elevation
 from assess.progress import SILENT, Progress
 from assess.results import MOTION_FLAGS
 from assess.workbook.check import describe_unserved
@@ -137,6 +138,8 @@ class Ground:
         Peak ground velocity [m/s] as filled in, which caps the PFV that is estimated from T1.
     shaking : Shaking, optional
         The assumed intensity that `pga` is the median of; its PGV caps as `pgv` does, on floors that follow a profile.
+    storeys : int, optional
+        Storeys above ground, from which the elevations of numbered floors are assumed; None where a floor has its own.
     """
 
     pga: float | None
@@ -145,11 +148,19 @@ class Ground:
     is_highest_floor: bool
     pgv: float | None = None
     shaking: Shaking | None = None
+    storeys: int | None = None
 
     @property
     def profile_pgv(self) -> float | None:
         """Peak ground velocity [m/s] that belongs to `pga`: as filled in, else that of the assumed intensity."""
         return self.shaking.pgv if self.pgv is None and self.shaking else self.pgv
+
+    def place(self, floor: Floor) -> tuple[float | None, tuple[str, ...]]:
+        """Return the elevation of a floor [m] with its flags: as filled in, else by Storeys and Height, else None."""
+        if floor.elevation is not None:
+            return floor.elevation, ()
+        assumed = None if self.is_highest_floor else assume_elevation(floor.floor, self.roof, self.storeys)
+        return assumed, () if assumed is None else ("assumed_elevation",)
 
 
 def find_ground(inventory: Inventory) -> Ground:
@@ -166,6 +177,7 @@ def find_ground(inventory: Inventory) -> Ground:
         is_highest_floor=building.height is None,
         pgv=building.ground_pgv,
         shaking=shaking,
+        storeys=building.storeys if highest is None else None,
     )
 
 
@@ -306,15 +318,16 @@ def serve_by_profile(
     floor: Floor, profile: Profile, ground: Ground, period: float | None, ductility_reduction: float
 ) -> _ByAxis:
     """Return the motion of a floor by a code's profile, alike along both axes; nothing where its inputs are missing."""
-    if floor.elevation is None or ground.pga is None or ground.roof is None:
+    z, placed = ground.place(floor)
+    if z is None or ground.pga is None or ground.roof is None:
         return {}
-    ratio = min(floor.elevation / ground.roof, 1.0) if floor.elevation > 0 else 0.0
+    ratio = min(z / ground.roof, 1.0) if z > 0 else 0.0
     amplification = profile.amplification(ratio, period, ductility_reduction=ductility_reduction)
     pfa = ground.pga * amplification
     pfv, flags = _velocity(pfa, math.nan, period, ground.profile_pgv)
     assumed = ("assumed_shaking",) if ground.shaking else ()
     one = Demand(
-        floor=floor, axis="X", source="profile", pfa=pfa, pfv=pfv, flags=("code_profile", *assumed, *flags),
+        floor=floor, axis="X", source="profile", pfa=pfa, pfv=pfv, flags=("code_profile", *assumed, *placed, *flags),
         profile=profile, clause=profile.cite(period), height_ratio=ratio, amplification=amplification,
         shaking=ground.shaking,
     )  # fmt: skip

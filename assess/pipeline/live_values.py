@@ -68,7 +68,7 @@ def _is_assumed(kind: str, demands: Demands) -> bool:
 def _find_governing(item: Item, demands: Demands, live: Collection[str]) -> Demand | None:
     """Return the motion with the larger PFA, the first of equal ones; None where the sheet cannot know one."""
     every = [one for axis in ((item.axis,) if item.axis else AXES) for one in demands[item.floor, axis]]
-    if any(one.source not in live for one in every):
+    if any(one.source not in live or "assumed_elevation" in one.flags for one in every):
         return None
     return max(every, key=lambda one: round(one.pfa / GRAVITY, ALIKE))
 

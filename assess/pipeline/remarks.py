@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 
 from assess.errors import Problem, Severity
-from assess.i18n import Text, fill, join
+from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, Axis, Floor, Inventory
 from assess.motion.record import treat
 from assess.motion.scenario import PGA_OF_SDS, Profile, cap_pfv
@@ -54,6 +54,7 @@ def remark(
     yield from _on_shaking(inventory, demands, scenario, ductility_reduction)
     if list_floors(demands, "profile"):
         yield from _above_roof(inventory, demands)
+        yield from _assumed_elevations(inventory, demands)
         yield from _implausible(inventory, demands)
     yield from _mixed(demands)
 
@@ -204,6 +205,21 @@ def _above_roof(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
             yield Problem("warning", "Floors", floor.cell("elevation"), message, fix)
 
 
+def _assumed_elevations(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+    """Name the floors whose elevation is assumed."""
+    flagged = {name for (name, _), ones in demands.items() if any("assumed_elevation" in one.flags for one in ones)}
+    floors = [floor for floor in inventory.floors if floor.floor in flagged]
+    if floors:
+        message = nfill(
+            "floor {floors} has no Elevation; its number times Height over Storeys, counted from the ground floor as "
+            "0, is assumed.",
+            "{n:,} floors have no Elevation ({floors}); their numbers times Height over Storeys, counted from the "
+            "ground floor as 0, are assumed.",
+            len(floors), floors=", ".join(floor.floor for floor in floors),
+        )  # fmt: skip
+        yield Problem("note", "Floors", floors[0].cell("elevation"), message, fill("Fill in Elevation."))
+
+
 def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     """Check what a profile starts from: Height against Storeys and floors, T1 against the height."""
     building, ground = inventory.building, find_ground(inventory)
@@ -220,7 +236,7 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
                 high=STOREY[1],
             )
             yield Problem("warning", "Building", building.cell("height"), message, fill("Check Height and Storeys."))
-    highest = max(floor.elevation for floor in inventory.floors if floor.elevation is not None)
+    highest = max((z for floor in inventory.floors if (z := ground.place(floor)[0]) is not None), default=0.0)
     if building.height and building.height > FAR_ABOVE * max(highest, 0.0):
         message = fill(
             "z/h is taken against Height {height:g} m; the highest floor listed is at {highest:g} m.",

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, nfill
 from assess.model import AXES
+from assess.motion.storeys import find_storey
 from assess.units import ROUNDING
 from assess.workbook.names import find_near, key
 from assess.workbook.parse import Row, Table, Tables
@@ -141,10 +142,12 @@ def check_floors(tables: Tables) -> Iterator[Problem]:
     yield from check_wildcards(table)
     building = tables["Building"]  # what is filled in there counts, be it usable or not
     has_ground = any(building.says(row, "ground_pga", "sds", "shaking") for row in building.rows)
-    yield from _check_demands(table, has_ground=has_ground)
+    has_storeys = any(building.says(row, "height") and building.says(row, "storeys") for row in building.rows)
+    has_storeys = has_storeys and not any(table.says(row, "elevation") for row in table.rows)
+    yield from _check_demands(table, has_ground=has_ground, has_storeys=has_storeys)
 
 
-def _check_demands(table: Table, *, has_ground: bool) -> Iterator[Problem]:
+def _check_demands(table: Table, *, has_ground: bool, has_storeys: bool) -> Iterator[Problem]:
     """Report floors that nothing can serve; what cannot be read has been reported."""
     rows = table.with_all("floor")
     known = [row for row in rows if table.says(row, "pfa_x", "pfa_y", "record_x", "record_y")]
@@ -153,6 +156,8 @@ def _check_demands(table: Table, *, has_ground: bool) -> Iterator[Problem]:
     for row in rows:
         level = row.get("elevation")
         if row in known or (level is None and table.spoilt("elevation", row)):
+            continue
+        if level is None and has_ground and has_storeys and find_storey(row.get("floor")) is not None:
             continue
         has_neighbours = level is not None and bool(heights) and min(heights) <= level <= max(heights)
         if level is None or not (has_ground or has_neighbours or not is_sure):

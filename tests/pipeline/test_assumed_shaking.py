@@ -19,7 +19,8 @@ FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 12}]
 
 
 def _read(folder, floors=FLOORS, **building):
-    return assess.read_inventory(write(folder / "w.xlsx", floors=floors, **{"shaking": CHOICE} | building))
+    items = [{"item": floor["floor"], "floor": floor["floor"], "breadth": 40, "height": 180} for floor in floors]
+    return assess.read_inventory(write(folder / "w.xlsx", items, floors, **{"shaking": CHOICE} | building))
 
 
 def test_every_floor_follows_the_profile_from_its_median_pga(tmp_path):
@@ -117,3 +118,41 @@ def test_an_intensity_that_is_not_used_has_a_note(tmp_path, unused, why):
 def test_a_choice_as_people_type_it(tmp_path, typed):
     wanted = {"J": SHAKINGS["JMA 5-, lower" if "-" in typed else "JMA 5+, upper"]}.get(typed.strip()[0].upper(), SEVEN)
     assert find_ground(_read(tmp_path, shaking=typed)).shaking is wanted
+
+
+# ---------------------------------------------------------------- a town, storeys and a height
+
+
+NUMBERED = [{"floor": "G"}, {"floor": "1"}, {"floor": "3"}]
+
+
+def test_numbered_floors_need_no_elevation_where_height_and_storeys_are_known(tmp_path):
+    """The third floor of four lies at 9 of 12 m: H_f = 1 + 2.5 x 0.75."""
+    inventory = _read(tmp_path, NUMBERED, height=12, storeys=4)
+    demands = build_demands(inventory, "as filled")
+    ratios = [demands[floor["floor"], "X"][0].height_ratio for floor in NUMBERED]
+    assert ratios == pytest.approx([0, 0.25, 0.75])
+    assert demands["3", "Y"][0].pfa == pytest.approx((1 + 2.5 * 0.75) * SEVEN.pga)
+    assert demands["3", "Y"][0].flags == ("code_profile", "assumed_shaking", "assumed_elevation")
+    wanted = "3 floors have no Elevation (G, 1, 3); their numbers times Height over Storeys"
+    results = assess.run(inventory, UNVERIFIED)
+    assert [note for note in _notes(results) if note.startswith(wanted)]
+
+
+def test_with_a_ground_pga_too(tmp_path):
+    demands = build_demands(_read(tmp_path, NUMBERED, height=12, storeys=4, shaking=None, ground_pga=0.2), "EN 1998-1")
+    assert demands["3", "X"][0].pfa == pytest.approx(0.2 * GRAVITY * (1 + 1.5 * 0.75))
+
+
+@pytest.mark.parametrize(
+    ("floors", "building"),
+    [
+        (NUMBERED, {"height": 12}), (NUMBERED, {"storeys": 4}), ([{"floor": "Roof"}], {"height": 12, "storeys": 4}),
+        ([{"floor": "2", "elevation": 8}, {"floor": "3"}], {"height": 12, "storeys": 4}),
+    ],
+    ids=["no storeys", "no height", "no number", "a floor with an elevation"],
+)  # fmt: skip
+def test_else_elevation_stays_required(tmp_path, floors, building):
+    with pytest.raises(assess.WorkbookError, match=r"no Elevation from which its motion could be derived") as caught:
+        _read(tmp_path, floors, **building)
+    assert caught.value.is_incomplete

@@ -20,8 +20,8 @@ CHOICE = "MMI VII, very strong"
 PARAGRAPH = (
     "Assumed shaking: no motion of the ground is known for this building. MMI VII, very strong is assumed, with its "
     "published median PGA of 0.215 g and PGV of 20.0 cm/s (Worden et al. 2012). PGA scatters about it by 0.81 "
-    "(standard deviation of ln PGA), which Motion uncertainty is at least. Over the height the motion follows the design profile "
-    "of ASCE 7-22."
+    "(standard deviation of ln PGA), which Motion uncertainty is at least. Over the height the motion follows "
+    "the design profile of ASCE 7-22."
 )
 
 

@@ -15,16 +15,17 @@ from tests.workbook.test_live import Rows, by_formualizer, check, fill, poison
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 FLOORS: Rows = [{"floor": str(at), "elevation": z} for at, z in enumerate((-3, 0, 3.5, 7.25, 30))]
+SIZES: Rows = [
+    {"breadth": 30, "height": 190}, {"breadth": 60, "height": 180, "axis": "Y"},
+    {"breadth": 120, "height": 100, "centre_of_gravity": 40}, {"type": "Bookcase 5 shelves"},
+]  # fmt: skip
 ITEMS: Rows = [
     {"item": f"{floor['floor']} {at}", "floor": floor["floor"], **size}
     for floor, (at, size) in product(
         FLOORS,
-        enumerate((
-            {"breadth": 30, "height": 190}, {"breadth": 60, "height": 180, "axis": "Y"},
-            {"breadth": 120, "height": 100, "centre_of_gravity": 40}, {"type": "Bookcase 5 shelves"},
-        )),
+        enumerate(SIZES),
     )
-]  # fmt: skip
+]
 BUILDINGS: list[dict[str, Any]] = [
     {}, {"period": 0.3}, {"period": 2.1, "height": 12}, {"height": 45, "motion_uncertainty": 0.2},
     {"period": 1.2, "ground_pgv": 9.0, "motion_uncertainty": 1.1}, {"scenario_kind": "as filled", "period": 3.0},

@@ -21,6 +21,7 @@ MOST_PLACES = 20
 _OWN = {
     "one_axis_only": MOTION_FLAGS["one_axis_only"],
     "assumed_shaking": fill("assumed shaking"),
+    "assumed_elevation": fill("assumed elevation"),
     "pfv_estimated": fill("PFV estimated from T1"),
     "pfv_capped": fill("PFV capped by Ground PGV"),
 }

@@ -1,0 +1,32 @@
+"""The elevation that is assumed of a floor from its name."""
+
+import pytest
+
+from assess.motion.storeys import assume_elevation, find_storey
+
+NAMES = {
+    "0": 0, "G": 0, "Ground floor": 0, " pt ": 0, "Piano terra": 0, "B1": 0, "-2": 0, "Basement": 0,
+    "1": 1, "03": 3, "L11": 11, "Floor 2": 2, "level  7": 7, "Piano 4": 4, "2nd floor": 2, "3rd": 3,
+    "1\N{DEGREE SIGN}": 1,
+}  # fmt: skip
+UNNUMBERED = ["Roof", "Mezzanine", "25A", "Block 3 floor 10", "A", "", "2/3", "Wing 2"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_storey_that_a_name_tells(name):
+    assert find_storey(name) == NAMES[name]
+
+
+@pytest.mark.parametrize("name", UNNUMBERED)
+def test_names_that_tell_none(name):
+    assert find_storey(name) is None
+    assert assume_elevation(name, 12.0, 4) is None
+
+
+def test_storeys_are_of_one_height_and_no_floor_is_above_the_roof():
+    assert [assume_elevation(str(one), 12.0, 4) for one in range(6)] == [0, 3, 6, 9, 12, 12]
+
+
+@pytest.mark.parametrize(("height", "storeys"), [(None, 4), (12.0, None)])
+def test_without_height_or_storeys_nothing_is_assumed(height, storeys):
+    assert assume_elevation("2", height, storeys) is None
