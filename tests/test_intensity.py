@@ -2,6 +2,7 @@
 
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
@@ -90,3 +91,10 @@ def test_a_stronger_class_shakes_more(scale):
     for weaker, stronger in pairwise(own):
         assert weaker.pga < stronger.pga
         assert weaker.pgv < stronger.pgv
+
+
+def test_the_table_of_the_documentation_is_that_of_the_code():
+    text = (Path(__file__).parents[1] / "docs" / "limits.md").read_text(encoding="utf-8")
+    for one in SHAKINGS.values():
+        values = f"{one.intensity:g} | {one.pga / GRAVITY:.3f} | {100 * one.pgv:.1f} | {one.scatter:.2f}"
+        assert f"| {one.choice} | {values} |" in text

@@ -165,7 +165,7 @@ BUILDING = Sheet(
         Column("shaking", "Shaking", "choice", "For those who know none of these: how strongly the ground shakes, as MMI or "
                "as JMA of Japan. Its published median PGA and PGV then serve every floor without a motion of its own, "
                "and the reports say that the shaking is assumed.", choices=tuple(SHAKINGS),
-               default="the shaking is known"),
+               default="no shaking is assumed"),
         Column("hazard", "Hazard file", "file", "Hazard curve of the site beside the workbook, for chances a year: a CSV "
                "file with pga_g,annual_rate, or OpenQuake's hazard_curve-mean-PGA.csv.",
                default="chances a year are not evaluated"),
@@ -191,7 +191,7 @@ FLOORS = Sheet(
         Column("floor", "Floor", "text", "Short name, used in Items.", required=True, width=9),
         Column("name", "Name", "text", "Longer name for the report.", width=18),
         Column("elevation", "Elevation", "number", "Height of the floor above the ground. Needed where it has no "
-               "record and no PFA.", **_LENGTH, low=-200, high=1000),
+               "record and no PFA; where no floor has one, floors called by their number are placed by Height and Storeys.", **_LENGTH, low=-200, high=1000),
         Column("pfa_x", "PFA X", "number", "Peak floor acceleration along X.", **_ACCELERATION),
         Column("pfa_y", "PFA Y", "number", "Peak floor acceleration along Y. One axis alone serves both.",
                **_ACCELERATION),

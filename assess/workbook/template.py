@@ -37,7 +37,7 @@ FIRST_LINES = (
     "2. Floors: one row a floor with furniture. Give its peak floor acceleration (PFA), or name the file of a recorded "
     "motion that lies beside this workbook. Where you know neither, give the floor's Elevation: its motion is then "
     "interpolated between the floors above and below, which may be lower than the truth, or worked out from Ground "
-    "PGA in Building.",
+    "PGA in Building. Where you do not know that either, choose an intensity in Shaking in Building.",
     "3. Items: one row a piece, or a row for several alike. Choose a Type, and its sizes come from the Catalogue; or "
     "type the sizes. The columns at the right show the risk class at once.",
     "4. Places and Routes are for evacuation routes and may stay empty.",
