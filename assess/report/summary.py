@@ -8,7 +8,7 @@ from assess.i18n import ngettext
 from assess.report import words
 from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
-from assess.report.findings.assumed_intensity import say_shaking
+from assess.report.findings.assumed_intensity import say_shaking_shortly
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
 from assess.report.findings.uncertain import say_assumed, say_sensitivity
 from assess.report.ranking import Fix, list_fixes
@@ -48,12 +48,16 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
     return Summary(
         plainly=say_plainly(total, could_be, worst, fixes),
         apart=say_apart(rows),
-        assumed=[text for text in (say_shaking(results), say_assumed(results), say_sensitivity(results, rows)) if text],
+        assumed=[text for text in _list_assumed(results, rows) if text],
         worst=worst,
         fixes=fixes,
         routes=list_routes_at_risk(results),
         of_routes=say_routes(results),
     )
+
+
+def _list_assumed(results: Results, rows: Sequence[ItemResult]) -> tuple[str, ...]:
+    return say_shaking_shortly(results), say_assumed(results), say_sensitivity(results, rows)
 
 
 def list_worst(results: Sequence[ItemResult]) -> list[ItemResult]:

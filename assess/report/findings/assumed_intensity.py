@@ -14,6 +14,19 @@ def say_shaking(results: Results) -> str:
     return "" if found is None else " ".join(_say(found))
 
 
+def say_shaking_shortly(results: Results) -> str:
+    """Return the same in a sentence; "" where no shaking is assumed."""
+    found = results.provenance.shaking
+    if found is None:
+        return ""
+    return _(
+        "Assumed shaking: {intensity}, by its published median PGA of {pga} g and PGV of {pgv} cm/s, scatter of ln PGA "
+        "{scatter} ({sources}), and the design profile of {code}.",
+        intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
+        scatter=number(found.scatter, "g"), sources=", ".join(found.sources), code=found.profile,
+    )  # fmt: skip
+
+
 def _say(found: AssumedShaking) -> Iterator[str]:
     yield _(
         "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
