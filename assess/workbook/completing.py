@@ -13,8 +13,8 @@ BETTER = (
     ),
     fill(
         "ShakeMap of a past earthquake: the USGS (earthquake.usgs.gov) and many national services publish maps of how "
-        "strongly the ground shook. Read the PGA at the address, often in % of g, and type it into Ground PGA in "
-        "Building."
+        "strongly the ground shook. Read the PGA at the address, often in % of g (25 % of g is 0.25 g), and type it "
+        "into Ground PGA in Building."
     ),
     fill(
         "Records: where instruments in the building or near it recorded an earthquake, ask those who run them for the "
@@ -25,7 +25,8 @@ BETTER = (
 
 ASSUME = fill(
     "If you know none of these: choose how strongly the ground shakes in Shaking in Building, such as 'MMI VII, very "
-    "strong', and fill in the Elevation of every floor. The reports then say that the shaking is assumed."
+    "strong', and fill in the Elevation of every floor, or, where floors are called by their number, Height and Storeys "
+    "in Building. The reports then say that the shaking is assumed."
 )
 
 LIST = fill(
