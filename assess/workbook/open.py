@@ -32,7 +32,7 @@ MAX_MERGED = 16_384
 
 _CHUNK = 2**16
 _ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
-_TYPES, _WORKBOOK, _RELATIONS = "[Content_Types].xml", "xl/workbook.xml", "xl/_rels/workbook.xml.rels"
+TYPES, WORKBOOK, RELATIONS = "[Content_Types].xml", "xl/workbook.xml", "xl/_rels/workbook.xml.rels"
 _MAIN = ("sheet.main+xml", "template.main+xml", "sheet.macroEnabled.main+xml", "template.macroEnabled.main+xml")
 _STRICT = "http://purl.oclc.org/ooxml/spreadsheetml/main"
 _SMALL, _STRINGS = (8 * 2**20, 300_000), (24 * 2**20, 1_000_000)
@@ -44,6 +44,9 @@ _DATES = frozenset({*range(14, 23), 45, 46, 47})
 DAMAGE = (ValueError, TypeError, LookupError, OSError, EOFError, ArithmeticError, RuntimeError, NotImplementedError,
           zipfile.BadZipFile, zlib.error, expat.ExpatError)  # fmt: skip
 """What zipfile, zlib and expat raise on a damaged file."""
+
+_ESCAPED = ("_x005F_", "_")
+"""How programs write a text that has ``_x`` and four digits itself, and what it means."""
 
 UNSAVED = object()
 """The value of a cell that holds a formula without a saved result."""
@@ -62,7 +65,7 @@ def unreadable(message: str, fix: str) -> WorkbookError:
     return WorkbookError([Problem("error", "", "", message, fix)])
 
 
-def _damaged(message: str) -> WorkbookError:
+def damaged(message: str) -> WorkbookError:
     """Build the error for a part that no spreadsheet program writes."""
     return unreadable(fill("the workbook is damaged: {why}.", why=message), fill("Open it in Excel and save it again."))
 
@@ -123,16 +126,16 @@ def _open_archive(data: bytes, name: str) -> zipfile.ZipFile:
 
 def _check_directory(name: str, parts: list[zipfile.ZipInfo]) -> None:
     names = {part.filename for part in parts}
-    if not {_TYPES, _WORKBOOK, _RELATIONS} <= names:
+    if not {TYPES, WORKBOOK, RELATIONS} <= names:
         message = fill("{name} is a zip file, but not an Excel workbook (.xlsx).", name=name)
         raise unreadable(message, fill("Save it from Excel as .xlsx."))
     if any(part.flag_bits & 1 for part in parts):
         message = fill("{name} is protected by a password.", name=name)
         raise unreadable(message, fill("Save it without a password."))
     if len(names) < len(parts):
-        raise _damaged(fill("its zip holds two parts of one name"))
+        raise damaged(fill("its zip holds two parts of one name"))
     if any(part.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED) for part in parts):
-        raise _damaged(fill("its zip uses a compression that Excel does not use"))
+        raise damaged(fill("its zip uses a compression that Excel does not use"))
     bloated = any(one.file_size > max(2**20, MAX_RATIO * max(one.compress_size, 1)) for one in parts)
     if bloated or len(parts) > MAX_PARTS or sum(part.file_size for part in parts) > MAX_TOTAL:
         raise _bomb(name)
@@ -141,7 +144,7 @@ def _check_directory(name: str, parts: list[zipfile.ZipInfo]) -> None:
 # ---------------------------------------------------------------- parts as XML
 
 
-class _Part:
+class Part:
     """One part of the zip as a stream of tags; a kind of part says what it does at each. Prefixes are left out."""
 
     limits: tuple[int, int] | None = _SMALL
@@ -169,7 +172,7 @@ class _Part:
 
     def too_deep(self) -> WorkbookError:
         """Build the error for more open elements than `MAX_DEPTH`."""
-        return _damaged(fill("{part} nests its elements over {most} deep", part=self.path, most=MAX_DEPTH))
+        return damaged(fill("{part} nests its elements over {most} deep", part=self.path, most=MAX_DEPTH))
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         """Take in the beginning of an element."""
@@ -196,10 +199,10 @@ class _Part:
                 if self.limits and tags > self.limits[1]:
                     raise _bomb(self.name)
                 if done == len(chunk) and b"\0" in chunk[:100]:
-                    raise _damaged(fill("{part} is not written in UTF-8", part=self.path))
+                    raise damaged(fill("{part} is not written in UTF-8", part=self.path))
                 self.parser.Parse(chunk, False)
                 if done - self.parser.CurrentByteIndex > MAX_TAG:  # it is scanned anew with every stretch
-                    raise _damaged(fill("{part} holds a tag of over {most} MB", part=self.path, most=MAX_TAG >> 20))
+                    raise damaged(fill("{part} holds a tag of over {most} MB", part=self.path, most=MAX_TAG >> 20))
                 yield done
         self.parser.Parse(b"", True)
 
@@ -210,10 +213,10 @@ class _Part:
         return self
 
 
-_Kind = TypeVar("_Kind", bound=_Part)
+_Kind = TypeVar("_Kind", bound=Part)
 
 
-class _Tree(_Part):
+class Tree(Part):
     """A small part as a whole: its elements in their order, each with what encloses it, and its attributes."""
 
     def __init__(self, *args: Any) -> None:
@@ -236,7 +239,7 @@ class _Tree(_Part):
         return (attributes for outer, attributes in found if outer == within or not within)
 
 
-class _Strings(_Part):
+class _Strings(Part):
     """The texts that cells share."""
 
     limits = _STRINGS
@@ -264,7 +267,7 @@ class _Strings(_Part):
         self.takes = False
         self.is_phonetic = self.is_phonetic and tag != "rPh"
         if tag == "si":
-            self.found.append("".join(self.parts).replace("x005F_", ""))  # a sign by which programs escape a "_x"
+            self.found.append("".join(self.parts).replace(*_ESCAPED))
 
 
 def _special_format(number: str, codes: Mapping[str, str]) -> str | None:
@@ -293,7 +296,7 @@ class _Shared:
     is_1904: bool = False
 
 
-class SheetCells(_Part):
+class SheetCells(Part):
     """The cells of one sheet.
 
     `rows` yields them once, row by row. After that `last_row` is the last row that holds a value or a formula (0 in
@@ -378,10 +381,10 @@ class SheetCells(_Part):
     def _open_row(self, attributes: dict[str, str]) -> None:
         previous, number = self._number, attributes.get("r")
         if number is not None and not (number.isascii() and number.isdigit() and len(number) <= 7):
-            raise _damaged(fill("{part} has a row numbered {number}", part=self.path, number=number[:20]))
+            raise damaged(fill("{part} has a row numbered {number}", part=self.path, number=number[:20]))
         self._number = previous + 1 if number is None else int(number)
         if not previous < self._number <= SHEET_ROWS:
-            raise _damaged(fill("the rows of {part} are out of order", part=self.path))
+            raise damaged(fill("the rows of {part} are out of order", part=self.path))
         if attributes.get("hidden") in _TRUE and len(self.hidden_rows) < MAX_ROWS:
             self.hidden_rows.append(self._number)
         self._row_start = self.parser.CurrentByteIndex
@@ -396,7 +399,7 @@ class SheetCells(_Part):
         self._at = _column_number(self._address.rstrip("0123456789")) if self._address else self._at + 1
         self._count += 1
         if self._at > SHEET_COLUMNS or self._count > SHEET_COLUMNS:
-            raise _damaged(
+            raise damaged(
                 fill("row {row} of {part} has more cells than a sheet has columns", row=self._number, part=self.path)
             )
         self._kind, self._style = attributes.get("t", "n"), attributes.get("s", "")
@@ -426,7 +429,7 @@ class SheetCells(_Part):
             from openpyxl.utils.datetime import from_ISO8601
 
             return from_ISO8601(text)  # type: ignore[no-untyped-call]
-        return text
+        return text.replace(*_ESCAPED)
 
     def _number_or_date(self, number: float) -> Any:
         style = int(self._style) if self._style.isdigit() else 0
@@ -465,25 +468,28 @@ def column_letters(at: int) -> str:
     return letters
 
 
-def _check_kind(types: _Tree, book: _Tree) -> None:
+def _check_kind(types: Tree, book: Tree) -> None:
     """Raise WorkbookError unless the workbook is where every program looks for it, with the usual names of elements."""
     for one in types.find("Override"):
         part = one.get("PartName", "").lstrip("/")
-        if part and part != _WORKBOOK and one.get("ContentType", "").endswith(_MAIN):
-            raise _damaged(fill("{part} stands for {expected}", part=part, expected=_WORKBOOK))
+        if part and part != WORKBOOK and one.get("ContentType", "").endswith(_MAIN):
+            raise damaged(fill("{part} stands for {expected}", part=part, expected=WORKBOOK))
     if any(_STRICT in one.values() for one in book.find("workbook")):
         message = fill("the workbook is saved as Strict Open XML.")
         raise unreadable(message, fill("In Excel: Save As, Excel Workbook (.xlsx), without Strict."))
 
 
-def _list_formats(styles: _Tree) -> list[str | None]:
+def _list_formats(styles: Tree) -> list[str | None]:
     """Return, by the number of a style, the format of one that shows a number otherwise, else None."""
     codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
     return [_special_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
 
 
 class Book:
-    """An opened workbook: `sheets` tells the names of its worksheets in their order; use it in a ``with`` statement.
+    """An opened workbook; use it in a ``with`` statement.
+
+    `sheets` tells the parts of its worksheets by their names, in their order, and `sheet_ids` their numbers; `parts`
+    the parts that the workbook refers to, such as its calcChain, by kind. `archive` is the zip.
 
     `hidden` holds the names of those that are not shown.
 
@@ -504,29 +510,30 @@ class Book:
 
     def __init__(self, data: bytes, name: str, progress: Progress = SILENT) -> None:
         self.name, self.progress, self._shared = name, progress, _Shared()
-        self._archive = _open_archive(data, name)
+        self.archive = _open_archive(data, name)
         with self:
-            types, book = self._part(_Tree, _TYPES), self._part(_Tree, _WORKBOOK)
+            types, book = self.read(Tree, TYPES), self.read(Tree, WORKBOOK)
             _check_kind(types, book)
             links = self._links()
-            kinds = dict(links.values())
-            self.sheets, self.hidden = {}, set[str]()
+            self.parts = kinds = dict(links.values())
+            self.sheets, self.sheet_ids, self.hidden = dict[str, str](), dict[str, str](), set[str]()
             for one in book.find("sheet"):
                 link = next((value for name, value in one.items() if name.endswith(":id")), "")
                 if links.get(link, ("",))[0] == "worksheet":
                     self.sheets[one.get("name", "")] = links[link][1]
+                    self.sheet_ids[one.get("name", "")] = one.get("sheetId", "")
                     if one.get("state", "visible") != "visible":
                         self.hidden.add(one.get("name", ""))
             self._shared = _Shared(
-                self._part(_Strings, kinds["sharedStrings"]).found if "sharedStrings" in kinds else [],
-                _list_formats(self._part(_Tree, kinds["styles"])) if "styles" in kinds else [],
+                self.read(_Strings, kinds["sharedStrings"]).found if "sharedStrings" in kinds else [],
+                _list_formats(self.read(Tree, kinds["styles"])) if "styles" in kinds else [],
                 any(one.get("date1904") in _TRUE for one in book.find("workbookPr")),
             )
 
     def _links(self) -> dict[str, tuple[str, str]]:
         """Return kind and path of the parts that the workbook refers to, by the name of the reference."""
-        present, found = set(self._archive.namelist()), {}
-        for one in self._part(_Tree, _RELATIONS).find("Relationship"):
+        present, found = set(self.archive.namelist()), {}
+        for one in self.read(Tree, RELATIONS).find("Relationship"):
             path = posixpath.normpath(posixpath.join("/xl", one.get("Target", ""))).lstrip("/")
             if path in present and one.get("TargetMode") != "External":
                 found[one.get("Id", "")] = (one.get("Type", "").rpartition("/")[2], path)
@@ -543,11 +550,12 @@ class Book:
             )
             raise unreadable(message, fill("Open it in Excel and save it again.")) from error
 
-    def _part(self, kind: type[_Kind], path: str) -> _Kind:
-        return kind(self._archive, path, self.name, self.progress).read()
+    def read(self, kind: type[_Kind], path: str) -> _Kind:
+        """Return a part of the zip, read as one kind of part."""
+        return kind(self.archive, path, self.name, self.progress).read()
 
     def cells(self, sheet: str) -> SheetCells:
         """Return the cells of a sheet."""
-        cells = SheetCells(self._archive, self.sheets[sheet], self.name, self._shared, self.progress)
+        cells = SheetCells(self.archive, self.sheets[sheet], self.name, self._shared, self.progress)
         cells.title = sheet
         return cells

@@ -1,0 +1,393 @@
+"""Cells of an .xlsx set by editing the bytes of its sheets: whatever is not changed stays as it was, to the byte.
+
+Loading a workbook in a library and saving it again loses what the library does not know: pictures, threaded comments,
+sparklines, the stored results of formulas. Here the places of the cells are found in the XML of their sheet, and
+only those bytes are replaced; every other part of the zip keeps its bytes, name, date and place. Office Open XML:
+ECMA-376 Part 1, 18.3 (worksheets), 18.6 (calculation chain), 22.9.2.19 (ST_Xstring).
+"""
+
+import io
+import re
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from xml.sax.saxutils import escape
+
+from assess.errors import Problem, WorkbookError
+from assess.i18n import fill
+from assess.progress import SILENT, Progress
+from assess.workbook.open import SHEET_COLUMNS, SHEET_ROWS, Book, column_letters, unreadable
+from assess.workbook.patch_parts import drop_from_chain, find_headings, set_recalculation
+from assess.workbook.places import (
+    CellPlace,
+    Edit,
+    RowPlace,
+    SheetPlaces,
+    add_attribute,
+    apply_edits,
+    drop_attributes,
+    open_tag,
+    split_address,
+    split_range,
+)
+
+Value = float | str | bool | None
+"""What a cell may hold; None leaves it blank."""
+Values = Mapping[str, Value]
+"""Values by the addresses of cells, ``{"H14": 45.0}``."""
+
+LONGEST_TEXT = 32_767
+"""Characters that a cell of a spreadsheet program holds."""
+LARGEST_NUMBER = 9.99999999999999e307
+"""The largest number that a cell holds."""
+_UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]|_(?=x[0-9A-Fa-f]{4}_)")
+_CONTENT = frozenset({"f", "v", "is"})
+_LEVEL = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Patched:
+    """A workbook with cells changed: its bytes, and sheet and address of each formula that a value replaced."""
+
+    data: bytes
+    formulas: tuple[tuple[str, str], ...] = ()
+
+
+def patch_workbook(
+    data: bytes,
+    changes: Mapping[str, Values],
+    results: Mapping[str, Values] | None = None,
+    *,
+    name: str = "workbook.xlsx",
+    progress: Progress = SILENT,
+) -> Patched:
+    """Set cells of a workbook and leave every other byte of its parts as it is.
+
+    Parameters
+    ----------
+    data : bytes
+        The .xlsx or .xlsm.
+    changes : mapping of str to mapping of str to value
+        The values by the workbook's own names of its sheets and the addresses of cells. A cell keeps its format; a
+        formula in it is replaced; None leaves it blank. A cell or row that is missing is added in its place, with the
+        format of its row or column.
+    results : mapping of str to mapping of str to value, optional
+        Likewise the stored results of formulas, which stay; None takes the result out, so that every program
+        computes it when it opens the workbook.
+    name : str
+        How messages call the workbook.
+    progress : Progress
+        Checked while it is read.
+
+    Returns
+    -------
+    Patched
+        The same values set again give the same bytes. Where anything changed, programs are asked to recalculate the
+        workbook when they open it.
+
+    Raises
+    ------
+    WorkbookError
+        If it cannot be opened, or if something in it cannot be changed with certainty; nothing is changed then. The
+        problems name every cell that is refused: one where a formula of several cells begins, one of an array or data
+        table, a header of a table, a value that a cell cannot hold.
+    """
+    kept = {sheet: values for sheet, values in (results or {}).items() if values}
+    wanted = {sheet: values for sheet, values in changes.items() if values}
+    with Book(data, name, progress) as book:
+        _check_names(book, [*wanted, *kept])
+        parts: dict[str, bytes | None] = {}
+        formulas: list[tuple[str, str]] = []
+        problems: list[Problem] = []
+        for sheet in dict.fromkeys([*wanted, *kept]):
+            one = _SheetPatch(book, sheet, wanted.get(sheet, {}), kept.get(sheet, {}))
+            parts[book.sheets[sheet]] = one.write()
+            formulas += [(sheet, address) for address in one.formulas]
+            problems += one.problems
+        if problems:
+            raise WorkbookError(problems)
+        if not parts:
+            return Patched(data)
+        parts |= set_recalculation(book)
+        parts |= drop_from_chain(book, formulas)
+        return Patched(_pack(book, parts), tuple(formulas))
+
+
+def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> dict[str, bool]:
+    """Return whether each formula of a sheet has stored a result that is not blank, by its address.
+
+    Raises
+    ------
+    WorkbookError
+        If the workbook cannot be opened.
+    """
+    with Book(data, name) as book:
+        places = SheetPlaces(book.archive, book.sheets[sheet], book.name, lambda _: True, SILENT).read()
+        found = {}
+        for number, row in places.rows.items():
+            for column, cell in row.cells.items():
+                if cell.part("f") is not None:
+                    value = cell.part("v")
+                    found[f"{column_letters(column - 1)}{number}"] = value is not None and value.foot > value.head
+        return found
+
+
+def _check_names(book: Book, names: Sequence[str]) -> None:
+    missing = [one for one in names if one not in book.sheets]
+    if missing:
+        raise WorkbookError([Problem("error", one, "", fill("the sheet is missing.")) for one in missing])
+    if any(part.startswith("_xmlsignatures/") for part in book.archive.namelist()):
+        message = fill("{name} is digitally signed; a change would break the signature.", name=book.name)
+        raise unreadable(message, fill("Save it from Excel without the signature."))
+
+
+# ---------------------------------------------------------------- one sheet
+
+
+@dataclass(slots=True)
+class _SheetPatch:
+    """The changes of one sheet."""
+
+    book: Book
+    sheet: str
+    changes: Values
+    results: Values
+    formulas: list[str] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+
+    def write(self) -> bytes:
+        """Return the bytes of the sheet with the changes made; `problems` tells what is refused."""
+        changes, results = self._by_row(self.changes), self._by_row(self.results)
+        book, path, wanted = self.book, self.book.sheets[self.sheet], {*changes, *results}
+        headings = find_headings(book, path)
+        places = SheetPlaces(book.archive, path, book.name, wanted.__contains__, book.progress).read()
+        edits: list[Edit] = []
+        new_rows: list[tuple[int, bytes]] = []
+        added: list[tuple[int, int]] = []
+        for number in sorted(wanted):
+            values = changes.get(number, {})
+            for column in values:
+                self._check_place(places, headings, column, number)
+            row = places.rows.get(number)
+            one = _RowPatch(places, number, row, values, results.get(number, {}))
+            if row is None:
+                new_rows += [(number, text)] if (text := one.write_new()) else []
+            else:
+                edits += one.edit(row)
+            self.formulas += one.formulas
+            added += [(column, number) for column in one.added]
+            self._refuse_all(one)
+        edits += _insert_rows(places, new_rows)
+        edits += _widen(places, added)
+        return apply_edits(places.data, edits)
+
+    def _by_row(self, values: Values) -> dict[int, dict[int, Value]]:
+        """Return the values by row and column, both from 1."""
+        found: dict[int, dict[int, Value]] = {}
+        for address, value in values.items():
+            place = split_address(address)
+            if place is None or place[0] > SHEET_COLUMNS or place[1] > SHEET_ROWS:
+                self._refuse(address, fill("{address} is no cell of a sheet.", address=address[:20]))
+                continue
+            if isinstance(value, str) and len(value) > LONGEST_TEXT:
+                message = fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
+                self._refuse(address, message)
+            elif isinstance(value, int | float) and not abs(value) <= LARGEST_NUMBER:
+                self._refuse(address, fill("the value is not a number that a cell holds."))
+            else:
+                found.setdefault(place[1], {})[place[0]] = value
+        return found
+
+    def _check_place(
+        self, places: SheetPlaces, headings: Sequence[tuple[int, int, int]], column: int, number: int
+    ) -> None:
+        """Refuse a cell that cannot be changed by itself."""
+        address = f"{column_letters(column - 1)}{number}"
+        for (left, right, top, bottom), kind in places.locked:
+            if left <= column <= right and top <= number <= bottom:
+                is_table = kind == "dataTable"
+                table, array = fill("it belongs to a data table."), fill("it belongs to an array formula.")
+                self._refuse(address, table if is_table else array)
+        if any(left <= column <= right and number == top for left, right, top in headings):
+            self._refuse(address, fill("it is a header of a table."))
+
+    def _refuse_all(self, row: "_RowPatch") -> None:
+        for column, why in row.refused:
+            self._refuse(f"{column_letters(column - 1)}{row.number}", why)
+
+    def _refuse(self, address: str, message: str) -> None:
+        fix = fill("Change this cell in Excel.")
+        self.problems.append(Problem("error", self.sheet, address, message, fix))
+
+
+@dataclass(slots=True)
+class _RowPatch:
+    """The changes of one row, by column."""
+
+    places: SheetPlaces
+    number: int
+    row: RowPlace | None
+    values: Mapping[int, Value]
+    results: Mapping[int, Value]
+    formulas: list[str] = field(default_factory=list)
+    added: list[int] = field(default_factory=list)
+    refused: list[tuple[int, str]] = field(default_factory=list)
+
+    def write_new(self) -> bytes:
+        """Return a row that the sheet lacks; nothing where it would be blank."""
+        self.refused += [(column, fill("it holds no formula.")) for column in self.results]
+        cells = b"".join(self._new_cell(column) for column, value in sorted(self.values.items()) if value is not None)
+        p = self.places.prefix
+        return b'<%brow r="%d">%b</%brow>' % (p, self.number, cells, p) if cells else b""
+
+    def edit(self, row: RowPlace) -> list[Edit]:
+        """Return the edits of a row that is there."""
+        edits: list[Edit] = []
+        new: list[tuple[int, bytes]] = []
+        for column, value in sorted(self.values.items()):
+            cell = row.cells.get(column)
+            if cell is not None:
+                edits.append((cell.element.start, cell.element.end, self._changed_cell(cell, value)))
+            elif value is not None:
+                new.append((self._place_after(row, column), self._new_cell(column)))
+        for column, value in sorted(self.results.items()):
+            cell = row.cells.get(column)
+            formula = cell.part("f") if cell is not None and column not in self.values else None
+            if cell is None or formula is None:
+                self.refused.append((column, fill("it holds no formula.")))
+            else:
+                kept = self.places.data[formula.start : formula.end]
+                text = _write_cell(self.places.prefix, self._tag(cell, keeps=True), value, kept)
+                edits.append((cell.element.start, cell.element.end, text))
+        return edits + self._insert(row, new)
+
+    def _insert(self, row: RowPlace, new: Sequence[tuple[int, bytes]]) -> list[Edit]:
+        """Return the edits that add cells; the row's tag is opened, and loses a hint that would be wrong."""
+        if not new:
+            return []
+        one, data = row.element, self.places.data
+        tag = data[one.start : one.head]
+        spans = [split.partition(":") for split in one.attributes.get("spans", "").split()]
+        inside = [range(int(first), int(last) + 1) for first, _, last in spans]
+        wrong = any(not any(column in span for span in inside) for column in self.added)
+        changed = drop_attributes(tag, (b"spans",)) if wrong else tag
+        if tag.endswith(b"/>"):
+            cells = b"".join(text for _, text in new)
+            return [(one.start, one.head, open_tag(changed) + cells + b"</%brow>" % self.places.prefix)]
+        return [(one.start, one.head, changed), *((at, at, text) for at, text in new)]
+
+    def _place_after(self, row: RowPlace, column: int) -> int:
+        """Return where the first cell right of a missing one begins, else the end of the row."""
+        right = [cell.element.start for at, cell in row.cells.items() if at > column]
+        return min(right, default=row.element.foot)
+
+    def _new_cell(self, column: int) -> bytes:
+        self.added.append(column)
+        p, address = self.places.prefix, f"{column_letters(column - 1)}{self.number}".encode()
+        style = self._style(column)
+        tag = b'<%bc r="%b"%b>' % (p, address, b' s="%b"' % style.encode() if style else b"")
+        return _write_cell(p, tag, self.values[column])
+
+    def _style(self, column: int) -> str:
+        """Return the style that a new cell takes over from its row or column, as in spreadsheet programs."""
+        of_row = self.row.element.attributes if self.row else {}
+        if of_row.get("customFormat") in ("1", "true") and of_row.get("s", "").isdigit():
+            return of_row["s"]
+        found = (style for first, last, style in self.places.columns if first <= column <= last)
+        return next((style for style in found if style.isdigit() and int(style)), "")
+
+    def _changed_cell(self, cell: CellPlace, value: Value) -> bytes:
+        """Return a cell with a value in place of its content."""
+        formula = cell.part("f")
+        if formula is not None:
+            self.formulas.append(f"{column_letters(cell.column - 1)}{self.number}")
+            if formula.attributes.get("t") == "shared" and "ref" in formula.attributes:
+                self.refused.append((cell.column, fill("its formula is shared by other cells.")))
+        return _write_cell(self.places.prefix, self._tag(cell), value)
+
+    def _tag(self, cell: CellPlace, *, keeps: bool = False) -> bytes:
+        """Return the start tag of a cell without what its content was."""
+        known = {f"{self.places.prefix.decode()}{name}" for name in _CONTENT}
+        unknown = [one.name for one in cell.parts if one.name not in known]
+        if unknown:
+            self.refused.append((cell.column, fill("it holds {element}, which is not known.", element=unknown[0][:40])))
+        tag = self.places.data[cell.element.start : cell.element.head]
+        return open_tag(drop_attributes(tag, (b"t",) if keeps else (b"t", b"cm", b"vm")))
+
+
+def _write_cell(prefix: bytes, tag: bytes, value: Value, formula: bytes = b"") -> bytes:
+    """Return a cell by its start tag: its value, or a formula and the result that is stored for it."""
+    p, close = prefix, b"</%bc>" % prefix
+    if value is None:
+        return tag + formula + close if formula else tag[:-1].rstrip() + b"/>"
+    if isinstance(value, str):
+        text = _write_text(value)
+        if formula:
+            return add_attribute(tag, b't="str"') + formula + b"<%bv>%b</%bv>" % (p, text, p) + close
+        inline = b'<%bis><%bt xml:space="preserve">%b</%bt></%bis>' % (p, p, text, p, p)
+        return add_attribute(tag, b't="inlineStr"') + inline + close
+    if isinstance(value, bool):
+        return add_attribute(tag, b't="b"') + formula + b"<%bv>%d</%bv>" % (p, value, p) + close
+    return tag + formula + b"<%bv>%b</%bv>" % (p, _write_number(value).encode(), p) + close
+
+
+def _write_number(value: float) -> str:
+    number = float(value)
+    return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
+
+
+def _write_text(value: str) -> bytes:
+    """Return a text as XML; characters that XML lacks by their codes, as spreadsheet programs write them."""
+    coded = _UNWRITABLE.sub(lambda found: f"_x{ord(found[0]):04X}_", value)
+    return escape(coded, {"\r": "&#13;"}).encode()
+
+
+def _insert_rows(places: SheetPlaces, rows: Sequence[tuple[int, bytes]]) -> list[Edit]:
+    """Return the edits that add rows in their order."""
+    one = places.sheet_data
+    tag = places.data[one.start : one.head]
+    if rows and tag.endswith(b"/>"):
+        text = b"".join(text for _, text in rows)
+        return [(one.start, one.end, open_tag(tag) + text + b"</%bsheetData>" % places.prefix)]
+    found = [(places.place_of_new(number), text) for number, text in rows]
+    return [(at, at, text) for at, text in found]
+
+
+def _widen(places: SheetPlaces, added: Sequence[tuple[int, int]]) -> list[Edit]:
+    """Return the edit of what the sheet says how far its cells reach, if it is less than new cells do."""
+    one = places.dimension
+    span = split_range(one.attributes.get("ref", "")) if one is not None else None
+    if one is None or span is None or not added:
+        return []
+    columns, rows = zip(*added, strict=True)
+    wide = (min(span[0], *columns), max(span[1], *columns), min(span[2], *rows), max(span[3], *rows))
+    if wide == span:
+        return []
+    reference = f"{column_letters(wide[0] - 1)}{wide[2]}:{column_letters(wide[1] - 1)}{wide[3]}".encode()
+    tag = places.data[one.start : one.head]
+    return [(one.start, one.head, add_attribute(drop_attributes(tag, (b"ref",)), b'ref="%b"' % reference))]
+
+
+# ---------------------------------------------------------------- the zip
+
+
+def _pack(book: Book, parts: Mapping[str, bytes | None]) -> bytes:
+    """Return the zip with other bytes for some parts, and without those that are None."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=_LEVEL) as out:
+        out.comment = book.archive.comment
+        for info in book.archive.infolist():
+            book.progress.check()
+            content = parts.get(info.filename, b"") if info.filename in parts else book.archive.read(info)
+            if content is not None:
+                out.writestr(_copy_info(info), content, compresslevel=_LEVEL)
+    return packed.getvalue()
+
+
+def _copy_info(info: zipfile.ZipInfo) -> zipfile.ZipInfo:
+    """Return what the zip says of a part, for another zip."""
+    found = zipfile.ZipInfo(info.filename, info.date_time)
+    for name in ("compress_type", "comment", "extra", "create_system", "create_version", "extract_version",
+                 "internal_attr", "external_attr"):  # fmt: skip
+        setattr(found, name, getattr(info, name))
+    return found

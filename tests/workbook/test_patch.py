@@ -1,0 +1,535 @@
+"""Cells set in the bytes of a workbook: what is asked for changes, and nothing else does."""
+
+import io
+import math
+import re
+import struct
+import zipfile
+import zlib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+import xlsxwriter
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from assess.errors import WorkbookError
+from assess.workbook.open import Book, column_letters
+from assess.workbook.patch import Patched, list_formulas, patch_workbook
+from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
+from tests.workbook.books import change_parts, replace
+
+SHEET, BOOK = "xl/worksheets/sheet1.xml", "xl/workbook.xml"
+CHAIN, RELATIONS, TYPES = "xl/calcChain.xml", "xl/_rels/workbook.xml.rels", "[Content_Types].xml"
+MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+
+
+def png() -> bytes:
+    """A picture of one grey pixel."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    head = struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(b"\0\x80")) + chunk(b"IEND", b"")
+
+
+def parts_of(data: bytes) -> dict[str, bytes]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def directory_of(data: bytes) -> list[tuple[Any, ...]]:
+    """What the zip says of each part, but for what depends on its bytes."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        names = ("filename", "date_time", "compress_type", "comment", "extra", "external_attr", "create_system")
+        return [tuple(getattr(info, name) for name in names) for info in archive.infolist()]
+
+
+def changed_parts(before: bytes, after: bytes) -> set[str]:
+    old, new = parts_of(before), parts_of(after)
+    return {name for name in {*old, *new} if old.get(name) != new.get(name)}
+
+
+def values_of(data: bytes, sheet: str = "Items") -> dict[str, Any]:
+    """What openpyxl reads."""
+    book = openpyxl.load_workbook(io.BytesIO(data))
+    found = {cell.coordinate: cell.value for row in book[sheet].iter_rows() for cell in row if cell.value is not None}
+    book.close()
+    return found
+
+
+def own_values(data: bytes, sheet: str = "Items") -> dict[str, Any]:
+    """What assess reads."""
+    with Book(data, "book.xlsx") as book:
+        rows = list(book.cells(sheet).rows())
+    return {f"{column_letters(at)}{number}": value for number, cells in rows for at, value in cells.items()}
+
+
+def refusals(data: bytes, changes: Mapping[str, Mapping[str, Any]], **named: Any) -> set[str]:
+    with pytest.raises(WorkbookError) as caught:
+        patch_workbook(data, changes, **named)
+    return {str(one) for one in caught.value.problems}
+
+
+def minimal(rows: str, *, head: str = "", tail: str = "", root: str = f'<worksheet xmlns="{MAIN}">') -> bytes:
+    """A workbook whose sheet Items holds this XML."""
+    packed = io.BytesIO()
+    with xlsxwriter.Workbook(packed) as book:
+        book.add_worksheet("Items")
+    parts = parts_of(packed.getvalue())
+    name = root[1:].partition(" ")[0]
+    parts[SHEET] = f"{root}{head}{rows}{tail}</{name}>".encode()
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for part, data in parts.items():
+            archive.writestr(part, data)
+    return out.getvalue()
+
+
+def data_of(data: bytes) -> str:
+    """The rows of the sheet, as they stand in its XML."""
+    text = parts_of(data)[SHEET].decode()
+    return text[text.index("<sheetData") : text.index("</sheetData>") + len("</sheetData>")]
+
+
+def rich(path: Path) -> Path:
+    """A workbook with what openpyxl loses or writes anew."""
+    with xlsxwriter.Workbook(path) as book:
+        page, other = book.add_worksheet("Items"), book.add_worksheet("Other")
+        bold, text = book.add_format({"bold": True}), book.add_format({"num_format": "@", "bg_color": "#ffee00"})
+        page.write_row(0, 0, ["Item", "Floor", "Breadth [cm]", "Height [cm]"], bold)
+        for row in range(1, 12):
+            page.write(row, 0, f"A{row}")
+            page.write(row, 1, "1")
+            page.write_string(row, 2, f"{30 + row} cm", text)
+            page.write_number(row, 3, 180 + row)
+            page.write_formula(row, 4, f"=C{row + 1}/D{row + 1}", None, 0.25)
+        page.write_rich_string("G1", "Rich ", bold, "text")
+        page.write_comment("A2", "A comment")
+        page.insert_image("H2", "grey.png", {"image_data": io.BytesIO(png())})
+        chart = book.add_chart({"type": "column"})
+        chart.add_series({"values": "=Items!$D$2:$D$12"})
+        page.insert_chart("H8", chart)
+        page.conditional_format("D2:D12", {"type": "data_bar"})
+        page.data_validation("B2:B12", {"validate": "list", "source": ["1", "2"]})
+        page.add_sparkline("F2", {"range": "Items!D2:D12"})
+        page.autofilter("A1:E12")
+        page.set_column(20, 20, 12, text)
+        page.merge_range("A20:C21", "merged")
+        other.add_table("B2:D5", {"columns": [{"header": name} for name in "xyz"], "data": [[1, 2, 3]] * 3})
+        book.define_name("Sizes", "=Items!$C$2:$C$12")
+    return add_threads(path)
+
+
+def add_threads(path: Path) -> Path:
+    """Add a threaded comment and the person who wrote it, as Excel keeps them, and a part no program knows."""
+    space = 'xmlns="http://schemas.microsoft.com/office/spreadsheetml/2018/threadedcomments"'
+    who = "{00000000-0000-0000-0000-000000000001}"
+    types = "application/vnd.ms-excel"
+    office = "http://schemas.microsoft.com/office/2017/10/relationships"
+    thread = f'<ThreadedComments {space}><threadedComment ref="A2" personId="{who}" id="{who}"><text>Hello</text>' \
+             "</threadedComment></ThreadedComments>"  # fmt: skip
+    person = f'<personList {space}><person displayName="Ann" id="{who}" userId="Ann" providerId="None"/></personList>'
+    return change_parts(path, {
+        "xl/threadedComments/threadedComment1.xml": thread.encode(),
+        "xl/persons/person.xml": person.encode(),
+        "xl/unknown.bin": bytes(range(256)),
+        TYPES: replace("</Types>", f'<Default Extension="bin" ContentType="application/octet-stream"/>'
+                       f'<Override PartName="/xl/threadedComments/threadedComment1.xml" '
+                       f'ContentType="{types}.threadedcomments+xml"/><Override PartName="/xl/persons/person.xml" '
+                       f'ContentType="{types}.person+xml"/></Types>'),
+        "xl/worksheets/_rels/sheet1.xml.rels": replace(
+            "</Relationships>", f'<Relationship Id="rId90" Type="{office}/threadedComment" '
+            'Target="../threadedComments/threadedComment1.xml"/></Relationships>'),
+        RELATIONS: replace("</Relationships>", f'<Relationship Id="rId90" Type="{office}/person" '
+                           'Target="persons/person.xml"/></Relationships>'),
+    })  # fmt: skip
+
+
+CHANGES: dict[str, Any] = {f"C{row}": 30.0 + row for row in range(2, 8)} | {
+    "B3": "Ground & <1>",
+    "C9": 0.15,
+    "A40": "new",
+    "U5": True,
+}
+
+
+# ---------------------------------------------------------------- everything else stays
+
+
+def test_every_other_byte_of_a_rich_workbook_stays(tmp_path: Path) -> None:
+    before = rich(tmp_path / "book.xlsx").read_bytes()
+    after = patch_workbook(before, {"Items": CHANGES}).data
+    assert changed_parts(before, after) == {SHEET}
+    assert directory_of(before) == directory_of(after)
+    cells = re.compile(rb'<c r="(\w+)".*?(?:/>|</c>)', re.S)
+    old, new = parts_of(before)[SHEET], parts_of(after)[SHEET]
+    outside = [re.sub(rb"<dimension[^>]*>", b"", cells.sub(b"", text)) for text in (old, new)]
+    assert outside[1].replace(b'<row r="40"></row>', b"") == re.sub(rb'(<row r="5") spans="[^"]*"', rb"\1", outside[0])
+    kept = {found[1]: found[0] for found in cells.finditer(old) if found[1].decode() not in CHANGES}
+    assert {found[1]: found[0] for found in cells.finditer(new) if found[1].decode() not in CHANGES} == kept
+
+
+def test_it_reads_back(tmp_path: Path) -> None:
+    before = rich(tmp_path / "book.xlsx").read_bytes()
+    after = patch_workbook(before, {"Items": CHANGES}).data
+    assert values_of(after) == values_of(before) | CHANGES
+    assert {**own_values(after), "E2": 0} == {**own_values(before), **CHANGES, "E2": 0}
+
+
+def test_the_format_of_a_cell_stays(tmp_path: Path) -> None:
+    """A number in a cell of the format Text is a number all the same."""
+    after = patch_workbook(rich(tmp_path / "book.xlsx").read_bytes(), {"Items": {"C2": 45.5, "C3": None, "U9": 2}}).data
+    page = openpyxl.load_workbook(io.BytesIO(after))["Items"]
+    assert (page["C2"].value, page["C2"].data_type, page["C2"].number_format) == (45.5, "n", "@")
+    assert (page["C3"].value, page["C3"].fill.fgColor.rgb) == (None, "FFFFEE00")
+    assert page["U9"].number_format == "@", "a new cell takes the format of its column"
+    assert own_values(after)["C2"] == 45.5
+
+
+def test_the_same_again_is_the_same(tmp_path: Path) -> None:
+    before = rich(tmp_path / "book.xlsx").read_bytes()
+    once = patch_workbook(before, {"Items": CHANGES}).data
+    assert patch_workbook(once, {"Items": CHANGES}).data == once
+    assert patch_workbook(before, {"Items": {}}).data == before
+
+
+@needs_libreoffice
+@pytest.mark.libreoffice
+@pytest.mark.slow
+def test_libreoffice_reads_it(tmp_path: Path) -> None:
+    after = patch_workbook(rich(tmp_path / "book.xlsx").read_bytes(), {"Items": CHANGES | {"E5": 7}}).data
+    (tmp_path / "after.xlsx").write_bytes(after)
+    found = stored_cells(libreoffice(tmp_path / "after.xlsx", tmp_path / "out.xlsx"))
+    assert {cell: found["Items", cell] for cell in CHANGES} == CHANGES
+    assert found["Items", "E2"] == pytest.approx(32 / 181)
+    assert found["Items", "E5"] == 7
+
+
+# ---------------------------------------------------------------- rows and cells in their order
+
+
+@pytest.mark.parametrize(
+    ("rows", "changes", "expected"),
+    [
+        ("<sheetData/>", {"B2": 1}, '<sheetData><row r="2"><c r="B2"><v>1</v></c></row></sheetData>'),
+        ("<sheetData></sheetData>", {"B2": 1}, '<sheetData><row r="2"><c r="B2"><v>1</v></c></row></sheetData>'),
+        ("<sheetData />", {"B2": None}, "<sheetData />"),
+        (
+            '<sheetData><row r="2"/><row r="5" ht="20"/></sheetData>',
+            {"A6": 6, "B3": 3, "A3": 2, "C5": 5, "A1": 1},
+            '<sheetData><row r="1"><c r="A1"><v>1</v></c></row><row r="2"/>'
+            '<row r="3"><c r="A3"><v>2</v></c><c r="B3"><v>3</v></c></row>'
+            '<row r="5" ht="20"><c r="C5"><v>5</v></c></row><row r="6"><c r="A6"><v>6</v></c></row></sheetData>',
+        ),
+        (
+            '<sheetData><row r="1" spans="2:4"><c r="B1" s="0"/><c r="D1"><v>4</v></c></row></sheetData>',
+            {"A1": 1, "B1": 2, "C1": 3, "E1": 5},
+            '<sheetData><row r="1"><c r="A1"><v>1</v></c><c r="B1" s="0"><v>2</v></c><c r="C1"><v>3</v></c>'
+            '<c r="D1"><v>4</v></c><c r="E1"><v>5</v></c></row></sheetData>',
+        ),
+        (
+            '<sheetData><row r="1" spans="2:4"><c r="B1"><v>1</v></c></row></sheetData>',
+            {"C1": 3},
+            '<sheetData><row r="1" spans="2:4"><c r="B1"><v>1</v></c><c r="C1"><v>3</v></c></row></sheetData>',
+        ),
+        (  # rows and cells without their addresses
+            "<sheetData><row><c><v>1</v></c><c><v>2</v></c></row><row><c><v>3</v></c></row></sheetData>",
+            {"B1": 9, "A2": 8},
+            "<sheetData><row><c><v>1</v></c><c><v>9</v></c></row><row><c><v>8</v></c></row></sheetData>",
+        ),
+        (
+            '<sheetData><row r="2" s="3" customFormat="1"><c r="A2" s="1"/></row></sheetData>',
+            {"B2": 1},
+            '<sheetData><row r="2" s="3" customFormat="1"><c r="A2" s="1"/><c r="B2" s="3"><v>1</v></c></row>'
+            "</sheetData>",
+        ),
+    ],
+)
+def test_rows_and_cells_are_put_in_their_order(rows: str, changes: Mapping[str, Any], expected: str) -> None:
+    sheet = parts_of(patch_workbook(minimal(rows), {"Items": changes}).data)[SHEET].decode()
+    assert sheet == f'<worksheet xmlns="{MAIN}">{expected}</worksheet>'
+
+
+def test_a_prefix_of_names() -> None:
+    before = minimal(
+        '<x:sheetData><x:row r="1"><x:c r="A1" t="s"><x:v>0</x:v></x:c></x:row></x:sheetData>',
+        root=f'<x:worksheet xmlns:x="{MAIN}">',
+    )
+    after = patch_workbook(before, {"Items": {"A1": "text", "B1": 2, "A3": True}}).data
+    assert values_of(after) == own_values(after) == {"A1": "text", "B1": 2, "A3": True}
+
+
+def test_what_only_looks_like_a_cell() -> None:
+    """Comments, CDATA, attributes and elements elsewhere may hold what looks like a cell."""
+    rows = """<sheetData><!-- <row r="1"><c r="A1"><v>9</v></c></row> --><row r='1' note="&lt;c r=&quot;A1&quot;>">
+ <c t = "inlineStr" r='A1'><is><t><![CDATA[<c r="B1"><v>5</v></c></row></sheetData>]]></t></is></c >
+ <!-- </row> --><c r="C1"><v>3</v></c></row ></sheetData >"""
+    tail = '<extLst><ext uri="u"><c r="A1"><v>7</v></c></ext></extLst>'
+    before = minimal(rows, tail=tail)
+    after = patch_workbook(before, {"Items": {"B1": 2, "C1": 4}}).data
+    text = parts_of(after)[SHEET].decode()
+    expected = rows.replace('<c r="C1"><v>3</v>', '<c r="B1"><v>2</v></c><c r="C1"><v>4</v>')
+    assert text == f'<worksheet xmlns="{MAIN}">{expected}{tail}</worksheet>'
+    assert values_of(after)["A1"] == '<c r="B1"><v>5</v></c></row></sheetData>'
+
+
+def test_the_extent_of_the_cells_is_kept_true() -> None:
+    before = minimal('<sheetData><row r="3"><c r="B3"/></row></sheetData>', head='<dimension ref="B3"/>')
+    assert b'<dimension ref="B3"/>' in parts_of(patch_workbook(before, {"Items": {"B3": 1}}).data)[SHEET]
+    assert b'<dimension ref="A2:B3"/>' in parts_of(patch_workbook(before, {"Items": {"A2": 1}}).data)[SHEET]
+
+
+# ---------------------------------------------------------------- values
+
+AWKWARD = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
+
+
+@pytest.mark.parametrize("text", AWKWARD)
+def test_texts(text: str) -> None:
+    after = patch_workbook(minimal("<sheetData/>"), {"Items": {"A1": text}}).data
+    assert own_values(after).get("A1", "") == text
+    coded = re.sub("_(?=x[0-9A-F]{4}_)", "_x005F_", text)  # which openpyxl leaves as it is
+    assert values_of(after).get("A1") == coded
+
+
+def test_characters_that_xml_lacks_are_coded() -> None:
+    after = patch_workbook(minimal("<sheetData/>"), {"Items": {"A1": "a\x07b\uffff\ud800"}}).data
+    assert b">a_x0007_b_xFFFF__xD800_</t>" in parts_of(after)[SHEET]
+
+
+@pytest.mark.parametrize("value", [0, -0.0, 45.0, 0.1, 1 / 3, 1e22, 5e-324, -1.5e300, 2**53 + 1, 10**20])
+def test_numbers(value: float) -> None:
+    after = patch_workbook(minimal("<sheetData/>"), {"Items": {"A1": value}}).data
+    assert own_values(after)["A1"] == values_of(after)["A1"] == float(value)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e308, 10**400, "x" * 32_768])
+def test_values_that_a_cell_cannot_hold(value: Any) -> None:
+    (problem,) = refusals(minimal("<sheetData/>"), {"Items": {"A1": value, "A2": 3}})
+    assert problem.startswith("Items!A1: the ")
+
+
+@pytest.mark.parametrize("address", ["", "A", "1", "A0", "a1", "A1:B2", "$A$1", "XFE1", "A1048577", "A01", "A1\n"])
+def test_addresses_that_are_none(address: str) -> None:
+    (problem,) = refusals(minimal("<sheetData/>"), {"Items": {address: 1}})
+    assert "is no cell of a sheet" in problem
+
+
+def test_sheets_that_are_missing() -> None:
+    assert refusals(minimal("<sheetData/>"), {"Itmes": {"A1": 1}}) == {"Itmes: the sheet is missing."}
+
+
+@given(
+    old=st.dictionaries(
+        st.tuples(st.integers(1, 12), st.integers(1, 30)), st.one_of(st.integers(-9, 9), st.text("ab <&é", max_size=5))
+    ),
+    new=st.dictionaries(
+        st.tuples(st.integers(1, 14), st.integers(1, 34)),
+        st.one_of(
+            st.none(),
+            st.booleans(),
+            st.floats(-1e300, 1e300),
+            st.text(st.characters(exclude_categories=["Cs", "Cc"], exclude_characters="\ufffe\uffff"), max_size=20),
+        ),
+    ),
+)
+@settings(max_examples=60, deadline=None)
+def test_any_sheet(old: dict[tuple[int, int], Any], new: dict[tuple[int, int], Any]) -> None:
+    """What is read afterwards is what was there, with the changes in it."""
+    packed = io.BytesIO()
+    with xlsxwriter.Workbook(packed, {"strings_to_formulas": False}) as book:
+        page = book.add_worksheet("Items")
+        for (column, row), value in old.items():
+            page.write(row - 1, column - 1, value)
+    changes = {f"{column_letters(column - 1)}{row}": value for (column, row), value in new.items()}
+    before = packed.getvalue()
+    after = patch_workbook(before, {"Items": changes}).data
+    expected = {cell: value for cell, value in (own_values(before) | changes).items() if value not in (None, "")}
+    assert {cell: value for cell, value in own_values(after).items() if value != ""} == expected
+    assert patch_workbook(after, {"Items": changes}).data == after
+
+
+# ---------------------------------------------------------------- formulas
+
+FORMULAS = (
+    '<sheetData><row r="1"><c r="A1"><f>1+1</f><v>2</v></c><c r="B1"><f t="shared" ref="B1:B3" si="0">A1</f><v>2</v></c>'
+    '<c r="C1" cm="1"><f t="array" ref="C1:C2">A1:A2</f><v>2</v></c><c r="D1" t="str"><f>"x"</f><v>x</v></c></row>'
+    '<row r="2"><c r="A2"><v>2</v></c><c r="B2"><f t="shared" si="0"/><v>2</v></c><c r="C2"><v>2</v></c>'
+    '<c r="D2"><f t="dataTable" ref="D2:E3" dt2D="1" r1="A1" r2="A2"/><v>1</v></c><c r="E2"><v>1</v></c></row>'
+    '</sheetData>'
+)  # fmt: skip
+
+
+def with_chain(data: bytes, chain: str) -> bytes:
+    """Add a calculation chain to a workbook."""
+    types = "application/vnd.openxmlformats-officedocument.spreadsheetml.calcChain+xml"
+    kind = "http://schemas.openxmlformats.org/officeDocument/2006/relationships/calcChain"
+    parts = parts_of(data)
+    parts[CHAIN] = f'<calcChain xmlns="{MAIN}">{chain}</calcChain>'.encode()
+    override = f'<Override PartName="/{CHAIN}" ContentType="{types}"/></Types>'.encode()
+    parts[TYPES] = parts[TYPES].replace(b"</Types>", override)
+    link = f'<Relationship Id="rId77" Type="{kind}" Target="calcChain.xml"/></Relationships>'.encode()
+    parts[RELATIONS] = parts[RELATIONS].replace(b"</Relationships>", link)
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for part, content in parts.items():
+            archive.writestr(part, content)
+    return out.getvalue()
+
+
+def test_a_value_in_place_of_a_formula_leaves_the_chain() -> None:
+    """An entry without a sheet is on the sheet of the one before it."""
+    chain = '<c r="A1" i="2"/><c r="D1" i="1" l="1"/><c r="A1"/><c r="B1"/><c r="A1" i="2"/>'
+    before = with_chain(minimal(FORMULAS), chain)
+    done = patch_workbook(before, {"Items": {"D1": 5, "A1": 3}})
+    assert done.formulas == (("Items", "A1"), ("Items", "D1"))
+    assert changed_parts(before, done.data) == {SHEET, CHAIN}
+    assert b'><c r="A1" i="2"/><c r="B1" i="1"/><c r="A1" i="2"/></' in parts_of(done.data)[CHAIN]
+    assert values_of(done.data)["D1"] == 5
+
+
+def test_a_chain_that_would_be_empty_goes() -> None:
+    plain = minimal('<sheetData><row r="1"><c r="A1"><f>1+1</f><v>2</v></c></row></sheetData>')
+    before = with_chain(plain, '<c r="A1" i="1"/>')
+    after = patch_workbook(before, {"Items": {"A1": 3}}).data
+    assert changed_parts(before, after) == {SHEET, CHAIN, TYPES, RELATIONS}
+    assert {name: parts_of(after)[name] for name in (TYPES, RELATIONS)} == {
+        name: parts_of(plain)[name] for name in (TYPES, RELATIONS)
+    }
+    assert CHAIN not in parts_of(after)
+    assert values_of(after) == {"A1": 3}
+
+
+def test_formulas_of_several_cells_are_refused_by_name() -> None:
+    assert refusals(minimal(FORMULAS), {"Items": {"B1": 1, "C1": 1, "C2": 1, "D2": 1, "E3": 1}}) == {
+        "Items!B1: its formula is shared by other cells. Change this cell in Excel.",
+        "Items!C1: it belongs to an array formula. Change this cell in Excel.",
+        "Items!C2: it belongs to an array formula. Change this cell in Excel.",
+        "Items!D2: it belongs to a data table. Change this cell in Excel.",
+        "Items!E3: it belongs to a data table. Change this cell in Excel.",
+    }
+    after = patch_workbook(minimal(FORMULAS), {"Items": {"B2": 1}})
+    assert after.formulas == (("Items", "B2"),)
+    assert values_of(after.data)["B2"] == 1
+
+
+def test_stored_results_of_formulas() -> None:
+    results: dict[str, Any] = {"A1": 0.5, "B1": "a<b", "D1": None, "C1": True}
+    assert list_formulas(minimal(FORMULAS), "Items") == {"A1": True, "B1": True, "C1": True, "D1": True, "B2": True,
+                                                         "D2": True}  # fmt: skip
+    before = minimal(FORMULAS)
+    after = patch_workbook(before, {}, {"Items": results}).data
+    assert data_of(after).startswith(
+        '<sheetData><row r="1"><c r="A1"><f>1+1</f><v>0.5</v></c>'
+        '<c r="B1" t="str"><f t="shared" ref="B1:B3" si="0">A1</f><v>a&lt;b</v></c>'
+        '<c r="C1" cm="1" t="b"><f t="array" ref="C1:C2">A1:A2</f><v>1</v></c><c r="D1"><f>"x"</f></c></row>'
+    )
+    assert not list_formulas(after, "Items")["D1"]
+    assert patch_workbook(after, {}, {"Items": results}).data == after
+    assert refusals(before, {}, results={"Items": {"A2": 1, "Z9": 1}}) == {
+        "Items!A2: it holds no formula. Change this cell in Excel.",
+        "Items!Z9: it holds no formula. Change this cell in Excel.",
+    }
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ('<calcPr calcId="1" fullCalcOnLoad="1"/>', None),
+        ('<calcPr calcId="1" fullCalcOnLoad="0"/>', '<calcPr calcId="1" fullCalcOnLoad="1"/>'),
+        ('<calcPr calcId="1" />', '<calcPr calcId="1" fullCalcOnLoad="1"/>'),
+        ("", '<calcPr fullCalcOnLoad="1"/>'),
+        ("<oleSize ref='A1'/>", "<calcPr fullCalcOnLoad=\"1\"/><oleSize ref='A1'/>"),
+    ],
+)
+def test_programs_are_asked_to_recalculate(tmp_path: Path, before: str, after: str | None) -> None:
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(minimal("<sheetData/>"))
+    change_parts(path, {BOOK: lambda data: re.sub(rb"<calcPr[^>]*>", before.encode(), data)})
+    old, new = (parts_of(one)[BOOK].decode() for one in (
+        path.read_bytes(), patch_workbook(path.read_bytes(), {"Items": {"A1": 1}}).data))  # fmt: skip
+    assert new == (old if after is None else old.replace(before, after) if before else old.replace(
+        "</sheets>", f"</sheets>{after}"))  # fmt: skip
+
+
+# ---------------------------------------------------------------- what is not understood is refused
+
+
+def test_headers_of_tables_are_refused(tmp_path: Path) -> None:
+    data = rich(tmp_path / "book.xlsx").read_bytes()
+    assert refusals(data, {"Other": {"B2": "u", "B3": 5, "E2": 1}}) == {
+        "Other!B2: it is a header of a table. Change this cell in Excel."
+    }
+    assert patch_workbook(data, {"Other": {"B3": 5, "E2": 1}})
+
+
+ODD: dict[str, tuple[str, str]] = {
+    "an element instead of a row": ("<sheetData><x/></sheetData>", "x stands where row is expected"),
+    "an alternative": ('<sheetData><row r="1"><AlternateContent/></row></sheetData>', "where c is expected"),
+    "another prefix": ('<sheetData><b:row xmlns:b="b" r="1"/></sheetData>', "b:row stands where row is expected"),
+    "rows out of order": ('<sheetData><row r="2"/><row r="1"/></sheetData>', "out of order"),
+    "a cell of another row": ('<sheetData><row r="1"><c r="A2"/></row></sheetData>', "cell A2 stands in row 1"),
+    "cells out of order": ('<sheetData><row r="1"><c r="B1"/><c r="A1"/></row></sheetData>', "cell A1 stands in row 1"),
+    "a content that is not known": ('<sheetData><row r="1"><c r="A1"><extLst/></c></row></sheetData>', "extLst"),
+    "rows twice": ("<sheetData/><sheetData/>", "twice"),
+    "no rows": ("<sheetViews/>", "it holds no rows"),
+    "a row that is no number": ('<sheetData><row r="x"/></sheetData>', "damaged"),
+    "an array of nothing": (
+        '<sheetData><row r="1"><c r="A1"><f t="array">1</f></c></row></sheetData>', "several cells does not say",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("rows", "expected"), ODD.values(), ids=ODD)
+def test_sheets_that_are_not_understood(rows: str, expected: str) -> None:
+    (problem,) = refusals(minimal(rows), {"Items": {"A1": 1}})
+    assert expected in problem
+
+
+HOSTILE: dict[str, tuple[Callable[[bytes], bytes], str]] = {
+    "entities": (lambda data: b'<!DOCTYPE x [<!ENTITY a "ha">]>' + data, "document type|entities"),
+    "a document type": (lambda data: b"<!DOCTYPE x>" + data, "document type"),
+    "another encoding": (lambda data: b'<?xml version="1.0" encoding="iso-8859-1"?>' + data, "not written in UTF-8"),
+    "UTF-16": (lambda data: data.decode().encode("utf-16"), "not written in UTF-8"),
+    "half a part": (lambda data: data[: len(data) // 2], "damaged"),
+    "deep": (lambda data: b"<a>" * 5000 + b"</a>" * 5000, "too deep"),
+}
+
+
+@pytest.mark.parametrize(("change", "expected"), HOSTILE.values(), ids=HOSTILE)
+@pytest.mark.parametrize("part", [SHEET, BOOK, RELATIONS, CHAIN])
+def test_hostile_parts(tmp_path: Path, part: str, change: Callable[[bytes], bytes], expected: str) -> None:
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(with_chain(minimal(FORMULAS), '<c r="A1" i="1"/><c r="D1"/>'))
+    change_parts(path, {part: change})
+    problems = refusals(path.read_bytes(), {"Items": {"A1": 1}})
+    assert re.search(f"{expected}|declares XML entities|damaged", " ".join(problems))
+
+
+def test_a_bomb_is_not_unpacked(tmp_path: Path) -> None:
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(minimal("<sheetData/>"))
+    change_parts(path, {"xl/media/bomb.bin": bytes(80_000_000)})
+    (problem,) = refusals(path.read_bytes(), {"Items": {"A1": 1}})
+    assert "zip bomb" in problem
+
+
+def test_a_signed_workbook_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "book.xlsx"
+    path.write_bytes(minimal("<sheetData/>"))
+    change_parts(path, {"_xmlsignatures/sig1.xml": b"<Signature/>"})
+    assert refusals(path.read_bytes(), {"Items": {"A1": 1}}) == {
+        "workbook.xlsx is digitally signed; a change would break the signature. Save it from Excel without the "
+        "signature."
+    }
+
+
+def test_nothing_is_returned_where_one_cell_is_refused() -> None:
+    with pytest.raises(WorkbookError):
+        patch_workbook(minimal(FORMULAS), {"Items": {"A1": 1, "C1": 2}})
+    assert isinstance(patch_workbook(minimal(FORMULAS), {"Items": {"A1": 1}}), Patched)
