@@ -37,12 +37,13 @@ def write_report(results: Results, path: Path) -> None:
     write_xlsx(build_content(results), path)
 
 
-def libreoffice(path: Path, out: Path) -> Path:
-    """Open `path` in LibreOffice with every formula recalculated and save it as `out`."""
+def libreoffice(path: Path, out: Path, *, recalculates: bool = True) -> Path:
+    """Open `path` in LibreOffice with every formula recalculated, or as its users do, and save it as `out`."""
     with tempfile.TemporaryDirectory() as box:
         user = Path(box) / "profile" / "user"
         user.mkdir(parents=True)
-        (user / "registrymodifications.xcu").write_text(_PROFILE, encoding="utf-8")
+        if recalculates:
+            (user / "registrymodifications.xcu").write_text(_PROFILE, encoding="utf-8")
         command = [
             str(_SOFFICE), f"-env:UserInstallation=file://{user.parent}", "--headless",
             "--convert-to", "xlsx", "--outdir", str(Path(box) / "out"), str(path),

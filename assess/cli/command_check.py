@@ -1,37 +1,71 @@
-"""``assess check``: every problem of a workbook, by sheet and cell."""
+"""``assess check``: every problem of a workbook, by sheet and cell; what is only typed otherwise can be corrected."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Never
+from typing import TYPE_CHECKING, Annotated, Never
 
 import typer
 
-from assess.cli.console import count, print_problems, print_ways, show_progress
-from assess.cli.options import Workbook
+from assess.cli.console import count, count_errors, print_problems, print_ways, show_progress
+from assess.cli.options import Workbook, check_new_file, save_file
 from assess.errors import Gap, Problem, WorkbookError
 from assess.settings import Settings
 
+if TYPE_CHECKING:
+    from assess.errors import Correction
+    from assess.model import Inventory
+    from assess.pipeline.corrected import Corrected
+
 ORDER = 2
-EXAMPLES = ("assess check building.xlsx",)
+EXAMPLES = ("assess check building.xlsx", "assess check building.xlsx --fix corrected.xlsx")
+
+MOST_SHOWN = 3
+"""Cells of one kind of correction that are listed; the rest are counted."""
 
 
-def command(path: Workbook) -> None:
+def command(
+    path: Workbook,
+    fix: Annotated[
+        Path | None,
+        typer.Option(help="Write a corrected copy: cells typed in another way as their column asks.", metavar="OUT"),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing OUT.")] = False,
+) -> None:
     """Check a workbook and name every problem by sheet and cell.
 
-    Nothing is written. A workbook that lacks only the shaking or the furniture is incomplete: what completes it is
-    printed, and the exit status is 1.
+    A workbook that lacks only the shaking or the furniture is incomplete: what completes it is printed, and the exit
+    status is 1. Nothing is written but the copy that --fix asks for. It changes the cells that were understood although
+    they are typed in another way, such as "45 cm" in a column of cm, and nothing else; it is written even if errors
+    remain, which the exit status still tells.
     """
-    from assess.pipeline.run import compute
     from assess.workbook.read import read_inventory
 
     try:
-        with show_progress() as progress:
-            inventory = read_inventory(path, progress=progress)
-            assessment = compute(inventory, Settings(verify="none"), progress=progress)
+        if fix is not None:
+            inventory = _write_corrected(path, fix, replaces=force)
+            if inventory.errors:
+                raise WorkbookError(inventory.problems, inventory.language)
+        else:
+            with show_progress() as progress:
+                inventory = read_inventory(path, progress=progress)
+        _report(inventory, path)
     except WorkbookError as error:
-        if not error.is_incomplete:
+        if error.is_incomplete:
+            _end_incomplete(path, error.problems)
+        if fix is None:
             raise
-        _end_incomplete(path, error.problems)
+        print_problems(error.problems)
+        print_ways(error.problems)
+        typer.echo(f"{count_errors(error.problems)} to correct by hand.", err=True)
+        raise typer.Exit(2) from None
+
+
+def _report(inventory: "Inventory", path: Path) -> None:
+    """Print what a workbook without errors holds, and what is remarkable."""
+    from assess.pipeline.run import compute
+
+    with show_progress() as progress:
+        assessment = compute(inventory, Settings(verify="none"), progress=progress)
     if any(isinstance(one, Gap) for one in assessment.problems):
         _end_incomplete(path, assessment.problems)
     print_problems(assessment.problems)
@@ -46,3 +80,59 @@ def _end_incomplete(path: Path, problems: Sequence[Problem]) -> Never:
     typer.echo(f"{path.name} is incomplete: what is filled in can be used; still to be filled in:", err=True)
     print_ways(problems)
     raise typer.Exit(1)
+
+
+# ---------------------------------------------------------------- the corrected copy
+
+
+def _write_corrected(path: Path, out: Path, *, replaces: bool) -> "Inventory":
+    """Write the corrected workbook, if there is anything to correct, and print what was changed."""
+    from assess.pipeline.corrected import correct_workbook
+
+    check_new_file(out, path, replaces=replaces)
+    with show_progress() as progress:
+        done = correct_workbook(path, progress)
+    if done.changed:
+        save_file(done.inventory.data or b"", out)
+    for line in _describe(done, path, out):
+        typer.echo(line)
+    return done.inventory
+
+
+def _describe(done: "Corrected", path: Path, out: Path) -> Iterator[str]:
+    """Yield what was changed, and what was not."""
+    from assess.pipeline.corrected import group_corrections
+    from assess.workbook.values import shorten
+
+    if done.changed:
+        yield f"wrote {out}: {count(len(done.changed), 'cell')} corrected."
+        for group in group_corrections(done.changed):
+            yield _describe_group(group)
+    else:
+        yield f"{path.name}: no cell to correct; {out} was not written."
+    for one in done.kept:
+        yield f"{one.sheet}!{one.cell} holds a formula and is left as it is: {shorten(one.was)}"
+    if done.changed and _names_files(done.inventory) and path.resolve().parent != out.resolve().parent:
+        yield f"The files that the workbook names lie next to {path.name}: copy them next to {out.name} as well."
+
+
+def _describe_group(group: "Sequence[Correction]") -> str:
+    """Return the first corrections of one kind, and how many there are."""
+    first, more = group[0], len(group) - MOST_SHOWN
+    shown = [f"{one.cell} {_change(one)}" for one in group[:MOST_SHOWN]]
+    if len(group) == 1:
+        return f"  {first.sheet}!{shown[0]}. {first.why}"
+    listed = ", ".join(shown) + (f" and {more:,} more" if more > 0 else "")
+    return f"  {first.sheet}, {count(len(group), 'cell')}: {listed}. {first.why}"
+
+
+def _change(one: "Correction") -> str:
+    from assess.workbook.values import shorten
+
+    now = f"{one.value:.12g}" if isinstance(one.value, int | float) else "blank"
+    return f"{shorten(one.was)} -> {shorten(one.value) if isinstance(one.value, str) else now}"
+
+
+def _names_files(inventory: "Inventory") -> bool:
+    plans = any(floor.plan is not None for floor in inventory.floors)
+    return bool(inventory.files) or plans or inventory.building.logo is not None

@@ -1,8 +1,8 @@
 """What the command line prints besides results: problems, progress, and the exit status.
 
 Exit status: 0 done; 1 done, but something could not be assessed or written (named), or `check` found a workbook that
-is not complete yet; 2 bad input or usage, nothing written; 130 interrupted. Messages go to standard error, what was
-asked for to standard output.
+is not complete yet; 2 bad input or usage, nothing written, but for the copy that `assess check --fix` writes and in
+which errors may remain; 130 interrupted. Messages go to standard error, what was asked for to standard output.
 """
 
 import _thread

@@ -64,6 +64,23 @@ def check_file(path: Path | None, what: str, endings: tuple[str, ...] = FIGURES)
         raise InputError(f"the {what} {path} cannot be written there: name a file in a folder that exists")
 
 
+def check_new_file(out: Path, source: Path, *, replaces: bool) -> None:
+    """Raise unless a copy of a file may be written, as far as is known before the work.
+
+    Raises
+    ------
+    InputError
+        If it is the file itself, is of another kind, or its folder does not exist.
+    OutputError
+        If it exists, and it was not asked for that it be replaced.
+    """
+    check_file(out, "copy", (source.suffix.lower() or ".xlsx",))
+    if out.resolve() == source.resolve() or (out.exists() and source.exists() and out.samefile(source)):
+        raise InputError(f"{out} is the workbook itself: name another file, so that the original stays as it is.")
+    if out.exists() and not replaces:
+        raise OutputError(f"{out} already exists: add --force to replace it, or choose another name.")
+
+
 def save_file(data: bytes, path: Path) -> None:
     """Write a file whole or not at all; OutputError if it cannot be written."""
     save_files({path: data})

@@ -1,0 +1,130 @@
+"""The corrected workbook: the cells that were understood, and the results that rest on them."""
+
+import io
+import re
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+
+from assess.pipeline.corrected import Corrected, correct_workbook, group_corrections
+from assess.pipeline.live_values import live_values, with_live
+from assess.workbook.example import example_content
+from assess.workbook.patch import list_formulas, patch_workbook
+from assess.workbook.read import read_inventory
+from assess.workbook.template import write_workbook
+from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
+from tests.workbook.books import change_parts
+from tests.workbook.test_patch import changed_parts
+
+HABITS: dict[str, dict[str, Any]] = {
+    "Items": {"G2": "30 cm", "H2": " 80", "I2": "200cm", "I3": "2 m", "K4": "N", "G5": "0,6"},
+    "Floors": {"D2": "0,3"},
+}
+
+
+def example(path: Path, changes: dict[str, dict[str, Any]]) -> Path:
+    """The example of `assess new` with some cells as people type them."""
+    write_workbook(path, with_live(example_content()))
+    path.write_bytes(patch_workbook(path.read_bytes(), changes).data)
+    return path
+
+
+def stored(done: Corrected, path: Path) -> dict[tuple[str, str], Any]:
+    path.write_bytes(done.inventory.data or b"")
+    return stored_cells(path)
+
+
+def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path) -> None:
+    path = example(tmp_path / "book.xlsx", HABITS)
+    done = correct_workbook(path)
+    typed = {sheet: set(cells) - {"G5"} for sheet, cells in HABITS.items()}
+    assert {sheet: {one.cell for one in done.changed if one.sheet == sheet} for sheet in typed} == typed
+    found, before = stored(done, tmp_path / "out.xlsx"), stored_cells(path)
+    assert [found["Items", cell] for cell in ("G2", "H2", "I2", "I3", "K4")] == [30, 80, 200, 200, "no"]
+    assert found["Floors", "D2"] == 0.3
+    formulas = {(sheet, cell) for sheet in ("Items", "Lists") for cell in list_formulas(path.read_bytes(), sheet)}
+    same = {key for key in before if found.get(key) == before[key]} | formulas
+    assert {*before, *found} - same == {(one.sheet, one.cell) for one in done.changed}
+    sheets = openpyxl.load_workbook(path).sheetnames
+    numbers = {f"xl/worksheets/sheet{1 + sheets.index(name)}.xml" for name in ("Items", "Floors", "Lists")}
+    assert changed_parts(path.read_bytes(), done.inventory.data or b"") == numbers
+
+
+def test_corrected_once_there_is_nothing_left_to_correct(tmp_path: Path) -> None:
+    done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
+    (tmp_path / "out.xlsx").write_bytes(done.inventory.data or b"")
+    again = correct_workbook(tmp_path / "out.xlsx")
+    assert (again.changed, again.kept) == ((), ())
+    assert again.inventory.data == done.inventory.data
+    assert again.inventory.items == done.inventory.items
+    assert again.inventory.sha256 == done.inventory.sha256
+
+
+def test_the_live_columns_store_what_they_show(tmp_path: Path) -> None:
+    done = correct_workbook(example(tmp_path / "book.xlsx", {**HABITS, "Items": {"G2": "30 cm", "I2": "2 m"}}))
+    page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)["Items"]
+    places = {cell.value: cell.column for cell in page[1]}
+    expected = live_values(done.inventory)
+    found = [
+        [page.cell(item.row, places[head]).value for head in ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi")]
+        for item in done.inventory.items
+    ]
+    assert found == [row[:4] for row in expected]
+    assert page.cell(2, places["B/H"]).value == 0.15
+    assert page.cell(2, places["Class (formula)"]).value in expected[0]
+    assert page.cell(2, places["Height used [cm]"]).value is None, "computed by every program on opening"
+
+
+@needs_libreoffice
+@pytest.mark.libreoffice
+@pytest.mark.slow
+def test_libreoffice_recalculates_what_rests_on_corrected_cells(tmp_path: Path) -> None:
+    """It keeps stored results as they are: those that a correction changes must be new, or missing."""
+    done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
+    assert done.inventory.errors, "a row that cannot be used"
+    (tmp_path / "out.xlsx").write_bytes(done.inventory.data or b"")
+    shown = stored_cells(libreoffice(tmp_path / "out.xlsx", tmp_path / "shown.xlsx", recalculates=False))
+    recalculated = stored_cells(libreoffice(tmp_path / "out.xlsx", tmp_path / "new.xlsx"))
+    formulas = [("Items", cell) for cell in list_formulas(done.inventory.data or b"", "Items")]
+    assert {cell: shown.get(cell) for cell in formulas} == {
+        cell: pytest.approx(value, rel=1e-9) if isinstance(value := recalculated.get(cell), float) else value
+        for cell in formulas
+    }
+    head = next(cell for (sheet, cell), value in shown.items() if (sheet, value) == ("Items", "B/H"))
+    assert shown["Items", head.replace("1", "2")] == pytest.approx(0.15), "30 cm by 2 m"
+
+
+def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
+    path = example(tmp_path / "book.xlsx", {})
+    sheet = f"xl/worksheets/sheet{1 + openpyxl.load_workbook(path).sheetnames.index('Items')}.xml"
+    cell = b'<c r="G2" t="str"><f>"30 "&amp;"cm"</f><v>30 cm</v></c>'
+    change_parts(path, {sheet: lambda data: re.sub(rb'<c r="G2".*?</c>', cell, data, count=1)})
+    done = correct_workbook(path)
+    assert ([one.cell for one in done.kept], done.changed) == (["G2"], ())
+    assert done.inventory.data == path.read_bytes()
+
+
+def test_corrections_of_one_kind_are_listed_together(tmp_path: Path) -> None:
+    done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
+    groups = group_corrections(done.changed)
+    assert ["I2", "I3"] in [[one.cell for one in group] for group in groups]
+    assert sum(map(len, groups)) == len(done.changed)
+
+
+def test_an_italian_workbook(tmp_path: Path) -> None:
+    from assess.i18n import load_catalogue, speaking
+
+    path = tmp_path / "edificio.xlsx"
+    with speaking(load_catalogue("it")):
+        write_workbook(path, with_live(example_content()))
+    (sheet,) = (name for english, name in read_inventory(path).sheets.items() if english == "Items")
+    path.write_bytes(patch_workbook(path.read_bytes(), {sheet: {"G2": "30 cm"}}).data)
+    done = correct_workbook(path)
+    assert [one.value for one in done.changed] == [30]
+    with speaking(load_catalogue("it")):
+        expected = live_values(done.inventory)[0]
+    page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)[sheet]
+    row = [cell.value for cell in page[2]]
+    assert set(expected) <= set(row)
