@@ -97,7 +97,7 @@ def test_libreoffice_recalculates_what_rests_on_corrected_cells(tmp_path: Path) 
 
 
 def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
-    path = example(tmp_path / "book.xlsx", {})
+    path = example(tmp_path / "book.xlsx", {"Items": {"G2": 30}})
     sheet = f"xl/worksheets/sheet{1 + openpyxl.load_workbook(path).sheetnames.index('Items')}.xml"
     cell = b'<c r="G2" t="str"><f>"30 "&amp;"cm"</f><v>30 cm</v></c>'
     change_parts(path, {sheet: lambda data: re.sub(rb'<c r="G2".*?</c>', cell, data, count=1)})
