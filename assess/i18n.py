@@ -19,6 +19,7 @@ from typing import Any
 
 from assess import resources
 from assess.errors import InputError
+from assess.plain_text import plain_text
 
 _NAMES: Mapping[str, tuple[str, ...]] = {"en": ("English", "Inglese"), "it": ("Italiano", "Italian")}
 LANGUAGES: tuple[str, ...] = tuple(_NAMES)
@@ -34,7 +35,10 @@ class Text(str):
 
 
 def fill(template: str, /, **values: Any) -> Text:
-    """Return a sentence with `values` put into its template: a text now, and what a report needs to translate it."""
+    """Return a sentence with `values` put into its template: a text now, and what a report needs to translate it.
+
+    Whatever the values hold, the sentence has no control characters and no marks of direction.
+    """
     return _fill(template, "", values, values.get("n"))
 
 
@@ -50,7 +54,7 @@ def join(mark: str, parts: Iterable[object]) -> Text:
 
 
 def _fill(template: str, many: str, values: Mapping[str, Any], n: int | None) -> Text:
-    text = Text((many if many and n != 1 else template).format(**values))
+    text = Text(plain_text((many if many and n != 1 else template).format(**values)))
     text.template, text.many, text.values = template, many, values
     return text
 
@@ -149,7 +153,7 @@ class _Formatter(string.Formatter):
             value = gettext(value)
         text = format(value, format_spec)
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        return spoken().number(text) if is_number else text
+        return spoken().number(text) if is_number else plain_text(text)
 
 
 class _MarkupFormatter(_Formatter):

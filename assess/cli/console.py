@@ -21,6 +21,7 @@ import typer
 from typer.models import OptionInfo
 
 from assess.errors import AssessError, CancelledError, InputError, Problem, RecordError, WorkbookError
+from assess.plain_text import plain_line, plain_text
 from assess.progress import Progress, Report
 
 MOST_PRINTED = 200
@@ -109,7 +110,12 @@ def _list_options(command: Callable[..., None]) -> Mapping[str, str]:
 
 def print_error(message: str) -> None:
     """Print one error to standard error."""
-    typer.echo(f"error  {message}", err=True)
+    typer.echo(f"error  {_lay_out(message)}", err=True)
+
+
+def _lay_out(message: str) -> str:
+    """Return a message without control characters, further lines indented: none looks like a message of its own."""
+    return plain_text(message).replace("\n", "\n         ")
 
 
 def print_problems(problems: Sequence[Problem]) -> None:
@@ -118,7 +124,7 @@ def print_problems(problems: Sequence[Problem]) -> None:
 
     shown = group_problems(problems)
     for problem in shown[:MOST_PRINTED]:
-        typer.echo(f"{problem.severity:<7}  {problem}", err=True)
+        typer.echo(f"{problem.severity:<7}  {_lay_out(str(problem))}", err=True)
     if len(shown) > MOST_PRINTED:
         typer.echo(f"... and {len(shown) - MOST_PRINTED:,} more.", err=True)
 
@@ -209,7 +215,7 @@ def describe_progress(report: Report) -> str:
     """Return stage, share and time left: "Simulating 240 pieces on 4 floors: 43 %, about 2 min left"."""
     stage = STAGES.get(report.stage, report.stage.capitalize())
     left = "" if report.seconds_left is None else f", about {_round_time(report.seconds_left)} left"
-    return f"{' '.join((stage, report.detail)).strip()}: {int(100 * report.share)} %{left}"
+    return f"{plain_line(' '.join((stage, report.detail))).strip()}: {int(100 * report.share)} %{left}"
 
 
 def _round_time(seconds: float) -> str:

@@ -14,8 +14,12 @@ from numpy.typing import NDArray
 from assess.errors import RecordError
 from assess.i18n import Text, fill, nfill
 from assess.motion.highpass import PASS_ORDER, high_pass_both_ways
+from assess.plain_text import plain_line
 from assess.progress import SILENT, Progress
 from assess.units import GRAVITY
+
+SHOWN = ("file", "format", "channel", "location", "station", "event", "start", "recorder")
+"""Fields of a record that hold texts of its file."""
 
 FloatArray = NDArray[np.float64]
 Baseline = Literal["standard", "none"]
@@ -56,7 +60,7 @@ class Record:
     Parameters
     ----------
     file, format, channel, location, station, event, start : str
-        As shown to people; "" where the file does not say.
+        As shown to people, each on one line and without control characters; "" where the file does not say.
     azimuth_deg : float, optional
         Direction of positive acceleration, clockwise from north [deg].
     vertical : bool
@@ -99,6 +103,8 @@ class Record:
     recorder: str = ""
 
     def __post_init__(self) -> None:
+        for name in SHOWN:
+            object.__setattr__(self, name, plain_line(getattr(self, name)))
         check_samples(self.acceleration)
         check_time_step(self.time_step)
 

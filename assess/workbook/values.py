@@ -6,12 +6,12 @@
 import datetime
 import math
 import re
-import unicodedata
 from collections.abc import Callable, Mapping
 
 from assess.errors import InputError
 from assess.i18n import fill, find_language, nfill
 from assess.model import Outline
+from assess.plain_text import UNCLEAN, plain_text
 from assess.units import QUANTITIES
 from assess.workbook.habits import CellError, Remark
 from assess.workbook.names import find_choice, find_near, plain, say_choices
@@ -23,7 +23,6 @@ from assess.workbook.typed import is_free, understand
 
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _TIMES = (datetime.datetime, datetime.date, datetime.time)
-_UNSEEN = frozenset("\u200e\u200f\u061c\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069\u200b\u2060\ufeff")
 _ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
 _SHOWN = 60
 _WRITE_OUTLINE = fill(
@@ -52,17 +51,7 @@ def clean(text: str) -> tuple[str, int]:
     if text.isascii() and text.isprintable() and "_x0" not in text:
         return text, 0
     text = _ESCAPE.sub(lambda match: chr(int(match[1], 16)), text).replace("\r\n", "\n").replace("\r", "\n")
-    kept = [_clean_character(character) for character in text]
-    return "".join(kept), sum(new != old for new, old in zip(kept, text, strict=True))
-
-
-def _clean_character(character: str) -> str:
-    if character in "\n\t":
-        return character
-    if character in _UNSEEN:
-        return ""
-    is_none = ord(character) & 0xFFFE == 0xFFFE  # a number that Unicode gives to no character
-    return "\ufffd" if is_none or unicodedata.category(character) in ("Cc", "Cs") else character
+    return plain_text(text), len(UNCLEAN.findall(text))
 
 
 def read_text(value: object) -> str:
