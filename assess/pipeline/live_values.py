@@ -22,6 +22,7 @@ from assess.settings import SCENARIOS, Settings
 from assess.units import GRAVITY
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import RUN_ASSESS
+from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CATALOGUE, NO, SHEETS, YES, Sheet
 from assess.workbook.template import Content, Units, read_catalogue
@@ -54,7 +55,7 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     formula = outcomes[adopted_formula().key]
     values = zip(*(outcome.value.tolist() for outcome in outcomes.values()), strict=True)
     outside = formula.flags["extrapolated"].tolist()
-    classes = [_say_class(*one) for one in zip(formula.value.tolist(), outside, strict=True)]
+    classes = list(map(_say_class, inventory.items, governing, formula.value.tolist(), outside))
     rocks = [gettext(YES if one else NO) for one in find_can_rock(cases, settings)]
     rows = zip(cases.breadth_to_height.tolist(), governing, values, classes, rocks, strict=True)
     return [_write_row(*row) for row in rows]
@@ -73,7 +74,11 @@ def _find_governing(item: Item, demands: Demands, live: Collection[str]) -> Dema
     return max(every, key=lambda one: round(one.pfa / GRAVITY, ALIKE))
 
 
-def _say_class(adopted: float, is_outside: bool) -> str:
+def _say_class(item: Item, governing: Demand | None, adopted: float, is_outside: bool) -> str:
+    if item.anchored == YES:
+        return gettext(IS_ANCHORED)
+    if governing is None:
+        return gettext(RUN_ASSESS)
     risk = classify(adopted)
     return "" if risk is None else say_class(risk) + OUTSIDE * is_outside
 
@@ -82,7 +87,8 @@ def _write_row(
     ratio: float, governing: Demand | None, values: Sequence[float], label: str, rocks: str
 ) -> list[float | str]:
     if governing is None:
-        return [ratio, *[gettext(RUN_ASSESS)] * (len(values) + 3)]
+        unknown = gettext(RUN_ASSESS)
+        return [ratio, *[unknown] * (len(values) + 1), label, unknown]
     return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), label, rocks]
 
 

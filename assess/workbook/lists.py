@@ -1,10 +1,12 @@
 """The sheet Lists: what the drop-downs and the live columns of the other sheets refer to.
 
-It holds the choices, the factor that each header's bracket stands for, and for every row of Floors the PFA and PFV
-that serve each axis.
+It holds the choices, the factor that each header's bracket stands for, for every row of Floors the PFA and PFV that
+serve each axis, and for every row of the Catalogue the sizes of the type. Names stand there without stray spaces, so
+that a name in Items is found however both were typed. What is no number, or lies outside the range that the program
+takes, is shown as `WRONG` and never computed with: Excel takes the text 40,5 for 405 where the comma groups thousands.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -12,21 +14,23 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
 from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
+from assess.model import ANCHORED
+from assess.rocking.block import MIDDLE
 from assess.rocking.draws import CUT, Uncertainty
-from assess.units import ALIASES, GRAVITY, QUANTITIES
+from assess.units import ALIASES, GRAVITY, QUANTITIES, ROUNDING
+from assess.workbook import formulas as live
 from assess.workbook import formulas as live
 from assess.workbook import live_shaking
-from assess.workbook.schema import BUILDING, LISTS, SHEETS
+from assess.workbook.cell_texts import list_words, trim
+from assess.workbook.layout import LETTERS
+from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, LISTS, SHEETS, YES, Column
 
 Units = Literal["si", "imperial"]
 
 LISTS_NOTE = "Lists, units and helper columns for the drop-downs and live columns. Please leave this sheet as it is."
 
-ROWS = {"Floors": 100, "Items": 500, "Places": 200, "Routes": 200, "Catalogue": 200}
+ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 200}
 """Rows of each table that are prepared; a longer table is read all the same."""
-
-LETTERS = {(sheet.name, column.name): xl_col_to_name(at) for sheet in SHEETS for at, column in enumerate(sheet.columns)}
-"""Column of the sheet in which the empty workbook has a field."""
 
 RUN_ASSESS = "run assess"
 """What the live columns say of a floor with a record, which no spreadsheet formula can read, of one of which nothing is
@@ -34,6 +38,9 @@ known, and of every floor where a code's profile is chosen."""
 
 NO_UNIT = "unit?"
 """What they say where the bracket of a header holds no unit that is known."""
+
+WRONG = "check"
+"""What they say where a cell holds no number, or one that the program refuses."""
 
 LISTED = ("length", "acceleration", "velocity", "time", "share")
 """Quantities of which the sheet holds the units."""
@@ -45,13 +52,37 @@ _NEEDED_FACTORS = (
     ("Items", "centre_of_gravity"), ("Catalogue", "centre_of_gravity"),
 )  # fmt: skip
 
+_NO_CAP = 1_000_000
+"""Largest PFV that is estimated [cm/s] where Ground PGV does not limit it."""
+
 _OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "given"}
 """Scenarios that floors' own values serve, by how choices are compared."""
 
 _SCENARIO_NAMES = ("scenario_typed", "scenario_kind", "scenario_is_own")
 
-_FLOOR_HELPERS = ("own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", *live_shaking.HELPERS,
-                  "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best")  # fmt: skip
+_TYPE_SIZES, CENTRE = ("breadth", "height"), "centre_of_gravity"
+
+_PREFIXES = {"Floors": "floor", "Catalogue": "type"}
+"""First words of the names of helper columns."""
+
+_TYPED = {
+    "Floors": ("floor", "elevation", "pfa_x", "pfa_y", "pfv_x", "pfv_y", "record_x", "record_y"),
+    "Catalogue": ("type", *_TYPE_SIZES, CENTRE),
+}
+"""Fields of which a helper column is computed; their columns are named after them."""
+
+_WriteRow = Callable[[int, Mapping[str, str]], Iterator[str]]
+"""Gives the formulas of one row by its number and the cells that they are written to."""
+
+_FLOOR_HELPERS = (
+    "key", "own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", *live_shaking.HELPERS,
+    "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best",
+)  # fmt: skip
+"""Columns of the sheet for a row of Floors: its name, its own motion by axis, that of an assumed shaking, and what
+serves each axis."""
+
+_TYPE_HELPERS = ("key", *_TYPE_SIZES, CENTRE)
+"""Columns of the sheet for a row of the Catalogue: its name, its sizes [cm], and its centre of gravity [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +101,8 @@ class ListsWriter:
         at = live_shaking.write_shakings(self.book, self.page, self._write_choices() + 1)
         at = self._write_units(at + 1)
         at = self._write_factors(at + 1)
-        self._write_floors(at + 1)
+        at = self._write_rows(at + 1, "Floors", _FLOOR_HELPERS, self._of_floor)
+        self._write_rows(at + 1, "Catalogue", _TYPE_HELPERS, self._of_type)
         for name in ("Floors", "Catalogue", "Places", "Routes"):
             self._name(f"list_{name.lower()}", name, "A", 2, self.last[name])
         self.book.define_name("period", f"={gettext(BUILDING.name)}!$B${_line('period')}")
@@ -108,7 +140,7 @@ class ListsWriter:
         for row, (name, field) in enumerate(_NEEDED_FACTORS, 4):
             sheet = next(sheet for sheet in SHEETS if sheet.name == name)
             column = sheet.column(field)
-            cell = f"$A${sheet.columns.index(column) + 1}" if sheet.layout == "form" else f"{LETTERS[name, field]}$1"
+            cell = f"$A${_line(field)}" if sheet.layout == "form" else f"{LETTERS[name, field]}$1"
             unit = _bracket(f"{gettext(name)}!{cell}")
             factor = QUANTITIES[column.quantity][column.header(self.units).partition("[")[2].rstrip("]")]
             formula = f'=IFERROR(VLOOKUP({unit},units_{column.quantity},2,FALSE),"{gettext(NO_UNIT)}")'
@@ -121,28 +153,32 @@ class ListsWriter:
         self._define("sizes_unit", at, row, gettext("unknown unit of a size"), formula, "")
         self._write_strongest(row + 1, at)
         self._write_largest_estimate(row + 2, at)
-        self._write_scenario(row + 3, at)
-        self._write_shaking(row + 3 + len(_SCENARIO_NAMES), at)
+        words = list_words(ANCHORED, YES)
+        self._define("anchored_words", at, row + 3, gettext("words for anchored"), f'="{words}"', words)
+        self._write_scenario(row + 4, at)
+        self._write_shaking(row + 4 + len(_SCENARIO_NAMES), at)
         return at + 2
 
     def _write_strongest(self, row: int, at: int) -> None:
         """Write the factor on a floor's motion that no drawn earthquake exceeds."""
         default = Uncertainty()
         uncertainty = f"{gettext(BUILDING.name)}!$B${_line('motion_uncertainty')}"
-        own = f'IF({uncertainty}="",{default.motion!r},{uncertainty})'
-        formula = f"=EXP({CUT!r}*MAX(shaking_scatter,1*{own}))"
+        factor = f"EXP({CUT!r}*MAX(shaking_scatter,{uncertainty}))"
+        given = f'IF(AND(ISNUMBER({uncertainty}),{uncertainty}>=0),{factor},"{gettext(WRONG)}")'
+        assumed = f"EXP({CUT!r}*MAX(shaking_scatter,{default.motion!r}))"
+        formula = f'=IF(TRIM({uncertainty})="",{assumed},{given})'
         self._define("strongest", at, row, gettext("largest factor on the motion"), formula, default.largest)
 
     def _write_largest_estimate(self, row: int, at: int) -> None:
-        """Write the PFV [cm/s] that no estimate exceeds; nothing where Ground PGV is no number with a known unit."""
+        """Write the PFV [cm/s] that no estimate exceeds, if Ground PGV is a number with a known unit."""
         pgv = f"{gettext(BUILDING.name)}!$B${_line('ground_pgv')}"
-        formula = f'=IF(ISNUMBER({pgv}),IFERROR({pgv}*unit_building_ground_pgv*{cap_pfv(100)!r},""),"")'
-        self._define("largest_estimate", at, row, gettext("largest PFV that is estimated"), formula, "")
+        formula = f"=IF(ISNUMBER({pgv}),IFERROR({pgv}*unit_building_ground_pgv*{cap_pfv(100)!r},{_NO_CAP}),{_NO_CAP})"
+        self._define("largest_estimate", at, row, gettext("largest PFV that is estimated"), formula, _NO_CAP)
 
     def _write_scenario(self, row: int, at: int) -> None:
         """Write the kind of scenario as choices are compared, and whether floors' own values serve it."""
         plain = f"LOWER({gettext(BUILDING.name)}!$B${_line('scenario_kind')})"
-        for sign in (" ", "-", "_"):
+        for sign in (" ", "\u00a0", "-", "_"):
             plain = f'SUBSTITUTE({plain},"{sign}","")'
         typed, kind = (f"${xl_col_to_name(at + 1)}${row + line}" for line in range(2))
         own = ",".join(f'{kind}="{one}"' for one in ("", *_OWN_SCENARIOS))
@@ -159,45 +195,82 @@ class ListsWriter:
         for line, (name, formula) in enumerate(live_shaking.list_names(building, elevations), row):
             self._define(name, at, line, name, f"={formula}", "")
 
-    # ------------------------------------------------------------------ floors
+    # ------------------------------------------------------------------ rows of Floors and of the Catalogue
 
-    def _write_floors(self, at: int) -> None:
-        """Write, for every row of Floors, its own PFA and PFV on each axis and then those that serve each axis."""
-        letters = {name: xl_col_to_name(at + place) for place, name in enumerate(_FLOOR_HELPERS)}
-        last = self.last["Floors"]
-        self.page.write_row(0, at, _FLOOR_HELPERS)
+    def _write_rows(self, at: int, sheet: str, names: Sequence[str], write: _WriteRow) -> int:
+        """Write the helper columns of a table from column `at`; those of a row stand in the row of the same number.
+
+        The names that are defined begin in row 1, so that what is found is the number of the row. The header of the
+        keys stays blank: it would be found as a name.
+        """
+        letters = {name: xl_col_to_name(at + place) for place, name in enumerate(names)}
+        last = self.last[sheet]
+        self.page.write_row(0, at + 1, names[1:])
         for row in range(2, last + 1):
             cells = {name: f"${letter}{row}" for name, letter in letters.items()}
-            assumed = live_shaking.list_formulas(self._floor("elevation", row), cells)
-            formulas = (*self._own_pfa(row), *self._own_pfv(row, cells), *assumed, *_serving(cells), _best(cells))
-            for place, formula in enumerate(formulas):
+            for place, formula in enumerate(write(row, cells)):
                 self.page.write_formula(row - 1, at + place, f"={formula}", None, "")
         for name, letter in letters.items():
-            self._name(f"floor_{name}", LISTS, letter, 2, last)
+            self._name(f"{_PREFIXES[sheet]}_{name}", LISTS, letter, 1, last)
+        for name in _TYPED[sheet]:
+            self._name(f"typed_{name}", sheet, LETTERS[sheet, name], 1, last)
+        return at + len(names)
 
-    def _floor(self, name: str, row: int) -> str:
-        """Refer to a cell of Floors so that rows inserted or sorted there do not move the reference."""
-        letter = LETTERS["Floors", name]
-        floors = gettext("Floors")
-        return f"INDEX({floors}!${letter}$1:${letter}${self.last['Floors']},{row})"
+    def _of_floor(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
+        yield _key(_typed("floor", row))
+        yield from self._own_pfa(row)
+        yield from self._own_pfv(row, cells)
+        yield from live_shaking.list_formulas(_typed("elevation", row), cells)
+        yield from _serving(cells)
+        yield _best(cells)
 
     def _own_pfa(self, row: int) -> Iterator[str]:
         for axis in "xy":
-            pfa, record = self._floor(f"pfa_{axis}", row), self._floor(f"record_{axis}", row)
-            number = f'IF(ISTEXT(unit_floors_pfa_{axis}),"{gettext(NO_UNIT)}",{pfa}*unit_floors_pfa_{axis}/{GRAVITY!r})'
-            given = f'IF(OR({pfa}="",scenario_kind="recorded"),"",{number})'
+            pfa, record = (_typed(f"{what}_{axis}", row) for what in ("pfa", "record"))
+            unit, wrong = f"unit_floors_pfa_{axis}", gettext(WRONG)
+            number = f'IF({pfa}<0,"{wrong}",IFERROR({pfa}*{unit}/{GRAVITY!r},{unit}))'
+            given = f'IF(scenario_kind="recorded","",{_if_number(pfa, number)})'
             aside = f'AND(TRIM({record})<>"",scenario_kind<>"given")'
             yield f'IF(OR(scenario_is_own=0,{aside}),"{gettext(RUN_ASSESS)}",{given})'
 
     def _own_pfv(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
+        frequency = f"MIN(1/(period*unit_building_period),{HIGHEST_FLOOR_FREQUENCY!r})"
         for axis in "xy":
-            pfa, pfv = cells[f"own_pfa_{axis}"], self._floor(f"pfv_{axis}", row)
-            frequency = f"MIN(1/(period*unit_building_period),{HIGHEST_FLOOR_FREQUENCY!r})"
+            pfa, unit = cells[f"own_pfa_{axis}"], f"unit_floors_pfv_{axis}"
             by_period = f"{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency})"
-            capped = f"IF(ISNUMBER(largest_estimate),MIN({by_period},largest_estimate),{by_period})"
-            estimate = f'IF(ISNUMBER(period),{capped},"")'
-            given = f'IF(ISTEXT(unit_floors_pfv_{axis}),"{gettext(NO_UNIT)}",{pfv}*unit_floors_pfv_{axis}*100)'
-            yield f'IF(ISNUMBER({pfa}),IF({pfv}<>"",{given},{estimate}),"")'
+            estimate = f'IF(ISNUMBER(period),MIN({by_period},largest_estimate),"")'
+            pfv = _typed(f"pfv_{axis}", row)
+            given = _if_number(pfv, f"IFERROR({pfv}*{unit}*100,{unit})", estimate)
+            yield f'IF(ISNUMBER({pfa}),{given},"")'
+
+    def _of_type(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
+        yield _key(_typed("type", row))
+        for name in _TYPE_SIZES:
+            yield _if_number(_typed(name, row), f"IFERROR({_typed(name, row)}*unit_catalogue_{name}*100,sizes_unit)")
+        centre, unit = _typed(CENTRE, row), f"unit_catalogue_{CENTRE}"
+        share = f'IF({between(f"{centre}*{unit}", CATALOGUE.column(CENTRE))},{centre}*{unit},"{gettext(WRONG)}")'
+        yield _if_number(centre, f"IFERROR({share},{unit})", repr(MIDDLE))
+
+
+def between(number: str, column: Column, scale: float = 1.0) -> str:
+    """Return an expression for whether a number, in SI times `scale`, lies in the range of a column."""
+    low, high = ((limit or 0) * column.factor * scale for limit in (column.low, column.high))
+    return f"AND({number}>={low * (1 - ROUNDING):.12g},{number}<={high * (1 + ROUNDING):.12g})"
+
+
+def _typed(name: str, row: int) -> str:
+    """Refer to a cell of Floors or the Catalogue so that rows inserted or sorted there do not move the reference."""
+    return f"INDEX(typed_{name},{row})"
+
+
+def _key(cell: str) -> str:
+    """Expression for a name as it is looked up; 0 where there is none, which no name is."""
+    return f'IF({cell}="",0,{trim(cell)})'
+
+
+def _if_number(cell: str, number: str, blank: str = '""') -> str:
+    """Expression for what is shown of a cell: of a number, of a blank cell, and `WRONG` of anything else."""
+    return f'IF(ISNUMBER({cell}),{number},IF(TRIM({cell})="",{blank},"{gettext(WRONG)}"))'
 
 
 def _line(name: str) -> int:

@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from xlsxwriter.utility import xl_col_to_name
-
 from assess.i18n import gettext
 from assess.methods import Method, adopted_formula
 from assess.model import NEAR_AXIS
@@ -12,45 +10,44 @@ from assess.rocking.block import MIDDLE
 from assess.rocking.draws import STILL
 from assess.settings import Settings
 from assess.workbook import formulas as live
-from assess.workbook.lists import LETTERS, NO_UNIT
+from assess.workbook.cell_texts import find_row, is_among, trim
+from assess.workbook.layout import LETTERS
+from assess.workbook.lists import NO_UNIT, RUN_ASSESS, WRONG, between
 from assess.workbook.schema import ITEMS, LIVE, NO, WORKINGS, YES
-
-FIRST = len(ITEMS.columns)
-"""Place of the first live column, right of the columns to fill in."""
 
 ROW = "\x00"
 """Stands for the number of the row in the formulas of `LiveRow`, which are the same for every row."""
 
-NO_FLOOR, NO_AXIS, WRONG = "floor?", "axis?", "check"
-"""What the live columns show without a known floor, with an unknown axis, and with sizes that are not numbers."""
+NO_FLOOR, NO_AXIS = "floor?", "axis?"
+"""What the live columns show without a known floor and with an unknown axis."""
+
+IS_ANCHORED = "anchored"
+"""What they show in place of the class of a piece that is anchored."""
 
 
 @dataclass(frozen=True, slots=True)
 class LiveRow:
-    """A row of Items; `last` holds the last row of each table."""
+    """A row of Items; every formula refers to its own row, to the headers and to names, so that it can be copied."""
 
-    last: Mapping[str, int]
-
-    def formulas(self) -> list[str]:
+    def formulas(self) -> dict[str, str]:
         """Return a formula for each of `schema.LIVE` and `schema.WORKINGS`, with `ROW` for the number of the row."""
-        cells = [f"${xl_col_to_name(FIRST + at)}{ROW}" for at in range(len(LIVE) + len(WORKINGS))]
-        ratio, pfa, *risks, _, _, axis, pfv, height = cells
-        no_floor, no_axis, wrong = (f'"{gettext(hint)}"' for hint in (NO_FLOOR, NO_AXIS, WRONG))
-        served = f'IF({axis}={no_floor},{axis},IF({axis}="","",{no_axis}))'
-        breadth = self._size("breadth")
-        sizes = f'IFERROR(IF(OR({breadth}<=0,{height}<=0),"",{breadth}*100/{height}),{wrong})'
+        cells = {label: f"${LETTERS[ITEMS.name, label]}{ROW}" for label in (*LIVE, *WORKINGS)}
+        ratio, pfa, *risks, _, _ = (cells[label] for label in LIVE)
+        floor, kind, axis, pfv, breadth, height = (cells[label] for label in WORKINGS)
         references = {"breadth_to_height": ratio, "height_cm": height, "pfa_g": pfa, "pfv_cm_s": pfv}
         risk = risks[live.LIVE_METHODS.index(adopted_formula())]
-        return [
-            self._unless_blank(f'IF(sizes_unit<>"",sizes_unit,{sizes})'),
-            self._unless_blank(self._on(axis, "pfa", served)),
+        return dict(zip((*LIVE, *WORKINGS), (
+            _divide(breadth, height),
+            self._unless_blank(_served(floor, axis, "pfa", f'IF({axis}={_say(WRONG)},{axis},{_say(NO_AXIS)})')),
             *(_ready(ratio, pfa, _write(method, references)) for method in live.LIVE_METHODS),
-            f"=IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa)},{risk})",
-            _ready(ratio, pfa, self._can_rock(ratio, pfa)),
-            self._unless_blank(f"IFERROR({self._axis()},{no_floor})"),
-            self._unless_blank(self._on(axis, "pfv", '""')),
-            self._unless_blank(f"IFERROR({self._size('height')}*100,{wrong})"),
-        ]
+            self._class(risk, live.risk_class(risk, ratio, pfa)),
+            _ready(ratio, pfa, self._can_rock(ratio, pfa, kind)),
+            self._unless_blank(f"IFERROR({find_row(trim(self._own('floor')), 'floor_key')},{_say(NO_FLOOR)})"),
+            self._unless_blank(f'IFERROR({find_row(trim(self._own("type")), "type_key")},"")'),
+            self._unless_blank(f"IF(ISNUMBER({floor}),{self._axis(floor)},{floor})"),
+            self._unless_blank(_served(floor, axis, "pfv", '""')),
+            *(self._unless_blank(self._size(name, kind)) for name in ("breadth", "height")),
+        ), strict=True))  # fmt: skip
 
     def _own(self, name: str) -> str:
         return f"${LETTERS['Items', name]}{ROW}"
@@ -58,40 +55,60 @@ class LiveRow:
     def _unless_blank(self, formula: str) -> str:
         return f'=IF({self._own("item")}="","",{formula})'
 
-    def _size(self, name: str) -> str:
-        """Expression for a size in m: the row's own, else its type's, else 0."""
-        own, column, last = self._own(name), LETTERS["Catalogue", name], self.last["Catalogue"]
-        sheet = gettext("Catalogue")
-        listed = f"INDEX({sheet}!${column}$2:${column}${last},MATCH({self._own('type')},list_catalogue,0))"
-        return f'IF({own}="",IFERROR({listed}*unit_catalogue_{name},0),{own}*unit_items_{name})'
+    def _class(self, risk: str, found: str) -> str:
+        """Return the formula for the class; a piece that is anchored has none, whatever its motion."""
+        is_anchored = is_among(self._own("anchored"), "anchored_words")
+        either = f"IF({is_anchored},{_say(IS_ANCHORED)},IF(ISNUMBER({risk}),{found},{risk}))"
+        return f"=IF(OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)}),{either},{risk})"
 
-    def _can_rock(self, ratio: str, pfa: str) -> str:
+    def _size(self, name: str, kind: str) -> str:
+        """Expression for a size [cm]: the row's own, else its type's, else nothing."""
+        own, listed = self._own(name), f'IF(ISNUMBER({kind}),INDEX(type_{name},{kind}),"")'
+        number = f"IF(ISNUMBER({own}),{own}*unit_items_{name}*100,{_say(WRONG)})"
+        return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
+
+    def _can_rock(self, ratio: str, pfa: str, kind: str) -> str:
         """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 beta) >= 0.85 g b/z."""
         units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
-        yes, no, no_unit, wrong = (f'"{gettext(hint)}"' for hint in (YES, NO, NO_UNIT, WRONG))
-        starts = f"{pfa}*strongest>={STILL!r}*{ratio}/(2*{self._centre(*units)})"
-        fault = f"IF(OR({','.join(f'ISTEXT({unit})' for unit in units)}),{no_unit},{wrong})"
-        return f"IFERROR(IF({starts},{yes},{no}),{fault})"
+        starts = f"{pfa}*strongest>={STILL!r}*{ratio}/(2*{self._centre(units[0], kind)})"
+        fault = f"IF(OR({','.join(f'ISTEXT({unit})' for unit in units)}),{_say(NO_UNIT)},{_say(WRONG)})"
+        return f"IFERROR(IF({starts},{_say(YES)},{_say(NO)}),{fault})"
 
-    def _centre(self, own_unit: str, listed_unit: str) -> str:
+    def _centre(self, unit: str, kind: str) -> str:
         """Expression for the height of the centre of gravity [-]: the row's own, else its type's, else the middle."""
-        own, column = self._own("centre_of_gravity"), LETTERS["Catalogue", "centre_of_gravity"]
-        place, sheet = f"MATCH({self._own('type')},list_catalogue,0)", gettext("Catalogue")
-        listed = f"INDEX({sheet}!${column}$2:${column}${self.last['Catalogue']},{place})"
-        of_type = f'IF(ISNUMBER({place}),IF({listed}="",{MIDDLE!r},{listed}*{listed_unit}),{MIDDLE!r})'
-        return f'IF({own}="",{of_type},{own}*{own_unit})'
+        own = self._own("centre_of_gravity")
+        inside = between(f"{own}*{unit}", ITEMS.column("centre_of_gravity"))
+        number = f"IF(ISNUMBER({own}),IF({inside},{own}*{unit},{_say(WRONG)}),{_say(WRONG)})"
+        return f'IF(TRIM({own})="",IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r}),{number})'
 
-    def _axis(self) -> str:
+    def _axis(self, floor: str) -> str:
         """Expression for the axis that governs: the row's own, else its angle's, else the worse of the floor's."""
-        axis, angle, near = f"TRIM({self._own('axis')})", self._own("angle_deg"), f"<={NEAR_AXIS:g}"
-        worse = f"INDEX(floor_best,MATCH({self._own('floor')},list_floors,0))"
+        axis, angle, near = trim(self._own("axis")), self._own("angle_deg"), f"<={NEAR_AXIS:g}"
+        worse = f"INDEX(floor_best,{floor})"
         turned = f'IF(ABS(MOD({angle}+90,180)-90){near},"X",IF(ABS(MOD({angle},180)-90){near},"Y",{worse}))'
-        return f'IF({axis}<>"",{axis},IF({angle}="",{worse},{turned}))'
+        by_angle = f'IF(TRIM({angle})="",{worse},IF(ISNUMBER({angle}),{turned},{_say(WRONG)}))'
+        return f'IF(TRIM({self._own("axis")})="",{by_angle},{axis})'
 
-    def _on(self, axis: str, what: str, otherwise: str) -> str:
-        """Expression for the PFA [g] or PFV [cm/s] along an axis, from the helper columns of Lists."""
-        x, y = (f"INDEX(floor_{what}_{letter},MATCH({self._own('floor')},list_floors,0))" for letter in "xy")
-        return f'IFERROR(IF({axis}="X",{x},IF({axis}="Y",{y},{otherwise})),"{gettext(NO_FLOOR)}")'
+
+def _say(hint: str) -> str:
+    """Literal for a word in the language in use."""
+    return f'"{gettext(hint)}"'
+
+
+def _divide(breadth: str, height: str) -> str:
+    """Return the formula for B/H; where one of them is no size what is shown in its place, a wrong one first."""
+    size = ITEMS.column("breadth")
+    inside = f"AND({between(breadth, size, 100)},{between(height, size, 100)})"
+    ratio = f"IF({inside},{breadth}/{height},{_say(WRONG)})"
+    other = f"IF({height}={_say(WRONG)},{height},IF(ISNUMBER({breadth}),{height},{breadth}))"
+    return f"=IF(COUNT({breadth},{height})=2,{ratio},{other})"
+
+
+def _served(floor: str, axis: str, what: str, otherwise: str) -> str:
+    """Expression for the PFA [g] or PFV [cm/s] along an axis, from the helper columns of Lists."""
+    x, y = (f"INDEX(floor_{what}_{letter},{floor})" for letter in "xy")
+    served = f'IF({axis}="X",{x},IF({axis}="Y",{y},{otherwise}))'
+    return f"IF(ISNUMBER({floor}),IFERROR({served},{_say(WRONG)}),{floor})"
 
 
 def _write(method: Method, references: Mapping[str, str]) -> str:

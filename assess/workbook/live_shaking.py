@@ -42,8 +42,9 @@ def list_names(building: Mapping[str, str], elevations: str) -> Iterator[tuple[s
     """
     blank = f'{building["ground_pga"]}="",{building["sds"]}="",OR(scenario_kind="",scenario_kind="asfilled")'
     yield "shaking_at", f"IF(AND({blank}),IFERROR(MATCH(TRIM({building['shaking']}),list_shaking,0),0),0)"
-    yield "floors_owning", 'SUMPRODUCT(1-(floor_own_pfa_x="")*(floor_own_pfa_y=""))'
-    yield "floors_lacking", 'SUMPRODUCT((list_floors<>"")*(floor_own_pfa_x="")*(floor_own_pfa_y=""))'
+    # The helper columns of the floors begin with their headers, which count as neither.
+    yield "floors_owning", 'SUMPRODUCT((floor_key<>0)*(1-(floor_own_pfa_x="")*(floor_own_pfa_y="")))'
+    yield "floors_lacking", 'SUMPRODUCT((floor_key<>0)*(floor_own_pfa_x="")*(floor_own_pfa_y=""))'
     yield "shaking_scatter", "IF(AND(shaking_at>0,floors_lacking>0),INDEX(shakings_scatter,shaking_at),0)"
     yield "shaking_pga", 'IF(AND(shaking_at>0,floors_owning=0),INDEX(shakings_pga,shaking_at),"")'
     highest = f"MAX(0,MAX({elevations})*unit_floors_elevation)"

@@ -312,8 +312,12 @@ SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE)
 HELP, LISTS = "Help", "Lists"
 """Sheets of the empty workbook that hold no data; reading leaves them out."""
 
-LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)", "Can rock")
-"""Columns at the right of Items that Excel computes; reading leaves them out."""
+CLASS = "Class (formula)"
 
-WORKINGS = ("Axis used", "PFV used [cm/s]", "Height used [cm]")
+LIVE = ("B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", CLASS, "Can rock")
+"""Columns of Items that Excel computes: the class next to the item, the others at the right; reading leaves them out."""
+
+WORKINGS = (
+    "Row in Floors", "Row in Catalogue", "Axis used", "PFV used [cm/s]", "Breadth used [cm]", "Height used [cm]",
+)  # fmt: skip
 """Right of those, what they are computed from: each formula stays short, and its input can be seen."""

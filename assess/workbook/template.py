@@ -1,6 +1,12 @@
 """The workbook that `assess new` writes: drop-downs, units, help, and columns that compute as one types.
 
 Everything is derived from `schema`; the sheet Lists, which drop-downs and formulas refer to, is written by `lists`.
+
+Formulas stand in the first `ROWS` of Items; drop-downs and colours go on to `CHECKED`, which costs nothing. A workbook
+opens and is read the faster the fewer cells it holds, and most have some dozens of rows. Whoever fills in more copies
+the formulas down: they refer to their own row and to names only, Help says so, and a filled row without them turns
+red. A table of Excel would extend them by itself, but only there; and it asks that its part of the file repeats every
+header, so that a header edited by another program, as when a unit is changed, makes Excel call the file damaged.
 """
 
 from collections.abc import Mapping, Sequence
@@ -9,19 +15,18 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from importlib.resources import files
 from io import StringIO
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
-
-from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE, write_plainly
+from assess.workbook.headings import LINE, count_heading_lines, fit_width
+from assess.workbook.layout import FROZEN, LETTERS, PLACES
 from assess.workbook.lists import ROWS, ListsWriter, Units
-from assess.workbook.live_row import FIRST, ROW, LiveRow
+from assess.workbook.live_row import ROW, LiveRow
 from assess.workbook.names import say_live
-from assess.workbook.schema import CATALOGUE, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.schema import CATALOGUE, CLASS, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.writer import write_book
 
 __all__ = ["ROWS", "Content", "Rows", "Units", "describe", "read_catalogue", "write_workbook"]
@@ -39,12 +44,15 @@ FIRST_LINES = (
     "interpolated between the floors above and below, which may be lower than the truth, or worked out from Ground "
     "PGA in Building. Where you do not know that either, choose an intensity in Shaking in Building.",
     "3. Items: one row a piece, or a row for several alike. Choose a Type, and its sizes come from the Catalogue; or "
-    "type the sizes. The columns at the right show the risk class at once.",
+    "type the sizes. Class (formula), next to Item, shows the risk class at once; the grey columns at the right show "
+    "where it comes from.",
     "4. Places and Routes are for evacuation routes and may stay empty.",
     "5. Check it with: assess check FILE.xlsx. Make the report with: assess run FILE.xlsx.",
     "The unit in the bracket of a header is the unit of the column: write Height [mm] or Height [in], and numbers "
     "below are read as such. Lengths: mm, cm, m, in, ft; accelerations: g, m/s2, cm/s2, gal; velocities: cm/s, m/s, "
     "in/s.",
+    "Items has formulas in its first {rows} rows. To fill in more, copy Class (formula) and the grey columns at the right "
+    "down from the row above. The program reads every row, with formulas or without.",
     "Columns may stand in any order, and you may add your own: they are kept and come back in the Excel report. "
     "Columns marked * are required.",
     "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "
@@ -64,8 +72,21 @@ ROCK_NOTE = (
 FOOTER = "&C&A, page &P of &N"
 """In the spreadsheet program's own signs: centred, the sheet's name, its page and the number of pages."""
 
-CLASS = LIVE.index("Class (formula)")
-"""Place of the class among the live columns; after it stands whether a piece can rock."""
+COPY_TITLE = "No formula in this row"
+COPY_NOTE = (
+    "Copy the cell above down to here, and the grey columns at the right with it. The program reads the row all the same."
+)
+"""What a cell of the class says below the last row that has formulas."""
+
+CHECKED = {ITEMS.name: 2000}
+"""Rows that have drop-downs and colours, where these are more than `ROWS`."""
+
+_LIVE_FORMATS = dict.fromkeys(("B/H", "PFA used [g]"), "0.000") | dict.fromkeys(LIVE[2:4], "0.00") | {
+    "PFV used [cm/s]": "0.0", "Breadth used [cm]": "0.0", "Height used [cm]": "0.0",
+}  # fmt: skip
+"""Number formats of the columns that Excel computes, where they hold numbers."""
+
+_LIVE_WIDTHS = {CLASS: 17}
 
 CREATED = datetime(2000, 1, 1)
 """Date in the properties of every workbook: the same content gives the same bytes."""
@@ -135,11 +156,14 @@ class _Writer:
         self.live_head = book.add_format({"bold": True, "bg_color": "#5b6b76", "font_color": "#ffffff",
                                           "text_wrap": True, "valign": "top", "border": 1})  # fmt: skip
         self.text = book.add_format({"num_format": "@"})
-        self.live_formats = [book.add_format({"num_format": code, "bg_color": "#f1f3f5"}) for code in
-                             ("0.000", "0.000", "0.00", "0.00", *["General"] * 3, "0.0", "0.0")]  # fmt: skip
+        self.live_formats = {
+            label: book.add_format({"num_format": _LIVE_FORMATS.get(label, "General"), "bg_color": "#f1f3f5"})
+            for label in (*LIVE, *WORKINGS)
+        }
         self.title = book.add_format({"bold": True, "font_size": 14})
         self.wrap = book.add_format({"text_wrap": True, "valign": "top"})
         self.bold = book.add_format({"bold": True, "valign": "top"})
+        self.head_lines: dict[str, int] = {}
         self.last = {name: 1 + max(rows, len(self._rows(name))) for name, rows in ROWS.items()}
 
     def write(self) -> None:
@@ -160,7 +184,7 @@ class _Writer:
 
     def _write_form(self, page: Any, sheet: Sheet) -> None:
         values = (self._rows(sheet.name) or [{}])[0]
-        page.set_column(0, 0, 22)
+        page.set_column(0, 0, max(fit_width(self._header(column).replace(" ", "_"), 22) for column in sheet.columns))
         page.set_column(1, 1, 44)
         page.set_column(2, 2, 80, self.wrap)
         for at, column in enumerate(sheet.columns):
@@ -170,21 +194,28 @@ class _Writer:
             self._validate(page, column, at, 1, at)
 
     def _write_table(self, page: Any, sheet: Sheet) -> None:
-        last = self.last[sheet.name] - 1
-        for at, column in enumerate(sheet.columns):
-            page.set_column(at, at, column.width, self.text if column.kind == "text" else None)
-            page.write_string(0, at, self._header(column), self.head)
+        last = max(self.last[sheet.name] - 1, CHECKED.get(sheet.name, 0))
+        for column in sheet.columns:
+            at = PLACES[sheet.name, column.name]
+            self._write_head(page, at, self._header(column), column.width, self.text if column.kind == "text" else None)
             self._validate(page, column, 1, at, last)
         for number, row in enumerate(self._rows(sheet.name), 1):
-            for at, column in enumerate(sheet.columns):
-                self._write_cell(page, number, at, column, row.get(column.name))
-        page.freeze_panes(1, 1)
-        more = len(LIVE) + len(WORKINGS)
-        page.autofilter(0, 0, last, len(sheet.columns) - 1 + (more if sheet.name == "Items" else 0))
+            for column in sheet.columns:
+                self._write_cell(page, number, PLACES[sheet.name, column.name], column, row.get(column.name))
+        page.freeze_panes(1, FROZEN.get(sheet.name, 1))
+        page.autofilter(0, 0, last, max(at for (name, _), at in PLACES.items() if name == sheet.name))
         page.set_landscape()
         page.fit_to_pages(1, 0)
         page.repeat_rows(0)
         page.set_footer(gettext(FOOTER))
+
+    def _write_head(self, page: Any, at: int, heading: str, width: float, style: Any, *, is_live: bool = False) -> None:
+        """Write the heading of a column and set its width, and the height of the row for the longest so far."""
+        width = fit_width(heading, width)
+        page.set_column(at, at, width, style)
+        page.write_string(0, at, heading, self.live_head if is_live else self.head)
+        self.head_lines[page.name] = max(self.head_lines.get(page.name, 1), count_heading_lines(heading, width))
+        page.set_row(0, LINE * self.head_lines[page.name])
 
     def _rows(self, sheet: str) -> Rows:
         rows = self.content.rows.get(sheet, ())
@@ -223,23 +254,23 @@ class _Writer:
     # --------------------------------------------------------------- live columns
 
     def _write_live(self, page: Any) -> None:
-        for at, label in enumerate((*LIVE, *WORKINGS)):
-            page.write_string(0, FIRST + at, say_live(label), self.live_head)
-            page.set_column(FIRST + at, FIRST + at, 16 if at == CLASS else 10)
-        page.write_comment(0, FIRST + CLASS, gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 2})
-        page.write_comment(0, FIRST + CLASS + 1, gettext(ROCK_NOTE), {"x_scale": 2})
-        last = self.last[ITEMS.name]
-        row_formulas = LiveRow(self.last).formulas()
-        for row in range(2, last + 1):
+        for label in (*LIVE, *WORKINGS):
+            at = PLACES[ITEMS.name, label]
+            self._write_head(page, at, say_live(label), _LIVE_WIDTHS.get(label, 10), None, is_live=True)
+        page.write_comment(0, PLACES[ITEMS.name, CLASS], gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 2})
+        page.write_comment(0, PLACES[ITEMS.name, "Can rock"], gettext(ROCK_NOTE), {"x_scale": 2})
+        formulas = LiveRow().formulas()
+        for row in range(2, self.last[ITEMS.name] + 1):
             stored = self.content.live[row - 2] if row - 2 < len(self.content.live) else ()
-            formulas = [formula.replace(ROW, str(row)) for formula in row_formulas]
-            for at, (formula, value) in enumerate(zip_longest(formulas, stored, fillvalue="")):
-                page.write_formula(row - 1, FIRST + at, formula, self.live_formats[at], value)
-        self._colour(page, last)
+            values = dict(zip(LIVE, stored, strict=bool(stored)))
+            for label, formula in formulas.items():
+                at, value = PLACES[ITEMS.name, label], values.get(label, "")
+                page.write_formula(row - 1, at, formula.replace(ROW, str(row)), self.live_formats[label], value)
+        self._colour(page, max(self.last[ITEMS.name], CHECKED[ITEMS.name] + 1))
 
     def _colour(self, page: Any, last: int) -> None:
-        """Colour the classes, and what is plainly wrong: an item that is there twice, or has no floor."""
-        column = xl_col_to_name(FIRST + CLASS)
+        """Colour the classes, and what is plainly wrong: an item twice, without a floor, or without formulas."""
+        item, column, floor = (LETTERS[ITEMS.name, name] for name in ("item", CLASS, "floor"))
         for risk in reversed(RiskClass):
             form = self.book.add_format({"bg_color": risk.fill, "font_color": risk.ink, "bold": risk >= RiskClass.HIGH})
             page.conditional_format(
@@ -247,19 +278,27 @@ class _Writer:
                 {"type": "text", "criteria": "begins with", "value": risk.symbol, "format": form, "stop_if_true": True},
             )
         wrong = self.book.add_format({"bg_color": "#ffc7ce"})
-        page.conditional_format(f"A2:A{last}", {"type": "duplicate", "format": wrong})
-        page.conditional_format(f"B2:B{last}", {"type": "formula", "criteria": '=AND($A2<>"",$B2="")', "format": wrong})
+        page.conditional_format(f"{item}2:{item}{last}", {"type": "duplicate", "format": wrong})
+        blank = {"type": "formula", "criteria": f'=AND(${item}2<>"",${floor}2="")', "format": wrong}
+        page.conditional_format(f"{floor}2:{floor}{last}", blank)
+        first = self.last[ITEMS.name] + 1
+        if first <= last:
+            bare = {"type": "formula", "criteria": f'=AND(${item}{first}<>"",${column}{first}="")', "format": wrong}
+            page.conditional_format(f"{column}{first}:{column}{last}", bare)
+            note = {"validate": "any", "input_title": gettext(COPY_TITLE), "input_message": gettext(COPY_NOTE)}
+            page.data_validation(f"{column}{first}:{column}{last}", note)
 
     # ----------------------------------------------------------------------- help
 
     def _write_help(self, page: Any) -> None:
         page.set_column(0, 0, 14)
-        page.set_column(1, 1, 22)
+        headings = [self._header(column) + " *" for sheet in SHEETS for column in sheet.columns]
+        page.set_column(1, 1, max(fit_width(heading.replace(" ", "_"), 22) for heading in headings))
         page.set_column(2, 2, 90, self.wrap)
         page.hide_gridlines(2)
         page.write_string(0, 0, gettext(TITLE), self.title)
         row = 2
-        for line in map(gettext, FIRST_LINES):
+        for line in (gettext(text, rows=self.last[ITEMS.name] - 1) for text in FIRST_LINES):
             page.merge_range(row, 0, row, 2, line, self.wrap)
             page.set_row(row, 15 * (1 + len(line) // 125))
             row += 1
