@@ -15,7 +15,7 @@ from assess.cli.app import app, find_commands
 from assess.methods import MethodInfo, all_methods
 from assess.units import QUANTITIES
 from assess.workbook.names import translate
-from assess.workbook.schema import LIVE, SHEETS, WORKINGS, Column
+from assess.workbook.schema import CLASS, LIVE, SHEETS, WORKINGS, Column
 from assess.workbook.template import describe
 
 DOCS = Path(__file__).parent
@@ -85,8 +85,8 @@ def _describe_workbook() -> Iterator[str]:
         yield from _build_table(("column", "Italian", "value", "what to fill in"), rows)
     yield "## Columns that Excel computes"
     yield ""
-    yield f"Right of Items: {_join(LIVE)}, and what they are computed from: {_join(WORKINGS)}. They update while you"
-    yield "type, and are left out when the workbook is read."
+    yield f"In Items, {CLASS} next to the item and the others at the right: {_join(LIVE)}, and what they are computed"
+    yield f"from: {_join(WORKINGS)}. They update while you type, and are left out when the workbook is read."
 
 
 KINDS = {

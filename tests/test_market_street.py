@@ -25,9 +25,11 @@ from assess.results import MAY_BE_LOWER
 from assess.risk import RiskClass
 from assess.settings import Settings
 from assess.units import GRAVITY
+from assess.workbook.layout import PLACES
 from assess.workbook.lists import RUN_ASSESS
+from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import ITEMS, LIVE
+from assess.workbook.schema import LIVE
 from assess.workbook.template import write_workbook
 from tests.workbooks import UNVERIFIED
 
@@ -35,7 +37,6 @@ FOLDER = Path(__file__).parents[1] / "inventories"
 WORKBOOK = FOLDER / "market-street.xlsx"
 FLOORS = ("42", "34", "25", "G")
 Box = tuple[float, float, float, float]
-FIRST = len(ITEMS.columns) + 1
 
 # Treated PFA [cm/s2] of each channel, as the README of the records has it.
 PFA = {"a": 218.1, "b": 181.4, "c": 133.3, "d": 151.2, "e": 147.6, "g": 184.1, "h": 218.4, "i": 161.8, "k": 132.8}
@@ -303,10 +304,12 @@ def test_every_class_is_there(results):
 
 def test_stored_live_values_are_the_programs(inventory):
     page = openpyxl.load_workbook(WORKBOOK, data_only=True)["Items"]
-    for row, values in enumerate(live_values(inventory), 2):
-        stored = [page.cell(row, FIRST + at).value for at in range(len(LIVE))]
+    for row, (item, values) in enumerate(zip(inventory.items, live_values(inventory), strict=True), 2):
+        stored = [page.cell(row, PLACES["Items", label] + 1).value for label in LIVE]
         assert stored[0] == pytest.approx(values[0], abs=1e-9, rel=0)
-        assert stored[1:] == values[1:] == [RUN_ASSESS] * 5
+        words = [RUN_ASSESS] * 5
+        words[3] = IS_ANCHORED if item.anchored == "yes" else RUN_ASSESS
+        assert stored[1:] == values[1:] == words
 
 
 def test_a_spreadsheet_engine_computes_the_same(inventory):
@@ -314,7 +317,7 @@ def test_a_spreadsheet_engine_computes_the_same(inventory):
     book = formualizer.load_workbook(str(WORKBOOK))
     book.evaluate_all()
     for row, values in enumerate(live_values(inventory), 2):
-        computed = [book.get_value("Items", row, FIRST + at) for at in range(len(LIVE))]
+        computed = [book.get_value("Items", row, PLACES["Items", label] + 1) for label in LIVE]
         assert computed[0] == pytest.approx(values[0], abs=1e-9, rel=0)
         assert computed[1:] == values[1:]
 

@@ -43,7 +43,7 @@ def command(
     write_new_workbook(path, units.value, language=find_language(language), example=example, replace=force)
     name = f'"{path}"' if " " in str(path) else path
     if example:
-        typer.echo(f"wrote {path}. Assess it with: assess run {name}", err=True)
+        typer.echo(f"wrote {path}. Open it to see its classes. Assess it with: assess run {name}", err=True)
     else:
         typer.echo(f"wrote {path}. Fill in its sheets Floors and Items, then run: assess check {name}", err=True)
 

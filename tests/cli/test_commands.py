@@ -82,7 +82,7 @@ def test_new_then_check_says_what_is_missing(tmp_path):
     ("words", "message"),
     [
         ([], "wrote w.xlsx. Fill in its sheets Floors and Items, then run: assess check w.xlsx\n"),
-        (["--example"], "wrote w.xlsx. Assess it with: assess run w.xlsx\n"),
+        (["--example"], "wrote w.xlsx. Open it to see its classes. Assess it with: assess run w.xlsx\n"),
     ],
 )
 def test_new_says_what_to_do_next(tmp_path, monkeypatch, words, message):
@@ -128,7 +128,7 @@ def test_bad_input_writes_nothing(tmp_path):
     path = write(tmp_path / "w.xlsx", [{"item": "a", "floor": "9", "breadth": 30, "height": 180}])
     done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out")])
     assert done.exit_code == 2
-    assert "Items!B2: Floor '9' is not in the Floors sheet." in done.stderr
+    assert "Items!C2: Floor '9' is not in the Floors sheet." in done.stderr
     assert not (tmp_path / "out").exists()
 
 

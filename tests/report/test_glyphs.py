@@ -59,10 +59,10 @@ def test_each_field_is_told_once_with_its_first_cell(tmp_path, monkeypatch):
     results = assessed(tmp_path / "w.xlsx", items, building="東京", scenario="a quake")
     assert [str(one) for one in pdf.list_problems(results)] == [
         f"Building!B1: Building: no font here holds 東 (U+6771), 京 (U+4EAC); the PDF has � instead. {FIX}",
-        f"Items!C3: Room of 2 rows: no font here holds 書 (U+66F8), 庫 (U+5EAB); the PDF has � instead. {FIX}",
-        "Items!D3: Description of 2 rows: no font here holds 本 (U+672C), 棚 (U+68DA), 椅 (U+6905), 子 (U+5B50); "
+        f"Items!D3: Room of 2 rows: no font here holds 書 (U+66F8), 庫 (U+5EAB); the PDF has � instead. {FIX}",
+        "Items!E3: Description of 2 rows: no font here holds 本 (U+672C), 棚 (U+68DA), 椅 (U+6905), 子 (U+5B50); "
         f"the PDF has � instead. {FIX}",
-        f"Items!Y3: Notes of 2 rows: no font here holds 机 (U+673A); the PDF has � instead. {FIX}",
+        f"Items!Z3: Notes of 2 rows: no font here holds 机 (U+673A); the PDF has � instead. {FIX}",
     ]
     assert {one.severity for one in pdf.list_problems(results)} == {"warning"}
 
@@ -121,7 +121,7 @@ def test_a_machine_without_fonts_writes_the_same_report(tmp_path):
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
     told = done.stdout.splitlines()
-    assert [line.split(":")[0] for line in told] == ["Building!B1", "Building!B18", "Items!D2"]
+    assert [line.split(":")[0] for line in told] == ["Building!B1", "Building!B18", "Items!E2"]
     assert "本 (U+672C), 棚 (U+68DA), 🪑 (U+1FA91), अ (U+0905), ल (U+0932) and " in told[2]
     for path in (plain, accessible):
         text = _read(path)

@@ -8,13 +8,11 @@ import pytest
 from assess.pipeline.live_values import live_values, with_live
 from assess.pipeline.run import run
 from assess.workbook.example import SCENARIO, example_content
+from assess.workbook.layout import PLACES, list_columns
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LIVE, SHEETS
 from assess.workbook.template import write_workbook
 from tests.workbooks import UNVERIFIED
-
-FIRST = len(ITEMS.columns) + 1
-"""Column of the first live value, counted from 1."""
 
 
 @pytest.fixture(scope="module", params=["si", "imperial"])
@@ -81,7 +79,8 @@ def test_it_names_no_file(inventory):
 
 def test_headers_are_in_the_units_asked_for(path, units):
     page = openpyxl.load_workbook(path)["Items"]
-    assert [cell.value for cell in page[1]][: len(ITEMS.columns)] == [column.header(units) for column in ITEMS.columns]
+    headers = {column.name: column.header(units) for column in ITEMS.columns}
+    assert [cell.value for cell in page[1]] == [headers.get(name, name) for name in list_columns(ITEMS)]
 
 
 @pytest.mark.parametrize("sheet", SHEETS[:5], ids=lambda sheet: sheet.name)
@@ -110,7 +109,7 @@ def test_route_items_stand_where_they_say(inventory):
 def test_stored_live_values_are_the_programs(path):
     page = openpyxl.load_workbook(path, data_only=True)["Items"]
     for row, values in enumerate(live_values(read_inventory(path)), 2):
-        stored = [page.cell(row, FIRST + at).value for at in range(len(LIVE))]
+        stored = [page.cell(row, PLACES["Items", label] + 1).value for label in LIVE]
         assert all(same(*pair) for pair in zip(stored, values, strict=True)), (row, stored, values)
 
 
@@ -119,5 +118,5 @@ def test_a_spreadsheet_engine_computes_the_same(path):
     book = formualizer.load_workbook(str(path))
     book.evaluate_all()
     for row, values in enumerate(live_values(read_inventory(path)), 2):
-        computed = [book.get_value("Items", row, FIRST + at) for at in range(len(LIVE))]
+        computed = [book.get_value("Items", row, PLACES["Items", label] + 1) for label in LIVE]
         assert all(same(*pair) for pair in zip(computed, values, strict=True)), (row, computed, values)

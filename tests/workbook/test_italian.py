@@ -17,11 +17,10 @@ from assess.errors import WorkbookError
 from assess.i18n import LANGUAGES, find_language, gettext, load_catalogue, speaking
 from assess.model import Building, Inventory
 from assess.risk import RiskClass
-from assess.workbook.live_row import FIRST
+from assess.workbook.layout import LETTERS, list_columns
 from assess.workbook.names import find_sheet, fold, plain, say_choices, say_live, translate
-from assess.workbook.open import column_letters
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.schema import CLASS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.template import Units, describe
 from tests.workbook.books import Sheet as Rows
 from tests.workbook.books import errors_of, problems_of, remarks, write_book
@@ -131,13 +130,14 @@ def book(tmp_path_factory: pytest.TempPathFactory) -> Any:
 def test_everything_shown_is_italian(book: Any) -> None:
     assert book.sheetnames == ["Guida", *(sheet.name for sheet in ITALIAN), "Elenchi"]
     with speaking(load_catalogue("it")):
-        live = [say_live(label) for label in (*LIVE, *WORKINGS)]
-    for sheet in ITALIAN:
+        live = {label: say_live(label) for label in (*LIVE, *WORKINGS)}
+    for sheet, english_sheet in zip(ITALIAN, SHEETS, strict=True):
         page, wanted = book[sheet.name], [column.header() for column in sheet.columns]
         if sheet.layout == "form":
             assert [cell.value for cell in page["A"]] == wanted
         else:
-            assert [cell.value for cell in page[1]] == wanted + (live if sheet.name == "Arredi" else [])
+            headers = {column.name: header for column, header in zip(sheet.columns, wanted, strict=True)} | live
+            assert [cell.value for cell in page[1]] == [headers[name] for name in list_columns(english_sheet)]
     english = {fold(one.label) for one in COLUMNS} - {fold(one.label) for sheet in ITALIAN for one in sheet.columns}
     assert (
         not {fold(str(cell.value)).split("[")[0] for page in book for row in page.iter_rows() for cell in row} & english
@@ -148,7 +148,10 @@ def test_drop_downs_hold_the_italian_choices(book: Any) -> None:
     for sheet, italian in zip(SHEETS, ITALIAN, strict=True):
         for check in book[italian.name].data_validations.dataValidation:
             first = next(iter(check.sqref.ranges))
-            column = sheet.columns[(first.min_row if sheet.layout == "form" else first.min_col) - 1]
+            name = list_columns(sheet)[(first.min_row if sheet.layout == "form" else first.min_col) - 1]
+            if name == CLASS:  # says what to do where no formula stands
+                continue
+            column = sheet.column(name)
             if not column.choices and not column.source:
                 continue
             target, _, area = book.defined_names[check.formula1.lstrip("=")].attr_text.partition("!")
@@ -163,8 +166,8 @@ def test_the_classes_stand_in_italian(book: Any) -> None:
     with speaking(load_catalogue("it")):
         words = {f"{risk.symbol} {gettext(risk.word)}" for risk in RiskClass}
     assert words == {"○ basso", "◇ medio", "▲ alto", "■ molto alto"}
-    letter = column_letters(FIRST + LIVE.index("Class (formula)"))
-    assert all(f'"{word}"' in book["Arredi"][f"{letter}2"].value for word in words)
+    formula = book["Arredi"][f"{LETTERS['Items', CLASS]}2"].value
+    assert all(f'"{word}"' in formula for word in words)
 
 
 # ---------------------------------------------------------------- read

@@ -25,7 +25,7 @@ def test_an_axis_that_the_angle_contradicts_is_warned_of(tmp_path):
     (warning,) = [one for one in assess.read_inventory(write(tmp_path / "w.xlsx", items)).problems
                   if one.severity == "warning"]  # fmt: skip
     assert (
-        str(warning) == "Items!J2: Axis is X, but an Angle of 90 deg lies along Y; X is used. Correct one of the two."
+        str(warning) == "Items!K2: Axis is X, but an Angle of 90 deg lies along Y; X is used. Correct one of the two."
     )
 
 
@@ -34,7 +34,7 @@ def test_a_missing_column_of_sizes_is_said_once(tmp_path):
 
     path = write(tmp_path / "w.xlsx", [{"item": f"i{at}", "floor": "1", "breadth": 30} for at in range(40)])
     book = openpyxl.load_workbook(path)
-    book["Items"]["I1"] = "Höhe [cm]"
+    book["Items"]["J1"] = "Höhe [cm]"
     book.save(path)
     with pytest.raises(assess.WorkbookError) as caught:
         assess.read_inventory(path)
@@ -51,7 +51,7 @@ def test_units_written_out_are_understood(tmp_path, unit, factor):
 
     path = write(tmp_path / "w.xlsx", [{"item": "a", "floor": "1", "breadth": 30, "height": 4.5}])
     book = openpyxl.load_workbook(path)
-    book["Items"]["I1"] = f"Height [{unit}]"
-    book["Items"]["I2"] = 180 / factor
+    book["Items"]["J1"] = f"Height [{unit}]"
+    book["Items"]["J2"] = 180 / factor
     book.save(path)
     assert assess.read_inventory(path).items[0].height == pytest.approx(1.8)
