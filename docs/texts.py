@@ -121,7 +121,7 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
         (text, "assess/workbook/lists.py")
         for text in (lists.LISTS_NOTE, lists.RUN_ASSESS, lists.NO_UNIT, *lists.LISTED)
     )
-    hints = (live_row.NO_FLOOR, live_row.NO_AXIS, live_row.WRONG, live_row.IS_ANCHORED)
+    hints = (live_row.NO_FLOOR, live_row.NO_AXIS, lists.WRONG, live_row.IS_ANCHORED)
     yield from ((text, "assess/workbook/live_row.py") for text in hints)
     yield from ((text, "assess/workbook/example.py") for text in example_texts())
     yield from ((row["type"], "assess/workbook/catalogue.csv") for row in template.read_catalogue())

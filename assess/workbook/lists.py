@@ -13,8 +13,8 @@ from typing import Any, Literal
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
-from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
 from assess.model import ANCHORED
+from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
 from assess.rocking.block import MIDDLE
 from assess.rocking.draws import CUT, Uncertainty
 from assess.units import ALIASES, GRAVITY, QUANTITIES, ROUNDING
@@ -23,7 +23,7 @@ from assess.workbook import formulas as live
 from assess.workbook import live_shaking
 from assess.workbook.cell_texts import list_words, trim
 from assess.workbook.layout import LETTERS
-from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, LISTS, SHEETS, YES, Column
+from assess.workbook.schema import BUILDING, CATALOGUE, LISTS, SHEETS, YES, Column
 
 Units = Literal["si", "imperial"]
 
@@ -205,7 +205,7 @@ class ListsWriter:
         """
         letters = {name: xl_col_to_name(at + place) for place, name in enumerate(names)}
         last = self.last[sheet]
-        self.page.write_row(0, at + 1, names[1:])
+        self.page.write_row(0, at + 1, [f"{_PREFIXES[sheet]}_{name}" for name in names[1:]])
         for row in range(2, last + 1):
             cells = {name: f"${letter}{row}" for name, letter in letters.items()}
             for place, formula in enumerate(write(row, cells)):

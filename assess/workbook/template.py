@@ -20,8 +20,8 @@ from typing import Any
 
 from assess.i18n import gettext
 from assess.risk import RiskClass
-from assess.workbook.formulas import OUTSIDE, write_plainly
-from assess.workbook.headings import LINE, count_heading_lines, fit_width
+from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
+from assess.workbook.headings import LINE, count_heading_lines, count_text_lines, fit_width
 from assess.workbook.layout import FROZEN, LETTERS, PLACES
 from assess.workbook.lists import ROWS, ListsWriter, Units
 from assess.workbook.live_row import ROW, LiveRow
@@ -51,8 +51,8 @@ FIRST_LINES = (
     "The unit in the bracket of a header is the unit of the column: write Height [mm] or Height [in], and numbers "
     "below are read as such. Lengths: mm, cm, m, in, ft; accelerations: g, m/s2, cm/s2, gal; velocities: cm/s, m/s, "
     "in/s.",
-    "Items has formulas in its first {rows} rows. To fill in more, copy Class (formula) and the grey columns at the right "
-    "down from the row above. The program reads every row, with formulas or without.",
+    "Items has formulas in its first {rows} rows. To fill in more, copy Class (formula) and the grey columns at the "
+    "right down from the row above. The program reads every row, with formulas or without.",
     "Columns may stand in any order, and you may add your own: they are kept and come back in the Excel report. "
     "Columns marked * are required.",
     "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "
@@ -74,19 +74,22 @@ FOOTER = "&C&A, page &P of &N"
 
 COPY_TITLE = "No formula in this row"
 COPY_NOTE = (
-    "Copy the cell above down to here, and the grey columns at the right with it. The program reads the row all the same."
+    "Copy the cell above down to here, and the grey columns at the right with it. The program reads the row all the "
+    "same."
 )
 """What a cell of the class says below the last row that has formulas."""
 
 CHECKED = {ITEMS.name: 2000}
 """Rows that have drop-downs and colours, where these are more than `ROWS`."""
 
-_LIVE_FORMATS = dict.fromkeys(("B/H", "PFA used [g]"), "0.000") | dict.fromkeys(LIVE[2:4], "0.00") | {
-    "PFV used [cm/s]": "0.0", "Breadth used [cm]": "0.0", "Height used [cm]": "0.0",
+_LIVE_FORMATS = {
+    "B/H": "0.000", "PFA used [g]": "0.000", **dict.fromkeys((one.short_title for one in LIVE_METHODS), "0.00"),
+    "Row in Floors": "0", "Row in Catalogue": "0", "PFV used [cm/s]": "0.0", "Breadth used [cm]": "0.0",
+    "Height used [cm]": "0.0",
 }  # fmt: skip
 """Number formats of the columns that Excel computes, where they hold numbers."""
 
-_LIVE_WIDTHS = {CLASS: 17}
+_LIVE_WIDTHS, _HELP_WIDTH = {CLASS: 17}, 90
 
 CREATED = datetime(2000, 1, 1)
 """Date in the properties of every workbook: the same content gives the same bytes."""
@@ -155,13 +158,16 @@ class _Writer:
                                      "valign": "top", "border": 1})  # fmt: skip
         self.live_head = book.add_format({"bold": True, "bg_color": "#5b6b76", "font_color": "#ffffff",
                                           "text_wrap": True, "valign": "top", "border": 1})  # fmt: skip
-        self.text = book.add_format({"num_format": "@"})
+        self.text = book.add_format({"num_format": "@", "align": "left", "indent": 1, "valign": "top"})
+        self.line = book.add_format({"align": "left", "indent": 1, "valign": "top"})
         self.live_formats = {
-            label: book.add_format({"num_format": _LIVE_FORMATS.get(label, "General"), "bg_color": "#f1f3f5"})
+            label: book.add_format({"bg_color": "#f1f3f5", "num_format": _LIVE_FORMATS[label]}
+                                   if label in _LIVE_FORMATS else {"bg_color": "#f1f3f5", "align": "left", "indent": 1})
             for label in (*LIVE, *WORKINGS)
-        }
+        }  # fmt: skip
         self.title = book.add_format({"bold": True, "font_size": 14})
         self.wrap = book.add_format({"text_wrap": True, "valign": "top"})
+        self.help = book.add_format({"text_wrap": True, "valign": "top", "align": "left", "indent": 1})
         self.bold = book.add_format({"bold": True, "valign": "top"})
         self.head_lines: dict[str, int] = {}
         self.last = {name: 1 + max(rows, len(self._rows(name))) for name, rows in ROWS.items()}
@@ -185,13 +191,14 @@ class _Writer:
     def _write_form(self, page: Any, sheet: Sheet) -> None:
         values = (self._rows(sheet.name) or [{}])[0]
         page.set_column(0, 0, max(fit_width(self._header(column).replace(" ", "_"), 22) for column in sheet.columns))
-        page.set_column(1, 1, 44)
-        page.set_column(2, 2, 80, self.wrap)
+        page.set_column(1, 1, 44, self.line)
+        page.set_column(2, 2, _HELP_WIDTH, self.help)
         for at, column in enumerate(sheet.columns):
             page.write_string(at, 0, self._header(column), self.head)
-            self._write_cell(page, at, 1, column, values.get(column.name))
-            page.write_string(at, 2, gettext(column.help))
+            self._write_cell(page, at, 1, column, values.get(column.name), self.line)
+            self._write_wrapped(page, at, gettext(column.help))
             self._validate(page, column, at, 1, at)
+        self._set_up_print(page)
 
     def _write_table(self, page: Any, sheet: Sheet) -> None:
         last = max(self.last[sheet.name] - 1, CHECKED.get(sheet.name, 0))
@@ -204,15 +211,18 @@ class _Writer:
                 self._write_cell(page, number, PLACES[sheet.name, column.name], column, row.get(column.name))
         page.freeze_panes(1, FROZEN.get(sheet.name, 1))
         page.autofilter(0, 0, last, max(at for (name, _), at in PLACES.items() if name == sheet.name))
+        page.repeat_rows(0)
+        self._set_up_print(page)
+
+    def _set_up_print(self, page: Any) -> None:
         page.set_landscape()
         page.fit_to_pages(1, 0)
-        page.repeat_rows(0)
         page.set_footer(gettext(FOOTER))
 
     def _write_head(self, page: Any, at: int, heading: str, width: float, style: Any, *, is_live: bool = False) -> None:
         """Write the heading of a column and set its width, and the height of the row for the longest so far."""
         width = fit_width(heading, width)
-        page.set_column(at, at, width, style)
+        page.set_column(at, at, width + bool(style), style)
         page.write_string(0, at, heading, self.live_head if is_live else self.head)
         self.head_lines[page.name] = max(self.head_lines.get(page.name, 1), count_heading_lines(heading, width))
         page.set_row(0, LINE * self.head_lines[page.name])
@@ -224,11 +234,11 @@ class _Writer:
     def _header(self, column: Column) -> str:
         return replace(column, label=gettext(column.label)).header(self.units)
 
-    def _write_cell(self, page: Any, row: int, at: int, column: Column, value: Any) -> None:
+    def _write_cell(self, page: Any, row: int, at: int, column: Column, value: Any, style: Any = None) -> None:
         if isinstance(value, str):
             page.write_string(row, at, gettext(value) if column.choices else value, self.text)
         elif value is not None:
-            page.write_number(row, at, value)
+            page.write_number(row, at, value, style)
 
     def _validate(self, page: Any, column: Column, row: int, at: int, last: int) -> None:
         """Attach the drop-down or the check of a number, and the input message."""
@@ -250,6 +260,11 @@ class _Writer:
         else:
             options |= {"validate": "any"}
         page.data_validation(row, at, last, at, options)
+
+    def _write_wrapped(self, page: Any, row: int, text: str) -> None:
+        """Write the help of a column and set the height of its row: not every program does."""
+        page.write_string(row, 2, text, self.help)
+        page.set_row(row, LINE * count_text_lines(text, _HELP_WIDTH - 1))
 
     # --------------------------------------------------------------- live columns
 
@@ -293,14 +308,16 @@ class _Writer:
     def _write_help(self, page: Any) -> None:
         page.set_column(0, 0, 14)
         headings = [self._header(column) + " *" for sheet in SHEETS for column in sheet.columns]
-        page.set_column(1, 1, max(fit_width(heading.replace(" ", "_"), 22) for heading in headings))
-        page.set_column(2, 2, 90, self.wrap)
+        width = max(fit_width(heading.replace(" ", "_"), 22) for heading in headings)
+        page.set_column(1, 1, width)
+        page.set_column(2, 2, _HELP_WIDTH, self.help)
         page.hide_gridlines(2)
+        self._set_up_print(page)
         page.write_string(0, 0, gettext(TITLE), self.title)
         row = 2
         for line in (gettext(text, rows=self.last[ITEMS.name] - 1) for text in FIRST_LINES):
             page.merge_range(row, 0, row, 2, line, self.wrap)
-            page.set_row(row, 15 * (1 + len(line) // 125))
+            page.set_row(row, LINE * count_text_lines(line, 14 + width + _HELP_WIDTH))
             row += 1
         for at, head in enumerate(HEADS):
             page.write_string(row + 1, at, gettext(head), self.head)
@@ -309,7 +326,7 @@ class _Writer:
             for column in sheet.columns:
                 page.write_string(row, 0, gettext(sheet.name), self.bold)
                 page.write_string(row, 1, self._header(column) + (" *" if column.required else ""), self.bold)
-                page.write_string(row, 2, describe(column), self.wrap)
+                self._write_wrapped(page, row, describe(column))
                 row += 1
 
 
