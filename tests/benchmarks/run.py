@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.motion.generate import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
-from tests.benchmarks import cancel, generating, report, rocking, routes, verified
+from tests.benchmarks import cancel, generating, report, rocking, routes, verified, workbooks_read
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -48,6 +48,8 @@ def main() -> None:
         ]
         print("| command | median [s] | rival | median [s] | ratio (median) | aim |\n|---|---|---|---|---|---|")
         for row in rows:
+            print(row)
+        for row in ("", *workbooks_read.rows(folder)):
             print(row)
         if sys.argv[1:] == [START]:
             return
