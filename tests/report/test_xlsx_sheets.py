@@ -43,7 +43,7 @@ def test_every_sheet_is_set_up_for_print(tmp_path):
         assert sheet.oddFooter.right.text.strip() == "Page &P of &N"
         if sheet.title != "Summary":
             assert sheet.print_title_rows == "$1:$1"
-            assert sheet.freeze_panes in ("A2", "B2")
+            assert sheet.freeze_panes in (("D2",) if sheet.title == "Items" else ("A2", "B2"))
         if sheet.title not in ("Summary", "Assumptions"):
             assert sheet.auto_filter.ref
 
@@ -71,7 +71,8 @@ def test_items_show_bars_colours_and_choices(tmp_path):
     assert sheet.row_dimensions[1].height >= 30
     comments = [cell.comment.text for cell in sheet[1] if cell.comment]
     assert len(comments) == 6
-    assert sheet.print_area.endswith(f"${heads['Class']}$6")
+    assert sheet.print_area.endswith(f"${heads['Basis']}$6")
+    assert [heads[label] for label in ("Item", "Class", "Upper class", "Floor")] == list("ABCD")
     for label in ("Chance in an earthquake like this one", "Upper class", "Order: simulated"):
         assert sheet.column_dimensions[heads[label]].hidden or _is_hidden(sheet, heads[label])
 

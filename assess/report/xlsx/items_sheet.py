@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 HEAD = 1
 """Rows above the data of Items and Floors: the headings alone."""
+FROZEN = 3
+"""Columns that stay in view: the item, its class and its upper class."""
 MOST_LINES = 6
 """Lines of a row: a longer text is cut by its cell, and whole in it."""
 
@@ -64,8 +66,11 @@ ORDERS = tuple(f"order_{basis}" for basis in BASES)
 def item_columns(results: Results) -> list[Column]:
     """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
     known = {one.key: one for one in item_fields(results)}
+    item, *front = (_centre_column() if key == "centre_of_gravity" else _given(known[key]) for key in FRONT)
     shown = [
-        *(_centre_column() if key == "centre_of_gravity" else _given(known[key]) for key in FRONT),
+        item,
+        *_class(results),
+        *front,
         *_live(known, results),
         *_in_force(results),
         *(_as_run(one) for one in results.methods if not one.is_live),
@@ -123,8 +128,15 @@ def _value(method: str) -> Callable[[ItemResult], Any]:
     return lambda one: one.by_formula.methods[method].value
 
 
+def _class(results: Results) -> Iterator[Column]:
+    """Yield the class, and the one by the upper end where there is a simulation."""
+    yield Column(_("Class"), 16, class_in_force, key="class", look="live", is_live=True)
+    is_hidden = not results.has_simulated
+    yield Column(_("Upper class"), 16, upper_class, key="class_upper", look="live", is_live=True, is_hidden=is_hidden)
+
+
 def _in_force(results: Results) -> Iterator[Column]:
-    """Yield what the class rests on, what simulation found, and the class."""
+    """Yield what the class rests on, and what simulation found."""
     is_hidden, is_ideal, bases = not results.has_simulated, results.settings.ideal, build_terms().bases
 
     def column(key: str, label: str, width: int, read: Read, **more: Any) -> Column:
@@ -134,8 +146,6 @@ def _in_force(results: Results) -> Iterator[Column]:
     yield column("basis", _("Basis"), 26, lambda one: bases[one.adopted.basis], is_live=True, is_hidden=False)
     for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
         yield column(key, label, 12, _found(at, is_ideal=is_ideal), format=CHANCE, look="plain", is_live=True)
-    yield column("class", _("Class"), 16, class_in_force, look="live", is_live=True, is_hidden=False)
-    yield column("class_upper", _("Upper class"), 16, upper_class, look="live", is_live=True)
     yield column("class_notes", _("Notes on the class"), 40, class_notes, is_live=True)
     yield column("runs", _("Runs"), 7, _runs, format=COUNT, look="plain")
     yield column("under_record", _("Under the record"), 20, under_record)
@@ -287,7 +297,7 @@ def item_areas(pen: Pen, content: Content) -> dict[str, str]:
 def _dress(pen: Pen, page: Any, columns: Sequence[Column], last: int) -> None:
     """Freeze, filter, hide the workings, colour, and set up the print; `last` is the last row."""
     letters = {column.key: xl_col_to_name(at) for at, column in enumerate(columns)}
-    page.freeze_panes(1, 1)
+    page.freeze_panes(1, FROZEN)
     page.autofilter(0, 0, last - 1, len(columns) - 1)
     for at, column in enumerate(columns):
         if column.is_hidden:
@@ -350,10 +360,10 @@ def _validate(page: Any, letters: Mapping[str, str], last: int) -> None:
 
 
 def _print(page: Any, columns: Sequence[Column], last: int) -> None:
-    """Print up to the class: on one page across, on two where the columns of the simulation are shown."""
+    """Print up to what the class rests on: on one page across, on two where the simulation has columns."""
     page.repeat_rows(0)
     page.repeat_columns(0)
     at = {column.key: place for place, column in enumerate(columns)}
     is_short = columns[at["class_notes"]].is_hidden
-    page.print_area(0, 0, last - 1, at["class" if is_short else "class_notes"])
+    page.print_area(0, 0, last - 1, at["basis" if is_short else "class_notes"])
     page.fit_to_pages(1 if is_short else 2, 0)
