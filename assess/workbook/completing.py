@@ -24,8 +24,8 @@ BETTER = (
 """The three ways to know how the ground shakes better than by an assumed intensity."""
 
 ASSUME = fill(
-    "If you know none of these: choose in Building, under Shaking, how strongly the ground shakes, such as 'MMI VII, "
-    "very strong', and fill in the Elevation of every floor, or, where floors are called by their number, Height and "
+    "If you know none of these: choose how strongly the ground shakes in Shaking in Building, such as 'MMI VII, very "
+    "strong', and fill in the Elevation of every floor, or, where floors are called by their number, Height and "
     "Storeys in Building. The reports then say that the shaking is assumed."
 )
 

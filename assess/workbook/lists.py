@@ -19,7 +19,6 @@ from assess.rocking.block import MIDDLE
 from assess.rocking.draws import CUT, Uncertainty
 from assess.units import ALIASES, GRAVITY, QUANTITIES, ROUNDING
 from assess.workbook import formulas as live
-from assess.workbook import formulas as live
 from assess.workbook import live_shaking
 from assess.workbook.cell_texts import list_words, trim
 from assess.workbook.layout import LETTERS

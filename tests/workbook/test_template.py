@@ -180,7 +180,7 @@ def test_formulas_are_those_of_excel_2007(path: Path) -> None:
             assert functions <= {
                 "IF", "OR", "AND", "NOT", "IFERROR", "INDEX", "MATCH", "MAX", "MIN", "MOD", "ABS", "ISNUMBER", "ISTEXT", "LN", "EXP",
                 "ROUND", "SQRT", "NORMSDIST", "PI", "TRIM", "VLOOKUP", "LOWER", "SUBSTITUTE", "MID", "FIND",
-                "COUNT",
+                "COUNT", "SUMPRODUCT",
             }  # fmt: skip
 
 
