@@ -36,7 +36,10 @@ QUANTITIES: Mapping[str, Mapping[str, float]] = {
 
 ALIASES: Mapping[str, str] = {
     "inch": "in", "inches": "in", "in.": "in", "feet": "ft", "foot": "ft", "ft.": "ft",
-    "kn": "kN", "n": "N", "lbs": "lb",
+    "metre": "m", "metres": "m", "meter": "m", "meters": "m", "metri": "m", "mt": "m",
+    "centimetres": "cm", "centimeters": "cm", "centimetri": "cm",
+    "millimetres": "mm", "millimeters": "mm", "millimetri": "mm",
+    "kn": "kN", "n": "N", "lbs": "lb", "kgs": "kg", "sec": "s", "°": "deg", "degrees": "deg",
     "m/s²": "m/s2", "m/s^2": "m/s2", "cm/s²": "cm/s2", "cm/s^2": "cm/s2",
 }  # fmt: skip
 """Other spellings that are understood."""

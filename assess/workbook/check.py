@@ -96,10 +96,7 @@ def _unknown(table: Table, name: str, row: Row, sheet: str, near: str | None, *,
         values["near"] = near
         fix = fill("Choose one of the {sheet} sheet, or add it there. Did you mean {near}?", **values)
     if is_spare:
-        message = fill(
-            "{label} {text} is not in the {sheet} sheet; the sizes typed in its row are used.",
-            label=table.label(name), text=row.quote(name), sheet=sheet,
-        )  # fmt: skip
+        message = fill("{label} {name} is not in the {sheet} sheet; the sizes typed in its row are used.", **values)
         return table.problem(name, row, message, fix, "warning")
     return table.problem(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
 

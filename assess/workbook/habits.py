@@ -160,7 +160,7 @@ def _merge(alike: Sequence[Problem]) -> Problem:
         values = {name: value for name, value in message.values.items() if name != "n"}
         merged = nfill(message.template, message.many, len(alike), **values | {"cells": cells})
     else:
-        merged = fill("{message} The same in {n:,} cells: {cells}.", message=message, n=len(alike), cells=cells)
+        merged = fill("{message} The same in {n:,} cells ({cells}).", message=message, n=len(alike), cells=cells)
     return replace(first, message=merged)
 
 

@@ -35,11 +35,12 @@ def is_unusual(column: Column, number: float, unit: str) -> bool:
 def span(low: float | None, high: float | None, column: Column, unit: str) -> Text:
     """Return a range in words, in the header's unit."""
     scale, suffix = _scale(column, unit), f" {unit}" if unit else ""
+    least, most = (float(f"{(limit or 0) / scale:.4g}") for limit in (low, high))
     if low is not None and high is not None:
-        return fill("{low:.4g} to {high:.4g}{unit}", low=low / scale, high=high / scale, unit=suffix)
+        return fill("{low:g} to {high:g}{unit}", low=least, high=most, unit=suffix)
     if low is not None:
-        return fill("at least {low:.4g}{unit}", low=low / scale, unit=suffix)
-    return fill("at most {high:.4g}{unit}", high=(high or 0) / scale, unit=suffix)
+        return fill("at least {low:g}{unit}", low=least, unit=suffix)
+    return fill("at most {high:g}{unit}", high=most, unit=suffix)
 
 
 def find_slip(column: Column, number: float, unit: str) -> Text | str:

@@ -111,7 +111,10 @@ def test_every_fault_has_a_cell_and_a_mend(tmp_path: Path) -> None:
 
 
 def test_errors_come_first(tmp_path: Path) -> None:
-    severities = [problem.severity for problem in problems_of(write(tmp_path, [[*ITEMS[0], "Own"], ["A1", None, None, None, "x"]]))]
+    severities = [
+        problem.severity
+        for problem in problems_of(write(tmp_path, [[*ITEMS[0], "Own"], ["A1", None, None, None, "x"]]))
+    ]
     assert severities == ["error", "error", "error", "note"]
 
 

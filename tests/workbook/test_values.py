@@ -102,7 +102,11 @@ def test_cells_that_are_wrong(tmp_path: Path, header: str, value: Any, message: 
             0,
             "PFV X is 0 cm/s, expected 0.01 to 1000 cm/s. Check the number and the unit in the header.",
         ),
-        ("Elevation [m]", 5000, "Elevation is 5000 m, expected -200 to 1000 m. Did you mean 5000 cm = 50 m, or 5000 mm = 5 m?"),
+        (
+            "Elevation [m]",
+            5000,
+            "Elevation is 5000 m, expected -200 to 1000 m. Did you mean 5000 cm = 50 m, or 5000 mm = 5 m?",
+        ),
     ],
 )
 def test_floors_that_are_wrong(tmp_path: Path, header: str, value: float, message: str) -> None:

@@ -1,0 +1,285 @@
+"""Workbooks as people fill them in: habits that are understood, mistakes that are named once, rows that are no entries."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+
+from assess.errors import Problem, WorkbookError
+from assess.i18n import fill
+from assess.model import Inventory
+from assess.results import Results
+from assess.workbook.habits import count_kinds, group_problems
+from assess.workbook.read import read_inventory
+from assess.workbook.sections import list_ranges
+from tests.cli.calling import run
+from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, problems_of, read, remarks, write
+
+HEADER = [
+    "Item", "Floor", "Room", "Type", "Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Anchored", "Weight [kg]",
+    "Centre of gravity [%]", "X [m]", "Y [m]",
+]  # fmt: skip
+
+
+def piece(name: str, floor: Any = "0", **cells: Any) -> list[Any]:
+    """Return a sound row of furniture but for the cells given, by the first word of their labels."""
+    sound = {"Item": name, "Floor": floor, "Breadth": 45, "Width": 90, "Height": 180, "Anchored": "no"}
+    return [(sound | cells).get(label.split(" ")[0]) for label in HEADER]
+
+
+def hospital(folder: Path) -> Path:
+    """Write a hospital's workbook with every habit of a facility manager."""
+    rows: list[list[Any]] = [["St Mary's hospital, furniture as of May"], [], HEADER, ["WARD 1 - ground floor"]]
+    rows += [piece(f"W1-{at}", "0 ", Breadth="45 cm", Height="1.80 m", Anchored="N") for at in range(30)]
+    rows += [[], [None, None, "Pharmacy"]]
+    rows += [piece(f"P-{at}", "0\u00a0", Breadth="40,5", Width="90", Anchored="n") for at in range(10)]
+    rows += [piece(f"P-B{at}", 1, Quantity="12", Weight="12 kg", Anchored="Y") for at in range(5)]
+    rows += [HEADER, ["WARD 2", *[None] * 12]]
+    rows += [piece(f"W2-{at}", "L\u20132", Type="Infusion stand", Height="1800 mm", Anchored="sì") for at in range(8)]
+    rows += [piece("W2-x", "l-2", Type="Gurney", X="\u22121,5", Y="3,25 m", Centre="45 %", Anchored="U")]
+    floors: Sheet = [
+        ["Floor", "Elevation [m]", "PFA X [g]", "PFA Y [g]", "Plan image"],
+        ["0", "0,0", "15 %", "0,15", None], [1, "4,0 m", "20 %g", " 0.2", None], ["L-2", 8, 0.25, "2,5 m/s2", None],
+    ]  # fmt: skip
+    building: Sheet = [["Building", "St Mary's"], ["Report date", "31/12/2026"], ["Piece uncertainty", "y"]]
+    path = write(folder, rows, floors, Building=building, Catalogue=[["Type", "Breadth [cm]"], ["Wardrobe", 50]])
+    book = openpyxl.load_workbook(path)
+    page = book["Items"]
+    page.merge_cells("A1:M1")
+    ward = next(row[0].row for row in page.iter_rows() if row[0].value == "WARD 2")
+    page.merge_cells(f"A{ward}:M{ward}")
+    for row in (6, 9, 10, 11):
+        page.row_dimensions[row].hidden = True
+    book.save(path)
+    return path
+
+
+def test_a_hospital_typed_with_every_habit_is_read_with_notes_and_no_error(tmp_path: Path) -> None:
+    inventory = read_inventory(hospital(tmp_path))
+    assert len(inventory.items) == 54
+    by_name = {one.item: one for one in inventory.items}
+    first, last = by_name["W1-0"], by_name["W2-x"]
+    assert (first.floor, first.breadth, first.height, first.anchored) == ("0", 0.45, 1.8, "no")
+    assert (by_name["P-0"].breadth, by_name["P-B0"].quantity, by_name["P-B0"].weight) == (0.405, 12, 12)
+    assert (last.floor, last.x, last.y, last.centre_of_gravity, last.anchored) == ("L-2", -1.5, 3.25, 0.45, "unknown")
+    assert inventory.floors[0].pfa == inventory.floors[0].pfa | {"X": pytest.approx(0.15 * 9.80665)}
+    assert inventory.building.report_date == "2026-12-31"
+    assert inventory.errors == ()
+    assert {str(one) for one in group_problems(inventory.problems) if one.severity == "warning"} == {
+        "Items!D54: Type 'Infusion stand' is not in the Catalogue sheet; the sizes typed in its row are used. The same "
+        "in 8 cells (D54, D55, D56, ...). Choose one of the Catalogue sheet, or add it there.",
+        "Items!D62: Type 'Gurney' is not in the Catalogue sheet; the sizes typed in its row are used. Choose one of "
+        "the Catalogue sheet, or add it there.",
+    }
+
+
+def test_the_notes_of_a_habit_are_shown_as_one(tmp_path: Path) -> None:
+    shown = group_problems(read_inventory(hospital(tmp_path)).problems)
+    items = {str(one) for one in shown if one.severity == "note" and one.sheet == "Items"}
+    assert {
+        "Items!F5: Breadth [cm]: 30 cells hold their unit, such as '45 cm', which is read as 45 cm (F5, F6, F7, ...).",
+        "Items!A4: 2 rows hold a text alone, such as 'WARD 1 - ground floor'; they are taken for headings and skipped "
+        "(A4 'WARD 1 - ground floor', A53 'WARD 2').",
+        "Items!C36: 'Pharmacy' stands alone in its row; it is taken for a heading and skipped.",
+        "Items!A52: the row repeats the headers; it is skipped.",
+        "Items!A6: 4 hidden rows are assessed as well: 6, 9 to 11.",
+    } <= items
+    assert len(shown) < 30 < len(read_inventory(hospital(tmp_path)).problems)
+
+
+def test_check_accepts_the_hospital_and_shows_each_habit_in_a_line(tmp_path: Path) -> None:
+    done = run("check", hospital(tmp_path))
+    assert done.exit_code == 0, done.stderr
+    assert "no errors. 54 rows of furniture on 3 floors" in done.stdout
+    assert not [line for line in done.stderr.splitlines() if line.startswith("error")]
+    assert len(done.stderr.splitlines()) < 40
+
+
+# ---------------------------------------------------------------- mistakes
+
+
+MISTAKES: list[tuple[list[Any], str]] = [
+    (piece("m1", Height="1,500"), "H2: Height is the text '1,500', which can be read as 1.5 cm or as 1500 cm."),
+    (piece("m2", Height=1.8), "H3: Height is 1.8 cm, expected 5 to 600 cm. Did you mean 1.8 m = 180 cm?"),
+    (piece("m3", Breadth="45 kg"), "F4: Breadth is the text '45 kg', expected a number [cm]."),
+    (piece("m4", Width="wide"), "G5: Width is the text 'wide', expected a number [cm]."),
+    (piece("m5", Anchored="x"), "I6: Anchored is 'x', expected one of: no, yes, partly, unknown."),
+    (piece("m6", Floor="9"), "B7: Floor '9' is not in the Floors sheet."),
+    (piece("m6"), "A8: duplicate Item 'm6', also in A7."),
+    (piece("m8", Quantity="1.000"), "E9: Quantity is the text '1.000', which can be read as 1 or as 1000."),
+    (piece("m9", Quantity=0), "E10: Quantity is 0, expected a whole number from 1 to 10000."),
+    (piece("m10", Breadth=95), "F11: Breadth 95 cm is greater than Width 90 cm."),
+    (piece("m11", Type="Wardrobe", Height=None), "H12: Height is blank and no Type gives it."),
+    (piece("m12", Weight="-5 kg"), "J13: Weight is -5 kg, expected 0.1 to 20000 kg. Remove the minus sign."),
+    (piece("m13", Quantity=2, X=1, Y=1), "E14: Quantity is 2 on a row with a position."),
+    (piece("m14", Centre="120 %"), "K15: Centre of gravity is 120 %, expected 5 to 95 %."),
+    (piece("m15", Type="Wradrobe", Height=None), "D16: Type 'Wradrobe' is not in the Catalogue sheet."),
+]
+
+
+def test_fifteen_mistakes_are_each_named_once(tmp_path: Path) -> None:
+    types: Sheet = [["Type", "Breadth [cm]"], ["Wardrobe", 50]]
+    path = write(
+        tmp_path, [HEADER, *(row for row, _ in MISTAKES)], [["Floor", "PFA X [g]"], ["0", 0.3]], Catalogue=types
+    )
+    found = errors_of(path)
+    shown = [str(one) for one in group_problems(problems_of(path)) if one.severity == "error"]
+    assert len(MISTAKES) == len(found) == len(shown) == 15
+    for _, message in MISTAKES:
+        assert sum(one.startswith(f"Items!{message}") for one in found) == 1, message
+
+
+def test_mistakes_of_one_habit_are_one_message(tmp_path: Path) -> None:
+    rows = [HEADER, *(piece(f"m{at}", Height="1,800", Breadth=f"{at} stone") for at in range(26))]
+    path = write(tmp_path, rows, [["Floor", "PFA X [g]"], ["0", 0.3]])
+    done = run("check", path)
+    assert done.exit_code == 2
+    assert done.stderr.splitlines() == [
+        "error    Items!F2: Breadth is the text '0 stone', expected a number [cm]. The same in 26 cells (F2 '0 stone', "
+        "F3 '1 stone', F4 '2 stone', ...). Type the number alone.",
+        "error    Items!H2: Height is the text '1,800', which can be read as 1.8 cm or as 1800 cm. The same in 26 cells ("
+        "H2, H3, H4, ...). Type the number without a separator between thousands.",
+        "2 kinds of error in 52 places; nothing was written.",
+    ]
+    assert len(errors_of(path)) == 52, "the data keep one problem a cell"
+
+
+def test_problems_that_differ_stay_apart() -> None:
+    def problem(cell: str, text: str = "{label} is odd.", group: str = "height", sheet: str = "Items") -> Problem:
+        return Problem("error", sheet, cell, fill(text, label="Height"), "", group)
+
+    alike = [problem("H2"), problem("H9")]
+    others = [problem("G2"), problem("H3", "{label} is even."), problem("H4", group=""), problem("H5", sheet="Floors")]
+    shown = group_problems([alike[0], *others, alike[1]])
+    assert [one.cell for one in shown] == ["H2", "G2", "H3", "H4", "H5"]
+    assert shown[0].message == "Height is odd. The same in 2 cells (H2, H9)."
+    assert count_kinds([*alike, *others]) == (5, 6)
+    assert group_problems([]) == []
+
+
+def test_names_that_differ_are_different_mistakes(tmp_path: Path) -> None:
+    rows = [HEADER, *(piece(f"m{at}", Floor="7" if at < 5 else "8") for at in range(9))]
+    path = write(tmp_path, rows, [["Floor", "PFA X [g]"], ["0", 0.3]])
+    assert [str(one).split(". Choose")[0] for one in group_problems(problems_of(path))] == [
+        "Items!B2: Floor '7' is not in the Floors sheet. The same in 5 cells (B2, B3, B4, ...)",
+        "Items!B7: Floor '8' is not in the Floors sheet. The same in 4 cells (B7, B8, B9, ...)",
+    ]
+
+
+# ---------------------------------------------------------------- rows that are no entries
+
+
+def read_merged(folder: Path, merged: str, items: Sheet, floors: Sheet = FLOORS, sheet: str = "Items") -> Inventory:
+    path = write(folder, items, floors)
+    book = openpyxl.load_workbook(path)
+    book[sheet].merge_cells(merged)
+    book.save(path)
+    return read_inventory(path)
+
+
+@pytest.mark.parametrize("merged", ["A2:D2", "A4:D5", "B4:C4"])
+def test_merged_cells_in_headings_and_blank_rows_are_fine(tmp_path: Path, merged: str) -> None:
+    items = [ITEMS[0], ["Ground floor"], ITEMS[1], [None, "Upper floor"], [], ["A2", "1", 40, 180]]
+    assert [one.row for one in read_merged(tmp_path, merged, items).items] == [3, 6]
+
+
+@pytest.mark.parametrize("merged", ["A2:A3", "C1:D1", "B2:B4", "C3:D3"])
+def test_merged_cells_in_entries_and_headers_are_an_error(tmp_path: Path, merged: str) -> None:
+    items = [ITEMS[0], ITEMS[1], ["A2", "1", 40, 180], ["Upper floor"]]
+    with pytest.raises(WorkbookError, match=f"Items!{merged}: cells are merged inside the table"):
+        read_merged(tmp_path, merged, items)
+
+
+def test_a_floor_by_its_name_alone_is_a_heading_only_where_it_spans_columns(tmp_path: Path) -> None:
+    floors = [*FLOORS, ["Upper floors"], ["2", 0.5]]
+    assert errors_of(write(tmp_path, floors=floors))
+    assert [one.floor for one in read_merged(tmp_path, "A3:B3", ITEMS, floors, "Floors").floors] == ["1", "2"]
+
+
+@pytest.mark.parametrize(
+    "row", [[None, None, 40], ["12"], ["A2", "1"], [None, None, None, None, "see above"], ["#REF!"]]
+)
+def test_rows_that_may_be_entries_are_no_headings(tmp_path: Path, row: list[Any]) -> None:
+    assert errors_of(write(tmp_path, [[*ITEMS[0], "Notes"], [*ITEMS[1], None], row]))
+
+
+def test_hidden_columns_and_sheets_are_noted(tmp_path: Path) -> None:
+    path = write(
+        tmp_path, [[*ITEMS[0], "Friction", "Axis"], [*ITEMS[1], 0.4, None]], Places=[["Place", "Floor"], ["P", "1"]]
+    )
+    book = openpyxl.load_workbook(path)
+    for letter in "EF":
+        book["Items"].column_dimensions[letter].hidden = True
+    book["Floors"].row_dimensions[2].hidden = True
+    book["Places"].sheet_state = "hidden"
+    book.save(path)
+    assert remarks(read_inventory(path), "note") == {
+        "Items!E1: the hidden column Friction is read as well.", "Floors!A2: hidden row 2 is read as well.",
+        "Places: the sheet is hidden; it is read as well.",
+    }  # fmt: skip
+
+
+def test_numbers_of_rows_are_told_as_ranges() -> None:
+    assert list_ranges([12, 15, 16]) == "12, 15 to 16"
+    assert list_ranges([3]) == "3"
+    assert list_ranges([1, 2, 3, 5, 6, 9]) == "1 to 3, 5 to 6, 9"
+    assert re.fullmatch(r"(\d+, ){10}\.\.\.", list_ranges(range(1, 100, 2)))
+
+
+# ---------------------------------------------------------------- types and labels
+
+
+TYPES: Sheet = [["Type", "Height [cm]"], ["Locker", 180]]
+
+
+def test_an_unknown_type_is_a_warning_where_its_sizes_are_typed(tmp_path: Path) -> None:
+    header = [*ITEMS[0], "Type"]
+    inventory = read(tmp_path, [header, ["A1", "1", 40, 180, "Lokcer"]], Catalogue=TYPES)
+    assert (inventory.items[0].type, inventory.items[0].height, inventory.errors) == ("Lokcer", 1.8, ())
+    assert remarks(inventory, "warning") == {
+        "Items!E2: Type 'Lokcer' is not in the Catalogue sheet; the sizes typed in its row are used. "
+        "Choose one of the Catalogue sheet, or add it there. Did you mean Locker?"
+    }
+    without = read(tmp_path, [header, ["A1", "1", 40, 180, "Bed"], ["A2", "1", 40, 180, "Cot"]])
+    assert remarks(without, "warning") == {
+        "Items!E2: Type 'Bed' and others are named in 2 rows, but there is no Catalogue sheet; the sizes typed in those "
+        "rows are used. Add the sheet, or clear the column."
+    }
+
+
+@pytest.mark.parametrize(
+    ("label", "value"), [("Height [cm]", None), ("X [m]", 1.0), ("Edge distance [m]", 0.5)],
+)  # fmt: skip
+def test_an_unknown_type_is_an_error_where_a_size_is_missing(tmp_path: Path, label: str, value: float | None) -> None:
+    """The width is missing where the piece may block a route."""
+    row = {"Item": "A1", "Floor": "1", "Breadth [cm]": 40, "Height [cm]": 180, "Type": "Bed", "Y [m]": 1} | {
+        label: value
+    }
+    path = write(tmp_path, [list(row), list(row.values())], Catalogue=TYPES)
+    assert any("E2: Type 'Bed' is not in the Catalogue sheet. Choose" in one for one in errors_of(path))
+
+
+@pytest.mark.parametrize("label", ["Plan", "Plan image", "plan  IMAGE"])
+def test_an_earlier_label_is_read(tmp_path: Path, label: str) -> None:
+    assert errors_of(write(tmp_path, floors=[["Floor", "PFA X [g]", label], ["1", 0.5, "none.png"]])) == {
+        "Floors!C2: the file 'none.png' was not found next to the workbook. Check the name, or copy the file there."
+    }
+
+
+def test_a_label_and_its_earlier_one_are_the_same_column(tmp_path: Path) -> None:
+    assert errors_of(write(tmp_path, floors=[["Floor", "PFA X [g]", "Plan", "Plan image"], ["1", 0.5]])) == {
+        "Floors!D1: duplicate column Plan, also in C1. Delete one of them."
+    }
+
+
+def test_reports_show_a_habit_once_and_data_keep_each_cell(tmp_path: Path) -> None:
+    import assess
+    from assess.report.content import build_content
+
+    results: Results = assess.run(read_inventory(hospital(tmp_path)), assess.Settings(verify="none"))
+    breadths = [one for one in results.problem_rows if one.group == "breadth: unit"]
+    assert len(breadths) == 30
+    content = build_content(results)
+    assert len([one for one in content.problems if one.group == "breadth: unit"]) == 1
