@@ -7,6 +7,7 @@ take little more memory than one.
 import csv
 import io
 import json
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -125,33 +126,43 @@ def _floor_record(results: Results, name: str) -> dict[str, Any]:
 # ---------------------------------------------------------------- items.csv
 
 _PLAIN = frozenset({float, int, bool, type(None)})
+_SEPARATORS = frozenset(';,|\t\r\n"')
+_FIRST = re.compile(r"""(?<![;,|\s"'])([;,|\s"']*)([=+\-@＝＋－＠])""")
 
 
 def write_csv(results: Results, path: Path, progress: Progress = SILENT) -> None:
     """Write items.csv: one row an item, UTF-8 with a byte order mark, by which Excel knows it.
 
-    A text that a spreadsheet would take for a formula is written behind an apostrophe; numbers stay numbers. `progress`
-    is checked row by row.
+    Texts that a spreadsheet would take for a formula are disarmed, see `disarm`. `progress` is checked row by row.
     """
     shape = Shape(item_fields(results))
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow([field.key for field in shape.fields])
+        writer.writerow([disarm(field.key) for field in shape.fields])
         for one in progress.checked(results):
             values = shape.flatten(one).values()
             writer.writerow([value if type(value) in _PLAIN else disarm(value) for value in values])
 
 
 def disarm(value: object) -> object:
-    """Return a value so that a spreadsheet takes none for a formula: such a text goes behind an apostrophe.
+    """Return a value so that no spreadsheet program takes any part of it for a formula; numbers stay as they are.
+
+    Where the list separator of a program is not the comma, it splits a text at other signs than it was joined by. So
+    each of ``= + - @`` and their full-width forms gets an apostrophe before it if it begins the text, or follows one
+    of ``; , |``, a tab, a line break or a quotation mark; blanks, quotation marks and apostrophes between are passed
+    over. One apostrophe taken away before each such sign restores the text.
 
     A list becomes one text, joined by "; ".
     """
     if isinstance(value, list):
         value = "; ".join(map(str, value))
-    if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r", "\n"):
-        return "'" + value
-    return value
+    return _FIRST.sub(_put_apostrophe, value) if isinstance(value, str) else value
+
+
+def _put_apostrophe(found: re.Match[str]) -> str:
+    before, sign = found[1], found[2]
+    is_first = found.start() == 0 or not _SEPARATORS.isdisjoint(before)
+    return f"{before}'{sign}" if is_first else found[0]
 
 
 # ---------------------------------------------------------------- outcomes.npz
