@@ -187,7 +187,7 @@ class ListsWriter:
 
     def _write_shaking(self, row: int, at: int) -> None:
         """Write what follows from an assumed intensity."""
-        fields = ("ground_pga", "sds", "shaking", "height")
+        fields = ("ground_pga", "ground_pgv", "sds", "shaking", "height")
         building = {name: f"{gettext(BUILDING.name)}!$B${_line(name)}" for name in fields}
         letter, last = LETTERS["Floors", "elevation"], self.last["Floors"]
         elevations = f"{gettext('Floors')}!${letter}$2:${letter}${last}"

@@ -50,6 +50,7 @@ def list_names(building: Mapping[str, str], elevations: str) -> Iterator[tuple[s
     highest = f"MAX(0,MAX({elevations})*unit_floors_elevation)"
     height = f"{building['height']}*unit_building_height"
     yield "shaking_roof", f'IFERROR(IF({building["height"]}="",{highest},{height}),"")'
+    yield "shaking_has_cap", f"NOT(ISNUMBER({building['ground_pgv']}))"
     yield "shaking_largest", f'IF(shaking_at>0,INDEX(shakings_pgv,shaking_at)*{cap_pfv(1)!r},"")'
 
 
@@ -70,7 +71,7 @@ def list_formulas(elevation: str, cells: Mapping[str, str]) -> Sequence[str]:
     factor = f"IF(ISNUMBER(period),{known},1+2.5*{ratio})"
     frequency = f"MIN(1/{period},{HIGHEST_FLOOR_FREQUENCY!r})"
     estimate = f"{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency})"
-    largest = "IF(ISNUMBER(largest_estimate),largest_estimate,shaking_largest)"
+    largest = "IF(AND(shaking_has_cap,ISNUMBER(shaking_largest)),shaking_largest,largest_estimate)"
     return (
         f'IF(ISNUMBER({elevation}),IFERROR(IF({z}>0,MIN({z}/shaking_roof,1),0),""),"")',
         f'IF(AND(ISNUMBER(shaking_pga),ISNUMBER({ratio})),IFERROR(shaking_pga*({factor}),""),"")',
