@@ -30,7 +30,7 @@ IMPORTANCE = ("life safety", "function", "property")
 NEAR_AXIS = 15.0
 """Up to this angle [deg] from an axis a piece, or a record, counts as lying along it."""
 
-ASSUMABLE = ("breadth", "width", "height", "centre_of_gravity", "axis", "friction", "quantity", "anchored")
+ASSUMABLE = ("breadth", "width", "height", "weight", "centre_of_gravity", "axis", "friction", "quantity", "anchored")
 """Fields of an item that may be filled in where the workbook leaves them blank."""
 
 _FRAMED = (
@@ -230,8 +230,8 @@ class Item:
 
     `centre_of_gravity` is its height above the floor as a share of the piece's height [-]. `against_wall`: whether one
     of its long sides stands against a wall, None where that is not known.
-    `assumed` names the fields that were blank in the workbook and were filled in: sizes and the centre of gravity from
-    the catalogue, the axis from the angle. A blank `friction` is the building's: see `Inventory.complete`.
+    `assumed` names the fields that were blank in the workbook and were filled in: sizes, weight and centre of
+    gravity from the catalogue, the axis from the angle. A blank `friction` is the building's: see `Inventory.complete`.
     `extra` holds what stood in columns that `assess` does not know; `more` the values of columns of the schema that
     have no field here, since nothing is computed with them.
     """
@@ -307,13 +307,14 @@ class Segment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CatalogueType:
-    """A type of furniture with its sizes [m] and the height of its centre of gravity as a share of its own [-]."""
+    """A type of furniture: sizes [m], weight [kg], height of the centre of gravity as a share of its own [-]."""
 
     row: int
     type: str
     breadth: float | None = None
     width: float | None = None
     height: float | None = None
+    weight: float | None = None
     centre_of_gravity: float | None = None
     source: str = ""
 

@@ -92,7 +92,7 @@ def _of_columns() -> Iterator[tuple[str, str]]:
     for sheet in SHEETS:
         yield sheet.name, "assess/workbook/schema.py"
         for column in sheet.columns:
-            for text in (*column.labels, column.help, column.default, *column.choices):
+            for text in (*column.labels, column.help, column.default, *column.choices, *column.offered):
                 if any(character.isalpha() for character in text):
                     yield text, "assess/workbook/schema.py"
     for label in (*LIVE, *WORKINGS):
@@ -102,8 +102,10 @@ def _of_columns() -> Iterator[tuple[str, str]]:
 def _of_the_workbook() -> Iterator[tuple[str, str]]:
     """Yield what the empty workbook and the example hold beside the names of the columns."""
     from assess.workbook import lists, live_row, template
+    from assess.workbook.catalogue import catalogue_texts
     from assess.workbook.example import example_texts
     from assess.workbook.schema import HELP, LISTS
+    from assess.workbook.uses import room_texts
 
     texts = (
         template.TITLE,
@@ -124,7 +126,8 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     hints = (live_row.NO_FLOOR, live_row.NO_AXIS, lists.WRONG, live_row.IS_ANCHORED)
     yield from ((text, "assess/workbook/live_row.py") for text in hints)
     yield from ((text, "assess/workbook/example.py") for text in example_texts())
-    yield from ((row["type"], "assess/workbook/catalogue.csv") for row in template.read_catalogue())
+    yield from ((text, "assess/workbook/rooms.csv") for text in room_texts())
+    yield from ((text, "assess/workbook/catalogue.csv") for text in catalogue_texts())
 
 
 def _head(catalogue: Catalog, code: str) -> str:

@@ -24,7 +24,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from assess.pipeline.live_values import with_live
-from assess.workbook.template import Content, Rows, read_catalogue, write_workbook
+from assess.workbook.catalogue import read_catalogue
+from assess.workbook.template import Content, Rows, write_workbook
 
 Wall = Literal["S", "N", "W", "E"]
 Box = tuple[float, float, float, float]

@@ -1,4 +1,7 @@
-"""``assess new``: a workbook to start from, empty or filled with an example whose live columns hold their results."""
+"""``assess new``: a workbook to start from, empty, for a use, or filled with an example.
+
+The live columns of example rows hold their results.
+"""
 
 import tempfile
 from enum import Enum
@@ -10,11 +13,12 @@ import typer
 from assess.errors import InputError, OutputError
 
 if TYPE_CHECKING:
-    from assess.workbook.template import Units
+    from assess.workbook.template import Content, Units
 
 ORDER = 1
 EXAMPLES = (
     "assess new building.xlsx",
+    "assess new hospital.xlsx --for hospital",
     "assess new example.xlsx --example",
     "assess new edificio.xlsx --language it --units si",
 )
@@ -27,29 +31,57 @@ class UnitSystem(str, Enum):
     IMPERIAL = "imperial"
 
 
+class Use(str, Enum):
+    """Uses of a building: `assess.workbook.schema.USES` in small letters."""
+
+    OFFICE = "office"
+    HOSPITAL = "hospital"
+    SCHOOL = "school"
+    LABORATORY = "laboratory"
+    LIBRARY = "library"
+    HOME = "home"
+    SHOP = "shop"
+
+
 def command(
     path: Annotated[Path, typer.Argument(help="The workbook to write, .xlsx.", show_default=False)],
     units: Annotated[UnitSystem, typer.Option(help="Units of the headers: cm or in.")] = UnitSystem.SI,
     language: Annotated[str, typer.Option(help="Language of the workbook: en, it.")] = "en",
-    example: Annotated[bool, typer.Option("--example", help="Fill in an example.")] = False,
+    use: Annotated[
+        Use | None,
+        typer.Option(
+            "--for",
+            help="List only the furniture of this use, and fill in an example room of it. "
+            "Without it every type is listed.",
+            show_default=False,
+        ),
+    ] = None,
+    example: Annotated[
+        bool,
+        typer.Option("--example", help="Fill in an example that can be run: a small office, or with --for its room."),
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
-    """Write a workbook to fill in, empty or with an example.
+    """Write a workbook to fill in: empty, for one use of a building, or with an example.
 
     It has drop-downs, units and help, and its risk classes update while you type.
     """
     from assess.i18n import find_language
 
-    write_new_workbook(path, units.value, language=find_language(language), example=example, replace=force)
+    purpose = use.value.capitalize() if use else ""
+    write_new_workbook(path, units.value, language=find_language(language), use=purpose, example=example, replace=force)
     name = f'"{path}"' if " " in str(path) else path
     if example:
         typer.echo(f"wrote {path}. Open it to see its classes. Assess it with: assess run {name}", err=True)
+    elif use:
+        steps = "Put your furniture in place of the example room in Items, fill in how the floor shakes in Floors"
+        typer.echo(f"wrote {path}. {steps}, then run: assess check {name}", err=True)
     else:
         typer.echo(f"wrote {path}. Fill in its sheets Floors and Items, then run: assess check {name}", err=True)
 
 
 def write_new_workbook(
-    path: Path, units: "Units", *, language: str = "en", example: bool = False, replace: bool = False
+    path: Path, units: "Units", *, language: str = "en", use: str = "", example: bool = False, replace: bool = False
 ) -> None:
     """Write a workbook to fill in; it appears whole or not at all.
 
@@ -61,8 +93,10 @@ def write_new_workbook(
         Units of the headers.
     language : str
         Code of the language of the workbook, one of `assess.i18n.LANGUAGES`.
+    use : str
+        One of `assess.workbook.schema.USES`, for its types of furniture alone and an example room; blank: every type.
     example : bool
-        Whether to fill in a small office.
+        Whether to fill in an example that can be run: a small office, or the room of `use`.
     replace : bool
         Whether an existing file may be replaced.
 
@@ -78,17 +112,28 @@ def write_new_workbook(
     if path.exists() and not replace:
         raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
     from assess.i18n import ENGLISH, load_catalogue, speaking
-    from assess.pipeline.live_values import with_live
-    from assess.workbook.example import example_content
-    from assess.workbook.template import Content, write_workbook
+    from assess.workbook.template import write_workbook
 
     catalogue = ENGLISH if language == ENGLISH.code else load_catalogue(language)
     try:
         folder = tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=path.parent)
         with speaking(catalogue), folder as stage:
             part = Path(stage) / path.name
-            content = with_live(example_content(units), units) if example else Content()
-            write_workbook(part, content, units)
+            write_workbook(part, _fill(units, use, example), units)
             part.replace(path)
     except OSError as error:
         raise OutputError(f"{path} could not be written: {error.strerror or error}.") from None
+
+
+def _fill(units: "Units", use: str, example: bool) -> "Content":
+    """Return what a new workbook holds, with the results of its live columns."""
+    from assess.pipeline.live_values import with_live, without_shaking
+    from assess.workbook.example import example_content
+    from assess.workbook.template import Content
+    from assess.workbook.uses import room_content
+
+    if use and not example:
+        return without_shaking(room_content(use, units), units)
+    if use or example:
+        return with_live(room_content(use, units, is_shaken=True) if use else example_content(units), units)
+    return Content()

@@ -3,6 +3,7 @@
 The values are stored in a workbook next to the formulas, so that a viewer that does not calculate shows them too.
 """
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,12 +21,13 @@ from assess.pipeline.verify import find_uncertainty
 from assess.risk import classify
 from assess.settings import SCENARIOS, Settings
 from assess.units import GRAVITY
+from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import RUN_ASSESS
 from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
-from assess.workbook.schema import CATALOGUE, NO, SHEETS, YES, Sheet
-from assess.workbook.template import Content, Units, read_catalogue
+from assess.workbook.schema import CATALOGUE, CLASS, LIVE, NO, SHEETS, YES, Sheet
+from assess.workbook.template import Content, Rows, Units
 
 
 def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[float | str]]:
@@ -87,9 +89,14 @@ def _write_row(
     ratio: float, governing: Demand | None, values: Sequence[float], label: str, rocks: str
 ) -> list[float | str]:
     if governing is None:
-        unknown = gettext(RUN_ASSESS)
-        return [ratio, *[unknown] * (len(values) + 1), label, unknown]
+        return _write_unknown(ratio, label)
     return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), label, rocks]
+
+
+def _write_unknown(ratio: float, label: str) -> list[float | str]:
+    """Return the row of a piece of whose shaking the sheet knows nothing; `label` stands for its class."""
+    unknown = gettext(RUN_ASSESS)
+    return [ratio, *[unknown] * (LIVE.index(CLASS) - 1), label, unknown]
 
 
 def with_live(content: Content, units: Units = "si", folder: Path | None = None) -> Content:
@@ -109,9 +116,30 @@ def with_live(content: Content, units: Units = "si", folder: Path | None = None)
     WorkbookError
         If the rows do not make an inventory.
     """
-    rows = {CATALOGUE.name: read_catalogue(units), **content.rows}
+    return replace(content, live=live_values(_read(content.rows, units, folder)))
+
+
+def without_shaking(content: Content, units: Units = "si") -> Content:
+    """Return a content whose floors have no shaking, with its live columns: B/H, and that the rest is not known.
+
+    Raises
+    ------
+    WorkbookError
+        If the rows lack more than shaking.
+    """
+    floors = [{**row, "pfa_x": 1.0} for row in content.rows["Floors"]]  # of which no column shows anything
+    items = _read({**content.rows, "Floors": floors}, units).items
+    return replace(content, live=[_write_unknown(*_known(item)) for item in items])
+
+
+def _known(item: Item) -> tuple[float, str]:
+    return item.breadth / item.height, _say_class(item, None, math.nan, is_outside=False)
+
+
+def _read(rows: Mapping[str, Rows], units: Units, folder: Path | None = None) -> Inventory:
+    rows = {CATALOGUE.name: read_catalogue(units), **rows}
     headed = {sheet.name: [_head(sheet, row, units) for row in rows.get(sheet.name, ())] for sheet in SHEETS}
-    return replace(content, live=live_values(read_inventory(headed, records=folder)))
+    return read_inventory(headed, records=folder)
 
 
 def _head(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, Any]:

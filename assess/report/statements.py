@@ -68,6 +68,7 @@ def _assumed() -> Mapping[str, str]:
         "breadth": catalogue,
         "width": catalogue,
         "height": catalogue,
+        "weight": catalogue,
         "centre_of_gravity": catalogue,
         "quantity": _("1 piece"),
         "axis": _("set from Angle, which lies within 15° of X or Y"),

@@ -91,10 +91,11 @@ def example_content(units: Units = "si") -> Content:
     `assess.pipeline.live_values.with_live` adds the results.
     """
     sheets = {sheet.name: sheet for sheet in SHEETS}
-    return Content({name: [_convert(sheets[name], row, units) for row in rows] for name, rows in _ROWS.items()})
+    return Content({name: [convert_row(sheets[name], row, units) for row in rows] for name, rows in _ROWS.items()})
 
 
-def _convert(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, Any]:
+def convert_row(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str, Any]:
+    """Return a row in English and SI headers' units in the language in use and in the units of the headers."""
     return {name: _in_units(sheet.column(name), value, units) for name, value in row.items()}
 
 

@@ -116,10 +116,11 @@ class ListsWriter:
         self.book.define_name(name, f"={gettext(LISTS)}!${xl_col_to_name(at + 1)}${row}")
 
     def _write_choices(self) -> int:
-        chosen = {column.name: column for sheet in SHEETS for column in sheet.columns if column.choices}
+        chosen = {one.name: one for sheet in SHEETS for one in sheet.columns if one.choices or one.offered}
         for at, (name, column) in enumerate(chosen.items()):
-            self.page.write_column(2, at, [gettext(text) for text in (column.label, *column.choices)])
-            self._name(f"list_{name}", LISTS, xl_col_to_name(at), 4, 3 + len(column.choices))
+            listed = column.choices or column.offered
+            self.page.write_column(2, at, [gettext(text) for text in (column.label, *listed)])
+            self._name(f"list_{name}", LISTS, xl_col_to_name(at), 4, 3 + len(listed))
         return len(chosen)
 
     def _write_units(self, at: int) -> int:

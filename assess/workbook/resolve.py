@@ -22,7 +22,7 @@ _DEFINED_BY = {sheet.name: sheet.columns[0].name for sheet in SHEETS if sheet.la
 """The column of each table that defines its names: the first."""
 
 SIZES = ("breadth", "width", "height")
-FROM_TYPE = (*SIZES, "centre_of_gravity")
+FROM_TYPE = (*SIZES, "weight", "centre_of_gravity")
 """Fields of an item that its type of the catalogue gives where they are blank."""
 
 T = TypeVar("T", CatalogueType, Place, Segment)

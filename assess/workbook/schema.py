@@ -15,6 +15,8 @@ from assess.units import QUANTITIES
 
 Kind = Literal["text", "number", "count", "choice", "flag", "language", "date", "file", "records", "outline"]
 
+USES = ("Office", "Hospital", "School", "Laboratory", "Library", "Home", "Shop")
+"""Uses of a building for which there is a list of furniture and an example room; any other may be typed."""
 PLACES = ("room", "corridor", "door", "stair", "exit")
 LANGUAGES = ("English", "Italiano")
 """Of reports: names that `assess.i18n.find_language` knows."""
@@ -49,6 +51,8 @@ class Column:
         Outside these a warning, in `unit`.
     choices : tuple of str
         What a choice may be; of a flag `YES` and `NO`, which are read as True and False.
+    offered : tuple of str
+        What the drop-down of a text offers; any other text is kept, too.
     source : str
         Sheet whose first column lists what the cell may name.
     default : str
@@ -74,6 +78,7 @@ class Column:
     usual_low: float | None = None
     usual_high: float | None = None
     choices: tuple[str, ...] = ()
+    offered: tuple[str, ...] = ()
     source: str = ""
     default: str = ""
     width: int = 12
@@ -124,6 +129,7 @@ _VELOCITY: dict[str, Any] = {
 }  # fmt: skip
 _GROUND_VELOCITY = _VELOCITY | {"default": ""}
 _CENTRE: dict[str, Any] = {"quantity": "share", "unit": "%", "imperial": "%", "low": 5, "high": 95}
+_WEIGHT: dict[str, Any] = {"quantity": "mass", "unit": "kg", "imperial": "lb", "low": 0.1, "high": 20000}
 _DEGREES: dict[str, Any] = {"quantity": "angle", "unit": "deg", "imperial": "deg", "low": -360, "high": 360}
 
 BUILDING = Sheet(
@@ -135,7 +141,8 @@ BUILDING = Sheet(
         Column("latitude", "Latitude", "number", "Of the site, north positive: with Longitude, to find it in a Hazard "
                "file of many sites.", **_DEGREES | {"low": -90, "high": 90}),
         Column("longitude", "Longitude", "number", "Of the site, east positive.", **_DEGREES | {"low": -180, "high": 180}),
-        Column("use", "Use", "text", "Office, hospital, school ..."),
+        Column("use", "Use", "text", "What the building is used for: choose from the list, or type your own.",
+               offered=USES),
         Column("client", "Client", "text", "For whom the report is made: for its cover."),
         Column("storeys", "Storeys", "count", "Storeys above ground.", low=1, high=300),
         Column("height", "Height", "number", "Height of the roof above the ground, for floors whose motion follows "
@@ -243,8 +250,9 @@ ITEMS = Sheet(
         Column("against_wall", "Against wall", "flag", "yes: one of its long sides stands against a wall, so that it "
                "falls away from it. Which side that is follows from X, Y, Angle and the Outline of its room in Places.",
                choices=(YES, NO), default="not known: it may fall either way", width=10),
-        Column("weight", "Weight", "number", "With what it holds. Kept with the results.", quantity="mass", unit="kg",
-               imperial="lb", low=0.1, high=20000, usual_low=1, usual_high=3000, width=9),
+        Column("weight", "Weight", "number", "With what it holds. Kept with the results.",
+               **_WEIGHT | {"usual_low": 1, "usual_high": 3000}, default="the Type's in the Catalogue, else not known",
+               width=9),
         Column("bracket_height", "Bracket height", "number", "Height above the floor at which its bracket holds it, at "
                "most its own. Kept with the results.", **_LENGTH | {"unit": "cm", "imperial": "in", "low": 1, "high": 600},
                width=9),
@@ -295,15 +303,17 @@ ROUTES = Sheet(
 
 CATALOGUE = Sheet(
     "Catalogue", "table", False,
-    "Types of furniture with their sizes. Add your own; a duplicate type counts as an error.",
+    "Types of furniture with their sizes and weights. Add your own; a duplicate type counts as an error.",
     (
         Column("type", "Type", "text", "Name of the type.", required=True, width=34),
         Column("breadth", "Breadth", "number", "The shorter plan side.", **_TYPE_SIZE),
         Column("width", "Width", "number", "The longer plan side.", **_TYPE_SIZE),
         Column("height", "Height", "number", "From the floor to the top.", **_TYPE_SIZE),
+        Column("weight", "Weight", "number", "With what it holds.", **_WEIGHT, default="not known", width=9),
         Column("centre_of_gravity", "Centre of gravity", "number", "Height of the centre of gravity above the floor, "
                "as a share of the height.", **_CENTRE, default="50", width=10),
-        Column("source", "Source", "text", "Where the sizes come from.", width=60),
+        Column("source", "Source", "text", "Where the values come from; assumed: no citable source prints them.",
+               width=60),
     ),
 )  # fmt: skip
 

@@ -10,16 +10,14 @@ header, so that a header edited by another program, as when a unit is changed, m
 """
 
 from collections.abc import Mapping, Sequence
-from csv import DictReader
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from importlib.resources import files
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
 from assess.i18n import gettext
 from assess.risk import RiskClass
+from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
 from assess.workbook.headings import LINE, count_heading_lines, count_text_lines, fit_width
 from assess.workbook.layout import FROZEN, LETTERS, PLACES
@@ -29,7 +27,7 @@ from assess.workbook.names import say_live
 from assess.workbook.schema import CATALOGUE, CLASS, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.writer import write_book
 
-__all__ = ["ROWS", "Content", "Rows", "Units", "describe", "read_catalogue", "write_workbook"]
+__all__ = ["ROWS", "Content", "Rows", "Units", "describe", "write_workbook"]
 
 Rows = Sequence[Mapping[str, Any]]
 
@@ -105,21 +103,6 @@ class Content:
 
     rows: Mapping[str, Rows] = field(default_factory=dict)
     live: Sequence[Sequence[float | str]] = ()
-
-
-def read_catalogue(units: Units = "si") -> list[dict[str, Any]]:
-    """Return the built-in types of furniture in the language in use, sizes in the units of the headers (cm or in)."""
-    text = (files("assess.workbook") / "catalogue.csv").read_text(encoding="utf-8")
-    scale = 1 if units == "si" else 1 / 2.54
-    rows = []
-    for line in DictReader(StringIO(text)):
-        kind = line["type"]
-        row: dict[str, Any] = {"type": gettext(kind), "source": line["source"]}
-        for name in ("breadth", "width", "height"):
-            if line[f"{name}_cm"]:
-                row[name] = round(float(line[f"{name}_cm"]) * scale, 2)
-        rows.append(row)
-    return rows
 
 
 def write_workbook(path: Path, content: Content | None = None, units: Units = "si") -> None:
@@ -250,6 +233,8 @@ class _Writer:
         }
         if column.choices:
             options |= {"validate": "list", "source": f"=list_{column.name}"}
+        elif column.offered:
+            options |= {"validate": "list", "source": f"=list_{column.name}", "error_type": "information"}
         elif column.source:
             options |= {"validate": "list", "source": f"=list_{column.source.lower()}", "error_type": "warning"}
         elif column.kind == "count":

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 import assess
 from assess.errors import WorkbookError
+from assess.workbook.catalogue import read_catalogue
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
-from assess.workbook.template import read_catalogue
 from tests.workbook.books import FLOORS, ITEMS, problems_of, write, write_shared
 from tests.workbook.raw import (
     RELATIONS,

@@ -11,9 +11,10 @@ from assess.errors import CancelledError, InputError, WorkbookError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.model import Inventory
 from assess.progress import Progress, Report
+from assess.workbook.catalogue import read_catalogue
 from assess.workbook.example import example_content
 from assess.workbook.read import read_inventory
-from assess.workbook.template import read_catalogue, write_workbook
+from assess.workbook.template import write_workbook
 from tests.workbook.books import FLOORS, ITEMS, Sheet, problems_of, write
 from tests.workbook.test_records import floors_with, write_record
 

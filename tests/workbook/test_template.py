@@ -8,10 +8,11 @@ import openpyxl
 import pytest
 
 from assess.units import LENGTH
+from assess.workbook.catalogue import read_catalogue
 from assess.workbook.layout import LETTERS, list_columns
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CATALOGUE, CLASS, ITEMS, LIVE, SHEETS, WORKINGS, Column, Sheet
-from assess.workbook.template import CHECKED, ROWS, Content, Units, describe, read_catalogue, write_workbook
+from assess.workbook.template import CHECKED, ROWS, Content, Units, describe, write_workbook
 from tests.workbook.books import errors_of, problems_of, read_part
 
 UNITS: tuple[Units, Units] = ("si", "imperial")

@@ -1,0 +1,80 @@
+"""The built-in types of furniture, one row each in ``catalogue.csv``.
+
+Sizes, weights (with what the piece holds) and centres of gravity are in cm, kg and percent of the height; what a
+source does not print is blank or marked *assumed* in the column ``source``. ``uses`` names the uses of
+`assess.workbook.schema.USES` that a type belongs to.
+"""
+
+import re
+from csv import DictReader
+from importlib.resources import files
+from io import StringIO
+from typing import Any
+
+from assess.i18n import gettext
+from assess.units import QUANTITIES
+from assess.workbook.lists import Units
+from assess.workbook.schema import CATALOGUE
+
+ASSUMED = "assumed"
+"""How the source of a type begins where no citable source prints its sizes; such a source is translated."""
+
+_NUMBERS = {"breadth": "breadth_cm", "width": "width_cm", "height": "height_cm", "weight": "weight_kg",
+            "centre_of_gravity": "centre_percent"}  # fmt: skip
+"""Columns of the file by field; each in the SI unit of the field's header."""
+
+_DECIMALS = 2
+
+
+def catalogue_rows() -> list[dict[str, str]]:
+    """Return the rows of the file as they stand there."""
+    return read_table("catalogue.csv")
+
+
+def read_table(name: str) -> list[dict[str, str]]:
+    """Return the rows of a CSV file of this package, each by its header."""
+    text = (files("assess.workbook") / name).read_text(encoding="utf-8")
+    return list(DictReader(StringIO(text)))
+
+
+def read_catalogue(units: Units = "si", use: str = "") -> list[dict[str, Any]]:
+    """Return the built-in types of furniture in the language in use, by name: the drop-down keeps this order.
+
+    Parameters
+    ----------
+    units : "si" or "imperial"
+        Of the headers that the values belong to.
+    use : str
+        One of `assess.workbook.schema.USES`: the types of this use alone. Blank: every type.
+    """
+    wanted = (line for line in catalogue_rows() if not use or use.lower() in line["uses"].split())
+    return sorted((_read_type(line, units) for line in wanted), key=lambda row: _by_number(row["type"]))
+
+
+def catalogue_texts() -> list[str]:
+    """Return every text of the file that is translated, once: the types, and the sources that are assumed."""
+    lines = catalogue_rows()
+    sources = (line["source"] for line in lines if line["source"].startswith(ASSUMED))
+    return [*(line["type"] for line in lines), *dict.fromkeys(sources)]
+
+
+def _read_type(line: dict[str, str], units: Units) -> dict[str, Any]:
+    kind, source = line["type"], line["source"]
+    row: dict[str, Any] = {"type": gettext(kind)}
+    for name, header in _NUMBERS.items():
+        if line[header]:
+            row[name] = round(float(line[header]) * _scale(name, units), _DECIMALS)
+    return {**row, "source": gettext(source) if source.startswith(ASSUMED) else source}
+
+
+def _scale(name: str, units: Units) -> float:
+    """Return the factor from the unit of the file to that of the header."""
+    column = CATALOGUE.column(name)
+    factors = QUANTITIES[column.quantity]
+    return 1.0 if units == "si" else factors[column.unit] / factors[column.imperial]
+
+
+def _by_number(name: str) -> list[tuple[int, int | str]]:
+    """Sort names as people do: letter case aside, 2 before 10."""
+    parts = re.split(r"(\d+)", name.casefold())
+    return [(0, int(part)) if part.isdigit() else (1, part) for part in parts if part]
