@@ -7,7 +7,6 @@ from typing import Any
 import openpyxl
 import pytest
 
-from assess.units import LENGTH
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.layout import LETTERS, list_columns
 from assess.workbook.read import read_inventory
@@ -114,16 +113,18 @@ def test_every_column_has_a_message(book: Any, sheet: Sheet) -> None:
 def test_choices_drop_down_from_the_sheet_lists(book: Any, sheet: Sheet) -> None:
     for column in sheet.columns:
         check = validations(book, sheet)[column.name]
-        if not column.choices and not column.source:
+        listed = column.choices or column.offered
+        if not listed and not column.source:
             assert check.type != "list"
             continue
         assert check.type == "list"
         name = check.formula1.lstrip("=")
-        assert name == f"list_{column.name if column.choices else column.source.lower()}"
+        assert name == f"list_{column.name if listed else column.source.lower()}"
         target = book.defined_names[name].attr_text
-        assert target.startswith("Lists!" if column.choices else f"{column.source}!$A$2:$A$")
-        if column.choices:
-            assert _cells(book, target) == list(column.choices)
+        assert target.startswith("Lists!" if listed else f"{column.source}!$A$2:$A$")
+        assert check.errorStyle == ("information" if column.offered else "warning" if column.source else None)
+        if listed:
+            assert _cells(book, target) == list(listed)
 
 
 def test_prepared_rows_are_all_checked(book: Any) -> None:
@@ -222,29 +223,6 @@ def test_stored_live_values(tmp_path: Path) -> None:
     page = openpyxl.load_workbook(tmp_path / "book.xlsx", data_only=True)["Items"]
     shown = [[page[f"{LETTERS['Items', label]}{row}"].value for label in LIVE] for row in (2, 3)]
     assert shown == [[0.25, 0.5, 0.75, 0.125, "■ very high", "yes"], [None] * 6]
-
-
-def test_the_catalogue_is_the_same_in_both_units() -> None:
-    for si, imperial in zip(read_catalogue("si"), read_catalogue("imperial"), strict=True):
-        assert si["type"] == imperial["type"]
-        assert si["source"] == imperial["source"]
-        for name in ("breadth", "width", "height"):
-            if name in si:
-                inches = si[name] * LENGTH["cm"] / LENGTH["in"]
-                assert imperial[name] == pytest.approx(inches, abs=0.0051)
-            else:
-                assert name not in imperial
-
-
-def test_the_catalogue_is_sound(tmp_path: Path) -> None:
-    types = read_catalogue()
-    assert len(types) > 30
-    assert all(one["source"] and one["breadth"] and one["height"] for one in types)
-    items = [{"item": one["type"], "floor": "1", "type": one["type"]} for one in types]
-    write_workbook(tmp_path / "book.xlsx", Content({"Items": items, "Floors": [{"floor": "1", "pfa_x": 0.5}]}))
-    inventory = read_inventory(tmp_path / "book.xlsx")
-    assert len(inventory.items) == len(types)
-    assert inventory.problems == ()
 
 
 def test_a_type_of_ones_own_replaces_none(tmp_path: Path) -> None:

@@ -1,0 +1,112 @@
+"""The built-in types of furniture: sizes that make sense, sources that can be cited, names of their own."""
+
+import re
+
+import pytest
+
+from assess.i18n import load_catalogue, speaking
+from assess.units import QUANTITIES
+from assess.workbook.catalogue import ASSUMED, catalogue_rows, catalogue_texts, read_catalogue
+from assess.workbook.lists import ROWS
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import CATALOGUE, USES
+from assess.workbook.template import Content, write_workbook
+
+LANGUAGES = ("en", "it")
+NUMBERS = ("breadth", "width", "height", "weight", "centre_of_gravity")
+FLOORS = [{"floor": "1", "pfa_x": 0.5}]
+
+
+def test_there_are_enough_for_every_use():
+    rows = catalogue_rows()
+    assert 90 <= len(rows) <= ROWS["Catalogue"]
+    uses = [row["uses"].split() for row in rows]
+    assert {use for own in uses for use in own} == {use.lower() for use in USES}
+    assert all(own and len(own) == len(set(own)) for own in uses)
+    for use in USES:
+        listed = read_catalogue(use=use)
+        assert 12 <= len(listed) < len(rows)
+        assert len(listed) == sum(use.lower() in own for own in uses)
+
+
+def test_sizes_make_sense():
+    for row in read_catalogue():
+        breadth, width, height = row["breadth"], row.get("width"), row["height"]
+        assert 5 <= breadth <= height <= 600, row
+        assert width is None or breadth <= width <= 600, row
+        assert 5 <= row.get("centre_of_gravity", 50) <= 95, row
+        if "weight" in row:  # with what it holds: between paper in a light case and solid water
+            density = row["weight"] / (breadth * width * height * 1e-6)
+            assert 50 <= density <= 1000, row
+
+
+def test_sources_can_be_cited_or_are_marked_assumed():
+    for row in catalogue_rows():
+        source = row["source"]
+        assert len(source) > 20, row
+        assert not re.search(r"https?:|www\.|\.com\b|\.org\b|shop|product page|Wikipedia|IKEA", source), row
+        if source.startswith(ASSUMED):
+            assert not row["weight_kg"], row  # a weight of no source would pass for one with
+            assert bool(row["centre_percent"]) == ("centre of gravity" in source), row
+        else:
+            assert re.search(r"\d", source), row
+            assert not row["centre_percent"], row
+
+
+def test_what_is_assumed_is_said_in_a_few_sentences():
+    """They are translated; other sources are titles, which are not."""
+    sources = {row["source"] for row in catalogue_rows() if row["source"].startswith(ASSUMED)}
+    assert sources < set(catalogue_texts())
+    assert len(sources) <= 4
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_names_are_unique_and_sorted_as_people_do(language):
+    with speaking(load_catalogue(language)):
+        names = [row["type"] for row in read_catalogue()]
+    assert len({name.casefold() for name in names}) == len(names) == len(catalogue_rows())
+    padded = [re.sub(r"\d+", lambda found: found[0].zfill(4), name.casefold()) for name in names]
+    assert padded == sorted(padded)
+
+
+def test_both_units_say_the_same():
+    for si, imperial in zip(read_catalogue("si"), read_catalogue("imperial"), strict=True):
+        assert si.keys() == imperial.keys()
+        assert (si["type"], si["source"]) == (imperial["type"], imperial["source"])
+        for name in si.keys() & set(NUMBERS):
+            column = CATALOGUE.column(name)
+            factors = QUANTITIES[column.quantity]
+            wanted = si[name] * factors[column.unit] / factors[column.imperial]
+            assert imperial[name] == pytest.approx(wanted, abs=0.0051)
+
+
+@pytest.mark.parametrize("units", ["si", "imperial"])
+def test_every_type_gives_what_a_piece_lacks(tmp_path, units):
+    types = {row["type"]: row for row in read_catalogue()}
+    items = [{"item": name, "floor": "1", "type": name} for name in types]
+    write_workbook(tmp_path / "book.xlsx", Content({"Items": items, "Floors": FLOORS}), units)
+    inventory = read_inventory(tmp_path / "book.xlsx")
+    assert inventory.problems == ()
+    assert len(inventory.items) == len(inventory.catalogue) == len(types)
+    for item in inventory.items:
+        row = types[item.type]
+        assert {name for name in item.assumed if name in NUMBERS} == row.keys() & set(NUMBERS)
+        assert (item.breadth, item.height) == pytest.approx((row["breadth"] / 100, row["height"] / 100), rel=1e-3)
+        assert item.weight == (pytest.approx(row["weight"], rel=1e-3) if "weight" in row else None)
+        assert item.centre_of_gravity == pytest.approx(row.get("centre_of_gravity", 50) / 100)
+
+
+def test_a_weight_of_ones_own_comes_before_the_types():
+    types = [{"Type": "T", "Breadth [cm]": 40, "Height [cm]": 180, "Weight [lb]": 100}]
+    items = [{"Item": "A", "Floor": "1", "Type": "T"}, {"Item": "B", "Floor": "1", "Type": "T", "Weight [kg]": 7}]
+    rows = {"Catalogue": types, "Items": items, "Floors": [{"Floor": "1", "PFA X [g]": 0.5}]}
+    inventory = read_inventory(rows)
+    assert [item.weight for item in inventory.items] == [pytest.approx(45.359237), 7]
+    assert ["weight" in inventory.assumed_of(item) for item in inventory.items] == [True, False]
+
+
+def test_a_weight_out_of_range_is_named_by_its_cell(tmp_path):
+    types = [{"type": "T", "breadth": 40, "height": 180, "weight": -3}]
+    write_workbook(tmp_path / "book.xlsx", Content({"Catalogue": types, "Floors": FLOORS}))
+    problems = read_inventory(tmp_path / "book.xlsx", strict=False).problems
+    assert any((one.sheet, one.cell, one.severity) == ("Catalogue", "E2", "error") for one in problems)

@@ -1,0 +1,117 @@
+"""`assess new --for`: a list of the furniture of one use, and an example room that lacks nothing but shaking."""
+
+import openpyxl
+import pytest
+
+from assess.cli.command_new import Use, write_new_workbook
+from assess.i18n import load_catalogue, speaking
+from assess.pipeline.live_values import live_values
+from assess.workbook.catalogue import read_catalogue, read_table
+from assess.workbook.example import SCENARIO
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import ITEMS, LIVE, USES
+from assess.workbook.uses import ROOM, room_content
+from tests.cli.calling import error, run
+
+UNITS = ("si", "imperial")
+LANGUAGES = ("en", "it")
+
+
+def new(folder, use, units="si", language="en", *, example=False):
+    path = folder / f"{use}-{units}-{language}.xlsx"
+    write_new_workbook(path, units, language=language, use=use, example=example)
+    return path
+
+
+def stored(path):
+    """Return the live values that the workbook holds, by row of Items."""
+    book = openpyxl.load_workbook(path, data_only=True)
+    page, first = book.worksheets[3], len(ITEMS.columns)
+    return [row[first : first + len(LIVE)] for row in page.iter_rows(min_row=2, values_only=True) if row[0]]
+
+
+def test_the_command_line_offers_every_use():
+    assert [use.value for use in Use] == [use.lower() for use in USES]
+
+
+def test_rooms_are_of_types_of_their_use():
+    lines = read_table("rooms.csv")
+    for use in USES:
+        own = [line for line in lines if line["use"] == use]
+        assert 3 <= len(own) <= 6
+        assert len({line["item"] for line in own}) == len(own)
+        assert {line["type"] for line in own} <= {row["type"] for row in read_catalogue(use=use)}
+    assert {line["use"] for line in lines} == set(USES)
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("units", UNITS)
+def test_every_use_lacks_nothing_but_shaking(tmp_path, units, language):
+    for use in USES:
+        path = new(tmp_path, use, units, language)
+        inventory = read_inventory(path, strict=False)
+        assert {one.sheet for one in inventory.errors} <= {"Floors", "Piani", "Building", "Edificio"}, use
+        with speaking(load_catalogue(language)):
+            rows = room_content(use, units).rows
+        assert len(inventory.catalogue) == len(rows["Catalogue"])
+        assert inventory.building.use == rows["Building"][0]["use"]
+        assert inventory.language == language
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.parametrize("units", UNITS)
+def test_without_shaking_the_live_columns_tell_the_slenderness(tmp_path, units):
+    shown = stored(new(tmp_path, "Hospital", units))
+    types = {row["type"]: row["breadth"] / row["height"] for row in read_catalogue()}
+    named = [row["type"] for row in room_content("Hospital").rows["Items"]]
+    assert [row[0] for row in shown] == [pytest.approx(types[name], rel=1e-3) for name in named]
+    assert all(set(row[1:]) == {"run assess"} for row in shown)
+
+
+@pytest.mark.filterwarnings("ignore:.*extension is not supported")
+@pytest.mark.parametrize(("units", "language"), [("si", "en"), ("imperial", "it")])
+def test_an_example_of_a_use_can_be_run_and_shows_its_results(tmp_path, units, language):
+    for use in USES:
+        path = new(tmp_path, use, units, language, example=True)
+        inventory = read_inventory(path)
+        assert inventory.problems == ()
+        assert [item.item for item in inventory.items] == [row["item"] for row in room_content(use).rows["Items"]]
+        with speaking(load_catalogue(language)):
+            wanted = live_values(inventory)
+            assert inventory.building.scenario == load_catalogue(language).find(SCENARIO)
+        for row, values in zip(stored(path), wanted, strict=True):
+            assert row == tuple(one if isinstance(one, str) else pytest.approx(one, abs=1e-3) for one in values)
+
+
+def test_its_rows_say_that_they_are_an_example():
+    rows = room_content("Shop").rows["Items"]
+    assert {row["room"] for row in rows} == {ROOM}
+    assert "delete" in ROOM
+
+
+def test_the_command_writes_it_and_says_what_to_do(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = run("new", "ward.xlsx", "--for", "hospital")
+    assert done.exit_code == 0
+    assert "in place of the example room" in done.stderr
+    assert "assess check ward.xlsx" in done.stderr
+    assert run("new", "ward.xlsx", "--for", "hospital").exit_code == 1, "it is not replaced unasked"
+    assert run("new", "ward.xlsx", "--for", "school", "--force", "--example").exit_code == 0
+    assert read_inventory(tmp_path / "ward.xlsx").building.use == "School"
+
+
+def test_an_unknown_use_is_an_error_that_lists_the_known(tmp_path):
+    message = error(run("new", tmp_path / "w.xlsx", "--for", "hotel"))
+    assert "'hotel'" in message
+    assert "laboratory" in message
+    assert not (tmp_path / "w.xlsx").exists()
+
+
+def test_any_other_use_may_be_typed():
+    floors, items = (
+        [{"Floor": "1", "PFA X [g]": 0.5}],
+        [{"Item": "A", "Floor": "1", "Breadth [cm]": 40, "Height [cm]": 180}],
+    )
+    inventory = read_inventory({"Building": {"Use": "Hotel"}, "Floors": floors, "Items": items})
+    assert (inventory.problems, inventory.building.use) == ((), "Hotel")
