@@ -7,6 +7,7 @@ answers at once. Exit status: see `assess.cli.console`.
 
 import gc
 import importlib
+import os
 import pkgutil
 import sys
 from collections.abc import Sequence
@@ -16,19 +17,37 @@ from typing import Annotated
 import typer
 
 import assess.cli
+from assess.cli.completion import ASKED, PROGRAM, find_typed_command
 from assess.cli.console import guard
 from assess.version import __version__
 
 PREFIX = "command_"
+START = """\b
+Start here:
+  assess new building.xlsx     a workbook to fill in; with --example a filled one
+  assess check building.xlsx   every problem of it, by sheet and cell
+  assess run building.xlsx     the reports
+\b
+assess COMMAND --help shows the options of a command, with examples.
+"""
+"""What stands below the list of commands."""
+ONE_LINE = "1000"
+"""Width at which typer does not break the help of an option that it hands to a shell, which would lose the rest."""
 GARBAGE = 50_000
 """New objects after which Python looks for cycles: a short process makes many rows and no cycles worth looking for."""
 
 
 def main() -> None:
-    """Run the command line: only the module of the command that is named is imported, where one is."""
+    """Run the command line: only the module of the command that is named is imported, where one is.
+
+    A shell that asks for completions names the command in its own way.
+    """
     gc.set_threshold(GARBAGE)
-    named = sys.argv[1] if len(sys.argv) > 1 else ""
-    build_app([named] if named in list_names() else ())()
+    typed = sys.argv[1] if len(sys.argv) > 1 else ""
+    if ASKED in os.environ:
+        typed = find_typed_command()
+        os.environ["COLUMNS"] = ONE_LINE
+    build_app([typed] if typed in list_names() else ())(prog_name=PROGRAM)
 
 
 def list_names() -> list[str]:
@@ -47,6 +66,7 @@ def build_app(names: Sequence[str] = ()) -> typer.Typer:
     """Return the command line with some commands, by default with all."""
     app = typer.Typer(
         help="Which furniture overturns in an earthquake, and what to fix first.",
+        epilog=START,
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         rich_markup_mode=None,

@@ -15,7 +15,7 @@ from assess.errors import PdfUnavailableError
 from assess.version import __version__
 
 ORDER = 9
-EXAMPLES = ("assess doctor",)
+EXAMPLES = ("assess doctor", "assess doctor > doctor.txt")
 
 DEVELOPMENT = "dev"
 """The extra that only developers need; it is not examined."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from assess.cli.completion import list_of
 from assess.cli.console import count, print_warnings, show_progress
 from assess.cli.options import (
     AsJson,
@@ -36,6 +37,7 @@ EXAMPLES = (
     "assess fragility building.xlsx",
     "assess fragility building.xlsx --by type --im pfv --plot types.png",
     "assess fragility building.xlsx --levels 0.1:1.5:0.1 --formats csv --out curves",
+    "assess fragility building.xlsx --ideal --runs 400 --json",
 )
 DEFAULT = "csv,json"
 
@@ -75,7 +77,12 @@ def command(
         ),
     ] = None,
     formats: Annotated[
-        str | None, typer.Option(help="Files to write, separated by commas: csv, json.", show_default=DEFAULT)
+        str | None,
+        typer.Option(
+            help="Files to write, separated by commas: csv, json.",
+            show_default=DEFAULT,
+            autocompletion=list_of(DEFAULT.split(",")),
+        ),
     ] = None,
     out: Annotated[
         Path | None,

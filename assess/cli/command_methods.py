@@ -3,7 +3,7 @@
 import typer
 
 ORDER = 8
-EXAMPLES = ("assess methods",)
+EXAMPLES = ("assess methods", "assess methods > methods.txt")
 
 
 def command() -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
+from assess.cli.completion import one_of
 from assess.cli.console import count, show_progress
 from assess.cli.options import AsJson, check_file, check_size, figure_kind, save_file
 from assess.errors import InputError
@@ -27,6 +28,7 @@ EXAMPLES = (
     "assess rock --breadth 40 --height 180 --record floor12.csv#east --pfa 0.5 --plot rocking.png",
     "assess rock --breadth 40 --height 180 --record floor12.smc --cg 60",
     "assess rock --breadth 40 --height 180 --record floor12.csv#east --vertical floor12.csv#up --wall --friction 0.3",
+    "assess rock --breadth 40 --height 180 --record floor12.smc --restitution 0.9 --baseline none --json",
 )
 
 LIMITS = "one rigid block in plane motion: no sliding, no vertical motion, nothing beside it"
@@ -53,7 +55,12 @@ def command(
         float | None,
         typer.Option(help="Ratio of angular velocity after an impact to that before it.", show_default="Housner 1963"),
     ] = None,
-    baseline: Annotated[str, typer.Option(help="Treatment of an uncorrected record: standard, none.")] = "standard",
+    baseline: Annotated[
+        str,
+        typer.Option(
+            help="Treatment of an uncorrected record: standard, none.", autocompletion=one_of(("standard", "none"))
+        ),
+    ] = "standard",
     wall: Annotated[bool, typer.Option("--wall", help="Show what it does with a wall on either side.")] = False,
     vertical: Annotated[
         str | None,

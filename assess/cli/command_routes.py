@@ -31,6 +31,7 @@ ORDER = 4
 EXAMPLES = (
     "assess routes building.xlsx",
     "assess routes building.xlsx --pfa 0.1:0.6:0.1 --plot routes.png --csv routes.csv",
+    "assess routes building.xlsx --scenario recorded --runs 400 --json",
 )
 
 PFA = Span("--pfa", "g", step="0.05", most=5, examples="0.1:1.0 or 0.1:1.0:0.05")

@@ -6,11 +6,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.console import print_error, print_warnings, show_progress
+from assess.cli.completion import list_of, one_of
+from assess.cli.console import print_warnings, show_progress
+from assess.cli.opening import open_file
 from assess.cli.options import Jobs, Runs, Scale, Scenario, Seed, Workbook, read_settings
 from assess.errors import InputError
+from assess.i18n import LANGUAGES
 from assess.progress import Progress
-from assess.settings import ROUTE_RISK, Settings
+from assess.settings import ROUTE_RISK, VERIFY, Settings
 
 if TYPE_CHECKING:
     from assess.methods import Method
@@ -24,14 +27,18 @@ EXAMPLES = (
     "assess run building.xlsx --runs auto --out report --open",
     'assess run building.xlsx --verify none --scenario "ASCE 7-22" --formats xlsx,csv',
     "assess run building.xlsx --motions my-records --scale-motions",
-    "assess run building.xlsx --scale 0.9 --ideal --out weaker",
+    "assess run building.xlsx --scale 0.9 --ideal --seed 7 --jobs 2 --out weaker",
+    "assess run building.xlsx --language it --accessible --route-risk 0.01",
+    "assess run building.xlsx --method own.toml --template my-templates",
 )
 
+FORMATS = ("pdf", "xlsx", "html", "json", "csv", "npz")
+"""Those of `assess.report`, which takes long to import; the last is written only where it is named."""
 MOST_METHODS = 4
 """Fitted models that a report shows next to the published methods: a column each."""
 PLAIN = frozenset(("json", "csv", "xlsx"))
 """Formats that need no series of figures."""
-OPENED = ("pdf", "html", "xlsx")
+OPENED = ("html", "pdf", "xlsx")
 """Reports that --open opens: the first of these that was written."""
 UNCONFIRMED = "simulation gave a lower class than the formula, but its motions may be too weak to rely on."
 """What the count of unconfirmed pieces means."""
@@ -42,7 +49,10 @@ def command(
     out: Annotated[Path | None, typer.Option(help="Folder of the reports.", show_default="NAME-report")] = None,
     verify: Annotated[
         str,
-        typer.Option(help="Pieces to simulate by integration: all, high (high risk, doubtful, on routes), none."),
+        typer.Option(
+            help="Pieces to simulate by integration: all, high (high risk, doubtful, on routes), none.",
+            autocompletion=one_of(VERIFY),
+        ),
     ] = "all",
     runs: Runs = None,
     seed: Seed = None,
@@ -76,11 +86,18 @@ def command(
         ),
     ] = ROUTE_RISK,
     formats: Annotated[
-        str, typer.Option(help="Files to write, separated by commas; also npz, the result of every motion.")
-    ] = "pdf,xlsx,html,json,csv",
+        str,
+        typer.Option(
+            help="Files to write, separated by commas; also npz, the result of every motion.",
+            autocompletion=list_of(FORMATS),
+        ),
+    ] = ",".join(FORMATS[:-1]),
     jobs: Jobs = None,
     language: Annotated[
-        str | None, typer.Option(help="Language of the reports: en, it.", show_default="the workbook's")
+        str | None,
+        typer.Option(
+            help="Language of the reports: en, it.", show_default="the workbook's", autocompletion=one_of(LANGUAGES)
+        ),
     ] = None,
     templates: Annotated[
         Path | None,
@@ -93,7 +110,7 @@ def command(
     accessible: Annotated[
         bool, typer.Option("--accessible", help="PDF/UA-1 for screen readers, instead of PDF/A-3u for archives.")
     ] = False,
-    open_report: Annotated[bool, typer.Option("--open", help="Open the report when it is written.")] = False,
+    open_report: Annotated[bool, typer.Option("--open", help="Open the report in the browser when it is written.")] = False,
 ) -> None:
     """Assess a workbook and write the reports."""
     folder = out or Path(f"{path.stem}-report")
@@ -268,7 +285,6 @@ def _describe_routes(routes: "RouteTables") -> str:
 
 
 def _open(written: Mapping[str, Path]) -> None:
-    """Open the first report with the system's viewer."""
-    file = next(written[name] for name in OPENED if name in written)
-    if typer.launch(str(file)) != 0:
-        print_error(f"{file} could not be opened: no viewer was found. Open it by hand.")
+    """Open the first report in the browser or viewer, or say where it is."""
+    if message := open_file(next(written[name] for name in OPENED if name in written)):
+        typer.echo(message, err=True)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from assess.cli.completion import one_of
 from assess.cli.console import InterruptedWorkError, show_progress
 from assess.cli.options import Jobs, check_size
 from assess.errors import CancelledError, InputError
@@ -21,20 +22,29 @@ ORDER = 7
 EXAMPLES = (
     "assess study table3",
     "assess study table1 --records my-records --breadth 40 --height 180",
+    "assess study table2 --runs 200 --seed 2",
     "assess study all --out studies --jobs 4",
 )
 
 ALL = "all"
 _FOLDER = Path(__file__).parents[1] / "studies"
 _FILES = {(one.parent.name if one.stem == "__init__" else one.stem): one for one in _FOLDER.rglob("*.py")}
-NAMES = ", ".join(sorted(name for name, file in _FILES.items() if "\nSTUDY = " in file.read_text(encoding="utf-8")))
+_STUDIES = sorted(name for name, file in _FILES.items() if "\nSTUDY = " in file.read_text(encoding="utf-8"))
+NAMES = ", ".join(_STUDIES)
 """Names of the studies, which are those of their modules: importing them for ``--help`` would take seconds."""
 FEWEST, MOST = 20, 1000
 """Fewest and most motions: a share of fewer is too uncertain."""
 
 
 def command(
-    name: Annotated[str, typer.Argument(help=f"{NAMES}; or {ALL}, one after the other.", show_default=False)],
+    name: Annotated[
+        str,
+        typer.Argument(
+            help=f"{NAMES}; or {ALL}, one after the other.",
+            show_default=False,
+            autocompletion=one_of((*_STUDIES, ALL)),
+        ),
+    ],
     out: Annotated[
         str, typer.Option(metavar="DIR", help="Folder of the files; its folder parts keeps long integrations.")
     ] = "studies",

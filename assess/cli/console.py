@@ -32,8 +32,8 @@ PATIENCE = 0.4
 """Time that the work has to stop by itself after Ctrl-C before it is interrupted [s]."""
 REDRAW = 0.2
 """Shortest time between two states of the line on a terminal [s]."""
-QUIET, REPEAT = 2.0, 5.0
-"""Away from a terminal, nothing is printed for so long at first, then a line so often [s]."""
+QUIET, REPEAT, LOOK = 2.0, 5.0, 0.5
+"""Away from a terminal, nothing is printed for so long at first, then a line so often; how often that is looked at [s]."""
 STAGES = {
     "reading": "Reading",
     "motions": "Preparing motions",
@@ -165,7 +165,8 @@ def show_progress() -> Iterator[Progress]:
     """Show how far the work is on standard error, and have Ctrl-C or SIGTERM cancel it.
 
     On a terminal one line keeps changing. Elsewhere nothing is printed in the first `QUIET` seconds; then each stage
-    gets a line when it begins, and one every `REPEAT` seconds.
+    gets a line when it begins, and one every `REPEAT` seconds, also while nothing is reported: during an import, a
+    compilation or the layout of a PDF.
 
     Yields
     ------
@@ -173,7 +174,7 @@ def show_progress() -> Iterator[Progress]:
         For the library. Work that does not stop `PATIENCE` after it is cancelled gets a KeyboardInterrupt.
     """
     cancel, line = threading.Event(), _Line(sys.stderr)
-    with _cancel_by_signal(cancel):
+    with _cancel_by_signal(cancel), _repeat(line):
         try:
             yield Progress(line, cancel)
         finally:
@@ -184,23 +185,39 @@ class _Line:
     """Prints reports of progress: one changing line on a terminal, a line now and then elsewhere."""
 
     def __init__(self, stream: TextIO) -> None:
-        self._stream, self._is_terminal = stream, stream.isatty()
+        self._stream, self.is_terminal = stream, stream.isatty()
         self._start = self._written = time.monotonic()
-        self._is_shown, self._stage = False, ("", "")
+        self._due = self._start + QUIET
+        self._is_shown, self._report, self._lock = False, _NOTHING, threading.Lock()
 
     def __call__(self, report: Report) -> None:
-        now, stage = time.monotonic(), (report.stage, report.detail)
-        is_new, self._stage = stage != self._stage, stage
-        if report.share >= 1.0:
-            self.clear()
-        elif self._is_terminal and (is_new or now - self._written >= REDRAW):
-            self._print(f"\r\x1b[K{describe_progress(report)}", now)
-            self._is_shown = True
-        elif not self._is_terminal and now - self._start >= QUIET and (is_new or now - self._written >= REPEAT):
-            self._print(f"{describe_progress(report)}\n", now)
+        with self._lock:
+            before, self._report = self._report, report if report.share < 1.0 else _NOTHING
+            is_new = (report.stage, report.detail) != (before.stage, before.detail)
+            now = time.monotonic()
+            if report.share >= 1.0:
+                self._clear()
+            elif self.is_terminal and (is_new or now - self._written >= REDRAW):
+                self._print(f"\r\x1b[K{describe_progress(report)}", now)
+                self._is_shown = True
+            elif not self.is_terminal and (now >= self._due or (is_new and now - self._start >= QUIET)):
+                self._print(f"{describe_progress(report)}\n", now)
+
+    def repeat(self) -> None:
+        """Print how far the work is, away from a terminal, if it is time to and nothing was reported since."""
+        with self._lock:
+            now = time.monotonic()
+            if not self.is_terminal and now >= self._due:
+                is_known = self._report is not _NOTHING
+                text = describe_progress(self._report) if is_known else f"Working: {now - self._start:.0f} s so far"
+                self._print(f"{text}\n", now)
 
     def clear(self) -> None:
         """Remove the line from the terminal."""
+        with self._lock:
+            self._clear()
+
+    def _clear(self) -> None:
         if self._is_shown:
             self._print("\r\x1b[K", time.monotonic())
             self._is_shown = False
@@ -208,7 +225,32 @@ class _Line:
     def _print(self, text: str, now: float) -> None:
         self._stream.write(text)
         self._stream.flush()
-        self._written = now
+        self._written, self._due = now, now + REPEAT
+
+
+_NOTHING = Report("", 1.0, "", None)
+"""The state between two stages."""
+
+
+@contextmanager
+def _repeat(line: _Line) -> Iterator[None]:
+    """Have a line printed every `REPEAT` seconds away from a terminal, whatever the work is busy with."""
+    if line.is_terminal:
+        yield
+        return
+    done = threading.Event()
+
+    def look() -> None:
+        while not done.wait(LOOK):
+            line.repeat()
+
+    watching = threading.Thread(target=look, name="assess-progress", daemon=True)
+    watching.start()
+    try:
+        yield
+    finally:
+        done.set()
+        watching.join()
 
 
 def describe_progress(report: Report) -> str:

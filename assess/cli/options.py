@@ -11,6 +11,7 @@ from typing import Annotated, Any
 
 import typer
 
+from assess.cli.completion import one_of
 from assess.errors import InputError, OutputError
 from assess.settings import AUTO, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
 
@@ -20,6 +21,7 @@ Runs = Annotated[
     typer.Option(
         help=f"Motions of each floor and axis; {AUTO}: until every class is statistically resolved.",
         show_default=str(RUNS),
+        autocompletion=one_of((AUTO,)),
     ),
 ]
 Draws = Annotated[str | None, typer.Option(help="Draws: motions of each floor and axis.", show_default=str(RUNS))]
@@ -33,7 +35,11 @@ Scale = Annotated[
 ]
 Scenario = Annotated[
     str | None,
-    typer.Option(help=f"Source of the floor motion: {', '.join(SCENARIOS)}.", show_default="the workbook's"),
+    typer.Option(
+        help=f"Source of the floor motion: {', '.join(SCENARIOS)}.",
+        show_default="the workbook's",
+        autocompletion=one_of(SCENARIOS),
+    ),
 ]
 Jobs = Annotated[
     int | None, typer.Option(min=1, help="Threads; they do not change a result.", show_default="one per CPU")

@@ -2,6 +2,8 @@
 
 import io
 import re
+import subprocess
+import sys
 import threading
 from typing import Annotated
 
@@ -179,3 +181,76 @@ def test_many_problems_are_counted_not_all_printed(capsys):
 @pytest.mark.parametrize(("number", "text"), [(0, "0 rows"), (1, "1 row"), (2000, "2,000 rows")])
 def test_counts_have_their_noun(number, text):
     assert count(number, "row") == text
+
+
+# ---------------------------------------------------------------- while nothing is reported
+
+
+def test_a_line_repeats_what_was_reported_last(clock):
+    stream = io.StringIO()
+    line = console._Line(stream)
+    clock.now = QUIET - 0.1
+    line.repeat()
+    assert stream.getvalue() == ""
+    clock.now = QUIET
+    line.repeat()
+    clock.now += REPEAT - 0.1
+    line.repeat()
+    line(report(0.0, "rendering", "pdf"))
+    clock.now += REPEAT
+    line.repeat()
+    line(report(1.0, "rendering", "pdf"))
+    clock.now += REPEAT
+    line.repeat()
+    assert stream.getvalue().splitlines() == [
+        "Working: 2 s so far",
+        "Writing pdf: 0 %",
+        "Writing pdf: 0 %",
+        "Working: 17 s so far",
+    ]
+
+
+def test_a_terminal_is_not_written_to_while_nothing_is_reported(clock):
+    stream = Terminal()
+    line = console._Line(stream)
+    line(report(0.0))
+    written = stream.getvalue()
+    clock.now = 100.0
+    line.repeat()
+    assert stream.getvalue() == written
+
+
+SLOW = """
+import threading, time
+from assess.cli import console
+console.QUIET, console.REPEAT, console.LOOK = 0.0, 0.0, 0.01
+
+class Stream:
+    def __init__(self):
+        self.text, self.wanted, self.seen = "", "", threading.Event()
+    def isatty(self):
+        return False
+    def flush(self):
+        if self.wanted and self.text.count(self.wanted) >= 3:
+            self.seen.set()
+    def write(self, text):
+        self.text += text
+    def wait_for_three(self, wanted):
+        self.wanted = wanted
+        assert self.seen.wait(60), self.text
+        self.wanted, _ = "", self.seen.clear()
+
+console.sys.stderr = stream = Stream()
+with console.show_progress() as progress:
+    stream.wait_for_three("Working: ")  # an import, a compilation
+    with progress.stage("rendering", "pdf"):
+        stream.wait_for_three("Writing pdf: 0 %")  # the layout of a PDF
+print(threading.active_count() == 1 or [one.name for one in threading.enumerate()])
+"""
+
+
+def test_lines_go_on_while_a_stage_reports_nothing():
+    """In a process of its own, whose work waits until three lines have come: nothing here depends on the time."""
+    done = subprocess.run([sys.executable, "-c", SLOW], capture_output=True, text=True, timeout=120, check=False)
+    assert "assess-progress" not in done.stdout
+    assert done.returncode == 0, done.stderr
