@@ -17,17 +17,14 @@ if TYPE_CHECKING:
     from assess.pipeline.corrected import Corrected
 
 ORDER = 2
-<<<<<<< HEAD
-EXAMPLES = ("assess check building.xlsx", "assess check building.xlsx --fix corrected.xlsx")
+EXAMPLES = (
+    "assess check building.xlsx",
+    "assess check building.xlsx --fix corrected.xlsx",
+    "assess check building.xlsx 2> problems.txt",
+)
 
 MOST_SHOWN = 3
 """Cells of one kind of correction that are listed; the rest are counted."""
-=======
-EXAMPLES = (
-    "assess check building.xlsx",
-    "assess check building.xlsx 2> problems.txt",
-)
->>>>>>> 4f854d8 (cli: completion of commands, options and values; --open by the browser; a line every 5 s whatever the work does; examples of every option)
 
 
 def command(

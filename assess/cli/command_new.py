@@ -20,12 +20,8 @@ if TYPE_CHECKING:
 ORDER = 1
 EXAMPLES = (
     "assess new building.xlsx",
-<<<<<<< HEAD
     "assess new hospital.xlsx --for hospital",
-    "assess new example.xlsx --example",
-=======
     "assess new example.xlsx --example --force",
->>>>>>> 4f854d8 (cli: completion of commands, options and values; --open by the browser; a line every 5 s whatever the work does; examples of every option)
     "assess new edificio.xlsx --language it --units si",
 )
 
@@ -52,8 +48,9 @@ class Use(str, Enum):
 def command(
     path: Annotated[Path, typer.Argument(help="The workbook to write, .xlsx.", show_default=False)],
     units: Annotated[UnitSystem, typer.Option(help="Units of the headers: cm or in.")] = UnitSystem.SI,
-<<<<<<< HEAD
-    language: Annotated[str, typer.Option(help="Language of the workbook: en, it.")] = "en",
+    language: Annotated[
+        str, typer.Option(help="Language of the workbook: en, it.", autocompletion=one_of(LANGUAGES))
+    ] = "en",
     use: Annotated[
         Use | None,
         typer.Option(
@@ -67,10 +64,6 @@ def command(
         bool,
         typer.Option("--example", help="Fill in an example that can be run: a small office, or with --for its room."),
     ] = False,
-=======
-    language: Annotated[str, typer.Option(help="Language of the workbook: en, it.", autocompletion=one_of(LANGUAGES))] = "en",
-    example: Annotated[bool, typer.Option("--example", help="Fill in an example.")] = False,
->>>>>>> 4f854d8 (cli: completion of commands, options and values; --open by the browser; a line every 5 s whatever the work does; examples of every option)
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
     """Write a workbook to fill in: empty, for one use of a building, or with an example.

@@ -110,7 +110,9 @@ def command(
     accessible: Annotated[
         bool, typer.Option("--accessible", help="PDF/UA-1 for screen readers, instead of PDF/A-3u for archives.")
     ] = False,
-    open_report: Annotated[bool, typer.Option("--open", help="Open the report in the browser when it is written.")] = False,
+    open_report: Annotated[
+        bool, typer.Option("--open", help="Open the report in the browser when it is written.")
+    ] = False,
 ) -> None:
     """Assess a workbook and write the reports."""
     folder = out or Path(f"{path.stem}-report")

@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import wraps
 from typing import Any, Never, TextIO, get_type_hints
 
@@ -33,7 +34,7 @@ PATIENCE = 0.4
 REDRAW = 0.2
 """Shortest time between two states of the line on a terminal [s]."""
 QUIET, REPEAT, LOOK = 2.0, 5.0, 0.5
-"""Away from a terminal, nothing is printed for so long at first, then a line so often; how often that is looked at [s]."""
+"""Away from a terminal, nothing is printed for so long at first, then a line so often; how often it is looked at [s]."""
 STAGES = {
     "reading": "Reading",
     "motions": "Preparing motions",
@@ -208,8 +209,9 @@ class _Line:
         with self._lock:
             now = time.monotonic()
             if not self.is_terminal and now >= self._due:
-                is_known = self._report is not _NOTHING
-                text = describe_progress(self._report) if is_known else f"Working: {now - self._start:.0f} s so far"
+                known = self._report is not _NOTHING
+                text = describe_progress(replace(self._report, seconds_left=None)) if known else "Working"
+                text = f"{text}, {now - self._start:.0f} s so far"
                 self._print(f"{text}\n", now)
 
     def clear(self) -> None:

@@ -31,7 +31,9 @@ def test_every_file_of_a_command_is_one_and_is_in_the_help_in_order():
     files = Path(assess.cli.__file__).parent.glob("command_*.py")
     assert sorted(f"command_{name}" for name in COMMANDS) == sorted(file.stem for file in files)
     text = run(app, ["--help"]).output
-    assert re.findall(r"^  (\w+)\s", text.partition("Commands:")[2].partition("Start here:")[0], re.MULTILINE) == COMMANDS
+    assert (
+        re.findall(r"^  (\w+)\s", text.partition("Commands:")[2].partition("Start here:")[0], re.MULTILINE) == COMMANDS
+    )
     assert "--install-completion" in text
 
 

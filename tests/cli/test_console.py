@@ -203,10 +203,10 @@ def test_a_line_repeats_what_was_reported_last(clock):
     clock.now += REPEAT
     line.repeat()
     assert stream.getvalue().splitlines() == [
-        "Working: 2 s so far",
+        "Working, 2 s so far",
         "Writing pdf: 0 %",
-        "Writing pdf: 0 %",
-        "Working: 17 s so far",
+        "Writing pdf: 0 %, 12 s so far",
+        "Working, 17 s so far",
     ]
 
 
@@ -242,9 +242,9 @@ class Stream:
 
 console.sys.stderr = stream = Stream()
 with console.show_progress() as progress:
-    stream.wait_for_three("Working: ")  # an import, a compilation
+    stream.wait_for_three("Working, ")  # an import, a compilation
     with progress.stage("rendering", "pdf"):
-        stream.wait_for_three("Writing pdf: 0 %")  # the layout of a PDF
+        stream.wait_for_three("Writing pdf: 0 %, ")  # the layout of a PDF
 print(threading.active_count() == 1 or [one.name for one in threading.enumerate()])
 """
 
