@@ -47,6 +47,11 @@ def nfill(one: str, many: str, n: int, /, **values: Any) -> Text:
     return _fill(one, many, {"n": n, **values}, n)
 
 
+def count(number: int, noun: str) -> str:
+    """Return a number with its English noun, whose plural takes an s: "1 error", "2,000 errors"; never translated."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
 def join(mark: str, parts: Iterable[object]) -> Text:
     """Return `parts` with a `mark` between them; those that are a `Text` are translated when it is."""
     values = {f"part_{at}": part for at, part in enumerate(parts)}

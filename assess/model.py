@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from assess.errors import Correction, Problem, RecordError
 from assess.hazard import HazardCurve
-from assess.i18n import fill, find_language
+from assess.i18n import count, fill, find_language
 from assess.motion.formats import parse_records, select
 from assess.motion.record import Record
 from assess.rocking.block import MIDDLE
@@ -447,14 +447,15 @@ class Inventory:
         return found | {"friction": self.friction_of(item), "assumed": list(self.assumed_of(item))}
 
     def __repr__(self) -> str:
-        return f"<Inventory {self.source.name}: {len(self.items):,} items on {len(self.floors):,} floors>"
+        return f"<Inventory {self.source.name}: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}>"
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows."""
         name, problems = escape(self.building.building or self.source.name), len(self.problems)
         return (
-            f"<p><b>{name}</b>: {len(self.items):,} items on {len(self.floors):,} floors, {len(self.routes):,} route "
-            f"segments, {problems:,} problems reported. <code>frame()</code> lists the items.</p>"
+            f"<p><b>{name}</b>: {count(len(self.items), 'item')} on {count(len(self.floors), 'floor')}, "
+            f"{count(len(self.routes), 'route segment')}, {count(problems, 'problem')} reported. <code>frame()</code> "
+            "lists the items.</p>"
         )
 
     def __reduce__(self) -> tuple[Any, ...]:

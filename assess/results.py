@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import InputError, Problem
-from assess.i18n import fill, join, nfill
+from assess.i18n import count, fill, join, nfill
 from assess.methods import MethodInfo, Outcome
 from assess.methods._method import ALIKE
 from assess.model import Building, CatalogueType, Place
@@ -891,7 +891,8 @@ class Results:
         return self.result(found)
 
     def __repr__(self) -> str:
-        return f"<Results of {self.provenance.workbook}: {len(self):,} items, scenario {self.provenance.scenario!r}>"
+        name, items = self.provenance.workbook, count(len(self), "item")
+        return f"<Results of {name}: {items}, scenario {self.provenance.scenario!r}>"
 
     def _repr_html_(self) -> str:
         from assess.frames import results_html

@@ -21,6 +21,7 @@ from typing import Any, Never, TextIO, get_type_hints
 import typer
 from typer.models import OptionInfo
 
+from assess import i18n
 from assess.errors import AssessError, CancelledError, InputError, Problem, RecordError, WorkbookError
 from assess.plain_text import plain_line, plain_text
 from assess.progress import Progress, Report
@@ -34,7 +35,7 @@ PATIENCE = 0.4
 REDRAW = 0.2
 """Shortest time between two states of the line on a terminal [s]."""
 QUIET, REPEAT, LOOK = 2.0, 5.0, 0.5
-"""Away from a terminal, nothing is printed for so long at first, then a line so often; how often it is looked at [s]."""
+"""Away from a terminal: silence at first, a line so often after that, and how often it is looked at [s]."""
 STAGES = {
     "reading": "Reading",
     "motions": "Preparing motions",
@@ -153,9 +154,7 @@ def count_errors(problems: Sequence[Problem]) -> str:
     return f"{kinds:,} {'kind' if kinds == 1 else 'kinds'} of error in {errors:,} places"
 
 
-def count(number: int, noun: str) -> str:
-    """Return a number with its noun, whose plural takes an s: "1 error", "2,000 errors"."""
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+count = i18n.count
 
 
 # ---------------------------------------------------------------- progress and Ctrl-C

@@ -10,6 +10,7 @@ import numpy as np
 from assess.cli.fragility_output import LABELS, Curves
 from assess.cli.route_figure import LINES, ROOM
 from assess.fragility import lognormal_chance
+from assess.i18n import count
 from assess.pipeline.piece_fragility import UNITS, PieceFragility
 from assess.report.figures.draw import label
 
@@ -103,9 +104,9 @@ def _notes(curves: Curves, wide: int) -> Iterator[str]:
     ratios = [ratio for one in curves.found.curves for ratio in one.pfv_per_pfa]
     pieces = "pieces uncertain" if curves.found.has_drawn_pieces else "pieces exactly as filled in"
     yield from textwrap.wrap(
-        f"Points: share of {curves.found.runs:,} draws that overturned; lines: lognormal fitted. Given the floor's "
-        f"{curves.measure}: the uncertainty of the motion is not in it; {pieces}. Holds for motions of this shape of "
-        f"spectrum: PFV/PFA {min(ratios):.2f} to {max(ratios):.2f} s.",
+        f"Points: share of {count(curves.found.runs, 'draw')} that overturned; lines: lognormal fitted. Given the "
+        f"floor's {curves.measure}: the uncertainty of the motion is not in it; {pieces}. Holds for motions of this "
+        f"shape of spectrum: PFV/PFA {min(ratios):.2f} to {max(ratios):.2f} s.",
         wide,
     )
     if any(one.may_be_too_low for one in curves.found.curves):

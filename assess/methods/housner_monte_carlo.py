@@ -29,7 +29,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.i18n import Text, fill
+from assess.i18n import Text, fill, nfill
 from assess.methods._beside import (
     Beside,
     BesideFound,
@@ -325,15 +325,21 @@ def _work_share(example: Example) -> list[Text]:
     share, runs, width = number(example.value, ".5f"), number(n, ".0f"), number(z, ".4f")
     numbers = {"low": example.number("low"), "high": example.number("high"), "z": z}
     return [
-        fill("It overturned in {k:,} of {n:,} draws of an earthquake like this one.", k=int(k), n=int(n)),
+        nfill(
+            "It overturned in {k:,} of {n:,} draw of an earthquake like this one.",
+            "It overturned in {k:,} of {n:,} draws of an earthquake like this one.",
+            int(n), k=int(k),
+        ),
         show("R = k/N", number(k, ".0f") / runs, ".4f"),
         show("R_low", wilson_end(share, runs, width, is_high=False), ".4f"),
         show("R_high", wilson_end(share, runs, width, is_high=True), ".4f"),
         fill("The 95 % interval reaches from {low:.4f} to {high:.4f} (Wilson, z = {z:.2f}).", **numbers),
-        fill(
+        nfill(
+            "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
+            "{n:,} motion.",
             "If exactly this motion recurred and the piece were exactly as given, it would overturn under {k:,} of "
             "{n:,} motions.",
-            k=int(example.number("ideal_overturned")), n=int(n),
+            int(n), k=int(example.number("ideal_overturned")),
         ),
     ]  # fmt: skip
 
@@ -386,8 +392,8 @@ METHOD = Method(
     ),
     reasons=(
         Reason(
-            "Direct integration follows each piece through whole motions of the floor, with its size: {overturned} of "
-            "{runs} draws overturn it.",
+            "Direct integration follows each piece through whole motions of the floor, with its size. Draws that "
+            "overturn it: {overturned} of {runs}.",
         ),
         Reason(
             "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which a uniform block can start to rock; the draws "

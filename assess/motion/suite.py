@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from assess.errors import RecordError
-from assess.i18n import fill
+from assess.i18n import fill, nfill
 from assess.motion.formats import read_records
 from assess.motion.record import FloatArray, Motion, Record, treat
 from assess.motion.target_fit import Spectra
@@ -126,7 +126,11 @@ def _notes(count: int, vertical: list[str]) -> Iterator[str]:
     if vertical:
         yield fill("vertical channels are left out: {channels}", channels=", ".join(vertical))
     if count < FEW:
-        yield fill("{count} motions are few: the probabilities have wide intervals", count=count)
+        yield nfill(
+            "only {n} motion: the probabilities have wide intervals",
+            "{n} motions are few: the probabilities have wide intervals",
+            count,
+        )
 
 
 def _read(path: Path, progress: Progress) -> tuple[Record, ...]:

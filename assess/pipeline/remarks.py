@@ -226,11 +226,13 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     if building.height and building.storeys:
         each = building.height / building.storeys
         if not STOREY[0] <= each <= STOREY[1]:
-            message = fill(
-                "Height {height:g} m over {storeys} storeys is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
+            message = nfill(
+                "Height {height:g} m over {n} storey is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
                 "too large a Height lowers the profile.",
+                "Height {height:g} m over {n} storeys is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
+                "too large a Height lowers the profile.",
+                building.storeys,
                 height=building.height,
-                storeys=building.storeys,
                 each=each,
                 low=STOREY[0],
                 high=STOREY[1],

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import InputError, Problem
-from assess.i18n import Text, fill, join
+from assess.i18n import Text, count, fill, join
 from assess.intensity import Shaking
 from assess.methods import LOOKS, Cases, Outcome, simulation
 from assess.methods._beside import may_slide
@@ -127,7 +127,7 @@ def verify(
 
 def describe_work(pieces: int, floors: int) -> str:
     """Return what is simulated in words: ``121 pieces on 4 floors``."""
-    return f"{pieces:,} piece{'s' * (pieces != 1)} on {floors:,} floor{'s' * (floors != 1)}"
+    return f"{count(pieces, 'piece')} on {count(floors, 'floor')}"
 
 
 def check_pairs(cases: int, settings: Settings, repeats: int = 1) -> None:

@@ -101,8 +101,8 @@ def _list_couplings(routes: RouteTables, seed: int) -> Lines:
     chances = [chance for chance in blocked if chance is not None]
     if not any(chance.pieces for chance in chances):
         return []
-    lines = [(_("Routes: where there are too many combinations of falling pieces to go through"),
-              _("{draws:,} draws with seed {seed}", draws=routes.draws, seed=seed))]  # fmt: skip
+    draws = ngettext("{n:,} draw with seed {seed}", "{n:,} draws with seed {seed}", routes.draws, seed=seed)
+    lines = [(_("Routes: where there are too many combinations of falling pieces to go through"), draws)]
     if any(chance.unverified for chance in chances):
         lines.append((_("Routes: pieces that enter by the formula's chance alone"),
                       _("fall independently of all others; the largest of the joint, the independent and the fully "

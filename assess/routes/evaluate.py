@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from assess.i18n import count
 from assess.methods import interval_width
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
@@ -72,7 +73,7 @@ def evaluate_routes(
     parts = list_rooms(scene)
     floors = [one.floor for one in inventory.floors]
     steps = len(obstructions) + len(names) + len(parts) + len(floors)
-    with progress.stage("routes", f"{len(obstructions):,} segments of {len(names):,} routes") as stage:
+    with progress.stage("routes", f"{count(len(obstructions), 'segment')} of {count(len(names), 'route')}") as stage:
         done = iter(range(1, steps + 1))
 
         def step(row: Any) -> Any:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from assess.errors import Problem
-from assess.i18n import fill
+from assess.i18n import fill, nfill
 from assess.model import Inventory, Item, Segment
 from assess.progress import SILENT, Progress
 from assess.route_results import BesideRow
@@ -315,9 +315,10 @@ def _out_of_reach(inventory: Inventory, obstructions: Sequence[Obstructions]) ->
     lost = [item for at, item in enumerate(inventory.items) if item.route and (item.route, at) not in reaching]
     if lost:
         names = ", ".join(item.item for item in lost[:MOST_NAMED]) + (", ..." if len(lost) > MOST_NAMED else "")
-        message = fill(
-            "{count:,} rows name a route that their pieces cannot reach when they fall: {names}.",
-            count=len(lost),
+        message = nfill(
+            "{n:,} row names a route that its pieces cannot reach when they fall: {names}.",
+            "{n:,} rows name a route that their pieces cannot reach when they fall: {names}.",
+            len(lost),
             names=names,
         )
         yield Problem("note", "Items", _cell(inventory, lost[0].row, "route"), message)

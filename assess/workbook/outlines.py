@@ -5,7 +5,7 @@ import re
 from itertools import combinations
 from math import hypot
 
-from assess.i18n import Text, fill
+from assess.i18n import Text, fill, nfill
 from assess.model import Outline
 from assess.units import ROUNDING
 
@@ -50,7 +50,13 @@ def parse_outline(text: str, factor: float) -> Outline:
         corners.pop()
     if not LEAST <= len(corners) <= MOST:
         raise OutlineError(
-            fill("it has {n:,} corners, expected {least} to {most}.", n=len(corners), least=LEAST, most=MOST)
+            nfill(
+                "it has {n:,} corner, expected {least} to {most}.",
+                "it has {n:,} corners, expected {least} to {most}.",
+                len(corners),
+                least=LEAST,
+                most=MOST,
+            )
         )
     for at, corner in enumerate(corners):
         if _is_same(corner, corners[at - 1]):

@@ -95,7 +95,7 @@ def _status(page):
 def test_it_opens_without_a_complaint_or_a_request_and_shows_all_rows(open_page):
     page = open_page()
     assert _shown(page) == ["A1", "A2", "A3", "A10", "B<i>1</i>"]
-    assert _status(page) == "5 rows, all shown"
+    assert _status(page) == "Rows: 5, all shown"
 
 
 def test_nothing_but_its_own_script_runs(browser, report):
@@ -109,7 +109,7 @@ def test_nothing_but_its_own_script_runs(browser, report):
     other.write_text(html.replace("</main>", f"{slipped}</main>"), encoding="utf-8")
     page.goto(other.as_uri())
     assert page.evaluate("window.ran") is None
-    assert _status(page) == "5 rows, all shown"
+    assert _status(page) == "Rows: 5, all shown"
     refused = [text for text in complaints if "Content Security Policy" in text]
     assert any("inline script" in text for text in refused)
     assert any("x.js" in text for text in refused)
@@ -120,7 +120,7 @@ def test_filters_narrow_the_rows_down_and_say_so(open_page):
     page = open_page()
     _filter(page, "Floor").select_option("1")
     assert _shown(page) == ["A1", "A2", "A3"]
-    assert _status(page) == "3 of 5 rows shown: Floor: 1"
+    assert _status(page) == "Rows: 3 of 5 shown: Floor: 1"
     _filter(page, "Room").select_option("Office")
     assert _shown(page) == ["A2", "A3"]
     _filter(page, "Class").select_option("anchored")
@@ -146,10 +146,10 @@ def test_search_finds_all_words_in_any_column(open_page):
     page = open_page()
     _filter(page, "Search").fill("CHEST office")
     assert _shown(page) == ["A3"]
-    assert _status(page) == "1 of 5 rows shown: “CHEST office”"
+    assert _status(page) == "Rows: 1 of 5 shown: “CHEST office”"
     _filter(page, "Search").fill("nothing like it")
     assert _shown(page) == []
-    assert _status(page).startswith("0 of 5 rows shown")
+    assert _status(page).startswith("Rows: 0 of 5 shown")
 
 
 def test_a_filter_of_one_choice_is_offered_only_where_rows_differ_by_it(open_page):
@@ -220,7 +220,7 @@ def test_a_piece_of_the_plan_leads_to_its_row_even_where_it_is_filtered_out(open
     page.locator("#piece-1").click()
     row = page.locator("#row-1")
     assert row.is_visible()
-    assert _status(page) == "5 rows, all shown"
+    assert _status(page) == "Rows: 5, all shown"
     _assert_marked_and_in_sight(page, row)
 
 
@@ -277,7 +277,7 @@ def test_print_shows_the_rows_as_filtered_and_no_controls(open_page):
     page.emulate_media(media="print")
     assert not page.get_by_role("button", name="Show all").is_visible()
     assert not page.locator("#filter-floor").is_visible()
-    assert _status(page) == "3 of 5 rows shown: Floor: 1"
+    assert _status(page) == "Rows: 3 of 5 shown: Floor: 1"
     assert page.locator("#pieces tbody tr:visible").count() == 3
 
 

@@ -149,7 +149,7 @@ class TestKnownRows:
         row, reasons = one(tmp_path, 45, 180, 0.24, 35, settings=settings, period=1.0, **certain)
         simulated = row.result.governing.simulation
         assert (row.lowest.method.role, row.lowest.value) == ("simulation", simulated.probability)
-        assert f"{simulated.overturned} of 20 draws overturn it." in reasons
+        assert f"Draws that overturn it: {simulated.overturned} of 20." in reasons
         assert "follow a generic spectrum" in reasons
 
 

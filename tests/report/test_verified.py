@@ -168,7 +168,7 @@ class TestChanges:
         assert "Simulation lowered the class of 2 free-standing pieces on this floor" in text
         assert "class lowered: 3 pieces in 3 rows (1 of them anchored)" in describe_verification(lowered)
         assert build_content(lowered).total.lowered == 3 - 1
-        assert "2 were lowered by simulation, 2 could be of a higher class." in text
+        assert "Lowered by simulation: 2; could be of a higher class: 2." in text
 
     def test_the_legend_of_the_marks_stands_once_on_the_summary(self, lowered, page_of_lowered):
         summary = page_of_lowered[page_of_lowered.index('<section id="summary"') :].partition("</section>")[0]

@@ -194,12 +194,16 @@ def _say_basis(found: AnnualTables, results: Results) -> Iterator[str]:
             far = _("{km:.1f} km from the building", km=found.distance_km)
             place = f"{place}, {far}"
         yield f"{place}."
-    yield _(
-        "Every piece that can rock was rocked in {runs:,} draws under the motions of the simulation times each of "
+    yield ngettext(
+        "Every piece that can rock was rocked in {n:,} draw under the motions of the simulation times each of "
         "{levels} factors, from {first} to {last}: the motions of all floors were taken to grow in proportion to the "
         "ground PGA, which is {ground:.3g} g in this scenario. Damage to the building, which changes how its floors "
         "move, is left out.",
-        runs=found.runs, levels=len(found.factors), first=_say_number(found.factors[0]),
+        "Every piece that can rock was rocked in {n:,} draws under the motions of the simulation times each of "
+        "{levels} factors, from {first} to {last}: the motions of all floors were taken to grow in proportion to the "
+        "ground PGA, which is {ground:.3g} g in this scenario. Damage to the building, which changes how its floors "
+        "move, is left out.",
+        found.runs, levels=len(found.factors), first=_say_number(found.factors[0]),
         last=_say_number(found.factors[-1]), ground=found.ground_pga_g or 0.0,
     )  # fmt: skip
     yield _say_scatter(found, results)

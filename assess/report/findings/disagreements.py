@@ -247,22 +247,22 @@ def _summarise(found: Sequence[Disagreement], rows: int) -> str:
         )
     highest, lowest, count = _commonest(found)
     return ngettext(
-        "On {n:,} of {rows:,} rows, methods differ by more than one class; most often {highest} lies above {lowest} "
+        "On {found:,} of {n:,} row, methods differ by more than one class; most often {highest} lies above {lowest} "
         "(on {count:,}).",
-        "On {n:,} of {rows:,} rows, methods differ by more than one class; most often {highest} lies above {lowest} "
+        "On {found:,} of {n:,} rows, methods differ by more than one class; most often {highest} lies above {lowest} "
         "(on {count:,}).",
-        len(found), rows=rows, highest=highest, lowest=lowest, count=count,
+        rows, found=len(found), highest=highest, lowest=lowest, count=count,
     )  # fmt: skip
 
 
 def _summarise_model(model: "MethodInfo", found: Sequence[Disagreement], rows: int) -> str:
     highest, lowest, count = _commonest(found)
     return ngettext(
-        "Counted separately: {model} differs by more than one class from a published method on {n:,} of {rows:,} rows; "
+        "Counted separately: {model} differs by more than one class from a published method on {found:,} of {n:,} row; "
         "most often {highest} lies above {lowest} (on {count:,}).",
-        "Counted separately: {model} differs by more than one class from a published method on {n:,} of {rows:,} rows; "
-        "most often {highest} lies above {lowest} (on {count:,}).",
-        len(found), rows=rows, model=_(model.title), highest=highest, lowest=lowest, count=count,
+        "Counted separately: {model} differs by more than one class from a published method on {found:,} of {n:,} "
+        "rows; most often {highest} lies above {lowest} (on {count:,}).",
+        rows, found=len(found), model=_(model.title), highest=highest, lowest=lowest, count=count,
     )  # fmt: skip
 
 

@@ -141,10 +141,10 @@ def _say_known_basis(chance: Chance) -> str:
         return ngettext("{n:,} draw, all together", "{n:,} draws, all together", chance.runs)
     if chance.unverified:
         return ngettext(
-            "bounds: {n:,} of {pieces:,} pieces by the formula's chance alone",
-            "bounds: {n:,} of {pieces:,} pieces by the formula's chance alone",
-            chance.unverified,
-            pieces=chance.pieces,
+            "bounds: {unverified:,} of {n:,} piece by the formula's chance alone",
+            "bounds: {unverified:,} of {n:,} pieces by the formula's chance alone",
+            chance.pieces,
+            unverified=chance.unverified,
         )
     return _("bounds: the pieces were decided after different numbers of draws")
 

@@ -1,0 +1,110 @@
+"""One of everything is called one: no "1 rows" in a report, a table, a message or on the terminal."""
+
+import re
+
+import openpyxl
+import pytest
+
+import assess
+from assess.report.report_options import ReportOptions
+from tests.cli.calling import run
+from tests.report.reading import read_text, render
+from tests.report.routed import DOUBTED, FLOORS, ITEMS, PLACES, ROUTES, write_routed
+from tests.workbooks import UNVERIFIED
+
+NOUNS = (
+    "anchors|axes|cases|cautions|cells|channels|characters|checks|columns|corners|curves|draws|errors|exits|falls|files|"
+    "floors|forms|impacts|items|lines|motions|notes|occupants|pages|people|pieces|places|points|problems|records|rooms|"
+    "rows|runs|samples|segments|sheets|stairs|steps|storeys|types|values|warnings"
+)
+SINGULAR = "|".join(("of", "is", *(noun.removesuffix("s") for noun in NOUNS.split("|"))))
+ONE = re.compile(rf"(?<![\d.,:/-])\b1 (?:(?!(?:{SINGULAR})\b)[a-z-]+ ){{0,2}}(?:{NOUNS}|routes)\b")
+VERB = re.compile(r"(?<![\d.,:/-])\b1 (?:more |of \d+ )?(?:are|were|have|do|stand|fall|overturn)\b")
+
+TALL, HELD, FLOOR = ITEMS[0], ITEMS[2] | {"floor": "1"}, FLOORS[0]
+ONLY = {
+    "Floors": [FLOOR],
+    "Items": [TALL],
+    "Places": [PLACES[0], {"place": "Street", "floor": "1", "x": 10.0, "y": 0.0, "kind": "exit"}],
+    "Routes": [ROUTES[0] | {"end": "Street", "route": "Yard", "segment": "lane", "room": "Office"}],
+}  # fmt: skip
+ALONE = {"item": "away", "floor": "1", "breadth": 30, "width": 80, "height": 200, "anchored": "no"}
+SIMULATED = assess.Settings(runs=1)
+BUILDINGS = {
+    "one of everything": (ONLY, UNVERIFIED),
+    "one simulated": (ONLY, SIMULATED),
+    "one unconfirmed": (ONLY | {"Floors": DOUBTED["Floors"][:1]}, assess.Settings(runs=20)),
+    "one anchored, one free, one left out": (ONLY | {"Items": [TALL, HELD, ALONE]}, SIMULATED),
+    "one storey of a profile": (
+        ONLY
+        | {
+            "Building": [{"building": "Shed", "storeys": 1, "height": 9, "ground_pga": 0.4, "scenario": "ASCE 7-22"}],
+            "Floors": [{"floor": "1", "elevation": 4.0}, {"floor": "R", "elevation": 9.0}],
+        },
+        UNVERIFIED,
+    ),
+}
+
+
+def find_wrong(text):
+    return [
+        text[max(0, found.start() - 40) : found.end() + 10] for rule in (ONE, VERB) for found in rule.finditer(text)
+    ]
+
+
+def test_what_is_looked_for():
+    assert len(find_wrong("There is 1 rows. 1 route segments; of which 1 are blocked; 21 rows, 0.1 points, 1 row")) == 3
+
+
+@pytest.fixture(scope="module", params=BUILDINGS, ids=str)
+def building(request, tmp_path_factory):
+    sheets, settings = BUILDINGS[request.param]
+    folder = tmp_path_factory.mktemp("one")
+    path = write_routed(folder / "w.xlsx", **sheets)
+    results = assess.run(assess.read_inventory(path), settings)
+    return path, folder, results
+
+
+def test_reports_count_one_as_one(building):
+    _path, _folder, results = building
+    english = ReportOptions(language="en")
+    for for_print in (False, True):
+        assert find_wrong(read_text(render(results, english, for_print=for_print))) == []
+
+
+def test_the_excel_report_counts_one_as_one(building):
+    _path, folder, results = building
+    book = openpyxl.load_workbook(assess.write_reports(results, folder / "out", ("xlsx",))["xlsx"], read_only=True)
+    texts = [
+        cell for sheet in book for row in sheet.iter_rows(values_only=True) for cell in row if isinstance(cell, str)
+    ]
+    book.close()
+    assert len(texts) > 100
+    assert [wrong for text in texts for wrong in find_wrong(text)] == []
+
+
+def test_messages_count_one_as_one(building):
+    path, _folder, results = building
+    assert [wrong for one in results.problem_rows for wrong in find_wrong(str(one))] == []
+    assert find_wrong(repr(results)) == find_wrong(results._repr_html_()) == []
+    inventory = assess.read_inventory(path)
+    assert find_wrong(repr(inventory)) == find_wrong(inventory._repr_html_()) == []
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("check",),
+        ("run", "--verify", "none", "--formats", "json"),
+        ("run", "--runs", "1", "--formats", "json"),
+        ("routes", "--pfa", "0.3:0.3", "--runs", "1"),
+        ("fragility", "--levels", "0.3:0.3", "--runs", "1", "--formats", "csv"),
+        ("fragility", "--by", "type", "--runs", "2", "--json"),
+    ],
+    ids=" ".join,
+)
+def test_the_terminal_counts_one_as_one(tmp_path, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    done = run(words[0], write_routed(tmp_path / "w.xlsx", **ONLY), *words[1:])
+    assert done.exit_code in (0, 1), done.output
+    assert find_wrong(done.stdout) == find_wrong(done.stderr) == []
