@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 from assess.errors import CancelledError
 from assess.methods import Cases, Method
 from assess.methods._method import FloatArray, Joint
+from assess.natural import natural_key
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand
 from assess.progress import SILENT, Progress
@@ -158,7 +159,7 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
         return
     height = _commonest([one for one in free if one.adopted.upper >= RiskClass.HIGH] or free)
     near = [one for one in free if abs(one.item.height_cm - height) <= ALIKE * height * (1 + ROUNDING)]
-    pieces = sorted(near, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))
+    pieces = sorted(near, key=lambda one: (-one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)))
     ratio = _velocity_ratio(pieces[0])
     breadth, pfa = _grid(height, pieces)
     yield "items", np.array([one.item.index for one in pieces], dtype=np.int32)

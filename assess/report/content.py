@@ -20,6 +20,7 @@ from assess.report.findings.disagreements import Disagreements, find_disagreemen
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
 from assess.report.provenance import report_time, say_date, say_reference
+from assess.report.row_order import order_floors, order_rows
 from assess.report.summary import FLOORS, FLOORS_BESIDE, Summary, build_summary, list_risky
 from assess.results import FloorRow, ItemResult, MotionRow, Results, WorkedMethod
 from assess.risk import LIMITS, RiskClass, classify
@@ -146,9 +147,14 @@ class Content(ByBasis):
         """The rows that the workbook has a note on."""
         return [one for one in self.results if one.item.notes]
 
+    @cached_property
+    def listed(self) -> Sequence[ItemResult]:
+        """All rows in the order of the tables of pieces: by floor and name, with identical rows together."""
+        return order_rows(self.results, [page.floor.floor for page in self.floors])
+
     def parts(self, most: int) -> list[tuple[str, list[ItemResult]]]:
         """Return the first `most` rows by their basis, with the heading of each part but the first."""
-        return list_parts(self.results[:most])
+        return list_parts(self.listed[:most])
 
     @property
     def example(self) -> ItemResult | None:
@@ -264,7 +270,7 @@ def _list_floors(results: Results, rows: Sequence[ItemResult]) -> tuple[FloorPag
     for one in rows:
         by_floor[one.item.floor].append(one)
     pages = []
-    for floor in results.floor_rows:
+    for floor in order_floors(results.floor_rows):
         title, own = _title_floor(floor), by_floor[floor.floor]
         found = [one for one in results.motions if one.floor == floor.floor]
         pages.append(FloorPage(floor, title, found, count(title, own), own))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult
 from assess.risk import RiskClass
@@ -96,11 +97,12 @@ def count(label: str, results: Sequence[ItemResult]) -> Counts:
 
 
 def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
-    """Count the pieces of each room, the rooms with most of high and very high class first."""
+    """Count the pieces of each room, the rooms with most of high and very high class first, then by name."""
     rooms: dict[str, list[ItemResult]] = {}
     for one in results:
         rooms.setdefault(one.item.room, []).append(one)
-    counts = [count(words.cut(room, 40) if room else _("no room named"), own) for room, own in sorted(rooms.items())]
+    named = sorted(rooms.items(), key=lambda one: natural_key(one[0]))
+    counts = [count(words.cut(room, 40) if room else _("no room named"), own) for room, own in named]
     return sorted(counts, key=lambda one: -one.risky)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
+from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
@@ -141,6 +142,6 @@ def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> li
             not one.is_urgent,
             -one.adopted.upper,
             -one.adopted.probability * one.item.quantity,
-            one.item.item.casefold(),
+            natural_key(one.item.item),
         ),
     )

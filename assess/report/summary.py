@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
+from assess.natural import natural_key
 from assess.report import words
 from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
@@ -74,8 +75,8 @@ def list_risky(results: Sequence[ItemResult], basis: str = "") -> list[ItemResul
     return sorted((one for one in found if one.adopted.upper >= RiskClass.HIGH), key=_worst_first)
 
 
-def _worst_first(one: ItemResult) -> tuple[float, float, str]:
-    return -one.adopted.upper, -one.adopted.probability, one.item.item
+def _worst_first(one: ItemResult) -> tuple[object, ...]:
+    return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
 
 
 def say_plainly(total: Counts, could_be: int, worst: Sequence[ItemResult], fixes: Sequence[Fix]) -> list[str]:

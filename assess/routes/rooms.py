@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from assess.model import Place
+from assess.natural import natural_key
 from assess.route_results import Chance, FloorRoutesRow, RoomRow, RouteState, SegmentRow, WayRow
 from assess.routes.chances import Draws, union
 from assess.routes.network import Part, build_course, build_graph, find_parts, find_rooms, find_ways
@@ -47,7 +48,7 @@ def evaluate_room(scene: Scene, place: Place, part: Part, chance: Mapping[int, f
     return RoomRow(
         room=place.place,
         floor=place.floor,
-        exits=tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets)),
+        exits=tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key)),
         by_stairs=part.by_stairs,
         loses_every_exit=found.chances[0],
         loses_if_unconfirmed_fall=found.at_most[0] if found.chances[0].unconfirmed else None,
@@ -93,7 +94,7 @@ def evaluate_floor(
 ) -> FloorRoutesRow:
     """Return what is to be expected on one floor; `every` are all segments, `rooms` those of `parts`."""
     segments = [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
-    routes = sorted({scene.obstructions[at].segment.route for at in segments})
+    routes = sorted({scene.obstructions[at].segment.route for at in segments}, key=natural_key)
     here = [(place, part) for place, part in parts if place.floor == floor]
     own = [room for room in rooms if room.floor == floor]
     known = [every[at] for at in segments if every[at].state != RouteState.NOT_KNOWN]

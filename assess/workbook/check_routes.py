@@ -9,6 +9,7 @@ from math import hypot, inf
 from assess.errors import Problem
 from assess.i18n import fill, nfill
 from assess.model import split_names
+from assess.natural import natural_key
 from assess.workbook.check import check_references, check_unique, duplicates
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables
@@ -217,7 +218,7 @@ def _check_item_floor(items: Table, row: Row, name: str, floors: set[str | None]
     message = fill(
         "{label} {name} is not on floor {floor} but on {others}.",
         label=items.label(name), name=row.quote(name), floor=shorten(own),
-        others=", ".join(sorted(map(shorten, floors))),
+        others=", ".join(map(shorten, sorted((one for one in floors if one is not None), key=natural_key))),
     )  # fmt: skip
     fix = fill("Choose one of the item's floor, or correct the {label}.", label=items.label("floor"))
     yield items.problem(name, row, message, fix)

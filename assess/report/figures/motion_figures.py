@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.natural import natural_key
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.content import Content
@@ -105,9 +106,9 @@ def choose_traced(content: Content) -> tuple[Traced, ...]:
     return tuple(_trace(content.run, own[0], len(own) - 1) for index, own in firsts.items() if index in chosen)
 
 
-def _by_risk(one: ItemResult) -> tuple[bool, float, float, str]:
+def _by_risk(one: ItemResult) -> tuple[object, ...]:
     found = one.governing.simulation
-    return bool(one.apart), -one.adopted.upper, -found.probability if found else 0.0, one.item.item
+    return bool(one.apart), -one.adopted.upper, -found.probability if found else 0.0, natural_key(one.item.item)
 
 
 def _trace(results: Results, one: ItemResult, alike: int) -> Traced:

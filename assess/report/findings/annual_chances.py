@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from assess.annual_results import YEARS, AnnualRow, AnnualTables
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.natural import natural_key
 from assess.report import words
 from assess.report.summary import describe
 from assess.results import ItemResult, Results
@@ -118,7 +119,7 @@ def _pieces(rows: Sequence[ItemResult]) -> Iterator[AnnualLine]:
 
 
 def _sort(lines: Iterable[AnnualLine]) -> tuple[AnnualLine, ...]:
-    return tuple(sorted(lines, key=lambda one: -one.row.rate))
+    return tuple(sorted(lines, key=lambda one: (-one.row.rate, natural_key(one.name))))
 
 
 # ---------------------------------------------------------------- sentences

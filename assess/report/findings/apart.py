@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
+from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult
 from assess.risk import RiskClass
@@ -16,7 +17,7 @@ NAMED = 3
 def list_apart(results: Iterable[ItemResult], basis: str) -> list[ItemResult]:
     """Return the free-standing pieces that stand apart with a basis, the worst by formula first."""
     found = [one for one in results if not one.is_anchored and one.apart == basis]
-    return sorted(found, key=lambda one: (-one.adopted.upper, -one.adopted.probability, one.item.item))
+    return sorted(found, key=lambda one: (-one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)))
 
 
 def list_parts(results: Sequence[ItemResult]) -> list[tuple[str, list[ItemResult]]]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
+from assess.natural import natural_key
 from assess.report import words
 from assess.report.findings.route_rows import say_not_counted, say_uncounted, say_unknown
 from assess.report.findings.route_words import (
@@ -57,7 +58,7 @@ def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
     """Return the routes that may be blocked or reduced, or of which that is not excluded or known, the worst first."""
     routes = results.route_tables
     found = [one for one in routes.routes if max(one.state.severity, one.state_upper.severity)]
-    found.sort(key=lambda one: (-one.state.severity, -find_chance(one), one.route.casefold()))
+    found.sort(key=lambda one: (-one.state.severity, -find_chance(one), natural_key(one.route)))
     return [
         RouteAtRisk(
             one,
@@ -95,7 +96,7 @@ def list_rooms_at_risk(routes: RouteTables) -> list[RoomRow]:
     """Return the rooms that may lose every exit, or of which that is not excluded, the worst first."""
     found = [one for one in routes.rooms if one.is_known and one.loses_every_exit.high >= routes.risk]
     return sorted(
-        found, key=lambda one: (-one.loses_every_exit.probability, -one.loses_every_exit.high, one.room.casefold())
+        found, key=lambda one: (-one.loses_every_exit.probability, -one.loses_every_exit.high, natural_key(one.room))
     )
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number, placeholders
+from assess.natural import natural_key
 from assess.report import words
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass, classify
@@ -223,7 +224,7 @@ def group_disagreements(disagreements: Iterable[Disagreement]) -> Sequence[Group
         key = (one.highest.method.key, one.highest.risk, one.lowest.method.key, one.lowest.risk, reasons, *rests)
         groups.setdefault(key, []).append(one)
     for rows in groups.values():
-        rows.sort(key=lambda row: -int(row.result.adopted.upper))
+        rows.sort(key=lambda row: (-int(row.result.adopted.upper), natural_key(row.result.item.item)))
     return tuple(map(Group, sorted(groups.values(), key=_rank)))
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.natural import natural_key
 from assess.report import words
 from assess.report.findings.motions import describe_suite, say_signs
 from assess.report.findings.uncertain import say_source
@@ -53,12 +54,16 @@ def build_trials(results: Results, verified: Verified) -> Trials:
         motions=tuple(_floor_motions(results, motion, ensemble) for motion, ensemble in made),
         misfits=tuple(_misfits(made)),
         changed=(*sorted(verified.raised, key=_by_change), *sorted(verified.lowered, key=_by_change)),
-        fell=sorted(verified.fell, key=lambda one: (-one.adopted.upper, -one.adopted.probability)),
+        fell=sorted(verified.fell, key=_by_chance),
     )
 
 
-def _by_change(one: ItemResult) -> tuple[float, ...]:
-    return -abs(one.adopted.risk - one.formula_class), -one.adopted.upper, -one.adopted.probability
+def _by_change(one: ItemResult) -> tuple[object, ...]:
+    return -abs(one.adopted.risk - one.formula_class), *_by_chance(one)
+
+
+def _by_chance(one: ItemResult) -> tuple[object, ...]:
+    return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
 
 
 # ---------------------------------------------------------------- paragraphs

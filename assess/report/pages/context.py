@@ -121,9 +121,7 @@ def _list_tables(content: Content) -> dict[str, Sequence[PageColumn]]:
 
 
 def _listings(content: Content) -> dict[str, Sequence[compact.Block]]:
-    return {
-        name: compact.list_lines(content.results, list_columns(content.run, name)) for name in ("pieces", "methods")
-    }
+    return {name: compact.list_lines(content.listed, list_columns(content.run, name)) for name in ("pieces", "methods")}
 
 
 def _of_floors(content: Content, progress: Progress) -> dict[str, Any]:
