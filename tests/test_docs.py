@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from assess.report.pages.pdf import DEBIAN
 from docs.reference import build_pages
 
 ROOT = Path(__file__).parents[1]
@@ -57,3 +58,16 @@ def test_examples_in_python_run(page, tmp_path, monkeypatch):
     for code in PYTHON.findall(page.read_text(encoding="utf-8")):
         exec(compile(code, page.name, "exec"), space)
     assert "results" in space
+
+
+def test_the_readme_installs_from_the_source_code_not_from_an_index():
+    """On PyPI another project has the name."""
+    install = README.partition("## Install\n")[2].partition("\n## ")[0]
+    assert re.findall(r"^(?:pipx|uv|python) .*", install, re.MULTILINE) == [
+        "pipx install .", "uv tool install .", "python -m pip install .",
+    ]  # fmt: skip
+    named = [text for text in re.findall(r"`([^`\n]+)`", README) if re.search(r"install .*\bassess\b", text)]
+    assert named == ["pip install assess"]
+    assert "`pip install assess` does not install this one" in README
+    for package in ("pango", *DEBIAN.removeprefix("apt install ").split()):
+        assert package in install

@@ -118,9 +118,7 @@ def test_the_reduction_of_the_profile_counts_when_it_is_held_against_a_known_flo
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx", PIECE, floors, ground_pga=0.2))
     for reduction, known in ((1, 0), (1.5, 1)):
         found = assess.run(inventory, assess.Settings(ductility_reduction=reduction, verify="none")).problem_rows
-        assert (
-            sum("would give 0.300 g on floor '1', where 0.400 g is known" in one.message for one in found) == known
-        )
+        assert sum("would give 0.300 g on floor '1', where 0.400 g is known" in one.message for one in found) == known
 
 
 def test_floors_above_that_the_profile_leaves_weaker_are_named(tmp_path):
