@@ -123,17 +123,18 @@ def _after(number: int, real, cancel: Event, calls: list[int]):
 
 
 def test_a_long_record_of_plain_csv_is_not_read_to_its_end(tmp_path, monkeypatch):
-    path, cancel, rows = tmp_path / "long.csv", Event(), list[int]()
+    path, cancel, blocks = tmp_path / "long.csv", Event(), list[int]()
     lines = (f"{at / 100:.2f},{at % 7}" for at in range(ROWS))
     path.write_text("time [s],north [cm/s2]\n" + "\n".join(lines), encoding="utf-8")
     monkeypatch.setattr(plain_csv, "CHECKED_EVERY", 10)
+    monkeypatch.setattr(plain_csv, "BLOCK", 100)
     (whole,) = read_records(path, progress=Progress(cancel=Event()))
     assert whole.acceleration.size == ROWS
-    monkeypatch.setattr(plain_csv, "_read_row", _after(50, plain_csv._read_row, cancel, rows))
+    monkeypatch.setattr(plain_csv, "_read_block", _after(5, plain_csv._read_block, cancel, blocks))
     with pytest.raises(CancelledError):
         read_records(path, progress=Progress(cancel=cancel))
     _join()
-    assert 50 <= len(rows) <= 60
+    assert 5 <= len(blocks) <= 6
 
 
 def test_a_long_record_of_words_is_not_converted_to_its_end(tmp_path, monkeypatch):

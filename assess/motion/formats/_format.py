@@ -10,6 +10,10 @@ from assess.motion.record import FloatArray, Record, Series, check_samples, chec
 
 T = TypeVar("T")
 
+MOST_CHANNELS = 500
+"""Channels of one file, or of one archive's member."""
+MOST_VALUES = 20_000_000
+"""Samples of one file, all its channels and, in an archive, all its members together."""
 MOST_NOTES = 4
 """Notes on single channels that are left out."""
 HEADER_PEAK_WITHIN = 0.02
@@ -116,6 +120,24 @@ def even_series(values: FloatArray, time_step: float, notes: Sequence[str] = ())
     check_samples(values)
     check_time_step(time_step)
     return Series(float(f"{time_step:.12g}"), values, tuple(notes))
+
+
+def check_channels(count: int) -> None:
+    """Raise RecordError if a file has more channels than are read."""
+    if count > MOST_CHANNELS:
+        raise RecordError(
+            fill("the file has more than {most} channels: give a file with those that are needed", most=MOST_CHANNELS)
+        )
+
+
+def too_many_values() -> RecordError:
+    """Return the error for a file with more samples than are read."""
+    return RecordError(
+        fill(
+            "the file has more than {most:,} samples: give a file with the channels that are needed, cut to the shaking",
+            most=MOST_VALUES,
+        )
+    )
 
 
 def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -> tuple[Record, ...]:

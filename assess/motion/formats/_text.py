@@ -6,15 +6,17 @@ and how its data are laid out (`Columns`, or words with blanks between them); `t
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
+from typing import overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from assess.errors import RecordError
 from assess.i18n import Text, fill, nfill
-from assess.motion.formats._format import Format, keep_readable
+from assess.motion.formats._format import MOST_CHANNELS, Format, check_channels, keep_readable
 from assess.motion.formats._values import read_real
 from assess.motion.record import MOST_SAMPLES, FloatArray, Record
 from assess.progress import check_waits
@@ -25,6 +27,8 @@ MOST_LINES = 10_000_000
 """Lines of a file; with one sample to a line there are no more than MOST_SAMPLES of them, and two marks end each."""
 AT_ONCE = 100_000
 """Numbers that are converted between two looks at whether to stop."""
+BLOCK = 2**20
+"""Bytes in which the ends of lines are looked for at once."""
 MOST_BEYOND = 0.01
 """Share of the data that may stand beyond the count in the header [-]."""
 
@@ -56,7 +60,48 @@ class Columns:
     width: int
 
 
-def split_lines(data: bytes) -> list[str]:
+class Lines(Sequence[str]):
+    """The lines of a text, each decoded (Latin-1) when it is asked for: as objects they take ten times their bytes.
+
+    Parameters
+    ----------
+    data : bytes
+        The text, whose lines end with a line feed.
+    ends : (n,) array
+        The place of the end of each line [bytes].
+    first : int
+        The place of the first line [bytes].
+    """
+
+    def __init__(self, data: bytes, ends: NDArray[np.int32], first: int = 0) -> None:
+        self._data, self._ends, self._first = data, ends, first
+
+    def __len__(self) -> int:
+        return len(self._ends)
+
+    def __iter__(self) -> Iterator[str]:
+        start = self._first
+        for at in range(0, len(self), AT_ONCE):
+            for end in self._ends[at : at + AT_ONCE].tolist():
+                yield self._data[start:end].decode("latin-1")
+                start = end + 1
+
+    @overload
+    def __getitem__(self, place: int) -> str: ...
+    @overload
+    def __getitem__(self, place: slice) -> "Lines": ...
+    def __getitem__(self, place: int | slice) -> "str | Lines":
+        if isinstance(place, slice):
+            start, stop, _ = place.indices(len(self))
+            return Lines(self._data, self._ends[start:stop], self._start(start))
+        at = range(len(self))[place]
+        return self._data[self._start(at) : int(self._ends[at])].decode("latin-1")
+
+    def _start(self, at: int) -> int:
+        return int(self._ends[at - 1]) + 1 if at else self._first
+
+
+def split_lines(data: bytes) -> Lines:
     """Return the lines of a text file, whichever system it comes from.
 
     Raises
@@ -66,8 +111,11 @@ def split_lines(data: bytes) -> list[str]:
     """
     if data.count(b"\n") + data.count(b"\r") > MOST_LINES:
         raise RecordError(fill("the file has more than {most:,} lines: cut it to the shaking", most=MOST_LINES))
-    lines = split_text(data.decode("latin-1"))
-    return lines if lines[-1] or len(lines) == 1 else lines[:-1]
+    text = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    signs = np.frombuffer(text, dtype=np.uint8)
+    ends = [at + np.flatnonzero(signs[at : at + BLOCK] == ord("\n")) for at in range(0, len(text), BLOCK)]
+    open_end = [np.array([len(text)])] if not text.endswith(b"\n") else []
+    return Lines(text, np.concatenate([one.astype(np.int32) for one in (*ends, *open_end)]))
 
 
 def split_text(text: str) -> list[str]:
@@ -115,9 +163,11 @@ def text_format(
         lines = split_lines(data)
         if starts is None:
             return (read_channel(Section(lines), file),)
-        places = [place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT])]
+        found = (place for place, line in enumerate(lines) if starts.match(line[:LONGEST_TEXT]))
+        places = list(islice(found, MOST_CHANNELS + 1))
         if not places:
             raise RecordError(fill("{what}. Get the file again", what=missing))
+        check_channels(len(places))
         sections = choose([Section(lines[place:end], place) for place, end in pairwise([*places, len(lines)])])
         numbered = ((fill("channel {number}", number=number), one) for number, one in enumerate(sections, start=1))
         return keep_readable(numbered, lambda section: read_channel(section, file))
@@ -164,15 +214,17 @@ def read_columns(section: Section, start: int, count: int, columns: Columns, fac
         If there are fewer, or one cannot be read; the message names the line.
     """
     _check_count(count)
-    whole = columns.per_line * columns.width
     rows = section.lines[start : start + math.ceil(count / columns.per_line)]
-    cells = [row[at : at + columns.width] for row in rows for at in range(0, min(whole, len(row)), columns.width)]
-    cells = cells[:count]
-    while cells and not cells[-1].strip():
-        cells.pop()
-    if len(cells) < count:
-        raise cut_short(count, len(cells))
-    return _scale(convert(cells, section, start, columns.per_line), factor)
+    there = max((place for place, text in enumerate(_cut(rows, columns, count), start=1) if text.strip()), default=0)
+    if there < count:
+        raise cut_short(count, there)
+    return convert(_cut(rows, columns, count), count, section, start, columns.per_line, factor)
+
+
+def _cut(rows: Iterable[str], columns: Columns, count: int) -> Iterator[str]:
+    """Yield the first `count` cells of some lines."""
+    whole, width = columns.per_line * columns.width, columns.width
+    return islice((row[at : at + width] for row in rows for at in range(0, min(whole, len(row)), width)), count)
 
 
 def read_words(section: Section, start: int, count: float, factor: float) -> tuple[FloatArray, tuple[str, ...]]:
@@ -181,14 +233,17 @@ def read_words(section: Section, start: int, count: float, factor: float) -> tup
     count = round(count)
     most = count + int(MOST_BEYOND * count)
     # No more than can be used are ever taken: a line may be as long as the file.
-    found = (word[0] for line in islice(section.lines, start, None) for word in _WORD.finditer(line))
-    words = list(islice(found, most + 1))
-    if len(words) < count:
-        raise cut_short(count, len(words))
-    if len(words) > most:
+    there = sum(1 for _ in islice(_find_words(section, start), most + 1))
+    if there < count:
+        raise cut_short(count, there)
+    if there > most:
         raise too_long(count)
-    values = _scale(convert(words[:count], section, start, None), factor)
-    return values, note_beyond(len(words) - count, count)
+    values = convert(islice(_find_words(section, start), count), count, section, start, None, factor)
+    return values, note_beyond(there - count, count)
+
+
+def _find_words(section: Section, start: int) -> Iterator[str]:
+    return (word[0] for line in section.lines[start:] for word in _WORD.finditer(line))
 
 
 def note_beyond(beyond: int, count: int) -> tuple[Text, ...]:
@@ -200,11 +255,6 @@ def note_beyond(beyond: int, count: int) -> tuple[Text, ...]:
         count=count,
     )
     return (note,) if beyond else ()
-
-
-def _scale(values: FloatArray, factor: float) -> FloatArray:
-    with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
-        return values * factor
 
 
 def _check_count(count: float) -> None:
@@ -240,26 +290,39 @@ def too_long(announced: int) -> RecordError:
     )
 
 
-def _convert(cells: Sequence[str]) -> FloatArray:
-    check_waits()  # numpy holds the interpreter's lock while it converts
-    return np.array(cells, dtype=np.float64)
+def convert(
+    cells: Iterable[str], count: int, section: Section, start: int, per_line: int | None, factor: float = 1.0
+) -> FloatArray:
+    """Return `count` cells of the section's lines from `start` on as numbers times `factor`, (count,).
 
-
-def convert(cells: Sequence[str], section: Section, start: int, per_line: int | None) -> FloatArray:
-    """Return cells of the section's lines from `start` on as numbers; `per_line` is None where lines do not count.
+    `per_line` is None where lines do not count.
 
     Raises
     ------
     RecordError
         If one is no number; the message names its line or its place.
     """
-    try:
-        return np.concatenate([_convert(cells[at : at + AT_ONCE]) for at in range(0, len(cells), AT_ONCE) or (0,)])
-    except ValueError:
-        place = next((place for place, text in enumerate(cells) if read_real(text) is None), 0)
-        text = cells[place].strip()
-        what = fill("{text!r} is not a number", text=text[:40]) if text else fill("a number is missing")
-        where = fill("number {number} of the data", number=place + 1)
-        if per_line is not None:
-            where = fill("line {line}", line=section.number(start + place // per_line))
-        raise RecordError(fill("{where}: {what}. Get the file again", where=where, what=what)) from None
+    values, cells = np.empty(count), iter(cells)
+    for at in range(0, count, AT_ONCE):
+        block = list(islice(cells, min(AT_ONCE, count - at)))
+        try:
+            values[at : at + len(block)] = _convert(block)
+        except ValueError:
+            place = next((place for place, text in enumerate(block) if read_real(text) is None), 0)
+            raise _no_number(block[place].strip(), at + place, section, start, per_line) from None
+    with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
+        values *= factor
+    return values
+
+
+def _convert(cells: Sequence[str]) -> FloatArray:
+    check_waits()  # numpy holds the interpreter's lock while it converts
+    return np.array(cells, dtype=np.float64)
+
+
+def _no_number(text: str, place: int, section: Section, start: int, per_line: int | None) -> RecordError:
+    what = fill("{text!r} is not a number", text=text[:40]) if text else fill("a number is missing")
+    where = fill("number {number} of the data", number=place + 1)
+    if per_line is not None:
+        where = fill("line {line}", line=section.number(start + place // per_line))
+    return RecordError(fill("{where}: {what}. Get the file again", where=where, what=what))

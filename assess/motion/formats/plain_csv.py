@@ -10,17 +10,23 @@ Cells are separated by commas, semicolons or tabs; with the last two, numbers ma
 """
 
 import re
-from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import fill
-from assess.motion.formats._format import Format, build_record
+from assess.motion.formats._format import (
+    MOST_CHANNELS,
+    MOST_VALUES,
+    Format,
+    build_record,
+    check_channels,
+    too_many_values,
+)
 from assess.motion.formats._text import split_text
-from assess.motion.record import FloatArray, Record, build_series
+from assess.motion.record import MOST_SAMPLES, FloatArray, Record, build_series
 from assess.progress import check_waits
 from assess.units import ACCELERATION, TIME, read_unit
 
@@ -29,10 +35,16 @@ KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
 UNITS = ", ".join(ACCELERATION)
 CHECKED_EVERY = 10_000
 """Lines after which it is looked whether to stop."""
+BLOCK = 2**20
+"""Bytes that are read at once."""
+MOST_HEAD = 2**19
+"""Bytes of the comments and headings: a thousand for each channel."""
 
 _ANSWERS = {"yes": True, "true": True, "no": False, "false": False, "": False}
 _VERTICAL = frozenset({"up", "down", "vertical", "vert", "ud", "z"})
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_PLAIN = b'0123456789+-.eE,; \t"'
+_LINE_END = re.compile(rb"\r\n?|\n")
 _DEGREES = re.compile(r"(\d{1,3}(?:\.\d+)?)\s*(?:deg|°)", re.IGNORECASE | re.ASCII)
 
 
@@ -46,12 +58,12 @@ class _Column:
 
 @dataclass(frozen=True, slots=True)
 class _Table:
-    """A file's text, taken apart; `first` is the line [-], counted from 1, on which `rows` begin."""
+    """What a file says of its samples, and where they begin: the byte, and the line [-], counted from 1."""
 
     comments: Mapping[str, str]
     columns: Sequence[_Column]
     separator: str
-    rows: Sequence[str]
+    start: int
     first: int
 
 
@@ -72,15 +84,15 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     RecordError
         If a heading has no known unit, or a cell is no number; the message names the line.
     """
-    table = _take_apart(decode(data))
-    numbers = _read_numbers(table)
+    table = _read_head(data)
+    values = _read_values(data, table)
     azimuths = _read_azimuths(table)
-    with np.errstate(over="ignore"):  # what becomes infinite is refused further on
-        numbers[:, 1:] *= [column.factor for column in table.columns]
-    return tuple(
-        _build_record(file, table, column, azimuths[column.name], numbers[:, 0], numbers[:, place])
-        for place, column in enumerate(table.columns, start=1)
-    )
+    times, records = values.pop(0), []
+    for column in table.columns:
+        with np.errstate(over="ignore"):  # what becomes infinite is refused further on
+            own = values.pop(0) * column.factor
+        records.append(_build_record(file, table, column, azimuths[column.name], times, own))
+    return tuple(records)
 
 
 def decode(data: bytes) -> str:
@@ -108,15 +120,38 @@ def _heading_line(lines: Sequence[str]) -> tuple[int, str]:
     )
 
 
-def _take_apart(text: str) -> _Table:
-    lines = split_text(text)
-    place, heading = _heading_line(lines)
-    if place < 0:
-        raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
-    separator = next((mark for mark in "\t;" if mark in heading), ",")
-    columns = _read_columns(_cells(heading, separator), place + 1)
-    comments = dict(filter(None, (_read_comment(line) for line in lines[:place])))
-    return _Table(comments, columns, separator, lines[place + 1 :], place + 2)
+def _read_head(data: bytes) -> _Table:
+    """Take apart what stands before the samples; refuse more channels than are read before they are told apart."""
+    lines, start = _split_head(data)
+    separator = next((mark for mark in "\t;" if mark in lines[-1]), ",")
+    headings = _cells(lines[-1], separator)
+    check_channels(len(headings) - 1)
+    columns = _read_columns(headings, len(lines))
+    comments = dict(filter(None, (_read_comment(line) for line in lines[:-1])))
+    return _Table(comments, columns, separator, start, len(lines) + 1)
+
+
+def _split_head(data: bytes) -> tuple[list[str], int]:
+    """Return the lines down to the headings, and where the next line starts [bytes]."""
+    head, start, line = data[:MOST_HEAD], 0, 1
+    for end in _LINE_END.finditer(head if len(data) > MOST_HEAD else head + b"\n"):
+        own = decode(head[start : end.start()])
+        if not (is_comment(own) or _is_blank(own)):
+            return split_text(decode(head[: end.start()])), end.end()
+        start, line = end.end(), line + 1
+    if len(data) > MOST_HEAD:
+        raise _too_long(line)
+    raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
+
+
+def _too_long(line: int) -> RecordError:
+    return RecordError(
+        fill(
+            "line {line} is longer than any row of {most} channels: is the end of a line missing?",
+            line=line,
+            most=MOST_CHANNELS,
+        )
+    )
 
 
 def _cells(line: str, separator: str) -> list[str]:
@@ -176,17 +211,66 @@ def _take_unit(heading: str) -> tuple[str, str]:
     return name.strip(), read_unit(unit.removesuffix("]"))
 
 
-def _read_numbers(table: _Table) -> FloatArray:
-    """Return times and channels, (n, 1 + channels), in the file's own units."""
-    numbers = array("d")  # a list of rows would be gone through again and again by Python's collector
-    for line, row in enumerate(table.rows, start=table.first):
+def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
+    """Return the numbers below the headings, (n,) for time and for each channel; read block by block."""
+    width, rows = 1 + len(table.columns), 0
+    columns: list[list[FloatArray]] = [[] for _ in range(width)]
+    for block, line in _blocks(data, table):
+        numbers = _read_block(block, table, line)
+        rows += len(numbers) // width
+        _check_rows(rows, width)
+        found = np.array(numbers).reshape(-1, width)
+        for column, own in zip(columns, found.T, strict=True):
+            column.append(own.copy())
+    if not rows:
+        raise RecordError(fill("there are no rows below the headings. Add the samples"))
+    whole = []
+    while columns:  # each is let go as it is joined
+        whole.append(np.concatenate(columns.pop(0)))
+    return whole
+
+
+def _check_rows(rows: int, width: int) -> None:
+    if rows > MOST_SAMPLES:
+        raise RecordError(fill("the file has more than {most:,} rows: cut it to the shaking", most=MOST_SAMPLES))
+    if rows * width > MOST_VALUES:
+        raise too_many_values()
+
+
+def _blocks(data: bytes, table: _Table) -> Iterator[tuple[list[bytes], int]]:
+    """Yield the lines below the headings, about `BLOCK` bytes at a time, and the number of the first of them."""
+    start, line = table.start, table.first
+    while start < len(data):
+        end = min(start + BLOCK, len(data))
+        if end < len(data):
+            # A carriage return at the very end may belong to a line feed.
+            end = data.rfind(b"\n", start, end) + 1 or data.rfind(b"\r", start, end - 1) + 1
+        if not end:
+            raise _too_long(line)
+        lines = data[start:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n").removesuffix(b"\n").split(b"\n")
+        yield lines, line
+        start, line = end, line + len(lines)
+
+
+def _read_block(lines: Sequence[bytes], table: _Table, first: int) -> list[float]:
+    """Return the numbers of some lines, of which `first` is the number of the first."""
+    separator, width, numbers = table.separator.encode(), 1 + len(table.columns), list[float]()
+    tail = separator + b" \t"
+    for line, text in enumerate(lines, start=first):
         if line % CHECKED_EVERY == 0:
             check_waits()
-        if not _is_blank(row):
-            numbers.extend(_read_row(_cells(row, table.separator), table, line))
-    if not numbers:
-        raise RecordError(fill("there are no rows below the headings. Add the samples"))
-    return np.frombuffer(numbers).reshape(-1, 1 + len(table.columns))
+        cells = (text if separator == b"," else text.replace(b",", b".")).rstrip(tail).split(separator)
+        # With no other signs than these, float() takes what _NUMBER takes.
+        if len(cells) == width and not text.translate(None, _PLAIN):
+            try:
+                numbers += [*map(float, (cell.strip(b' \t"') for cell in cells) if b'"' in text else cells)]
+                continue
+            except ValueError:
+                pass
+        own = decode(text)
+        if not (is_comment(own) or _is_blank(own)):
+            numbers += _read_row(_cells(own, table.separator), table, line)
+    return numbers
 
 
 def _read_row(cells: Sequence[str], table: _Table, line: int) -> list[float]:

@@ -9,7 +9,7 @@ Source: U.S. Geological Survey, National Strong-Motion Project, the SMC format; 
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from assess.errors import RecordError
@@ -119,10 +119,10 @@ def _read_numbers(section: Section, kind: str, title: str) -> _Numbers:
     return _Numbers(integers, _read_sampling_rate(section), comments)
 
 
-def _cells(lines: Sequence[str], columns: Columns) -> list[str]:
-    """Return the cells of whole lines, blank ones included."""
+def _cells(lines: Iterable[str], columns: Columns) -> Iterator[str]:
+    """Yield the cells of whole lines, blank ones included."""
     whole = columns.per_line * columns.width
-    return [line.ljust(whole)[at : at + columns.width] for line in lines for at in range(0, whole, columns.width)]
+    return (line.ljust(whole)[at : at + columns.width] for line in lines for at in range(0, whole, columns.width))
 
 
 def _read_integers(section: Section) -> list[int | None]:
@@ -157,8 +157,8 @@ def _read_comments(lines: Sequence[str], count: int | None) -> Sequence[str]:
 
 def _read_sampling_rate(section: Section) -> float | None:
     """Samples per second; None where the data are pairs of time and acceleration."""
-    cells = _cells(section.lines[REALS : REALS + 1], REAL)[: SAMPLING_RATE + 1]
-    unknown, rate = map(float, convert(cells, section, REALS, REAL.per_line))
+    cells = _cells(section.lines[REALS : REALS + 1], REAL)
+    unknown, rate = map(float, convert(cells, SAMPLING_RATE + 1, section, REALS, REAL.per_line))
     if rate == unknown:
         return None
     if not (math.isfinite(rate) and rate > 0):
@@ -208,11 +208,11 @@ def _read_data(section: Section, header: _Numbers) -> tuple[FloatArray, tuple[st
                 most=LINE,
             )
         )
-    cells = _cells(lines, DATA)
-    there = sum(1 for text in cells if text.strip())
+    there = sum(1 for text in _cells(lines, DATA) if text.strip())
     if not 0 <= there - announced <= MOST_BEYOND * announced:
         raise cut_short(announced, there) if there < announced else too_long(announced)
-    return convert(cells[:announced], section, first, DATA.per_line), note_beyond(there - announced, announced)
+    values = convert(_cells(lines, DATA), announced, section, first, DATA.per_line)
+    return values, note_beyond(there - announced, announced)
 
 
 def _start(header: dict[str, str]) -> str:
