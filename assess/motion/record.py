@@ -293,12 +293,25 @@ def _note_gaps(times: FloatArray, median: float) -> tuple[str, ...]:
     return (note,)
 
 
+def check_count(count: int) -> None:
+    """Raise RecordError if a channel has more samples than are read."""
+    if count > MOST_SAMPLES:
+        raise RecordError(
+            fill(
+                "the number of samples is {count:,}, expected at most {most:,}: cut the record to the shaking",
+                count=count,
+                most=MOST_SAMPLES,
+            )
+        )
+
+
 def check_samples(values: FloatArray) -> None:
     """Raise RecordError unless `values` (n,) [m/s2] can be a recorded acceleration."""
     if values.size < FEWEST_SAMPLES:
         raise RecordError(
             fill("the number of samples is {count}, expected at least {least}", count=values.size, least=FEWEST_SAMPLES)
         )
+    check_count(values.size)
     if not np.isfinite(values).all():
         number = int(np.isfinite(values).argmin()) + 1
         raise RecordError(fill("sample {number} is not a number: correct or remove it", number=number))

@@ -17,15 +17,15 @@ from assess.hazard import HazardCurve, parse_hazard
 from assess.hazard import read_bytes as read_hazard_bytes
 from assess.i18n import fill
 from assess.model import AXES, NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
-from assess.motion.formats import parse_records, read_bytes, select
+from assess.motion.formats import is_archive, parse_records, read_bytes, select
 from assess.motion.record import Record
+from assess.pictures import MOST_BYTES, PictureError, check_picture, count_pixels
 from assess.progress import Progress
+from assess.workbook.allowance import Allowance
 from assess.workbook.habits import CellError
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.values import shorten
 
-MAX_PICTURE = 10 * 2**20
-_PICTURES = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff")
 _RESERVED = frozenset(
     {"CON", "PRN", "AUX", "NUL", *(f"{port}{number}" for port in ("COM", "LPT") for number in range(10))}
 )
@@ -69,6 +69,8 @@ class FileReader:
         self.logo: Path | None = None
         self.hazard: HazardCurve | None = None
         self._read: dict[str, tuple[tuple[Record, ...] | CellError, str]] = {}
+        self._pictures: dict[str, Path | CellError] = {}
+        self._allowance = Allowance()
 
     def check_logo(self, tables: Tables) -> Iterator[Problem]:
         """Find the logo, or report what is wrong with it."""
@@ -121,11 +123,17 @@ class FileReader:
 
     def _find_picture(self, table: Table, name: str, row: Row) -> Generator[Problem, None, Path | None]:
         """Return the picture that a cell names in the folder; None, having reported why, if none can be used."""
-        try:
-            return find_picture(row.get(name), self.folder)
-        except CellError as error:
-            yield table.problem(name, row, error.message, error.fix)
-            return None
+        text = row.get(name)
+        if text not in self._pictures:  # a picture of every floor is decoded once
+            try:
+                self._pictures[text] = find_picture(text, self.folder, self._allowance)
+            except CellError as error:
+                self._pictures[text] = error
+        found = self._pictures[text]
+        if isinstance(found, Path):
+            return found
+        yield table.problem(name, row, found.message, found.fix)
+        return None
 
     def check_records(self, tables: Tables) -> Iterator[Problem]:
         """Read the recorded motions of the floors, or report what is wrong with them or with their direction."""
@@ -175,7 +183,7 @@ class FileReader:
         content, address = self._find(file)
         if address not in self._read:
             self.progress.check()
-            found, digest = self._read[address] = _parse(content, address, self.progress)
+            found, digest = self._read[address] = _parse(content, address, self._allowance, self.progress)
             if not isinstance(found, CellError):
                 self.hashes[file] = digest
         return self._read[address]
@@ -192,14 +200,20 @@ class FileReader:
         return self.given[address], address
 
 
-def _parse(data: bytes | Path, address: str, progress: Progress) -> tuple[tuple[Record, ...] | CellError, str]:
+def _parse(
+    data: bytes | Path, address: str, allowance: Allowance, progress: Progress
+) -> tuple[tuple[Record, ...] | CellError, str]:
     """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read."""
     try:
         read = data if isinstance(data, bytes) else read_bytes(data)
+        allowance.take_record(len(read), is_archive=is_archive(read))
         found = parse_records(read, PurePosixPath(_posix(address)).name, progress=progress)
+        allowance.take_samples(sum(record.acceleration.size for record in found))
         return found, hashlib.sha256(read).hexdigest()
     except RecordError as error:
         return CellError(fill("the record cannot be read: {why}.", why=error.message)), ""
+    except CellError as error:
+        return error, ""
 
 
 def _check_direction(
@@ -250,13 +264,13 @@ def find_file(text: str, folder: Path) -> Path:
     return path
 
 
-def find_picture(text: str, folder: Path | None) -> Path:
+def find_picture(text: str, folder: Path | None, allowance: Allowance) -> Path:
     """Return the picture that `text` names inside `folder`; None where the workbook was read without one.
 
     Raises
     ------
     CellError
-        As `find_file`; or if it is no PNG or JPEG, or is too large.
+        As `find_file`; or if it is no PNG or JPEG, is too large, or is damaged.
     """
     name = shorten(text)
     if folder is None:
@@ -264,17 +278,16 @@ def find_picture(text: str, folder: Path | None) -> Path:
         raise CellError(message, fill("Pass the folder in `records`."))
     path = find_file(text, folder)
     try:
-        size = path.stat().st_size
         with path.open("rb") as file:
-            head = file.read(8)
+            data = file.read(MOST_BYTES + 1)
     except OSError as error:
         message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
         raise CellError(message, fill("Check its access rights.")) from None
-    if size > MAX_PICTURE:
-        message = fill("{name} is larger than {most} MB.", name=name, most=MAX_PICTURE >> 20)
-        raise CellError(message, fill("Save a smaller picture."))
-    if not head.startswith(_PICTURES):
-        raise CellError(fill("{name} is no PNG or JPEG picture.", name=name), fill("Save it as PNG or JPEG."))
+    try:
+        allowance.take_pixels(count_pixels(data))
+        check_picture(data)
+    except PictureError as error:
+        raise CellError(fill("the picture {name} cannot be used: {why}.", name=name, why=error.message)) from None
     return path
 
 

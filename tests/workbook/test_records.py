@@ -10,6 +10,7 @@ import pytest
 from assess.errors import WorkbookError
 from assess.units import GRAVITY
 from assess.workbook.read import read_inventory
+from tests.pictures import claim_size, picture
 from tests.workbook.books import (
     ITEMS,
     Sheet,
@@ -19,7 +20,7 @@ from tests.workbook.books import (
     write,
 )
 
-PNG = b"\x89PNG\r\n\x1a\n" + bytes(100)
+PNG, JPEG = picture("PNG"), picture("JPEG")
 
 
 def write_record(path: Path, heading: str = "time [s],NS [g]", comments: str = "") -> None:
@@ -170,16 +171,20 @@ def test_floor(tmp_path: Path) -> None:
     assert remarks(inventory, "note") == {"Floors!G2: Plan is kept, not drawn by this version."}
 
 
-@pytest.mark.parametrize("head", [PNG, b"\xff\xd8\xff\xe0" + bytes(100)])
-def test_logo(tmp_path: Path, head: bytes) -> None:
-    (tmp_path / "logo").write_bytes(head)
+@pytest.mark.parametrize("data", [PNG, JPEG])
+def test_logo(tmp_path: Path, data: bytes) -> None:
+    (tmp_path / "logo").write_bytes(data)
     assert read(tmp_path, Building=[["Logo file", "logo"]]).building.logo == tmp_path / "logo"
 
 
+USELESS = "the picture 'logo.png' cannot be used: "
 PICTURES = [
-    (b"<svg onload='x'/>", "logo.png", "'logo.png' is no PNG or JPEG picture. Save it as PNG or JPEG."),
-    (b"", "logo.png", "'logo.png' is no PNG or JPEG picture. Save it as PNG or JPEG."),
-    (PNG + bytes(10 * 2**20), "logo.png", "'logo.png' is larger than 10 MB. Save a smaller picture."),
+    (b"<svg onload='x'/>", "logo.png", USELESS + "it is no PNG or JPEG picture. Save it as PNG or JPEG."),
+    (b"", "logo.png", USELESS + "it is no PNG or JPEG picture. Save it as PNG or JPEG."),
+    (PNG + bytes(10 * 2**20), "logo.png", USELESS + "it is larger than 10 MB. Save it smaller."),
+    (claim_size(PNG, 12_000, 12_000), "logo.png",
+     USELESS + "it has 144 million pixels, expected at most 50. Save it smaller."),
+    (PNG[:-20], "logo.png", USELESS + "it is damaged. Open it in a graphics program and save it again."),
     (PNG, "other.png", "the file 'other.png' was not found next to the workbook. Check the name, or copy the file there."),
     (PNG, "../logo.png", "the file '../logo.png' is outside the workbook's folder. "
                          "Copy it next to the workbook and write its name alone."),

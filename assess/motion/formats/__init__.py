@@ -18,6 +18,7 @@ __all__ = [
     "Channel",
     "Format",
     "all_formats",
+    "is_archive",
     "list_addresses",
     "parse_records",
     "read_bytes",

@@ -2,11 +2,12 @@
 
 import io
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 
 from assess.errors import RecordError
 from assess.i18n import Text, fill, join
+from assess.motion.formats._format import MOST_VALUES, too_many_values
 from assess.motion.record import Record
 from assess.progress import SILENT, Progress
 
@@ -20,6 +21,8 @@ DEEPEST = 3
 """Archives within archives: the CSMIP sets have two levels."""
 MOST_RATIO, RATIO_FROM = 200, 1_000_000
 """Unpacked over packed size [-] that is believed, of members with more than so many bytes; text packs to a tenth."""
+LONGEST_NAME = 240
+"""Characters that are kept of a member's path."""
 LISTED = 8
 """Members that an error lists."""
 
@@ -40,6 +43,7 @@ class _Found:
     reasons: list[Text] = field(default_factory=list)
     unpacked: int = 0
     members: int = 0
+    values: int = 0
 
 
 def is_archive(head: bytes) -> bool:
@@ -92,17 +96,31 @@ def _read_members(data: bytes, file: str, read: ReadMember, found: _Found, progr
     with _open(data) as archive:
         for member in _list_members(archive, found):
             progress.check()
-            name = member.filename.replace("\\", "/")
+            name = clean_name(member)
             try:
                 content, place = _unpack(archive, member, found), f"{file}/{name}"
                 if is_archive(content):
                     _read_members(content, place, read, found, progress, depth + 1)
                 else:
-                    found.records += [replace(record, file=place) for record in read(content, name)]
+                    _keep(read(content, name), place, found)
             except _BombError:
                 raise
             except RecordError as error:
                 found.reasons.append(fill("{member}: {why:.160}", member=name, why=error.message))
+
+
+def _keep(records: Iterable[Record], place: str, found: _Found) -> None:
+    for record in records:
+        found.records.append(replace(record, file=place))
+        found.values += record.acceleration.size
+    if found.values > MOST_VALUES:
+        raise _BombError(too_many_values().message)
+
+
+def clean_name(member: zipfile.ZipInfo) -> str:
+    """Return how a member is called: its path with signs that cannot be printed exchanged; never empty."""
+    name = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in member.filename)
+    return name.replace("\\", "/")[:LONGEST_NAME] or fill("member without a name")
 
 
 def _open(data: bytes) -> zipfile.ZipFile:
@@ -125,13 +143,14 @@ def _damaged(what: Text, error: Exception) -> RecordError:
 
 
 def _list_members(archive: zipfile.ZipFile, found: _Found) -> list[zipfile.ZipInfo]:
-    members = [member for member in archive.infolist() if not member.is_dir()]
+    # Python 3.11's is_dir() fails where the name is empty.
+    members = [member for member in archive.infolist() if not member.filename.endswith("/")]
     found.members += len(members)
     if found.members > MOST_MEMBERS:
         raise _too_many()
     if any(member.filename in _OFFICE for member in members):
         raise RecordError(fill("the file is a workbook or another office file, not a record: save the sheet as CSV"))
-    locked = next((member.filename for member in members if member.flag_bits & _LOCKED), None)
+    locked = next((clean_name(member) for member in members if member.flag_bits & _LOCKED), None)
     if locked is not None:
         raise _BombError(
             fill(
@@ -178,7 +197,7 @@ def _check_member(member: zipfile.ZipInfo) -> None:
         raise _BombError(
             fill(
                 "{member} unpacks to more than {most} times its size, which no record does. Get the archive again",
-                member=member.filename,
+                member=clean_name(member),
                 most=MOST_RATIO,
             )
         )

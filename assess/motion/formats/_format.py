@@ -134,7 +134,7 @@ def too_many_values() -> RecordError:
     """Return the error for a file with more samples than are read."""
     return RecordError(
         fill(
-            "the file has more than {most:,} samples: give a file with the channels that are needed, cut to the shaking",
+            "the file has more than {most:,} samples: give the channels that are needed, cut to the shaking",
             most=MOST_VALUES,
         )
     )

@@ -14,7 +14,16 @@ from dataclasses import dataclass
 from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._format import Direction, build_record, even_series
-from assess.motion.formats._text import Columns, Section, fields, read_columns, read_fields, read_format, text_format
+from assess.motion.formats._text import (
+    LONGEST_TEXT,
+    Columns,
+    Section,
+    fields,
+    read_columns,
+    read_fields,
+    read_format,
+    text_format,
+)
 from assess.motion.formats._values import read_acceleration_unit, read_direction, read_peak
 from assess.motion.record import Record, Series
 from assess.units import ACCELERATION, GRAVITY
@@ -82,8 +91,8 @@ def _read_numbers(section: Section) -> _Numbers:
             columns = read_format(line, BLOCKS[what])
             numbers[what] = list(read_columns(section, place + 1, int(found["count"]), columns))
     # Comments may hold any text, but start with "|" and not with a number.
-    after = range(TEXT, len(section.lines))
-    data = next((place for place in after if _DATA.match(section.text(place))), None)
+    after = enumerate(section.lines[TEXT:], start=TEXT)
+    data = next((place for place, line in after if _DATA.match(line[:LONGEST_TEXT].strip())), None)
     return _Numbers(numbers["integer"], numbers["real"], data)
 
 

@@ -104,8 +104,8 @@ def _read_pairs(section: Section) -> tuple[FloatArray, Series]:
 
 
 def _read_v2(section: Section, file: str) -> Record:
-    places = range(TEXT_V2, len(section.lines))
-    place = next((place for place in places if _DATA_V2.match(section.lines[place])), None)
+    lines = enumerate(section.lines[TEXT_V2:], start=TEXT_V2)
+    place = next((place for place, line in lines if _DATA_V2.match(line)), None)
     if place is None:
         raise RecordError(fill('no line says "points of accel data equally spaced at". Get the file again'))
     title = read_fields(section, TITLE_V2, place)

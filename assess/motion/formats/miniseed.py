@@ -18,9 +18,9 @@ import numpy as np
 
 from assess.errors import RecordError
 from assess.i18n import Text, fill, nfill
-from assess.motion.formats._format import Format, build_record, even_series, keep_readable
+from assess.motion.formats._format import Format, build_record, check_channels, even_series, keep_readable
 from assess.motion.formats._values import direction_of_code
-from assess.motion.record import FloatArray, Record, Series, build_series
+from assess.motion.record import FloatArray, Record, Series, build_series, check_count
 
 TITLE = "miniSEED"
 
@@ -34,6 +34,8 @@ CORRECTED_TIME = 0x02
 """Flag of a header to whose time the correction was applied."""
 SHORTEST = 128
 """Bytes of the shortest record; where none starts, the next place that is tried is as far on."""
+MOST_PARTS = 250_000
+"""Records of a file; the largest file has half as many of the usual 512 bytes."""
 JOINED = 0.5
 """Records that follow each other within this many steps [-] are without a gap."""
 
@@ -43,11 +45,15 @@ _HEADER_FROM, _HEADER_TO = 20, 48
 _TAKEN = fill('the file does not give its unit: taken as m/s2, which ObsPy\'s remove_response(output="ACC") leaves')
 
 
+_Names = tuple[str, str, str, str]
+"""Network, station, location and channel."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Part:
     """The samples of one record; none where they are not real numbers."""
 
-    names: tuple[str, str, str, str]
+    names: _Names
     start: datetime
     rate: float
     encoding: int
@@ -76,12 +82,14 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
         If no channel holds accelerations, or the file is damaged.
     """
     channels: dict[str, list[_Part]] = {}
-    skipped = 0
-    for part in _read_parts(data):
+    skipped, names = 0, dict[bytes, _Names]()
+    for number, part in enumerate(_read_parts(data, names)):
         if isinstance(part, int):
             skipped += part
         else:
             channels.setdefault(part.id, []).append(part)
+            check_channels(len(channels))
+            _check_parts(number)
     if not channels:
         raise RecordError(fill("the file has no complete miniSEED record. Get the file again"))
     codes = [parts[0].code for parts in channels.values()]
@@ -89,6 +97,13 @@ def read(data: bytes, file: str) -> tuple[Record, ...]:
     return keep_readable(
         channels.items(), lambda parts: _read_channel(file, parts, notes, codes.count(parts[0].code) > 1)
     )
+
+
+def _check_parts(number: int) -> None:
+    if number >= MOST_PARTS:
+        raise RecordError(
+            fill("the file has more than {most:,} records of miniSEED: cut it to the shaking", most=MOST_PARTS)
+        )
 
 
 def _note_skipped(count: int) -> tuple[Text, ...]:
@@ -111,12 +126,12 @@ def _byte_order(data: bytes, at: int) -> str | None:
     return None
 
 
-def _read_parts(data: bytes) -> Iterator[_Part | int]:
+def _read_parts(data: bytes, names: dict[bytes, _Names]) -> Iterator[_Part | int]:
     """Yield the parts of a file in their order; for what is none, the number of bytes."""
     at = 0
     while at < len(data):
         order = _byte_order(data, at)
-        found = _read_part(data, at, order) if order else None
+        found = _read_part(data, at, order, names) if order else None
         if found is None:
             yield min(SHORTEST, len(data) - at)
             at += SHORTEST
@@ -127,10 +142,11 @@ def _read_parts(data: bytes) -> Iterator[_Part | int]:
                 yield part
 
 
-def _read_part(data: bytes, at: int, order: str) -> tuple[_Part | None, int] | None:
+def _read_part(data: bytes, at: int, order: str, names: dict[bytes, _Names]) -> tuple[_Part | None, int] | None:
     """Return the part whose record is at a place, None if it has no samples, and the record's length [bytes].
 
-    None where the record is damaged, cut short, or does not name how its samples are encoded.
+    Parts of one channel share what `names` holds by the bytes of it. None where the record is damaged, cut short, or
+    does not name how its samples are encoded.
     """
     year, day, hour, minute, second, _, ticks, count, factor, multiplier, flags, _, _, _, correction, begin, place = (
         struct.unpack_from(f"{order}{_HEADER}", data, at + _HEADER_FROM)
@@ -158,7 +174,8 @@ def _read_part(data: bytes, at: int, order: str) -> tuple[_Part | None, int] | N
         if not _HEADER_TO <= begin <= length - count * int(form[1]):
             return None
         samples = np.frombuffer(data, f"{'>' if big else '<'}{form}", count, at + begin)
-    return _Part(_read_names(data, at), start, rate, encoding, samples), length
+    own = names.setdefault(data[at + 8 : at + 20], _read_names(data, at))
+    return _Part(own, start, rate, encoding, samples), length
 
 
 def _list_blockettes(data: bytes, at: int, place: int, order: str) -> Iterator[tuple[int, int]]:
@@ -179,7 +196,7 @@ def _nominal_rate(factor: int, multiplier: int) -> float:
     return rate * multiplier if multiplier > 0 else -rate / multiplier
 
 
-def _read_names(data: bytes, at: int) -> tuple[str, str, str, str]:
+def _read_names(data: bytes, at: int) -> _Names:
     """Return network, station, location and channel."""
     text = data[at + 8 : at + 20].decode("latin-1").replace("\0", " ")
     return text[10:12].strip(), text[:5].strip(), text[5:7].strip(), text[7:10].strip()
@@ -239,6 +256,7 @@ def _join(parts: Sequence[_Part], notes: Sequence[str]) -> tuple[Series, FloatAr
             runs.append([part])
     with np.errstate(invalid="ignore"):  # what is not a number is refused further on
         values = [np.concatenate([part.samples for part in run], dtype=np.float64) for run in runs]
+    check_count(sum(run.size for run in values))
     own, steps = np.concatenate(values), [1 / run[0].rate for run in runs]
     if len(runs) == 1:
         return even_series(own, steps[0], notes), own

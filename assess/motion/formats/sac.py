@@ -21,7 +21,7 @@ from assess.errors import RecordError
 from assess.i18n import fill
 from assess.motion.formats._format import Direction, Format, build_record, even_series
 from assess.motion.formats._values import direction_of_code, read_acceleration_unit
-from assess.motion.record import FloatArray, Record, peak
+from assess.motion.record import FloatArray, Record, check_count, peak
 
 TITLE = "SAC"
 
@@ -129,6 +129,7 @@ def _check_header(header: _Header, size: int) -> None:
                 there=there,
             )
         )
+    check_count(count)
     meaning = OTHER_MEANINGS.get(numbers["meaning"])
     if meaning:
         raise RecordError(

@@ -7,6 +7,7 @@ from typing import Any
 from assess.errors import Problem
 from assess.i18n import fill, markup, nmarkup, number
 from assess.i18n import gettext as _
+from assess.pictures import PictureError, prepare_picture
 from assess.progress import SILENT, Progress
 from assess.report import summary, words
 from assess.report.content import Content
@@ -240,8 +241,10 @@ def _data_uri(data: bytes, kind: str) -> str:
 def _logo(content: Content) -> str:
     if "logo" not in content.run.series:
         return ""
-    data = content.run.series["logo"].tobytes()
-    return _data_uri(data, "image/png" if data.startswith(b"\x89PNG") else "image/jpeg")
+    try:
+        return _data_uri(*prepare_picture(content.run.series["logo"].tobytes()))
+    except PictureError:  # of results whose series were not written by this version, which checks the picture
+        return ""
 
 
 def _share(value: float) -> str:

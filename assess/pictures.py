@@ -1,0 +1,151 @@
+"""Pictures that users hand over: PNG and JPEG, whose size is read from their headers before anything is decoded.
+
+Sources: W3C (2003), Portable Network Graphics, second edition, 11.2.2 (IHDR); ITU-T T.81 (1992), JPEG, B.1 and B.2.2
+(markers, frame header).
+"""
+
+import io
+import math
+import struct
+from typing import TYPE_CHECKING
+
+from assess.errors import InputError
+from assess.i18n import fill
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+MOST_BYTES = 10 * 2**20
+"""Bytes of a picture's file."""
+MOST_PIXELS = 50_000_000
+"""Pixels of a picture [-]: they take up to 200 MB while it is decoded."""
+SHOWN = 1600
+"""Pixels [-] of the longer side that a report shows: 300 to the inch of a logo of 13 cm."""
+STRIP = 64
+"""Rows of pixels of the smaller picture that are made at once."""
+
+_PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+_FORMATS = ("PNG", "JPEG")
+_FRAMES = frozenset({*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC})
+"""Markers of JPEG's frame headers; the three are of tables."""
+_ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
+"""Markers without a length."""
+
+
+class PictureError(InputError):
+    """A picture cannot be used."""
+
+
+def count_pixels(data: bytes) -> int:
+    """Return how many pixels a picture has by its header.
+
+    Raises
+    ------
+    PictureError
+        If it is no PNG or JPEG, is too large, or its header is damaged.
+    """
+    size = _read_size(data)
+    if math.prod(size) > MOST_PIXELS:
+        message = fill(
+            "it has {pixels:.0f} million pixels, expected at most {most:.0f}. Save it smaller",
+            pixels=math.prod(size) / 1e6,
+            most=MOST_PIXELS / 1e6,
+        )
+        raise PictureError(message)
+    return math.prod(size)
+
+
+def check_picture(data: bytes) -> None:
+    """Decode a picture as reports do.
+
+    Raises
+    ------
+    PictureError
+        If it is no PNG or JPEG, is too large, or is damaged; the message says how to fix it.
+    """
+    _decode(data)
+
+
+def prepare_picture(data: bytes) -> tuple[bytes, str]:
+    """Return the bytes of a picture as a report embeds it, and their media type; large ones are made smaller.
+
+    Raises
+    ------
+    PictureError
+        As `check_picture`.
+    """
+    picture = _decode(data)
+    kind = "PNG" if data.startswith(_PNG) else "JPEG"
+    if max(_read_size(data)) > SHOWN or picture.mode.startswith("I"):  # 16 bits of grey, which the PDF does not show
+        target = io.BytesIO()
+        _reduce(picture).save(target, kind, quality=90)
+        data = target.getvalue()
+    return data, f"image/{kind.lower()}"
+
+
+def _decode(data: bytes) -> "Image":
+    """Return the decoded picture, a JPEG at the size nearest above what is shown."""
+    from PIL import Image
+
+    count_pixels(data)
+    try:
+        Image.open(io.BytesIO(data), formats=_FORMATS).verify()  # the sums of a PNG, which load() does not look at
+        picture = Image.open(io.BytesIO(data), formats=_FORMATS)
+        if picture.size != _read_size(data):
+            raise ValueError("two sizes")
+        picture.draft(None, (SHOWN, SHOWN))
+        picture.load()
+    except Exception:  # what Pillow raises of damaged pictures is any of ten kinds
+        raise _damaged() from None
+    return picture
+
+
+def _reduce(picture: "Image") -> "Image":
+    """Return the picture no larger than is shown, made strip by strip: whole, a copy of it would be held next to it."""
+    from PIL import Image
+
+    (width, height), factor = picture.size, math.ceil(max(picture.size) / SHOWN)
+    mode = "RGBA" if picture.has_transparency_data else "RGB"
+    small = Image.new(mode, (math.ceil(width / factor), math.ceil(height / factor)))
+    for top in range(0, height, STRIP * factor):
+        strip = picture.crop((0, top, width, min(top + STRIP * factor, height)))
+        if picture.mode.startswith("I"):
+            strip = strip.convert("I").point(lambda value: value * (1 / 256)).convert("L")
+        small.paste(strip.convert(mode).reduce(factor), (0, top // factor))
+    return small
+
+
+def _damaged() -> PictureError:
+    return PictureError(fill("it is damaged. Open it in a graphics program and save it again"))
+
+
+def _read_size(data: bytes) -> tuple[int, int]:
+    """Return width and height [pixels] as the header has them."""
+    if len(data) > MOST_BYTES:
+        raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20))
+    if data.startswith(_PNG):
+        size = struct.unpack_from(">II", data, 16) if data[12:16] == b"IHDR" and len(data) >= 24 else (0, 0)
+    elif data.startswith(_JPEG):
+        size = _read_frame(data)
+    else:
+        raise PictureError(fill("it is no PNG or JPEG picture. Save it as PNG or JPEG"))
+    if not (size[0] and size[1]):
+        raise _damaged()
+    return size
+
+
+def _read_frame(data: bytes) -> tuple[int, int]:
+    """Return width and height of the first frame of a JPEG; zeros where there is none before the data."""
+    at = 2
+    while at + 9 <= len(data) and data[at] == 0xFF:
+        marker = data[at + 1]
+        if marker in _FRAMES:
+            height, width = struct.unpack_from(">HH", data, at + 5)
+            return width, height
+        if marker == 0xFF or marker in _ALONE:  # the first fills up
+            at += 1 if marker == 0xFF else 2
+        elif marker in {0xD9, 0xDA}:
+            break
+        else:
+            at += 2 + int(struct.unpack_from(">H", data, at + 2)[0])
+    return 0, 0

@@ -1,0 +1,231 @@
+"""Files made to take time or memory: bounded, whatever the format; members of archives with odd names."""
+
+import struct
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from assess.errors import RecordError
+from assess.motion.formats import _format, parse_records, plain_csv, read_records
+from assess.motion.formats._format import MOST_CHANNELS
+from assess.motion.record import MOST_SAMPLES
+from tests.motion.writers import EAST, Signal, at2, csmip_v1, csmip_v2, mseed, sac, wave, zipped
+
+MOST_MEMORY = 400
+"""MB at the peak, of which Python and the libraries take 60."""
+LARGE = 63_900_000
+"""Bytes: the largest file that is read has 64 MB."""
+
+_CHILD = """
+import sys
+from pathlib import Path
+from assess.motion.formats import read_records
+from assess.errors import RecordError
+try:
+    print(sum(record.acceleration.size for record in read_records(Path(sys.argv[1]))), "samples")
+except RecordError as error:
+    print(error)
+try:
+    with open("/proc/self/status") as status:
+        print(next(line for line in status if line.startswith("VmHWM")).split()[1])
+except FileNotFoundError:
+    print(0)  # no Linux: the memory is not checked there
+"""
+
+
+def read_apart(folder: Path, data: bytes) -> str:
+    """Read a file in a process of its own; return what it says, having checked how much memory it took."""
+    (folder / "large").write_bytes(data)
+    done = subprocess.run(
+        [sys.executable, "-c", _CHILD, str(folder / "large")], capture_output=True, text=True, timeout=300, check=False
+    )
+    (folder / "large").unlink()
+    assert done.returncode == 0, done.stderr
+    text, _, peak = done.stdout.rstrip().rpartition("\n")
+    assert int(peak) / 1024 < MOST_MEMORY, f"{int(peak) // 1024} MB"
+    return text
+
+
+# --- plain CSV ---
+
+
+def many_rows(channels: int, cell: str = "-0.12345", end: str = "\n") -> bytes:
+    head = "time [s]," + ",".join(f"c{number} [cm/s2]" for number in range(channels)) + end
+    # Two values, or every sample would be alike.
+    rows = ["," + ",".join([cell] * channels) + end, "," + ",".join(["0.12345"[: len(cell)]] * channels) + end]
+    count = min((LARGE - len(head)) // (len(rows[0]) + 8), MOST_SAMPLES)
+    return (head + "".join(f"{row * 0.005:.3f}{rows[row % 2]}" for row in range(count))).encode()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (lambda: many_rows(1), "samples"),
+        (lambda: many_rows(3, end=",,,\r\n"), "samples"),
+        (lambda: many_rows(MOST_CHANNELS), "samples"),
+        (lambda: many_rows(3).replace(b",", b'","').replace(b"\n", b'"\n"')[:LARGE].rpartition(b"\n")[0], "samples"),
+        (lambda: many_rows(MOST_CHANNELS, "1"), "the file has more than 20,000,000 samples"),
+        (lambda: b"time [s],a [g]\n" + b"1,2\n" * (LARGE // 4 - 10), "the file has more than 4,000,000 rows"),
+        (lambda: b"time [s],a [g]\n" + b"#" * (LARGE - 100), "line 2 is longer than any row of 500 channels"),
+        (lambda: b"#" * (LARGE - 100), "the file format is not supported"),
+    ],
+)
+def test_the_largest_csv(tmp_path: Path, data: Callable[[], bytes], said: str) -> None:
+    assert said in read_apart(tmp_path, data())
+
+
+def test_a_million_channels_are_refused_at_the_headings(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plain_csv, "_read_column", pytest.fail)  # no heading is looked at
+    for count in (MOST_CHANNELS + 1, 40_000):
+        head = "time [s]," + ",".join(["c [g]"] * count) + "\n"
+        with pytest.raises(RecordError, match=r"the file has more than 500 channels: give a file with those that are"):
+            parse_records(head.encode(), "wide.csv")
+    head = "time [s]," + ",".join(["c [g]"] * 1_000_000) + "\n"
+    with pytest.raises(RecordError, match=r"line 1 is longer than any row of 500 channels: is the end of a line miss"):
+        parse_records(head.encode(), "wide.csv")
+
+
+def test_blocks_are_joined_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [f"{row / 100:.2f},{row % 7}" for row in range(500)]
+    for end in ("\n", "\r\n", "\r"):
+        text = end.join(["# station: Süd", "time [s],a [g]", *rows[:200], "", "# between", *rows[200:]])
+        monkeypatch.undo()
+        (whole,) = parse_records(text.encode(), "a.csv")
+        assert (whole.acceleration.size, whole.station) == (500, "Süd")
+        for block in (40, 41, 42, 43, 97):
+            monkeypatch.setattr(plain_csv, "BLOCK", block)
+            (one,) = parse_records(text.encode(), "a.csv")
+            assert (one.acceleration == whole.acceleration).all()
+            with pytest.raises(RecordError, match=r"line 505: '1x' is not a number"):
+                parse_records(f"{text}{end}9.99,1x".encode(), "a.csv")
+
+
+def test_no_more_than_a_block_is_taken_apart_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes, real = [], plain_csv._read_block
+
+    def measured(lines: Sequence[bytes], *more: Any) -> list[float]:
+        sizes.append(len(b"\n".join(lines)))
+        return real(lines, *more)
+
+    monkeypatch.setattr(plain_csv, "BLOCK", 1000)
+    monkeypatch.setattr(plain_csv, "_read_block", measured)
+    text = "time [s],a [g]\n" + "\n".join(f"{row / 100:.2f},{row % 7}" for row in range(5000))
+    parse_records(text.encode(), "a.csv")
+    assert max(sizes) <= 1000
+    assert len(sizes) >= len(text) // 1000
+
+
+# --- other formats ---
+
+
+def tiny_words() -> bytes:
+    head = at2().split(b"\r\n")[:3]
+    return b"\n".join([*head, b"NPTS= 4000000, DT= .01000 SEC", b"0\n1\n" * 2_000_000])
+
+
+TEXTS: dict[str, tuple[Callable[[], bytes], str]] = {
+    "words": (tiny_words, "4000000 samples"),
+    "columns": (lambda: csmip_v1(Signal(wave(4_000_000))), "4000000 samples"),
+    "short lines": (lambda: csmip_v2(EAST)[:60] + b"\r\nUNCORRECTED ACCELEROGRAM DATA\n" + b"01234\n" * 9_900_000,
+                    "no line says"),
+    "lines beyond count": (lambda: at2() + b"\n" * LARGE, "the file has more than 10,000,000 lines"),
+    "channels": (lambda: (csmip_v2(EAST)[:2700] + b"\n") * 20_000, "the file has more than 500 channels"),
+    "a line": (lambda: at2() + b"1 " * (LARGE // 2 - 10_000), "the file has more data values than the 400"),
+    "miniSEED": (lambda: mseed(EAST) * (LARGE // len(mseed(EAST)) - 1), "the number of samples is"),
+    "short records": (lambda: short_records() * (LARGE // 128), "the file has more than 250,000 records of miniSEED"),
+    "stations": (lambda: b"".join(mseed(EAST, station=f"{n:04}") for n in range(600)), "more than 500 channels"),
+    "SAC": (lambda: sac(Signal(wave(15_000_000)), unit="g"), "the number of samples is 15,000,000, expected at most"),
+    "the largest SAC": (lambda: sac(Signal(wave(4_000_000)), unit="g"), "4000000 samples"),
+}  # fmt: skip
+
+
+def short_records() -> bytes:
+    """Return a record of miniSEED of 128 bytes, with 15 samples."""
+    record = bytearray(mseed(Signal(wave(15)))[:128])
+    record[54] = 7  # the length is 2 to the power of 7
+    return bytes(record)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TEXTS)
+def test_the_largest_files_of_other_formats(tmp_path: Path, name: str) -> None:
+    build, said = TEXTS[name]
+    assert said in read_apart(tmp_path, build())
+
+
+def test_samples_of_an_archive_count_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    from assess.motion.formats import _archive
+
+    monkeypatch.setattr(_archive, "MOST_VALUES", 1000)
+    data = zipped({f"{number}.at2": at2() for number in range(3)})
+    with pytest.raises(RecordError, match=r"the file has more than 20,000,000 samples: give the channels"):
+        parse_records(data, "set.zip")
+    assert _format.MOST_VALUES == 20_000_000
+
+
+# --- SAC: fields that other readers trust ---
+
+
+def test_a_longitude_without_end_is_not_waited_for(tmp_path: Path) -> None:
+    """LCALDA says that distances follow from the coordinates, and a longitude of 1e30 never comes below 180."""
+    data = bytearray(sac(unit="m/s2"))
+    struct.pack_into("<f", data, 4 * 32, 1e30)  # STLO
+    struct.pack_into("<i", data, 4 * 108, 1)  # LCALDA
+    (tmp_path / "r.sac").write_bytes(data)
+    (record,) = read_records(tmp_path / "r.sac")
+    assert record.acceleration.size == EAST.acceleration.size
+
+
+def test_no_reader_of_others_is_imported() -> None:
+    code = "import sys, assess.motion.formats as f; f.all_formats(); print('obspy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+    sources = Path(plain_csv.__file__).parents[2].rglob("*.py")
+    assert [path.name for path in sources if "import obspy" in path.read_text(encoding="utf-8")] == []
+
+
+# --- names of members ---
+
+
+def rename(data: bytes, name: bytes) -> bytes:
+    """Return an archive of one member called x.txt under another name of whatever bytes, or none."""
+    local, central = data.index(b"PK\x03\x04"), data.index(b"PK\x01\x02")
+    size = struct.pack("<H", len(name))
+    head = data[local : local + 26] + size + data[local + 28 : local + 30] + name + data[local + 35 : central]
+    entry = data[central : central + 28] + size + data[central + 30 : central + 46] + name
+    end = data[data.index(b"PK\x05\x06") :]
+    return head + entry + end[:12] + struct.pack("<II", len(entry), len(head)) + end[20:]
+
+
+def test_a_member_without_a_name() -> None:
+    with pytest.raises(
+        RecordError,
+        match=r"^F1\.zip: nothing in the zip archive can be read as a record: member without a name: unsupported file",
+    ):
+        parse_records(rename(zipped({"x.txt": b"hello"}, 0), b""), "F1.zip")
+
+
+@pytest.mark.parametrize("inner", [at2(), b"hello"])
+def test_signs_that_cannot_be_printed_are_left_out_of_names(inner: bytes) -> None:
+    data = rename(zipped({"x.txt": inner}, 0), "bad\x1b]0;PWN\x07\u202e.txt".encode())
+    # The name is told to be UTF-8.
+    flagged = bytearray(data)
+    flagged[7] |= 8
+    flagged[data.index(b"PK\x01\x02") + 9] |= 8
+    try:
+        (record,) = parse_records(bytes(flagged), "e2.zip")
+        said = record.file
+    except RecordError as error:
+        said = str(error)
+    assert "bad\N{REPLACEMENT CHARACTER}]0;PWN\N{REPLACEMENT CHARACTER}\N{REPLACEMENT CHARACTER}.txt" in said
+    assert said.isprintable()
+
+
+def test_long_names_are_cut() -> None:
+    (record,) = parse_records(zipped({"d/" * 20_000 + "r.at2": at2()}), "set.zip")
+    assert len(record.file) < 300

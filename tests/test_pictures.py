@@ -1,0 +1,91 @@
+"""Pictures that users hand over: measured before they are decoded, decoded before a report needs them."""
+
+import io
+import struct
+
+import pytest
+from PIL import Image
+
+from assess import pictures
+from assess.pictures import MOST_PIXELS, SHOWN, PictureError, check_picture, count_pixels, prepare_picture
+from tests.pictures import claim_size, picture
+
+PNG, JPEG = picture("PNG"), picture("JPEG")
+DAMAGED = r"^it is damaged\. Open it in a graphics program and save it again$"
+
+
+@pytest.mark.parametrize(
+    "data", [PNG, JPEG, picture("JPEG", progressive=True), picture("PNG", "P"), picture("PNG", "1")]
+)
+def test_sound_pictures_are_embedded_as_they_are(data: bytes) -> None:
+    check_picture(data)
+    assert count_pixels(data) == 1200
+    assert prepare_picture(data) == (data, "image/png" if data.startswith(b"\x89PNG") else "image/jpeg")
+
+
+def test_the_size_of_a_jpeg_stands_behind_other_segments() -> None:
+    padded = (
+        JPEG[:2] + b"\xff\xff\xff\xe1" + struct.pack(">H", 12) + b"\xff\xc0\0\x0b\x08\xff\xff\xff\xff\x03" + JPEG[2:]
+    )
+    assert count_pixels(padded) == 1200
+    check_picture(padded)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"", r"it is no PNG or JPEG picture\. Save it as PNG or JPEG"),
+        (b"GIF89a" + bytes(50), r"it is no PNG or JPEG picture"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(100), DAMAGED),
+        (PNG[:20], DAMAGED),
+        (PNG[:-20], DAMAGED),
+        (PNG[:33], DAMAGED),
+        (PNG[:50] + b"\0\0" + PNG[52:], DAMAGED),  # the sum of its data is wrong
+        (PNG[:30] + b"\0\0" + PNG[32:], DAMAGED),  # and that of its header
+        (claim_size(PNG, 0, 30), DAMAGED),
+        (PNG[:-16] + b"\0\0\0\0" + PNG[-12:], DAMAGED),
+        (claim_size(PNG, 12_000, 12_000), r"it has 144 million pixels, expected at most 50\. Save it smaller"),
+        (JPEG[:3], DAMAGED),
+        (JPEG[: len(JPEG) // 2], DAMAGED),
+        (b"\xff\xd8" + b"\xff\xe0\0\0" * 20, DAMAGED),
+        (b"\xff\xd8\xff\xc0\0\x11\x08\xff\xff\xff\xff\x03", r"it has 4295 million pixels"),
+        (PNG + bytes(10 * 2**20), r"it is larger than 10 MB\. Save it smaller"),
+    ],
+)
+def test_what_is_wrong(data: bytes, message: str) -> None:
+    for use in (check_picture, prepare_picture):
+        with pytest.raises(PictureError, match=message):
+            use(data)
+
+
+def test_nothing_is_decoded_beyond_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Image, "open", pytest.fail)
+    side = int(MOST_PIXELS**0.5) + 1
+    with pytest.raises(PictureError, match="million pixels"):
+        check_picture(claim_size(PNG, side, side))
+
+
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "L", "1", "P", "I;16"])
+def test_large_pictures_are_made_smaller(mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pictures, "STRIP", 7)
+    data, kind = prepare_picture(picture("PNG", mode, (2 * SHOWN + 50, 300)))
+    small = Image.open(io.BytesIO(data))
+    assert (small.format, kind, small.size) == ("PNG", "image/png", (1084, 100))
+    assert (small.mode == "RGBA") == (mode == "RGBA")
+    if mode.startswith("RGB"):
+        assert small.convert("RGB").getpixel((500, 40)) == (200, 30, 30)
+        assert small.convert("RGB").getpixel((600, 60)) == (0, 0, 0)
+
+
+def test_a_large_jpeg_stays_one() -> None:
+    data, kind = prepare_picture(picture("JPEG", "RGB", (5000, 300)))
+    assert (Image.open(io.BytesIO(data)).format, kind) == ("JPEG", "image/jpeg")
+    assert max(Image.open(io.BytesIO(data)).size) <= SHOWN
+
+
+def test_sixteen_bits_of_grey_become_eight() -> None:
+    deep = Image.new("I;16", (20, 10), 30_000)
+    target = io.BytesIO()
+    deep.save(target, "PNG")
+    data, _ = prepare_picture(target.getvalue())
+    assert Image.open(io.BytesIO(data)).getpixel((3, 3)) == (117, 117, 117)

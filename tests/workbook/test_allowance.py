@@ -1,0 +1,56 @@
+"""What the files of a workbook may hold together: each cell that asks for more is named."""
+
+from pathlib import Path
+
+import pytest
+
+from assess.workbook import allowance
+from tests.motion.writers import EAST, at2, zipped
+from tests.pictures import picture
+from tests.workbook.books import errors_of, read, write
+
+FEWER = "Name fewer files, with the channels that are needed, cut to the shaking."
+
+
+def floors_with(*records: str) -> list[list[str]]:
+    return [["Floor", "Record X"], *[[str(number), record] for number, record in enumerate(records, start=1)]]
+
+
+@pytest.fixture
+def three(tmp_path: Path) -> Path:
+    """Return a workbook with a record on each of three floors; two of them are in archives."""
+    (tmp_path / "a.at2").write_bytes(at2())
+    for name in "bc":
+        (tmp_path / f"{name}.zip").write_bytes(zipped({"r.at2": at2()}, 0))
+    return write(tmp_path, floors=floors_with("a.at2", "b.zip", "c.zip"))
+
+
+def test_bytes(three: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(allowance, "MOST_RECORD_BYTES", 2 * len(at2()) + 500)
+    assert errors_of(three) == {f"Floors!B4: the record files of this workbook have more than 0 MB. {FEWER}"}
+
+
+def test_samples(three: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(allowance, "MOST_RECORD_SAMPLES", 2 * EAST.acceleration.size)
+    assert errors_of(three) == {f"Floors!B4: the record files of this workbook have more than 800 samples. {FEWER}"}
+
+
+def test_archives(three: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(allowance, "MOST_ARCHIVES", 1)
+    assert errors_of(three) == {f"Floors!B4: this workbook names more than 1 zip archives. {FEWER}"}
+
+
+def test_a_file_counts_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(allowance, "MOST_RECORD_SAMPLES", EAST.acceleration.size)
+    (tmp_path / "a.at2").write_bytes(at2())
+    assert len(read(tmp_path, floors=floors_with("a.at2", "a.at2#1", "a.at2")).floors) == 3
+
+
+def test_pixels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in "ab":
+        (tmp_path / f"{name}.png").write_bytes(picture("PNG"))
+    rows = [["Floor", "PFA X [g]", "Plan image"], *([n, 0.3, one] for n, one in enumerate(["a.png", "a.png", "b.png"]))]
+    monkeypatch.setattr(allowance, "MOST_PICTURE_PIXELS", 1200)
+    assert errors_of(write(tmp_path, [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A", 0, 40, 180]], rows)) == {
+        "Floors!C4: the pictures of this workbook have more than 0 million pixels. Save them smaller, or name fewer."
+    }
