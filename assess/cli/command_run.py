@@ -124,7 +124,7 @@ def command(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
         route_risk=route_risk,
     )  # fmt: skip
-    _check_folder(folder)
+    _check_folder(folder, wanted)
     options = _read_options(language, templates, accessible)
     with show_progress() as progress:
         results = _assess(path, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
@@ -188,12 +188,12 @@ def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
     return wanted
 
 
-def _check_folder(folder: Path) -> None:
+def _check_folder(folder: Path, formats: Sequence[str]) -> None:
     from assess.report import check_folder
 
     if folder.exists() and not folder.is_dir():
         raise InputError(f"--out: {folder} is a file; name a folder")
-    check_folder(folder)
+    check_folder(folder, formats)
 
 
 def _check_motions(verify: str, runs: str | None, seed: int | None, motions: Path | None, scale: bool) -> None:

@@ -1,30 +1,29 @@
 """Reports: results in, files out, whole or not at all.
 
-Every file is first written into a folder of its own beside the reports and then moved into place; the moves come last
-and take no space. A disk that fills, or a process that is killed, leaves the old report as it was.
+The reports in a folder are of one run. Every file is first written into a folder beside them, which then takes their
+place (`assess.delivery`): a disk that fills, or a process that is killed, leaves the reports of the earlier run as they
+were. A run replaces and removes only what results.json lists (`assess.report.ownership`), so that it always writes one.
 """
 
 import os
-import shutil
-import tempfile
-import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from assess.delivery.deliver import check_moves, deliver, stage_for
+from assess.delivery.disk import find_digest, flush_file
+from assess.delivery.stages import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
+from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
 from assess.results import Results
 
 if TYPE_CHECKING:
     from assess.report.content import Content
-
-_STAGE = ".assess-writing-"
-_STALE = 24 * 3600.0
 
 
 @dataclass(frozen=True)
@@ -35,6 +34,13 @@ class Job:
     options: ReportOptions
     progress: Progress
     stage: Path
+    listed: dict[str, str | None] = field(default_factory=dict)
+    """The files of the run but for results.json, with their SHA-256; None of one that carries results.json."""
+
+    @property
+    def written(self) -> list[str]:
+        """The names of the files of the run."""
+        return [*self.listed, FILES["json"]]
 
     @cached_property
     def content(self) -> "Content":
@@ -43,13 +49,12 @@ class Job:
 
         return self.progress.wait_for(lambda: build_content(self.results))
 
-    @cached_property
-    def data(self) -> Path:
-        """results.json, written once: the PDF carries it as well."""
+    def write_data(self) -> Path:
+        """Write results.json, with the list of the other files, and return it."""
         from assess.report.data import write_json
 
         path = self.stage / FILES["json"]
-        write_json(self.results, path, self.progress)
+        write_json(self.results, path, self.progress, files=dict(sorted(self.listed.items())))
         return path
 
 
@@ -58,8 +63,11 @@ class Job:
 
 def _write_pdf(job: Job, path: Path) -> None:
     from assess.report.pages.pdf import write_pdf
+    from assess.report.pages.pdf_seal import seal
 
-    write_pdf(job.content, path, job.options, job.progress, data=job.data)
+    write_pdf(job.content, path, job.options, job.progress, data=job.stage / FILES["json"])
+    if not seal(path, job.stage / FILES["json"]):
+        job.listed[path.name] = find_digest(path)
 
 
 def _write_xlsx(job: Job, path: Path) -> None:
@@ -75,7 +83,7 @@ def _write_html(job: Job, path: Path) -> None:
 
 
 def _write_json(job: Job, _path: Path) -> None:
-    job.data  # noqa: B018 - written on first use
+    job.write_data()
 
 
 def _write_csv(job: Job, path: Path) -> None:
@@ -100,6 +108,8 @@ _WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
 }
 FILES: Mapping[str, str] = {name: file for name, (file, _) in _WRITERS.items()}
 """The formats, and the file that each is written to."""
+_LAST = ("json", "pdf")
+"""What is written last: results.json, which lists the files before it, and the PDF, which carries it."""
 FORMATS = tuple(name for name in FILES if name != "npz")
 """The formats that are written where none are asked for; the outcomes of every motion are for other programs."""
 
@@ -119,9 +129,10 @@ def write_reports(
     results : Results
         From `assess.run`.
     folder : str or Path
-        Where to; made where it is missing. Other files in it are left alone.
+        Where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever their
+        format; other files are left alone.
     formats : str or sequence of str
-        Of "pdf", "xlsx", "html", "json", "csv", "npz"; all but the last by default.
+        Of "pdf", "xlsx", "html", "json", "csv", "npz"; all but the last by default. results.json is always written.
     options : ReportOptions, optional
         Language, templates and kind of PDF; by default in the workbook's language, with the standard templates.
     progress : Progress, optional
@@ -135,7 +146,8 @@ def write_reports(
     Raises
     ------
     InputError
-        If a format is unknown, or a template of the firm's own cannot be used.
+        If a format is unknown, a template of the firm's own cannot be used, or a file of the user's stands at the name
+        of a report.
     PdfUnavailableError
         If the native libraries of the PDF are missing; all other formats have been written.
     OutputError
@@ -150,48 +162,81 @@ def write_reports(
         raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0], known=known))
     folder, options = Path(folder), options or ReportOptions()
     options = options if options.language else replace(options, language=results.provenance.language)
+    check_folder(folder, formats)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        _sweep(folder)
-        stage = Path(tempfile.mkdtemp(prefix=_STAGE, dir=folder))
+        with stage_for(folder) as stage, options.spoken():
+            job = Job(results, options, progress, stage / NEW)
+            missing = _write_all(job, folder, _arrange(formats))
+            deliver(stage, folder, lambda target: find_reports(target, job.written), progress)
     except OSError as error:
-        why = error.strerror or str(error)
-        raise OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why)) from None
-    try:
-        with options.spoken():
-            return _write_staged(Job(results, options, progress, stage), folder, stage, tuple(dict.fromkeys(formats)))
-    finally:
-        shutil.rmtree(stage, ignore_errors=True)
+        raise _fault(folder, error) from None
+    if missing:
+        raise missing
+    return {name: folder / file for name, file in FILES.items() if file in job.written}
 
 
-def check_folder(folder: Path) -> None:
-    """Raise OutputError if reports cannot be written to `folder`, which need not be there yet: before the long work."""
+def _arrange(formats: Sequence[str]) -> list[str]:
+    """Return formats in the order in which they are written: results.json lists the others, and the PDF carries it."""
+    wanted = {*formats, "json"}
+    return [name for name in FILES if name in wanted - set(_LAST)] + [name for name in _LAST if name in wanted]
+
+
+def _fault(folder: Path, error: OSError) -> OutputError:
+    why = error.strerror or str(error)
+    where = Path(error.filename2 or error.filename or folder)
+    if where.name in FILES.values():
+        return OutputError(
+            fill(
+                "{path} could not be replaced: {why}. Is it open in another program?", path=folder / where.name, why=why
+            )
+        )
+    return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))
+
+
+def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
+    """Check before the long work that files can be written to a folder, which need not exist yet.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to.
+    formats : sequence of str
+        The formats of reports that are to be written, if it is about reports.
+
+    Raises
+    ------
+    OutputError
+        If nothing can be written there.
+    InputError
+        If a folder or a file of the user's stands at the name of a report; see `assess.report.ownership`.
+    """
     there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
     if not (there.is_dir() and os.access(there, os.W_OK)):
         why = fill("you have no right to write there") if there.is_dir() else fill("{path} is a file", path=there)
         raise OutputError(fill("{folder} cannot be written to: {why}. Name another folder.", folder=folder, why=why))
+    if formats and folder.is_dir():
+        try:
+            check_moves(folder)
+        except OSError as error:
+            raise _fault(folder, error) from None
+        find_reports(folder, {FILES[name] for name in (*formats, "json")})
 
 
-def _sweep(folder: Path) -> None:
-    """Remove what a killed run left behind over a day ago; a run that is still going is younger than that."""
-    for old in folder.glob(f"{_STAGE}*"):
-        if time.time() - old.stat().st_mtime > _STALE:
-            shutil.rmtree(old, ignore_errors=True)
-
-
-def _write_staged(job: Job, folder: Path, stage: Path, formats: Sequence[str]) -> dict[str, Path]:
+def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailableError | None:
+    """Write the formats into the stage; return why there is no PDF, where it was to be written."""
     missing: PdfUnavailableError | None = None
-    written: dict[str, Path] = {}
-    with job.progress.stage("rendering", ", ".join(formats)) as reports:
+    with job.progress.stage("rendering", ", ".join(name for name in FILES if name in formats)) as reports:
         for at, name in enumerate(formats):
             reports.at(at / len(formats))
-            file, write = _WRITERS[name]
+            file = FILES[name]
+            if name == "json":
+                job.listed.update((FILES[each], None) for each in formats[at + 1 :])
             try:
-                write(job, stage / file)
-                _flush(stage / file)
-                written[name] = folder / file
+                _write_one(job, name)
             except PdfUnavailableError as error:
                 missing = error
+                del job.listed[file]
+                job.write_data()
             except OSError as error:
                 why = error.strerror or str(error)
                 text = fill(
@@ -199,19 +244,15 @@ def _write_staged(job: Job, folder: Path, stage: Path, formats: Sequence[str]) -
                 )
                 raise OutputError(text) from None
         reports.check()
-    for name, path in written.items():
-        try:
-            (stage / FILES[name]).replace(path)
-        except OSError as error:
-            why = error.strerror or str(error)
-            text = fill("{path} could not be replaced: {why}. Is it open in another program?", path=path, why=why)
-            raise OutputError(text) from None
-    if missing:
-        raise missing
-    return written
+    return missing
 
 
-def _flush(path: Path) -> None:
-    """Have the system put the file's bytes on the disk, where a full disk shows."""
-    with path.open("rb+") as file:
-        os.fsync(file.fileno())
+def _write_one(job: Job, name: str) -> None:
+    """Write a format into the stage, down to the disk, and list it."""
+    file, write = _WRITERS[name]
+    write(job, job.stage / file)
+    flush_file(job.stage / file)
+    if name not in _LAST:
+        job.listed[file] = find_digest(job.stage / file)
+    elif job.listed.get(file):
+        job.write_data()  # a PDF without identifiers

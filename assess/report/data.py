@@ -31,12 +31,17 @@ _MOTION = Shape(MOTION_FIELDS)
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 
-def write_json(results: Results, path: Path, progress: Progress = SILENT) -> None:
-    """Write results.json; `SCHEMA` is the JSON Schema of its shape. `progress` is checked row by row."""
+def write_json(
+    results: Results, path: Path, progress: Progress = SILENT, *, files: Mapping[str, str | None] | None = None
+) -> None:
+    """Write results.json; `SCHEMA` is the JSON Schema of its shape. `progress` is checked row by row.
+
+    `files` are the other files of the run, with their SHA-256 where it is known.
+    """
     shape = Shape(item_fields(results))
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write("{\n")
-        for name, value in describe_run(results).items():
+        for name, value in describe_run(results, files).items():
             file.write(f" {json.dumps(name)}: {_dump(value)},\n")
         _write_list(file, "items", map(shape.nest, progress.checked(results)))
         file.write(",\n")
@@ -66,8 +71,8 @@ def _write_list(file: TextIO, name: str, records: Iterable[Mapping[str, Any]], i
     file.write(f"\n{indent} ]")
 
 
-def describe_run(results: Results) -> dict[str, Any]:
-    """Return what stands before the items: the program and its settings, the building, the floors."""
+def describe_run(results: Results, files: Mapping[str, str | None] | None = None) -> dict[str, Any]:
+    """Return what stands before the items: the program, its settings and files, the building, the floors."""
     origin = results.provenance
     return {
         "schema": VERSION,
@@ -85,6 +90,7 @@ def describe_run(results: Results) -> dict[str, Any]:
                 "motions": dict(origin.suite.files) if origin.suite else {},
             },
             **_fitted_models(results),
+            **({} if files is None else {"files": dict(files)}),
         },
         "building": building_record(results),
         "floors": [_floor_record(results, floor.floor) for floor in results.floor_rows],

@@ -24,7 +24,7 @@ from assess.risk import RiskClass
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
-VERSION = "4.1"
+VERSION = "4.2"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
@@ -183,8 +183,12 @@ def _assess() -> Schema:
             "fitted_models": _map(fitted)
             | {"propertyNames": {"pattern": "^fitted_[a-z0-9_]+$"},
                "description": "The user's own models among the methods, by key; absent where there are none."},
+            "files": _map(_or_null(HASH))
+            | {"description": "The other files of the run, by name, with their SHA-256: a later run into the folder "
+               "replaces or removes these alone. null: a PDF, which carries this file; its file identifier tells "
+               "whether it was changed. Absent where the results were not written as a report."},
         },
-        optional=("fitted_models",),
+        optional=("fitted_models", "files"),
     )  # fmt: skip
 
 

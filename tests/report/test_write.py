@@ -1,5 +1,6 @@
 """Reports appear whole or not at all: a full disk, a killed process, a missing library."""
 
+import hashlib
 import json
 import os
 import resource
@@ -11,7 +12,10 @@ import sys
 import pytest
 
 import assess
-from assess.report import FILES, FORMATS
+from assess.report import FILES, FORMATS, check_folder
+from assess.report.data import write_json
+from assess.report.ownership import read_list
+from tests.cli.calling import error, run
 from tests.workbooks import assessed, write
 
 DEFAULT = {FILES[name] for name in FORMATS}
@@ -60,11 +64,123 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path):
         assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("json",))
 
 
-def test_other_files_in_the_folder_are_left_alone(tmp_path):
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "mine.txt").write_text("mine")
-    assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("json", "csv"))
-    assert (tmp_path / "out" / "mine.txt").read_text() == "mine"
+# ---------------------------------------------------------------- whose a file is
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    return assessed(tmp_path_factory.mktemp("results") / "w.xlsx")
+
+
+def _names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+@pytest.mark.parametrize("has_other", [False, True])
+def test_the_reports_in_a_folder_are_of_one_run(tmp_path, results, has_other):
+    """Reports of an earlier run in other formats go, whether the folder is exchanged or its files are moved."""
+    own = ["mine.txt"] if has_other else []
+    for name in own:
+        (tmp_path / name).write_text("mine")
+    assess.write_reports(results, tmp_path, ("html", "xlsx", "csv"))
+    assert _names(tmp_path) == sorted(["items.csv", "report.html", "report.xlsx", "results.json", *own])
+    written = assess.write_reports(results, tmp_path, "csv")
+    assert set(written) == {"json", "csv"}
+    assert _names(tmp_path) == sorted(["items.csv", "results.json", *own])
+    assert all((tmp_path / name).read_text() == "mine" for name in own)
+
+
+def test_results_list_the_files_of_their_run(tmp_path, results):
+    assess.write_reports(results, tmp_path, ("html", "csv"))
+    listed = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["assess"]["files"]
+    assert listed == {
+        name: hashlib.sha256((tmp_path / name).read_bytes()).hexdigest() for name in ("items.csv", "report.html")
+    }
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda path: path.write_text("mine"), "would be replaced, but it is not a report of an earlier run"),
+        (lambda path: path.mkdir(), "is a folder or a link, where a report is to be written"),
+        (lambda path: path.symlink_to("elsewhere"), "is a folder or a link, where a report is to be written"),
+    ],
+)
+@pytest.mark.parametrize("name", ["report.html", "results.json"])
+def test_what_is_in_the_way_is_named_before_the_run(tmp_path, results, name, make, message):
+    out = tmp_path / "out"
+    out.mkdir()
+    make(out / name)
+    with pytest.raises(assess.InputError, match=f"{name} {message}"):
+        check_folder(out, ("html",))
+    with pytest.raises(assess.InputError, match=f"{name} {message}"):
+        assess.write_reports(results, out, "html")
+    assert (_names(out), _names(tmp_path)) == ([name], ["out"])
+    check_folder(tmp_path / "other", ("html",))
+
+
+def test_the_command_names_it_before_it_reads_the_workbook(tmp_path):
+    (tmp_path / "out" / "report.html").mkdir(parents=True)
+    text = error(run("run", tmp_path / "missing.xlsx", "--out", tmp_path / "out"))
+    assert "report.html is a folder or a link" in text
+
+
+def test_a_file_of_the_users_that_is_not_in_the_way_stays(tmp_path, results):
+    (tmp_path / "report.pdf").write_text("mine")
+    assess.write_reports(results, tmp_path, "csv")
+    assert (tmp_path / "report.pdf").read_text() == "mine"
+
+
+def test_a_report_that_was_changed_is_the_users(tmp_path, results):
+    """Whether its format is written again or not: next to a new report it would be of another run."""
+    assess.write_reports(results, tmp_path, ("html", "csv"))
+    before = _contents(tmp_path)
+    with (tmp_path / "report.html").open("a") as file:
+        file.write("<!-- signed -->")
+    for formats in ("html", "csv"):
+        with pytest.raises(assess.InputError, match=r"report\.html was changed after it was written"):
+            assess.write_reports(results, tmp_path, formats)
+    (tmp_path / "report.html").rename(tmp_path / "signed.html")
+    assess.write_reports(results, tmp_path, "csv")
+    assert _names(tmp_path) == ["items.csv", "results.json", "signed.html"]
+    assert (tmp_path / "items.csv").read_bytes() == before["items.csv"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("change", [lambda data: data + b"\n", lambda data: data.replace(b"endobj", b"Endobj", 1)])
+def test_a_pdf_that_was_changed_is_the_users(tmp_path, results, change):
+    assess.write_reports(results, tmp_path, "pdf")
+    assess.write_reports(results, tmp_path, "pdf")
+    path = tmp_path / "report.pdf"
+    path.write_bytes(change(path.read_bytes()))
+    with pytest.raises(assess.InputError, match=r"report\.pdf was changed after it was written"):
+        assess.write_reports(results, tmp_path, "csv")
+
+
+def test_reports_of_a_version_without_a_list_are_known_by_their_names(tmp_path, results):
+    write_json(results, tmp_path / "results.json")
+    for name in ("report.html", "items.csv", "mine.txt", "annex.pdf"):
+        (tmp_path / name).write_text("old")
+    assess.write_reports(results, tmp_path, "csv")
+    assert _names(tmp_path) == ["annex.pdf", "items.csv", "mine.txt", "results.json"]
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{}", '{"a": 1}', "[]", '{"schema": "1.0"}', '{"schema": "1.0", "assess": {}}', "{" * 5000]
+)
+def test_results_of_another_program_list_nothing(tmp_path, text):
+    (tmp_path / "results.json").write_text(text)
+    assert read_list(tmp_path / "results.json") == {}
+
+
+def test_a_list_leads_out_of_no_folder(tmp_path):
+    listed = {"../mine.txt": None, "a/b": None, "..": None, "c:x": None, "report.html": "0" * 64}
+    text = json.dumps({"schema": "4.2", "assess": {"version": "1", "files": listed}}, indent=2)
+    (tmp_path / "results.json").write_text(text)
+    assert read_list(tmp_path / "results.json") == {"report.html": "0" * 64, "results.json": None}
+
+
+# ---------------------------------------------------------------- a full disk, a killed process
 
 
 @pytest.mark.parametrize(
@@ -108,7 +224,7 @@ def test_a_disk_that_fills_leaves_the_old_workbook_whole(tmp_path, limit):
 
 @pytest.mark.slow
 def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
-    """Killed at six moments, from the first file on: what is in place is all old or a whole new file, never a part."""
+    """Killed at six moments, from the first file on: what is in place is all old or all new."""
     items = [{"item": f"i{at}", "floor": "1", "breadth": 30, "height": 180} for at in range(400)]
     old, new, out = write(tmp_path / "old.xlsx"), write(tmp_path / "new.xlsx", items), tmp_path / "out"
     formats = "json,csv,xlsx,html"
@@ -124,14 +240,15 @@ def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
         process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         size = wanted["results.json"] * moment // 6
         while process.poll() is None:
-            parts = [part for stage in out.glob(".assess-writing-*") for part in stage.glob("*")]
+            parts = list(tmp_path.glob(".assess-writing-*/new/*"))
             if sum(part.stat().st_size for part in parts if part.exists()) >= size and parts:
                 process.send_signal(signal.SIGKILL)
                 process.wait()
                 killed += 1
-        for name, data in before.items():
-            now = (out / name).read_bytes()
-            assert now == data or len(now) == wanted[name], name
+        now = _contents(out)
+        assert now == before or {name: len(data) for name, data in now.items()} == wanted
+    assert _run(new, out, "--formats", formats).returncode == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"old.xlsx", "new.xlsx", "whole", "before", "out"}
     assert killed
 
 
@@ -163,10 +280,10 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path):
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
     )
-    while process.poll() is None and not list(out.glob(".assess-writing-*/*")):
+    while process.poll() is None and not list(tmp_path.glob(".assess-writing-*/new/*")):
         os.sched_yield()
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=60)
-    assert process.returncode != 0
-    assert "Traceback" not in errors
-    assert list(out.iterdir()) == []
+    assert process.returncode == 130
+    assert errors.endswith("\nInterrupted; nothing was written.\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["new.xlsx"]
