@@ -240,10 +240,10 @@ def _forms(text: object) -> tuple[str, ...]:
 
 
 def _check(path: Path, ids: tuple[str, ...], texts: tuple[str, ...]) -> None:
-    wanted = set().union(*map(placeholders, ids))
+    counted = {"n"} if len(ids) > 1 else set()
     for text in texts:
-        try:
-            off = placeholders(text) ^ wanted - ({"n"} if len(ids) > 1 else set())
+        try:  # what is said of one may hold other names than what is said of many
+            off = min((placeholders(text) ^ placeholders(one) - counted for one in ids), key=len)
         except ValueError as error:
             why = str(error)
             message = fill(

@@ -261,7 +261,7 @@ def test_an_unknown_type_is_an_error_where_a_size_is_missing(tmp_path: Path, lab
     assert any("E2: Type 'Bed' is not in the Catalogue sheet. Choose" in one for one in errors_of(path))
 
 
-@pytest.mark.parametrize("label", ["Plan", "Plan image", "plan  IMAGE"])
+@pytest.mark.parametrize("label", ["Plan", "Plan image", "plan  IMAGE", "Immagine della pianta"])
 def test_an_earlier_label_is_read(tmp_path: Path, label: str) -> None:
     assert errors_of(write(tmp_path, floors=[["Floor", "PFA X [g]", label], ["1", 0.5, "none.png"]])) == {
         "Floors!C2: the file 'none.png' was not found next to the workbook. Check the name, or copy the file there."
