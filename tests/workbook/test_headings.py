@@ -1,0 +1,93 @@
+"""What is written above the columns and beside the lines can be read whole, in every language."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import pytest
+
+from assess.i18n import LANGUAGES, load_catalogue, speaking
+from assess.workbook.headings import count_heading_lines, count_text_lines, fit_width
+from assess.workbook.schema import CLASS, SHEETS
+from assess.workbook.template import CHECKED, ROWS, write_workbook
+from tests.workbook.books import read_part
+
+LETTER, LINE = 1.1, 15
+"""Width of a bold letter [digits] and height of a line [points]: those of Calibri 11, somewhat on the safe side."""
+
+
+@pytest.fixture(scope="module", params=[(code, units) for code in LANGUAGES for units in ("si", "imperial")])
+def path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    code, units = request.param
+    path = tmp_path_factory.mktemp(f"{code}-{units}") / "blank.xlsx"
+    with speaking(load_catalogue(code)):
+        write_workbook(path, units=units)
+    return path
+
+
+@pytest.fixture(scope="module")
+def pages(path: Path) -> list[Any]:
+    """Return Help, and the sheets of `SHEETS`."""
+    return openpyxl.load_workbook(path).worksheets[: len(SHEETS) + 1]
+
+
+def test_no_header_of_a_table_is_cut(pages: list[Any]) -> None:
+    for sheet, page in zip(SHEETS, pages[1:], strict=True):
+        if sheet.layout == "form":
+            continue
+        for cell in page[1]:
+            width, words = _width(page, cell.column), [LETTER * len(word) for word in str(cell.value).split()]
+            assert max(words) <= width, cell.value
+            assert (page.row_dimensions[1].height or LINE) >= LINE * math.ceil(sum(words) / width), cell.value
+
+
+def test_no_label_or_help_is_cut(pages: list[Any]) -> None:
+    """Of the lines of Building, and of Help."""
+    for page, labels, helps in ((pages[1], 1, 3), (pages[0], 2, 3)):
+        for row in range(1, page.max_row + 1):
+            label, text = (str(page.cell(row, at).value or "") for at in (labels, helps))
+            assert LETTER * len(label) <= _width(page, labels), label
+            needed = math.ceil(0.85 * len(text) / _width(page, helps))
+            assert (page.row_dimensions[row].height or LINE) >= LINE * needed, text
+
+
+def _width(page: Any, at: int) -> float:
+    """Return the width of a column; openpyxl gives neighbours of the same width as one."""
+    found = (one for one in page.column_dimensions.values() if one.min <= at <= one.max)
+    return float(next(found).width)
+
+
+def test_lines_of_a_heading() -> None:
+    assert fit_width("Kaneko-Hayashi", 10) > LETTER * 14
+    assert fit_width("B/H", 10) == 10
+    assert [count_heading_lines(text, 12) for text in ("Item", "Edge distance [m]")] == [1, 3]
+    assert count_heading_lines("Height [cm]", 14) == 2, "the button of the filter would cover its unit"
+    assert [count_text_lines(text, 20) for text in ("", "a b", "twenty letters or so, and more")] == [1, 1, 2]
+
+
+# ---------------------------------------------------------------- rows that are prepared
+
+
+def test_the_prepared_items_are_small(path: Path) -> None:
+    """A workbook opens the faster the less it holds."""
+    assert len(read_part(path, "xl/worksheets/sheet4.xml")) < 1e6
+
+
+def test_who_fills_in_more_rows_than_prepared_learns_what_to_do(path: Path, pages: list[Any]) -> None:
+    last, page = ROWS["Items"] + 1, pages[3]
+    assert page["B1"].comment
+    assert str(page[f"B{last}"].value).startswith("=")
+    assert page[f"B{last + 1}"].value is None
+    area = f"B{last + 1}:B{CHECKED['Items'] + 1}"
+    (note,) = [one for one in page.data_validations.dataValidation if str(one.sqref) == area]
+    assert len(note.promptTitle) <= 32
+    assert 0 < len(note.prompt) <= 255
+    (rule,) = next(one for one in page.conditional_formatting if str(one.sqref) == area).rules
+    assert rule.formula == [f'AND($A{last + 1}<>"",$B{last + 1}="")']
+    assert any(f" {ROWS['Items']} " in str(row[0].value) for row in pages[0].iter_rows(max_row=15))
+
+
+def test_the_class_stays_in_view(pages: list[Any]) -> None:
+    assert pages[3].freeze_panes == "C2"
+    assert pages[3]["B1"].value in (CLASS, "Classe (formula)")
