@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from assess.i18n import Text, fill
-from assess.workbook.values import CellError
+from assess.workbook.habits import CellError
 
 MOST_RECORD_BYTES = 256_000_000
 """Bytes of the files of recorded motion that a workbook names; a set of a large building has 30 million."""
