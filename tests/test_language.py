@@ -112,7 +112,9 @@ def test_one_and_many(tmp_path):
 
 
 def test_one_may_hold_other_names_than_many(tmp_path):
-    lines = 'msgid "{a} box"\nmsgid_plural "{n:,} boxes: {b}"\nmsgstr[0] "{a} scatola"\nmsgstr[1] "{n:,} scatole: {b}"\n'
+    lines = (
+        'msgid "{a} box"\nmsgid_plural "{n:,} boxes: {b}"\nmsgstr[0] "{a} scatola"\nmsgstr[1] "{n:,} scatole: {b}"\n'
+    )
     with speaking(load_catalogue("it", write(tmp_path, lines))):
         assert [gettext(nfill("{a} box", "{n:,} boxes: {b}", n, a="A", b="B")) for n in (1, 2)] == [
             "A scatola",

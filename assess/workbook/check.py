@@ -97,8 +97,8 @@ def _unknown(table: Table, name: str, row: Row, sheet: str, near: str | None, *,
         fix = fill("Choose one of the {sheet} sheet, or add it there. Did you mean {near}?", **values)
     if is_spare:
         message = fill("{label} {name} is not in the {sheet} sheet; the sizes typed in its row are used.", **values)
-        return table.problem(name, row, message, fix, "warning")
-    return table.problem(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
+        return table.habit(name, row, message, fix, "warning")
+    return table.habit(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
 
 
 def _lacks_sheet(table: Table, name: str, named: Sequence[Row], sheet: str) -> Problem:
@@ -190,7 +190,7 @@ def check_velocities(tables: Tables) -> Iterator[Problem]:
             name, letter = f"pfv_{axis.lower()}", axis.lower()
             if row.get(name) is not None and not table.says(row, f"pfa_{letter}", f"record_{letter}"):
                 message = fill("PFV {axis} is filled in without PFA {axis} and would not be used.", axis=axis)
-                yield table.problem(name, row, message, fill("Fill in PFA {axis}, or clear PFV {axis}.", axis=axis))
+                yield table.habit(name, row, message, fill("Fill in PFA {axis}, or clear PFV {axis}.", axis=axis))
 
 
 # ---------------------------------------------------------------- furniture
@@ -226,7 +226,7 @@ def check_items(tables: Tables) -> Iterator[Problem]:
             elif not table.spoilt("type", row) and (is_listed or row.get("type") is None):
                 values = {"label": table.label(name), "type": table.label("type")}
                 message = fill("{label} is blank and no {type} gives it.", **values)
-                yield table.problem(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
+                yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
         yield from _check_sizes(table, row, sizes)
         yield from _check_position(table, row)
         yield from _check_axis(table, row)
@@ -243,13 +243,13 @@ def _check_bracket(table: Table, row: Row, height: float | None) -> Iterator[Pro
             "{label} {at:g} cm is greater than {other} {height:g} cm.",
             label=label, at=at * 100, other=table.label("height"), height=height * 100,
         )  # fmt: skip
-        yield table.problem("bracket_height", row, message, fill("A bracket holds a piece at its top or below."))
+        yield table.habit("bracket_height", row, message, fill("A bracket holds a piece at its top or below."))
     given = next((name for name in ("bracket_height", "bracket_capacity") if row.get(name) is not None), None)
     if given is not None and row.get("anchored") == "no":
         values = {"label": table.label(given), "anchored": table.label("anchored")}
         message = fill("{label} is given, but {anchored} is no.", **values)
         fix = fill("Set {anchored} to yes or partly, or clear {label}.", **values)
-        yield table.problem(given, row, message, fix, "warning")
+        yield table.habit(given, row, message, fix, "warning")
 
 
 def _describe_no_column(table: Table, name: str, rows: Sequence[Row]) -> Problem:
@@ -271,7 +271,7 @@ def _check_plan_sides(table: Table, row: Row, breadth: float | None, width: floa
             label=label, breadth=breadth * 100, other=table.label("width"), width=width * 100,
         )  # fmt: skip
         fix = fill("{label} is the shorter plan side: exchange the two.", label=label)
-        yield table.problem("breadth", row, message, fix)
+        yield table.habit("breadth", row, message, fix)
 
 
 def _check_sizes(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Problem]:
@@ -280,7 +280,7 @@ def _check_sizes(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Pr
     if breadth is not None and height is not None and breadth > height * (1 + ROUNDING):
         values = {"breadth": breadth * 100, "height": height * 100}
         message = fill("Breadth {breadth:g} cm is greater than Height {height:g} cm.", **values)
-        yield table.problem("breadth", row, message, fill("Are the two exchanged?"), "warning")
+        yield table.habit("breadth", row, message, fill("Are the two exchanged?"), "warning")
 
 
 def _check_position(table: Table, row: Row) -> Iterator[Problem]:
@@ -288,10 +288,10 @@ def _check_position(table: Table, row: Row) -> Iterator[Problem]:
     if (x is not None or y is not None) and (quantity or 1) > 1:
         label = table.label("quantity")
         message = fill("{label} is {quantity} on a row with a position.", label=label, quantity=quantity)
-        yield table.problem("quantity", row, message, fill("Write one row a piece, or clear X and Y."))
+        yield table.habit("quantity", row, message, fill("Write one row a piece, or clear X and Y."))
     if (x is None) != (y is None) and not (table.spoilt("x", row) or table.spoilt("y", row)):
         fix = fill("Fill in the other, or clear both.")
-        yield table.problem("y" if y is None else "x", row, fill("a position needs both X and Y."), fix, "warning")
+        yield table.habit("y" if y is None else "x", row, fill("a position needs both X and Y."), fix, "warning")
 
 
 def _check_axis(table: Table, row: Row) -> Iterator[Problem]:
@@ -300,4 +300,4 @@ def _check_axis(table: Table, row: Row) -> Iterator[Problem]:
     if axis is not None and turned is not None and axis != turned:
         values = {"axis": axis, "angle": row.get("angle_deg"), "turned": turned}
         message = fill("Axis is {axis}, but an Angle of {angle:g} deg lies along {turned}; {axis} is used.", **values)
-        yield table.problem("axis", row, message, fill("Correct one of the two."), "warning")
+        yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")

@@ -159,7 +159,11 @@ class Table:
 
     def problem(self, name: str, row: Row, message: str, fix: str = "", severity: Severity = "error") -> Problem:
         """Return a problem of one field of a row."""
-        return Problem(severity, self.sheet.name, self.cell(name, row.number), message, fix, group=name)
+        return Problem(severity, self.sheet.name, self.cell(name, row.number), message, fix)
+
+    def habit(self, name: str, row: Row, message: str, fix: str = "", severity: Severity = "error") -> Problem:
+        """Return a problem of one field of a row that other rows may have alike: these are shown as one."""
+        return replace(self.problem(name, row, message, fix, severity), group=name)
 
     def problem_at_top(self, message: str, fix: str, severity: Severity = "error") -> Problem:
         """Return a problem of the sheet as a whole, at its first cell."""

@@ -30,11 +30,9 @@ def correct_names(tables: Tables) -> tuple[Tables, list[Problem]]:
 def _correct_column(
     table: Table, column: Column, known: dict[str, str], notes: list[Problem], corrections: list[Correction]
 ) -> None:
-    spellings = {*known.values()}
-    for row in table.rows:
+    spellings = {None, *known.values()}
+    for row in (row for row in table.rows if row.values[column.name] not in spellings):
         typed = row.get(column.name)
-        if typed is None or typed in spellings:
-            continue
         spelt = known.get(key(typed), typed)
         if spelt.casefold() == typed.casefold():
             continue

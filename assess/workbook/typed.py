@@ -233,7 +233,7 @@ def _take_date(column: Column, value: object, unit: str, quote: Quote) -> tuple[
 
 def _take_name(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
     """Take stray spaces out of a name that other cells compare with."""
-    if not isinstance(value, str) or is_free(column):
+    if not isinstance(value, str):
         return value, None
     name = " ".join(value.split())
     return (value, None) if name == value else (name, note("spaces", column.label, quote(value), quote(name), name))

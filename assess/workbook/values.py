@@ -75,8 +75,19 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[R
     CellError
         If the cell does not hold what the column needs.
     """
-    if is_blank(value):
-        return None, ()
+    meant, remark = value, None
+    if not (type(value) is float or type(value) is int):
+        if is_blank(value):
+            return None, ()
+        _refuse_formulas(column, value)
+        if not is_free(column):
+            meant, remark = understand(column, value, unit, shorten)
+    found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
+    return found, () if remark is more is None else tuple(one for one in (remark, more) if one)
+
+
+def _refuse_formulas(column: Column, value: object) -> None:
+    """Raise CellError for a formula that has no result, or whose result is an error in a column of texts."""
     if value is UNSAVED:
         raise CellError(fill("the formula has no saved value."), fill("Open the workbook in Excel and save it."))
     if column.kind not in ("number", "count") and isinstance(value, str) and value.strip() in ERRORS:
@@ -84,11 +95,6 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[R
             fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
             fill("Correct the formula in the cell."),
         )
-    meant, remark = value, None
-    if not (type(value) is float or type(value) is int or is_free(column)):
-        meant, remark = understand(column, value, unit, shorten)
-    found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
-    return found, () if remark is more is None else tuple(one for one in (remark, more) if one)
 
 
 def _remark_on(column: Column, typed: object, value: object, unit: str) -> Remark | None:
