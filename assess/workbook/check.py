@@ -96,6 +96,7 @@ def _unknown(table: Table, name: str, row: Row, sheet: str, near: str | None, *,
         values["near"] = near
         fix = fill("Choose one of the {sheet} sheet, or add it there. Did you mean {near}?", **values)
     if is_spare:
+        values["label"] = fill(table.label(name))
         message = fill("{label} {name} is not in the {sheet} sheet; the sizes typed in its row are used.", **values)
         return table.habit(name, row, message, fix, "warning")
     return table.habit(name, row, fill("{label} {name} is not in the {sheet} sheet.", **values), fix)
@@ -115,7 +116,7 @@ def _lacks_spare_sheet(table: Table, name: str, named: Sequence[Row], sheet: str
         "{label} {name} is named, but there is no {sheet} sheet; the sizes typed in its row are used.",
         "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet; the sizes typed in those "
         "rows are used.",
-        len(named), label=table.label(name), name=named[0].quote(name), sheet=sheet,
+        len(named), label=fill(table.label(name)), name=named[0].quote(name), sheet=sheet,
     )  # fmt: skip
     return table.problem(name, named[0], message, fill("Add the sheet, or clear the column."), "warning")
 

@@ -108,7 +108,7 @@ class Remark:
     why: Text | str = ""
 
 
-def note(habit: str, column: str, text: str, value: object, corrected: float | str) -> Remark:
+def note(habit: str, column: Text | str, text: str, value: object, corrected: float | str) -> Remark:
     """Return the note on a cell that shows a habit.
 
     Parameters

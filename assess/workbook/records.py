@@ -116,7 +116,7 @@ class FileReader:
         """Find the plans of the floors, or report what is wrong with them."""
         table = tables["Floors"]
         for row in table.with_all("floor", "plan"):
-            message = fill("{label} is kept, not drawn by this version.", label=table.label("plan"))
+            message = fill("{label} is kept, not drawn by this version.", label=fill(table.label("plan")))
             yield table.problem("plan", row, message, severity="note")
             path = yield from self._find_picture(table, "plan", row)
             self.plans |= {} if path is None else {row.number: path}

@@ -78,7 +78,7 @@ def describe_hidden_columns(labels: Sequence[str]) -> Text:
     """Say which hidden columns are read."""
     return nfill(
         "the hidden column {labels} is read as well.", "{n:,} hidden columns are read as well: {labels}.",
-        len(labels), labels=join(", ", labels),
+        len(labels), labels=join(", ", map(fill, labels)),
     )  # fmt: skip
 
 

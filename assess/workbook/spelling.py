@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from assess.errors import Correction, Problem
+from assess.i18n import fill
 from assess.workbook.habits import note
 from assess.workbook.names import key
 from assess.workbook.parse import Table, Tables
@@ -36,7 +37,7 @@ def _correct_column(
         spelt = known.get(key(typed), typed)
         if spelt.casefold() == typed.casefold():
             continue
-        remark = note("signs", table.label(column.name), shorten(typed), shorten(spelt), spelt)
+        remark = note("signs", fill(table.label(column.name)), shorten(typed), shorten(spelt), spelt)
         problem = table.problem(column.name, row, remark.message, severity=remark.severity)
         notes.append(replace(problem, group=f"{column.name}: {remark.habit}"))
         if table.source is not None and table.source.title:

@@ -75,8 +75,9 @@ def understand(column: Column, value: object, unit: str, quote: Quote) -> tuple[
     return take(column, value, unit, quote) if take else (value, None)
 
 
-def _name_column(column: Column, unit: str) -> Text | str:
-    return fill("{label} [{unit}]", label=column.label, unit=unit) if unit else column.label
+def _name_column(column: Column, unit: str = "") -> Text:
+    label = fill(column.label)
+    return fill("{label} [{unit}]", label=label, unit=unit) if unit else label
 
 
 # ---------------------------------------------------------------- numbers
@@ -179,7 +180,7 @@ def _take_choice(column: Column, value: object, unit: str, quote: Quote) -> tupl
         if found is None or not word:
             return value, None
         choice = found
-    return choice, note("choice", column.label, quote(value), word, word)
+    return choice, note("choice", _name_column(column), quote(value), word, word)
 
 
 @lru_cache(maxsize=4096)  # the same choices stand in row after row
@@ -223,12 +224,12 @@ def _take_date(column: Column, value: object, unit: str, quote: Quote) -> tuple[
     if date is None and not is_month(text):
         message = fill(
             "{label} is {text}, which is not read as a date; it is shown as typed.",
-            label=column.label, text=quote(value),
+            label=_name_column(column), text=quote(value),
         )  # fmt: skip
         return value, Remark(message, AS_ISO)
     if date is None or date == value:
         return value, None
-    return date, note("date", column.label, quote(value), date, date)
+    return date, note("date", _name_column(column), quote(value), date, date)
 
 
 def _take_name(column: Column, value: object, unit: str, quote: Quote) -> tuple[object, Remark | None]:
@@ -236,7 +237,11 @@ def _take_name(column: Column, value: object, unit: str, quote: Quote) -> tuple[
     if not isinstance(value, str):
         return value, None
     name = " ".join(value.split())
-    return (value, None) if name == value else (name, note("spaces", column.label, quote(value), quote(name), name))
+    return (
+        (value, None)
+        if name == value
+        else (name, note("spaces", _name_column(column), quote(value), quote(name), name))
+    )
 
 
 _Taker = Callable[[Column, object, str, Quote], tuple[object, Remark | None]]
