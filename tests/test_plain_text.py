@@ -56,7 +56,7 @@ def test_what_is_no_text_is_taken_out(text: str, shown: str) -> None:
 
 def test_sentences() -> None:
     """A sentence is clean whatever its values hold, and its translation too."""
-    texts = [
+    texts: list[str] = [
         fill("{name} is wrong: {why:.40}", name=EVIL, why=str(ValueError(EVIL))),
         fill("{path} is wrong", path=Path(EVIL.replace("\x00", ""))),
         nfill("{n} {name}", "{n} of {name}", 2, name=EVIL),
