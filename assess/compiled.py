@@ -1,12 +1,11 @@
 """Compiles functions to machine code when they are first called. Importing this imports numba: a third of a second."""
 
-import os
-import sys
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from numba import config, njit
+
+from assess.cache_folder import choose_folder
 
 _Function = TypeVar("_Function", bound=Callable[..., object])
 
@@ -21,18 +20,22 @@ OPTIONS: Mapping[str, Any] = {
 def compiled(function: _Function) -> _Function:
     """Compile `function` when it is first called, and keep that for the next process in the user's cache folder.
 
-    A folder that NUMBA_CACHE_DIR names is used instead; where nothing can be kept, each process compiles anew.
+    A folder that NUMBA_CACHE_DIR names is used instead. Compiled code is neither kept in nor loaded from a folder that
+    others can write to, see `assess.cache_folder`; where nothing can be kept, each process compiles anew.
     """
     settings = cast("Any", config)
-    chosen = settings.CACHE_DIR
+    before = settings.CACHE_DIR
+    folder, _ = choose_folder(before)
+    if folder is None:
+        return cast("_Function", njit(**OPTIONS)(function))
     try:
         # numba has no argument for this folder, and takes it at this moment; so only this function is kept there.
-        settings.CACHE_DIR = chosen or str(cache_folder())
+        settings.CACHE_DIR = str(folder)
         return cast("_Function", njit(cache=True, **OPTIONS)(function))
     except (RuntimeError, OSError):
         return cast("_Function", njit(**OPTIONS)(function))
     finally:
-        settings.CACHE_DIR = chosen
+        settings.CACHE_DIR = before
 
 
 def compiled_into(function: _Function) -> _Function:
@@ -44,13 +47,3 @@ def compiled_into(function: _Function) -> _Function:
         return cast("_Function", cast("Any", njit)(_nrt=False, **OPTIONS)(function))
     except (KeyError, TypeError):  # numba does not promise to keep this option
         return cast("_Function", njit(**OPTIONS)(function))
-
-
-def cache_folder() -> Path:
-    """Return the user's folder for what can be made again, as each system has it."""
-    home = Path.home()
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "assess" / "cache"
-    if sys.platform == "darwin":
-        return home / "Library" / "Caches" / "assess"
-    return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "assess"

@@ -19,6 +19,7 @@ import typer
 import assess.cli
 from assess.cli.completion import ASKED, PROGRAM, find_typed_command
 from assess.cli.console import guard
+from assess.cli.ending import run_to_the_end
 from assess.version import __version__
 
 PREFIX = "command_"
@@ -47,7 +48,8 @@ def main() -> None:
     if ASKED in os.environ:
         typed = find_typed_command()
         os.environ["COLUMNS"] = ONE_LINE
-    build_app([typed] if typed in list_names() else ())(prog_name=PROGRAM)
+    app = build_app([typed] if typed in list_names() else ())
+    run_to_the_end(lambda: app(prog_name=PROGRAM), sys.argv[1:])
 
 
 def list_names() -> list[str]:

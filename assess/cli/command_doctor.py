@@ -11,6 +11,7 @@ from pathlib import Path
 import typer
 
 from assess import resources
+from assess.cache_folder import choose_folder
 from assess.errors import PdfUnavailableError
 from assess.version import __version__
 
@@ -57,7 +58,7 @@ class Requirement:
 
 
 def examine() -> Iterator[Finding]:
-    """Yield versions, templates, fonts and the libraries of the PDF."""
+    """Yield versions, templates, fonts, the libraries of the PDF and the folder of compiled code."""
     yield Finding("assess", True, f"{__version__}, Python {platform.python_version()}, {platform.platform()}")
     yield from map(examine_package, list_requirements())
     templates = resources.templates() / "report.html.j2"
@@ -66,6 +67,7 @@ def examine() -> Iterator[Finding]:
     fix = "pip install --force-reinstall matplotlib"
     yield Finding("fonts", len(fonts) == FONTS, ", ".join(fonts) if len(fonts) == FONTS else fix)
     yield _examine_pdf()
+    yield _examine_cache()
 
 
 def list_requirements() -> list[Requirement]:
@@ -122,3 +124,13 @@ def _examine_pdf() -> Finding:
     except PdfUnavailableError as error:
         return Finding("PDF", False, str(error))
     return Finding("PDF", True, f"WeasyPrint {version} with its native libraries")
+
+
+def _examine_cache() -> Finding:
+    """Return where compiled code is kept; a folder that others can write to is not used."""
+    folder, fault = choose_folder()
+    used = f"kept in {folder}" if folder else "not kept: every run compiles anew, which takes half a minute"
+    if not fault:
+        return Finding("compiled code", True, used)
+    fix = "Give the folder to yourself alone (chmod go-w), or name another one with NUMBA_CACHE_DIR"
+    return Finding("compiled code", False, f"{fault}. {used}. {fix}")

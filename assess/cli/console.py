@@ -6,6 +6,7 @@ which errors may remain; 130 interrupted. Messages go to standard error, what wa
 """
 
 import _thread
+import errno
 import os
 import re
 import signal
@@ -22,12 +23,15 @@ import typer
 from typer.models import OptionInfo
 
 from assess import i18n
+from assess.environment import find_source_date
 from assess.errors import AssessError, CancelledError, InputError, Problem, RecordError, WorkbookError
 from assess.plain_text import plain_line, plain_text
 from assess.progress import Progress, Report
 
 MOST_PRINTED = 200
 """Problems printed in one run; the rest are counted."""
+LONGEST_NAME = 80
+"""Characters of the name of a file that a message shows where the system refuses the name."""
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as in shells."""
 PATIENCE = 0.4
@@ -64,6 +68,7 @@ def guard(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def run(*arguments: Any, **options: Any) -> None:
         try:
+            find_source_date()
             command(*arguments, **options)
         except (KeyboardInterrupt, CancelledError):
             _end("nothing was written")
@@ -81,8 +86,22 @@ def guard(command: Callable[..., None]) -> Callable[..., None]:
         except AssessError as error:
             print_error(str(error))
             raise typer.Exit(1) from None
+        except OSError as error:
+            if error.filename is None:  # the output of the command itself, see `assess.cli.ending`
+                raise
+            print_error(describe_fault(error))
+            raise typer.Exit(2 if error.errno == errno.ENAMETOOLONG else 1) from None
 
     return run
+
+
+def describe_fault(error: OSError) -> str:
+    """Return in one line what the system refused, and of which file; without one, it is the output of the command."""
+    why = error.strerror or type(error).__name__
+    if error.filename is None:
+        return f"the output could not be written: {why}."
+    name = str(error.filename)
+    return f"{name[:LONGEST_NAME]}{'…' if len(name) > LONGEST_NAME else ''} cannot be used: {why}."
 
 
 def _end(remains: str) -> Never:

@@ -1,12 +1,12 @@
 """Every number and word of a report, gathered once for HTML, PDF and Excel, in the language in use."""
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from assess.environment import find_source_date
 from assess.errors import Problem
 from assess.i18n import gettext as _
 from assess.i18n import number
@@ -240,8 +240,7 @@ def report_date(given: str = "") -> str:
 
     Where SOURCE_DATE_EPOCH is set, it is that day in UTC.
     """
-    moment = report_time()
-    return given or (moment if "SOURCE_DATE_EPOCH" in os.environ else moment.astimezone()).date().isoformat()
+    return given or (find_source_date() or report_time().astimezone()).date().isoformat()
 
 
 def _describe_building(results: Results) -> dict[str, tuple[str, str]]:

@@ -2,10 +2,10 @@
 
 import contextlib
 import datetime
-import os
 import re
 from typing import TYPE_CHECKING
 
+from assess.environment import find_source_date
 from assess.i18n import LANGUAGES, spoken
 from assess.i18n import gettext as _
 
@@ -14,12 +14,14 @@ if TYPE_CHECKING:
 
 
 def report_time() -> datetime.datetime:
-    """Return the time of the report in UTC: that of SOURCE_DATE_EPOCH where it is set (reproducible-builds.org)."""
-    with contextlib.suppress(KeyError, ValueError, OverflowError, OSError):
-        epoch = int(os.environ["SOURCE_DATE_EPOCH"])
-        if epoch >= 0:
-            return datetime.datetime.fromtimestamp(epoch, datetime.UTC)
-    return datetime.datetime.now(datetime.UTC)
+    """Return the time of the report in UTC: that of SOURCE_DATE_EPOCH where it is set (reproducible-builds.org).
+
+    Raises
+    ------
+    InputError
+        If that is no date.
+    """
+    return find_source_date() or datetime.datetime.now(datetime.UTC)
 
 
 def say_date(iso: str) -> str:

@@ -172,13 +172,3 @@ def test_a_cancelled_layout_ends_at_once(tmp_path, monkeypatch):
 
 def test_weasyprint_is_found():
     assert find_weasyprint() == version("weasyprint")
-
-
-def test_a_date_of_no_use_is_today(tmp_path, monkeypatch):
-    from assess.report.provenance import report_time
-
-    for epoch in ("", "yesterday", "-1", "1e9", "9" * 30, "²"):
-        monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
-        assert report_time().year >= 2025, epoch
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    assert report_time().year == 1970

@@ -1,0 +1,105 @@
+"""Where compiled code is kept for the next process, and whether it is safe to load it from there.
+
+Whoever can write to such a folder can have any code run as the user who loads it; so nothing is read from a folder
+that others can write to, or replace.
+"""
+
+import os
+import stat
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+CHOSEN = "NUMBA_CACHE_DIR"
+"""The environment variable that names another folder."""
+_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+
+
+def cache_folder() -> Path:
+    """Return the user's folder for what can be made again, as each system has it."""
+    home = Path.home()
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "assess" / "cache"
+    if sys.platform == "darwin":
+        return home / "Library" / "Caches" / "assess"
+    return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "assess"
+
+
+def choose_folder(chosen: str | None = None) -> tuple[Path | None, str]:
+    """Return the folder that compiled code is kept in, and what is wrong with one that is not used.
+
+    Parameters
+    ----------
+    chosen : str, optional
+        The folder that numba has been given, "" for none; by default what NUMBA_CACHE_DIR names.
+
+    Returns
+    -------
+    folder : Path or None
+        The one that was chosen, else the user's own, which is made for the user alone; None if neither is safe.
+    fault : str
+        "" where the first of them is used.
+    """
+    named = os.environ.get(CHOSEN, "") if chosen is None else chosen
+    faults: list[str] = []
+    for folder in (*((Path(named),) if named else ()), cache_folder()):
+        fault = examine_folder(folder)
+        if not fault:
+            return folder, "; ".join(faults)
+        faults.append(fault)
+    return None, "; ".join(faults)
+
+
+@cache
+def examine_folder(folder: Path) -> str:
+    """Return why compiled code is not kept in a folder, "" where it can be; a missing one is made."""
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        return _find_writable(folder)
+    except (OSError, RuntimeError) as error:  # RuntimeError: links that lead round in a circle
+        return f"{folder} cannot be used: {getattr(error, 'strerror', None) or error}"
+
+
+def _find_writable(folder: Path) -> str:
+    """Return what others than the user could change in a folder, or on the way to it."""
+    if not hasattr(os, "getuid"):
+        return ""  # access rights of Windows: a profile is the user's own
+    way = dict.fromkeys([folder.absolute(), *folder.absolute().parents, folder.resolve(), *folder.resolve().parents])
+    for place in way:
+        found = place.stat()
+        is_shared = bool(found.st_mode & stat.S_ISVTX) and place not in (folder.absolute(), folder.resolve())
+        if fault := _describe(place, found, is_shared=is_shared):
+            return fault
+    if not folder.stat().st_mode & (stat.S_IXGRP | stat.S_IXOTH):
+        return ""  # nobody else comes in
+    return next((fault for place in _walk(folder) if (fault := _describe(place, place.lstat()))), "")
+
+
+def _walk(folder: Path) -> Iterator[Path]:
+    for top, folders, files in os.walk(folder):
+        yield from (Path(top, name) for name in (*folders, *files))
+
+
+def _describe(place: Path, found: os.stat_result, *, is_shared: bool = False) -> str:
+    """Return how others could change a place; in a shared folder, as /tmp is, each owns what they make."""
+    if found.st_uid not in (0, os.getuid()):
+        return f"{place} belongs to another user"
+    if stat.S_ISLNK(found.st_mode):
+        return f"{place} is a link"
+    open_to = found.st_mode & _OTHERS
+    if not open_to or is_shared or (open_to == stat.S_IWGRP and _is_own_group(found.st_gid)):
+        return ""
+    return f"others can write to {place}"
+
+
+def _is_own_group(group: int) -> bool:
+    """Tell whether a group has the user alone as its member, as many systems make one for each user."""
+    import grp
+    import pwd
+
+    try:
+        user, own = pwd.getpwuid(os.getuid()), grp.getgrgid(group)
+    except KeyError:
+        return False
+    return group == user.pw_gid and own.gr_name == user.pw_name and not {*own.gr_mem} - {user.pw_name}

@@ -1,0 +1,114 @@
+"""Compiled code is kept in, and loaded from, no folder that others can write to."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from assess.cache_folder import cache_folder, choose_folder, examine_folder
+from tests.cli.calling import run
+from tests.test_compiled import FIRST_USE, _child, _kept
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "getuid"), reason="access rights of Windows are others")
+
+
+@pytest.fixture(autouse=True)
+def anew():
+    examine_folder.cache_clear()
+    yield
+    examine_folder.cache_clear()
+
+
+@pytest.fixture
+def own(tmp_path, monkeypatch):
+    """A user's own folder of caches."""
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
+    monkeypatch.setattr(sys, "platform", "linux")
+    return cache_folder()
+
+
+def made(path: Path, mode: int) -> Path:
+    path.mkdir(parents=True, exist_ok=True)
+    path.chmod(mode)
+    return path
+
+
+def test_a_missing_folder_is_made_for_the_user_alone(own):
+    assert choose_folder() == (own, "")
+    assert own.stat().st_mode & 0o777 == 0o700
+
+
+@pytest.mark.parametrize("mode", [0o777, 0o702, 0o1777])
+def test_a_folder_that_others_can_write_to_is_not_used(tmp_path, own, mode):
+    shared = made(tmp_path / "shared", mode)
+    assert choose_folder(str(shared)) == (own, f"others can write to {shared}")
+    own.chmod(mode)
+    examine_folder.cache_clear()
+    assert choose_folder(str(shared)) == (None, f"others can write to {shared}; others can write to {own}")
+
+
+def test_nor_is_one_that_others_can_replace(tmp_path, own):
+    inner = made(tmp_path / "open" / "inner", 0o700)
+    made(tmp_path / "open", 0o777)
+    assert choose_folder(str(inner)) == (own, f"others can write to {tmp_path / 'open'}")
+    made(tmp_path / "open", 0o1777)  # as /tmp: each owns what they make
+    examine_folder.cache_clear()
+    assert choose_folder(str(inner)) == (inner, "")
+
+
+def test_nor_one_that_a_link_leads_to(tmp_path, own):
+    made(tmp_path / "open", 0o777)
+    (tmp_path / "link").symlink_to(made(tmp_path / "open" / "inner", 0o700))
+    assert choose_folder(str(tmp_path / "link")) == (own, f"others can write to {tmp_path / 'open'}")
+    (tmp_path / "round").symlink_to(tmp_path / "round")
+    assert "cannot be used" in choose_folder(str(tmp_path / "round"))[1]
+
+
+def test_what_lies_in_it_counts_where_others_come_in(tmp_path, own):
+    named = made(tmp_path / "named", 0o755)
+    made(named / "module", 0o777)
+    assert choose_folder(str(named)) == (own, f"others can write to {named / 'module'}")
+    named.chmod(0o700)
+    examine_folder.cache_clear()
+    assert choose_folder(str(named)) == (named, "")
+
+
+@pytest.mark.skipif(hasattr(os, "getuid") and os.getuid() != 0, reason="only root can give files away")
+def test_the_folder_of_another_user_is_not_used(tmp_path, own):
+    theirs = made(tmp_path / "theirs", 0o755)
+    os.chown(theirs, 12345, 12345)
+    assert choose_folder(str(theirs)) == (own, f"{theirs} belongs to another user")
+
+
+def test_the_group_of_one_user_is_no_other(tmp_path, own, monkeypatch):
+    grp, pwd = pytest.importorskip("grp"), pytest.importorskip("pwd")
+    named, group = made(tmp_path / "named", 0o770), tmp_path.stat().st_gid
+    user = pwd.struct_passwd(("ann", "x", os.getuid(), group, "", "", ""))
+    monkeypatch.setattr(pwd, "getpwuid", lambda _: user)
+    for members, name, is_safe in (
+        ([], "ann", True),
+        (["ann"], "ann", True),
+        (["bob"], "ann", False),
+        ([], "all", False),
+    ):
+        monkeypatch.setattr(grp, "getgrgid", lambda _, n=name, m=members: grp.struct_group((n, "x", group, m)))
+        examine_folder.cache_clear()
+        assert (choose_folder(str(named))[0] == named) is is_safe, (members, name)
+
+
+def test_compiling_goes_to_the_users_own_folder(tmp_path):
+    shared = made(tmp_path / "shared", 0o777)
+    _child(FIRST_USE, NUMBA_CACHE_DIR=shared, XDG_CACHE_HOME=tmp_path / "own")
+    assert list(shared.iterdir()) == []
+    assert _kept(tmp_path / "own")
+
+
+def test_doctor_says_so(tmp_path, own, monkeypatch):
+    assert f"ok       compiled code: kept in {own}" in run("doctor").stdout
+    shared = made(tmp_path / "shared", 0o777)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(shared))
+    done = run("doctor")
+    assert f"missing  compiled code: others can write to {shared}. kept in {own}. Give the folder" in done.stdout
+    assert done.exit_code == 1
