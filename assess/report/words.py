@@ -1,5 +1,6 @@
 """Numbers and sentences as reports show them."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,9 @@ LONGEST = 160
 MOST_DECIMALS = 6
 """Decimals of a percentage at most, however near a limit it lies."""
 DASH = "–"
+LONGEST_WORD = 18
+"""Letters of a word that a table never breaks."""
+_WORD = re.compile(r"(\s+|(?<=[\w)])-(?=\w))")
 NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
@@ -38,6 +42,21 @@ def cut(text: str, longest: int) -> str:
     """Return a text short enough for one line; an ellipsis stands for what was left out."""
     text = " ".join(text.split())
     return text if len(text) <= longest else f"{text[: longest - 1].rstrip()}…"
+
+
+def list_breaks(text: str) -> list[str]:
+    """Return the parts of a text between which a line may break though no space is there.
+
+    A word of up to `LONGEST_WORD` letters, as "electrocardiograph" has, is never broken; a longer one into parts of
+    about equal length.
+    """
+    parts = [""]
+    for word in _WORD.split(text):
+        count = -(-len(word) // LONGEST_WORD) if word.strip() else 1
+        size = -(-len(word) // count) if word else 1
+        pieces = [word[at : at + size] for at in range(0, len(word), size)] if count > 1 else [word]
+        parts = [*parts[:-1], parts[-1] + pieces[0], *pieces[1:]]
+    return parts
 
 
 def name_first(names: Sequence[str], most: int, mark: str = ", ") -> str:

@@ -198,14 +198,16 @@ def test_parts_of_the_table_are_sorted_and_filtered_each_by_itself(browser, tmp_
     page = browser.new_page()
     page.goto(assess.write_reports(results, tmp_path, "html")["html"].as_uri())
     heading = "By formula only: not simulated"
-    assert _shown(page) == ["c", "d", "b", "a"]
+    assert _shown(page) == ["c", "d", "a", "b"]  # by name, not as the workbook has them
     assert page.locator("#pieces tr.part").all_inner_texts() == [heading]
-    page.get_by_role("button", name="Item", exact=True).click()
-    assert _shown(page) == ["c", "d", "a", "b"]
+    turn = page.get_by_role("button", name="Item", exact=True)
+    turn.click()
+    turn.click()
+    assert _shown(page) == ["d", "c", "b", "a"]
     page.get_by_role("button", name="Show all").click()
-    assert _shown(page) == ["c", "d", "b", "a"]
+    assert _shown(page) == ["c", "d", "a", "b"]
     _filter(page, "Class").select_option("apart-formula")
-    assert _shown(page) == ["b", "a"]
+    assert _shown(page) == ["a", "b"]
     assert page.locator("#pieces tr.part").is_visible()
     _filter(page, "Search").fill("c")
     _filter(page, "Class").select_option("")

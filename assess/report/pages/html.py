@@ -14,7 +14,7 @@ from assess.report.content import Content
 from assess.report.fonts import font_faces
 from assess.report.pages.context import FILTERS, GLOBALS, build_context, list_missing_figures
 from assess.report.report_options import ReportOptions
-from assess.report.words import class_name
+from assess.report.words import class_name, list_breaks
 from assess.risk import RiskClass
 
 SCRIPT = "script/report.js"
@@ -115,7 +115,7 @@ def _environment(options: ReportOptions) -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {**FILTERS, "equation": write_equation}
+    environment.filters |= {**FILTERS, "equation": write_equation, "breakable": write_breakable}
     environment.globals |= GLOBALS
     return environment
 
@@ -148,6 +148,13 @@ def hash_script(text: str) -> str:
 
 _INDEX = re.compile(r"(?<=[^\W\d_])_([^\W_]+\*?)")
 _POWER = re.compile(r"\^(?:\((-?\d+(?:[.,]\d+)?)\)|(-?\d+(?:[.,]\d+)?))")
+
+
+def write_breakable(text: str) -> Any:
+    """Return a text whose words may be broken only where they are too long for a column."""
+    from markupsafe import Markup, escape
+
+    return Markup("<wbr>").join(escape(part) for part in list_breaks(text))
 
 
 def write_equation(text: str) -> Any:
