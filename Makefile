@@ -24,9 +24,11 @@ test: $(VENV)/.developing
 test-slow: $(VENV)/.developing
 	$(PYTEST) -m "($(SLOW)) and not long"
 
-# Whole studies, fuzzing, the lowest and the newest dependencies: half an hour. Writes docs/tests.md.
+# Whole studies, fuzzing, the lowest and the newest dependencies: three quarters of an hour. Writes docs/tests.md.
+# There is no atheris for some systems: fuzzing then goes by its own engine alone.
 test-long: $(VENV)/.developing
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'uv>=0.5'
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary :all: 'atheris>=3'
 	$(BIN)/python tests/run_long.py
 
 lint: $(VENV)/.developing

@@ -75,7 +75,7 @@ class Finding:
 
 @dataclass(slots=True)
 class Summary:
-    """What a run of the loop did; `seconds` of the processor."""
+    """What a run of the loop did; `seconds` of the processor, `lines` of the package (or what else `unit` names)."""
 
     executions: int = 0
     seconds: float = 0.0
@@ -84,11 +84,12 @@ class Summary:
     outcomes: Counter[str] = field(default_factory=Counter)
     findings: dict[str, Finding] = field(default_factory=dict)
     slowest: float = 0.0
+    unit: str = "lines"
 
     def describe(self, name: str) -> str:
         """Return the summary as a line, and a line for each finding."""
         shares = ", ".join(f"{word} {count:,}" for word, count in self.outcomes.most_common())
-        lines = f"{self.lines:,} lines of the package, {self.lines_of_seeds:,} of them by the seeds"
+        lines = f"{self.lines:,} {self.unit} of the package, {self.lines_of_seeds:,} of them by the seeds"
         head = (
             f"{name}: {self.executions:,} executions in {self.seconds:.0f} s of processor time ({shares}); {lines}; "
             f"slowest {self.slowest:.1f} s; {len(self.findings)} findings"
@@ -156,10 +157,12 @@ class Lines:
 
     def __init__(self) -> None:
         self.count = 0
+        self._not_again: object = None
 
     def __enter__(self) -> "Lines":
         if sys.version_info >= (3, 12):
             monitoring = sys.monitoring
+            self._not_again = monitoring.DISABLE
             monitoring.use_tool_id(TOOL, "fuzz")
             monitoring.register_callback(TOOL, monitoring.events.LINE, self._note)
             monitoring.set_events(TOOL, monitoring.events.LINE)
@@ -174,7 +177,7 @@ class Lines:
 
     def _note(self, code: CodeType, line: int) -> object:
         self.count += code.co_filename.startswith(PACKAGE)
-        return sys.monitoring.DISABLE if sys.version_info >= (3, 12) else None
+        return self._not_again
 
 
 # ---------------------------------------------------------------- the loop
