@@ -47,6 +47,7 @@ blank: $(VENV)/.installed
 docs: $(VENV)/.installed
 	$(BIN)/python docs/motions.py
 	$(BIN)/python docs/rocking.py
+	$(BIN)/python docs/bounds.py
 	$(BIN)/python docs/validation.py
 	$(BIN)/python -m assess.report.results_schema
 

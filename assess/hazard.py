@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.i18n import Text, fill, join, nfill
+from assess.motion.formats._text import split_text
 from assess.motion.formats.plain_csv import decode, is_comment
 from assess.units import GRAVITY
 
@@ -24,6 +25,8 @@ FloatArray = NDArray[np.float64]
 COLUMNS = ("pga_g", "annual_rate")
 LARGEST_FILE = 64_000_000
 """Bytes; a curve takes some hundreds, a national map of sites some millions."""
+MOST_CELLS = 1_500_000
+"""Cells, and ends of lines: 50,000 sites of 28 levels."""
 MOST_PGA = 50.0
 """Peaks above this [g] are a slip in the unit."""
 FAR = 10_000.0
@@ -127,7 +130,7 @@ def parse_hazard(
         there are several sites and the building's place is not known; the message names the file and the line.
     """
     try:
-        lines = _decode(data).splitlines()
+        lines = split_text(_decode(data))
         rows = list(_split(lines))
         if not rows:
             raise InputError(fill("there is no table. Its first row has to be: {columns}", columns=",".join(COLUMNS)))
@@ -154,6 +157,9 @@ def find_distance(latitude: float, longitude: float, latitudes: FloatArray, long
 def _decode(data: bytes) -> str:
     if len(data) > LARGEST_FILE:
         raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
+    if sum(data.count(mark) for mark in (b",", b";", b"\t", b"\n", b"\r")) > MOST_CELLS:
+        text = fill("the file has more than {most:,} cells: cut it to the sites near the building", most=MOST_CELLS)
+        raise InputError(text)
     if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
         raise InputError(fill("the file is not plain text. Save it as CSV UTF-8"))
     return decode(data)

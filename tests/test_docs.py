@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from assess.report.pages.pdf import DEBIAN
+from docs.bounds import replace_table
 from docs.reference import build_pages
 
 ROOT = Path(__file__).parents[1]
@@ -21,6 +22,12 @@ PYTHON = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 def test_the_references_are_those_of_the_code(name):
     text = (DOCS / name).read_text(encoding="utf-8")
     assert build_pages()[name] == text, "run: python docs/reference.py"
+
+
+def test_the_bounds_are_those_of_the_code():
+    text = (DOCS / "limits.md").read_text(encoding="utf-8")
+    assert replace_table(text) == text, "run: python docs/bounds.py"
+    assert "| Record file: channels | 500 |" in text
 
 
 def test_the_reference_of_the_workbook_holds_units_limits_and_italian_names():

@@ -114,6 +114,21 @@ def test_files_that_are_too_large(monkeypatch):
         parse(PLAIN)
 
 
+def test_files_with_too_many_cells(monkeypatch):
+    monkeypatch.setattr("assess.hazard.find_distance", pytest.fail)
+    for mark in (b"1,", b"1\n", b";", b"\t", b"\r"):
+        with pytest.raises(
+            InputError, match=r"^x\.csv: the file has more than 1,500,000 cells: cut it to the sites near"
+        ):
+            parse_hazard(b"pga_g,annual_rate\n" + mark * 1_500_000, "x.csv")
+
+
+def test_lines_end_where_other_programs_end_them():
+    # str.splitlines() makes a line of each of these signs, too: at ten times the memory of the file.
+    with pytest.raises(InputError, match=r"line 2: the number of cells is 1, not 2"):
+        parse("pga_g,annual_rate\n0.1\x0b0.2\x1c0.3\n")
+
+
 # --- OpenQuake ---
 
 

@@ -1,7 +1,9 @@
 """What the HTML and PDF reports say, read back from the files."""
 
+import base64
 import json
 import re
+import struct
 from html.parser import HTMLParser
 
 import pypdfium2
@@ -12,6 +14,7 @@ from assess.methods import all_methods
 from assess.report.pages.context import LIMITS
 from assess.report.pages.html import hash_script
 from assess.results import MOTION_FLAGS, PIECE_FLAG_TEXTS
+from tests.pictures import picture
 from tests.report.reading import render
 from tests.workbooks import assessed, write
 
@@ -136,14 +139,9 @@ def test_a_long_list_is_cut_with_a_word(tmp_path, monkeypatch):
 
 
 def test_a_logo_is_embedded(tmp_path):
-    import struct
-    import zlib
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0))
-    png += chunk(b"IDAT", zlib.compress(b"\x00\x80")) + chunk(b"IEND", b"")
-    (tmp_path / "logo.png").write_bytes(png)
-    html = render(assessed(tmp_path / "w.xlsx", logo="logo.png", organisation="Us & Co"))
-    assert re.search(r'<img class="logo" src="data:image/png;base64,[^"]+" alt="Logo of Us &amp; Co">', html)
+    for size, shown in (((40, 30), (40, 30)), ((4000, 50), (1334, 17))):
+        (tmp_path / "logo.png").write_bytes(picture("PNG", size=size))
+        html = render(assessed(tmp_path / "w.xlsx", logo="logo.png", organisation="Us & Co"))
+        found = re.search(r'<img class="logo" src="data:image/png;base64,([^"]+)" alt="Logo of Us &amp; Co">', html)
+        assert found
+        assert struct.unpack(">II", base64.b64decode(found[1])[16:24]) == shown

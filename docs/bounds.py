@@ -1,0 +1,77 @@
+"""Writes the table of bounds in limits.md, from the constants: ``python docs/bounds.py``, part of ``make docs``."""
+
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+
+PAGE = Path(__file__).with_name("limits.md")
+START, END = "<!-- bounds: python docs/bounds.py -->\n", "<!-- end of bounds -->\n"
+
+REFUSED = "refused, with how to cut it down"
+BY_CELL = "an error at the cell that names it"
+OPEN, FORMATS, ARCHIVE = "assess.workbook.open", "assess.motion.formats", "assess.motion.formats._archive"
+COMMON, CSV, TEXT = (f"assess.motion.formats.{name}" for name in ("_format", "plain_csv", "_text"))
+ALLOWANCE, PICTURES = "assess.workbook.allowance", "assess.pictures"
+
+ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
+    ("Workbook: size of the file", OPEN, "MAX_FILE", 2**20, "{:.0f} MiB", REFUSED),
+    ("Workbook: unpacked size of all its parts", OPEN, "MAX_TOTAL", 2**20, "{:.0f} MiB", REFUSED),
+    ("Workbook: parts", OPEN, "MAX_PARTS", 1, "{:,.0f}", REFUSED),
+    ("Workbook: rows of a sheet (items, floors, places, segments)", OPEN, "MAX_ROWS", 1, "{:,.0f}",
+     "an error at the first cell beyond"),
+    ("Workbook: columns of a sheet", OPEN, "MAX_COLUMNS", 1, "{:,.0f}", "an error at the first cell beyond"),
+    ("Workbook: one row", OPEN, "MAX_ROW_BYTES", 2**20, "{:.0f} MiB of XML", REFUSED),
+    ("Record file: size", FORMATS, "LARGEST_FILE", 1e6, "{:.0f} MB", BY_CELL),
+    ("Record file: channels", COMMON, "MOST_CHANNELS", 1, "{:,.0f}", BY_CELL + ", at the headings"),
+    ("Record file: samples of a channel", "assess.motion.record", "MOST_SAMPLES", 1, "{:,.0f}", BY_CELL),
+    ("Record file: samples of all channels", COMMON, "MOST_VALUES", 1, "{:,.0f}", BY_CELL),
+    ("Record file: lines of text", TEXT, "MOST_LINES", 1, "{:,.0f}", BY_CELL),
+    ("Record file: comments and headings of plain CSV", CSV, "MOST_HEAD", 2**10, "{:.0f} KiB", BY_CELL),
+    ("Record file: one row of plain CSV", CSV, "BLOCK", 2**20, "{:.0f} MiB", BY_CELL),
+    ("Record file: records of miniSEED", "assess.motion.formats.miniseed", "MOST_PARTS", 1, "{:,.0f}", BY_CELL),
+    ("Zip archive: unpacked", ARCHIVE, "MOST_UNPACKED", 1e6, "{:.0f} MB", BY_CELL),
+    ("Zip archive: one member, unpacked", ARCHIVE, "LARGEST_MEMBER", 1e6, "{:.0f} MB", BY_CELL),
+    ("Zip archive: members", ARCHIVE, "MOST_MEMBERS", 1, "{:,.0f}", BY_CELL),
+    ("Zip archive: archives in archives", ARCHIVE, "DEEPEST", 1, "{:.0f} levels", "the inner one is left out, noted"),
+    ("All records of a workbook: size of the files", ALLOWANCE, "MOST_RECORD_BYTES", 1e6, "{:.0f} MB", BY_CELL),
+    ("All records of a workbook: samples", ALLOWANCE, "MOST_RECORD_SAMPLES", 1, "{:,.0f}", BY_CELL),
+    ("All records of a workbook: zip archives", ALLOWANCE, "MOST_ARCHIVES", 1, "{:,.0f}", BY_CELL),
+    ("Hazard file: size", "assess.hazard", "LARGEST_FILE", 1e6, "{:.0f} MB", BY_CELL),
+    ("Hazard file: cells", "assess.hazard", "MOST_CELLS", 1, "{:,.0f}", BY_CELL),
+    ("Picture: size of the file", PICTURES, "MOST_BYTES", 2**20, "{:.0f} MiB", BY_CELL),
+    ("Picture: pixels", PICTURES, "MOST_PIXELS", 1e6, "{:.0f} million", BY_CELL),
+    ("Picture: longer side in a report", PICTURES, "SHOWN", 1, "{:,.0f} pixels", "made smaller"),
+    ("All pictures of a workbook: pixels", ALLOWANCE, "MOST_PICTURE_PIXELS", 1e6, "{:.0f} million", BY_CELL),
+    ("Fitted model: size of the file", "assess.methods._fitted", "MOST_BYTES", 2**10, "{:.0f} KiB", REFUSED),
+    ("Fitted model: terms of a polynomial", "assess.methods._fitted", "MOST_TERMS", 1, "{:.0f}", REFUSED),
+    ("Fitted models of a run", "assess.cli.command_run", "MOST_METHODS", 1, "{:.0f}", REFUSED),
+    ("Simulation: results of one motion on one piece", "assess.pipeline.verify", "MOST_PAIRS", 1e6, "{:.0f} million",
+     "refused before the first, with fewer motions as the way out"),
+    ("Report: rows of pieces in the HTML and the PDF", "assess.report.pages.compact", "MOST_LINES", 1, "{:,.0f}",
+     "left out, noted; the Excel file and results.json hold all"),
+)  # fmt: skip
+"""What is bounded; module and name of the constant, its divisor and format; what happens past it."""
+
+
+def build_table() -> str:
+    """Return the table, with the line that starts and the one that ends it."""
+    return START + "\n".join(_lines()) + "\n" + END
+
+
+def _lines() -> Iterator[str]:
+    yield "| what | at most | beyond that | constant |"
+    yield "|---|---|---|---|"
+    for what, module, name, divisor, form, beyond in ROWS:
+        value = getattr(importlib.import_module(module), name)
+        path = Path(str(importlib.import_module(module).__file__)).relative_to(Path(__file__).parents[1]).as_posix()
+        yield f"| {what} | {form.format(value / divisor)} | {beyond} | `{path}` {name} |"
+
+
+def replace_table(page: str) -> str:
+    """Return a page with its table replaced."""
+    before, _, rest = page.partition(START)
+    return before + build_table() + rest.partition(END)[2]
+
+
+if __name__ == "__main__":
+    PAGE.write_text(replace_table(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
