@@ -22,6 +22,7 @@ from assess.workbook.places import (
     CellPlace,
     Edit,
     RowPlace,
+    SheetFormulas,
     SheetPlaces,
     add_attribute,
     apply_edits,
@@ -122,14 +123,7 @@ def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> di
         If the workbook cannot be opened.
     """
     with Book(data, name) as book:
-        places = SheetPlaces(book.archive, book.sheets[sheet], book.name, lambda _: True, SILENT).read()
-        found = {}
-        for number, row in places.rows.items():
-            for column, cell in row.cells.items():
-                if cell.part("f") is not None:
-                    value = cell.part("v")
-                    found[f"{column_letters(column - 1)}{number}"] = value is not None and value.foot > value.head
-        return found
+        return book.read(SheetFormulas, book.sheets[sheet]).found
 
 
 def _check_names(book: Book, names: Sequence[str]) -> None:

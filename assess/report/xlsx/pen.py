@@ -26,6 +26,8 @@ MOST_LINES = 20
 CHANCE, COUNT = "0.0%", "#,##0"
 A4 = 9
 _LONGEST_NAME = 31
+_PAGE, _PAGES = "\ue000", "\ue001"
+"""Stand for the numbers of the page and of all pages: of the signs for private use."""
 """Characters of a sheet's name."""
 
 LOOKS: Mapping[str, Mapping[str, Any]] = {
@@ -264,13 +266,11 @@ def set_print(page: Any, title: str, sheet: str, run: Results) -> None:
     page.set_paper(A4)
     page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
     page.fit_to_pages(1, 0)
-    pages = _plain(_("Page {page} of {pages}", page="\x01", pages="\x02"))
+    pages = _plain(_("Page {page} of {pages}", page=_PAGE, pages=_PAGES)).replace(_PAGE, "&P").replace(_PAGES, "&N")
     conditions = _plain(_say_conditions_shortly(run))
     middle = f"&C&8 {conditions}" if conditions else ""
     page.set_header(f"&L&8 {_plain(words.cut(title, 80))}{middle}&R&8 {_plain(sheet)}")
-    page.set_footer(
-        f"&L&8 {_plain(say_scenario(run).rstrip('.'))}&R&8 {pages}".replace("\x01", "&P").replace("\x02", "&N")
-    )
+    page.set_footer(f"&L&8 {_plain(say_scenario(run).rstrip('.'))}&R&8 {pages}")
 
 
 def _plain(text: str) -> str:
