@@ -152,9 +152,10 @@ class _SheetPatch:
     def write(self) -> bytes:
         """Return the bytes of the sheet with the changes made; `problems` tells what is refused."""
         changes, results = self._by_row(self.changes), self._by_row(self.results)
-        book, path, wanted = self.book, self.book.sheets[self.sheet], {*changes, *results}
+        book, path = self.book, self.book.sheets[self.sheet]
+        wanted = {number: {*changes.get(number, ()), *results.get(number, ())} for number in {*changes, *results}}
         headings = find_headings(book, path)
-        places = SheetPlaces(book.archive, path, book.name, wanted.__contains__, book.progress).read()
+        places = SheetPlaces(book.archive, path, book.name, wanted, book.progress).read()
         edits: list[Edit] = []
         new_rows: list[tuple[int, bytes]] = []
         added: list[tuple[int, int]] = []
@@ -272,8 +273,7 @@ class _RowPatch:
 
     def _place_after(self, row: RowPlace, column: int) -> int:
         """Return where the first cell right of a missing one begins, else the end of the row."""
-        right = [cell.element.start for at, cell in row.cells.items() if at > column]
-        return min(right, default=row.element.foot)
+        return next((start for at, start in row.starts if at > column), row.element.foot)
 
     def _new_cell(self, column: int) -> bytes:
         self.added.append(column)

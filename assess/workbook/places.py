@@ -6,7 +6,7 @@ What is not understood is refused: a change is only made where its effect is kno
 import re
 import zipfile
 from bisect import bisect_right
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from assess.errors import WorkbookError
@@ -180,22 +180,23 @@ class CellPlace:
 
 @dataclass(slots=True)
 class RowPlace:
-    """Where a row lies, and its cells by their columns, from 1."""
+    """Where a row lies, its wanted cells by their columns, from 1, and column and beginning of every cell."""
 
     number: int
     element: Element
     cells: dict[int, CellPlace] = field(default_factory=dict)
+    starts: list[tuple[int, int]] = field(default_factory=list)
 
 
 class SheetPlaces(LocatedPart):
-    """Where the rows of a sheet lie, and the cells of the rows that are `wanted`.
+    """Where the rows of a sheet lie, and the cells that are `wanted`, columns by row, both from 1.
 
     `sheet_data` is the element that holds the rows, `dimension` the one that says how far they reach, `columns` the
     styles of columns by their first and last, `locked` the ranges of formulas of several cells with what they are.
     """
 
     def __init__(
-        self, archive: zipfile.ZipFile, path: str, name: str, wanted: Callable[[int], bool], progress: Progress
+        self, archive: zipfile.ZipFile, path: str, name: str, wanted: Mapping[int, Collection[int]], progress: Progress
     ) -> None:
         super().__init__(archive, path, name, progress)
         self.wanted = wanted
@@ -264,7 +265,7 @@ class SheetPlaces(LocatedPart):
         self._number, self._column, self._row = number, 0, None
         self._numbers.append(number)
         self._starts.append(self.parser.CurrentByteIndex)
-        return self.wanted(number)
+        return number in self.wanted
 
     def _start_cell(self, tag: str, attributes: dict[str, str]) -> bool:
         self._expect(tag, "c")
@@ -276,7 +277,11 @@ class SheetPlaces(LocatedPart):
                     fill("cell {address} stands in row {row}", address=attributes["r"][:20], row=self._number)
                 )
             self._column = place[0]
-        return self.wanted(self._number)
+        self._cell = None
+        if self._row is None:
+            return False
+        self._row.starts.append((self._column, self.parser.CurrentByteIndex))
+        return self._column in self.wanted[self._number]
 
     def _start_content(self, tag: str, attributes: dict[str, str]) -> bool:
         kind = attributes.get("t", "")
@@ -285,7 +290,7 @@ class SheetPlaces(LocatedPart):
             if locked is None:
                 raise self.not_understood(fill("a formula of several cells does not say of which"))
             self.locked.append((locked, kind))
-        return self.wanted(self._number)
+        return self._cell is not None
 
     def enter(self, tag: str, attributes: dict[str, str]) -> None:
         """Note where an element begins, and the cell that it begins."""
