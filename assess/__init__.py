@@ -10,9 +10,10 @@ Names are loaded when first used, so that ``import assess`` costs next to nothin
 """
 
 import importlib
-from typing import TYPE_CHECKING
 
 from assess.version import __version__
+
+TYPE_CHECKING = False  # as type checkers know it: importing `typing` takes milliseconds
 
 if TYPE_CHECKING:
     from assess.errors import (

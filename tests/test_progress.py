@@ -174,7 +174,7 @@ def test_a_run_is_left_in_the_midst_of_a_compilation(tmp_path, monkeypatch, bloc
 
 def test_a_run_that_is_cancelled_late_leaves_no_folder(tmp_path, monkeypatch, blocked):
     inventory = assess.read_inventory(write(tmp_path / "w.xlsx"))
-    monkeypatch.setattr("assess.pipeline.run.tempfile.mkdtemp", lambda **_: str(_make(tmp_path / "temporary")))
+    monkeypatch.setattr("assess.pipeline.run.make_folder", lambda *_: _make(tmp_path / "temporary"))
     monkeypatch.setattr(pipeline, "build_series", blocked)
     with pytest.raises(CancelledError):
         assess.run(inventory, UNVERIFIED, cancel=blocked.cancel)

@@ -20,6 +20,7 @@ import assess.cli
 from assess.cli.completion import ASKED, PROGRAM, find_typed_command
 from assess.cli.console import guard
 from assess.cli.ending import run_to_the_end
+from assess.cli.interrupts import answer_signals
 from assess.version import __version__
 
 PREFIX = "command_"
@@ -43,6 +44,7 @@ def main() -> None:
 
     A shell that asks for completions names the command in its own way.
     """
+    answer_signals()
     gc.set_threshold(GARBAGE)
     typed = sys.argv[1] if len(sys.argv) > 1 else ""
     if ASKED in os.environ:

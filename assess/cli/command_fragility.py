@@ -24,7 +24,7 @@ from assess.cli.options import (
     read_settings,
     save_files,
 )
-from assess.errors import InputError, OutputError
+from assess.errors import InputError
 from assess.settings import AUTO
 
 if TYPE_CHECKING:
@@ -173,11 +173,6 @@ def _write(curves: "Curves", formats: Sequence[str], folder: Path, plot: Path | 
     left = 0
     if plot is not None:
         files[plot], left = _draw(curves, figure_kind(plot))
-    try:
-        for parent in {folder} if formats else ():
-            parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(f"{folder} cannot be written to: {error.strerror}. Name another folder.") from None
     save_files(files)
     for file in files:
         more = f"; {count(left, 'more curve')} not drawn" if file == plot and left else ""

@@ -3,7 +3,6 @@
 The live columns of example rows hold their results.
 """
 
-import tempfile
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -115,16 +114,14 @@ def write_new_workbook(
         raise InputError(f"{path} does not end in .xlsx: name it {path.stem or 'inventory'}.xlsx.")
     if path.exists() and not replace:
         raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
+    from assess.delivery.deliver import saving
     from assess.i18n import ENGLISH, load_catalogue, speaking
     from assess.workbook.template import write_workbook
 
     catalogue = ENGLISH if language == ENGLISH.code else load_catalogue(language)
     try:
-        folder = tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=path.parent)
-        with speaking(catalogue), folder as stage:
-            part = Path(stage) / path.name
+        with speaking(catalogue), saving(path) as part:
             write_workbook(part, _fill(units, use, example), units)
-            part.replace(path)
     except OSError as error:
         raise OutputError(f"{path} could not be written: {error.strerror or error}.") from None
 

@@ -18,7 +18,7 @@ from assess.cli.options import (
     check_file,
     figure_kind,
     read_settings,
-    save_file,
+    save_files,
 )
 from assess.errors import InputError
 from assess.settings import AUTO
@@ -83,20 +83,26 @@ def command(
         fragility = find_fragility(assessment, peaks, jobs=jobs, progress=progress)
     sweep = Sweep(assessment, fragility)
     typer.echo(sweep.to_json() if as_json else sweep.to_text())
+    _write(sweep, csv, plot)
+
+
+def _write(sweep: "Sweep", csv: Path | None, plot: Path | None) -> None:
+    """Write the table and the figure, both or neither."""
+    files, left = {}, 0
     if csv is not None:
-        save_file(sweep.to_csv().encode("utf-8-sig"), csv)
-        typer.echo(f"wrote {csv}", err=True)
+        files[csv] = sweep.to_csv().encode("utf-8-sig")
     if plot is not None:
-        left = _write_figure(sweep, plot)
-        typer.echo(f"wrote {plot}" + (f"; {count(left, 'more route')} not drawn" if left else ""), err=True)
+        files[plot], left = _draw(sweep, figure_kind(plot))
+    save_files(files)
+    for file in files:
+        more = f"; {count(left, 'more route')} not drawn" if file == plot and left else ""
+        typer.echo(f"wrote {file}{more}", err=True)
 
 
-def _write_figure(sweep: "Sweep", path: Path) -> int:
-    """Write the figure; return how many routes it has no room for."""
+def _draw(sweep: "Sweep", kind: str) -> tuple[bytes, int]:
+    """Return the figure, and how many routes it has no room for."""
     from assess.cli.route_figure import choose_drawn, paint, size
     from assess.report.figures.draw import draw
 
     drawn, left = choose_drawn(sweep.fragility.routes)
-    picture = draw(*size(drawn), partial(paint, sweep.fragility, drawn, sweep.pfa_g), figure_kind(path))
-    save_file(picture, path)
-    return len(left)
+    return draw(*size(drawn), partial(paint, sweep.fragility, drawn, sweep.pfa_g), kind), len(left)

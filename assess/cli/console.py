@@ -2,14 +2,12 @@
 
 Exit status: 0 done; 1 done, but something could not be assessed or written (named), or `check` found a workbook that
 is not complete yet; 2 bad input or usage, nothing written, but for the copy that `assess check --fix` writes and in
-which errors may remain; 130 interrupted. Messages go to standard error, what was asked for to standard output.
+which errors may remain; 130 interrupted by Ctrl-C, 143 by SIGTERM (`assess.cli.interrupts`). Messages go to standard
+error, what was asked for to standard output.
 """
 
-import _thread
 import errno
-import os
 import re
-import signal
 import sys
 import threading
 import time
@@ -23,6 +21,7 @@ import typer
 from typer.models import OptionInfo
 
 from assess import i18n
+from assess.cli import interrupts
 from assess.environment import find_source_date
 from assess.errors import AssessError, CancelledError, InputError, Problem, RecordError, WorkbookError
 from assess.plain_text import plain_line, plain_text
@@ -32,10 +31,6 @@ MOST_PRINTED = 200
 """Problems printed in one run; the rest are counted."""
 LONGEST_NAME = 80
 """Characters of the name of a file that a message shows where the system refuses the name."""
-INTERRUPTED = 130
-"""Exit status after Ctrl-C, as in shells."""
-PATIENCE = 0.4
-"""Time that the work has to stop by itself after Ctrl-C before it is interrupted [s]."""
 REDRAW = 0.2
 """Shortest time between two states of the line on a terminal [s]."""
 QUIET, REPEAT, LOOK = 2.0, 5.0, 0.5
@@ -67,30 +62,16 @@ def guard(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def run(*arguments: Any, **options: Any) -> None:
+        interrupts.start()
         try:
             find_source_date()
             command(*arguments, **options)
-        except (KeyboardInterrupt, CancelledError):
-            _end("nothing was written")
         except InterruptedWorkError as error:
-            _end(str(error))
-        except WorkbookError as error:
-            print_problems(error.problems)
-            print_ways(error.problems)
-            typer.echo(f"{count_errors(error.problems)}; nothing was written.", err=True)
-            raise typer.Exit(2) from None
-        except InputError as error:
-            text = str(error) if isinstance(error, RecordError) else _name_option(str(error), command)
-            print_error(text)
-            raise typer.Exit(2) from None
-        except AssessError as error:
-            print_error(str(error))
-            raise typer.Exit(1) from None
-        except OSError as error:
-            if error.filename is None:  # the output of the command itself, see `assess.cli.ending`
-                raise
-            print_error(describe_fault(error))
-            raise typer.Exit(2 if error.errno == errno.ENAMETOOLONG else 1) from None
+            interrupts.end_surely(str(error))
+        except BaseException as error:
+            if interrupts.is_interrupted() or isinstance(error, KeyboardInterrupt | CancelledError):
+                interrupts.end_surely()  # whatever became of the interrupt on its way
+            _explain(error, command)
 
     return run
 
@@ -104,12 +85,24 @@ def describe_fault(error: OSError) -> str:
     return f"{name[:LONGEST_NAME]}{'…' if len(name) > LONGEST_NAME else ''} cannot be used: {why}."
 
 
-def _end(remains: str) -> Never:
-    """End the process at once; threads that are still integrating are not waited for."""
-    typer.echo(f"\nInterrupted; {remains}.", err=True)
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(INTERRUPTED)
+def _explain(error: BaseException, command: Callable[..., None]) -> Never:
+    """Print what went wrong and raise the exit status; what is no error of the library is raised as it is."""
+    if isinstance(error, WorkbookError):
+        print_problems(error.problems)
+        print_ways(error.problems)
+        typer.echo(f"{count_errors(error.problems)}; nothing was written.", err=True)
+        raise typer.Exit(2) from None
+    if isinstance(error, InputError):
+        text = str(error) if isinstance(error, RecordError) else _name_option(str(error), command)
+        print_error(text)
+        raise typer.Exit(2) from None
+    if isinstance(error, AssessError):
+        print_error(str(error))
+        raise typer.Exit(1) from None
+    if isinstance(error, OSError) and error.filename is not None:  # else the output itself, see `assess.cli.ending`
+        print_error(describe_fault(error))
+        raise typer.Exit(2 if error.errno == errno.ENAMETOOLONG else 1) from None
+    raise error
 
 
 def _name_option(message: str, command: Callable[..., None]) -> str:
@@ -190,10 +183,10 @@ def show_progress() -> Iterator[Progress]:
     Yields
     ------
     Progress
-        For the library. Work that does not stop `PATIENCE` after it is cancelled gets a KeyboardInterrupt.
+        For the library. Work that does not stop `interrupts.PATIENCE` after it is cancelled gets a KeyboardInterrupt.
     """
     cancel, line = threading.Event(), _Line(sys.stderr)
-    with _cancel_by_signal(cancel), _repeat(line):
+    with interrupts.cancel_by_signal(cancel), _repeat(line):
         try:
             yield Progress(line, cancel)
         finally:
@@ -283,43 +276,3 @@ def describe_progress(report: Report) -> str:
 def _round_time(seconds: float) -> str:
     """Return a time with no more digits than can be known."""
     return f"{max(1, round(seconds))} s" if seconds < 90 else f"{round(seconds / 60)} min"
-
-
-@contextmanager
-def _cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
-    """Have the first Ctrl-C or SIGTERM set `cancel`, and the next one raise KeyboardInterrupt in the main thread."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    signalled, done = threading.Event(), threading.Event()
-
-    def stop(*_: object) -> None:
-        if cancel.is_set():
-            raise KeyboardInterrupt
-        cancel.set()
-        signalled.set()
-
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    taken = [number for number, handler in before.items() if handler not in (signal.SIG_IGN, None)]
-    for number in taken:
-        signal.signal(number, stop)
-    threading.Thread(target=_insist, args=(signalled, done), daemon=True).start()
-    try:
-        yield
-    finally:
-        for number in taken:
-            signal.signal(number, before[number])
-        done.set()
-        signalled.set()
-
-
-def _insist(signalled: threading.Event, done: threading.Event) -> None:
-    """Send Ctrl-C again until the work has ended: what a compiled library swallows is lost."""
-    signalled.wait()
-    wait = PATIENCE
-    while not done.wait(wait):
-        wait = 5 * PATIENCE  # time to clean up
-        if hasattr(signal, "pthread_kill"):
-            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
-        else:
-            _thread.interrupt_main()

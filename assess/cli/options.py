@@ -1,9 +1,7 @@
 """Options that several commands have: their help, and what turns them into arguments of the library."""
 
-import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -93,35 +91,26 @@ def save_file(data: bytes, path: Path) -> None:
 
 
 def save_files(files: Mapping[Path, bytes]) -> None:
-    """Write files, whole or none of them: each is written next to its place, and they are moved there at the end.
+    """Write files, whole or none of them; the folder of each is made if missing. See `assess.delivery`.
 
     Raises
     ------
     OutputError
         If one cannot be written; what was there before is left.
     """
-    stages = {path: path.with_name(f".{path.stem[:40]}{path.suffix[:8]}.writing") for path in files}
-    try:
-        for path, data in files.items():
-            with _naming(path), stages[path].open("wb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-        for path, stage in stages.items():
-            with _naming(path):
-                stage.replace(path)
-    finally:
-        for stage in stages.values():
-            stage.unlink(missing_ok=True)
+    from assess.delivery.deliver import save
 
-
-@contextmanager
-def _naming(path: Path) -> Iterator[None]:
-    """Turn an error of the system into an OutputError that names the file."""
     try:
-        yield
+        save(files)
     except OSError as error:
-        raise OutputError(f"{path} could not be written: {error.strerror}. Name another file.") from None
+        names = {path.name: path for path in files}
+        path = next((names[each] for each in _list_names(error) if each in names), next(iter(files)))
+        why = error.strerror or error
+        raise OutputError(f"{path} could not be written: {why}. Name another file.") from None
+
+
+def _list_names(error: OSError) -> list[str]:
+    return [Path(name).name for name in (error.filename2, error.filename) if isinstance(name, str)]
 
 
 def figure_kind(path: Path) -> str:

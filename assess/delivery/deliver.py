@@ -89,14 +89,14 @@ def check_moves(folder: Path) -> None:
 def _put(new: Path, target: Path) -> bool:
     """Give a folder its name, which nothing has; if that cannot be, make a folder of this name and return False."""
     target.parent.mkdir(parents=True, exist_ok=True)
-    with moving():
-        try:
+    try:
+        with moving():
             new.rename(target)
-        except OSError:  # another file system, or another run was faster
-            target.mkdir(exist_ok=True)
-            return False
-        flush_folder(target.parent)
-        return True
+            flush_folder(target.parent)
+    except OSError:  # another file system, or another run was faster
+        target.mkdir(exist_ok=True)
+        return False
+    return True
 
 
 def _swap(stage: Path, target: Path, old: Collection[str]) -> bool:

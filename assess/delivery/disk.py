@@ -9,12 +9,21 @@ _BLOCK = 1 << 20
 
 
 def write_through(path: Path, data: bytes) -> None:
-    """Write a file down to the disk, so that a full disk shows here; its folder is made if missing."""
+    """Write a file down to the disk, so that a full disk shows here; its folder is made if missing.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written; `filename` names it, which the system leaves out where the disk is full.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
+    try:
+        with path.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from None
 
 
 def flush_file(path: Path) -> None:

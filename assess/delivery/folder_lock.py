@@ -5,6 +5,7 @@ file systems) a file `FILE` in the folder is locked, and removed at the end.
 """
 
 import os
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -14,7 +15,7 @@ from assess.errors import OutputError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
 
-if os.name == "nt":
+if sys.platform == "win32":
     import msvcrt
 else:
     import fcntl
@@ -70,7 +71,7 @@ class FolderLock:
                 self._file.unlink()
         os.close(self._handle)
         self._handle = -1
-        if self._is_file and os.name == "nt":
+        if self._is_file and sys.platform == "win32":
             with suppress(OSError):
                 self._file.unlink()
 
@@ -78,7 +79,7 @@ class FolderLock:
 def _lock(handle: int) -> bool | None:
     """Lock an open file or folder; False: another one holds it, None: it cannot be locked here."""
     try:
-        if os.name == "nt":
+        if sys.platform == "win32":
             msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
         else:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,7 +1,6 @@
 """The main job: an inventory in, results out."""
 
 import math
-import shutil
 import tempfile
 import weakref
 from collections.abc import Iterator, Sequence
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.delivery.traces import make_folder, remove_folder
 from assess.errors import InputError, OutputError, Problem
 from assess.i18n import fill
 from assess.methods import Cases, Method, all_methods, simulation
@@ -195,10 +195,10 @@ def build_results(
             _write_series(results.series.path, arrays, progress)
     except BaseException:
         if is_temporary:
-            shutil.rmtree(folder, ignore_errors=True)
+            remove_folder(folder)
         raise
     if is_temporary:
-        weakref.finalize(results, shutil.rmtree, folder, ignore_errors=True)
+        weakref.finalize(results, remove_folder, folder)
     return results
 
 
@@ -206,7 +206,7 @@ def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
     """Return where series are written; the name of a folder that does not exist where none are wanted."""
     if series_folder is not None:
         return Path(series_folder)
-    return Path(tempfile.mkdtemp(prefix="assess-") if figures else "no-series")
+    return make_folder(Path(tempfile.gettempdir()), "assess-") if figures else Path("no-series")
 
 
 def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Path, progress: Progress) -> Results:

@@ -2,7 +2,6 @@
 
 import hashlib
 import io
-import os
 import tempfile
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -12,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.delivery.deliver import save
 from assess.errors import OutputError
 from assess.version import __version__
 
@@ -40,25 +40,18 @@ def check_folder(folder: Path) -> None:
 def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write files into a folder, which is made if missing; a name may include a folder within.
 
-    All are written to a temporary folder first and then moved: each file appears whole, and if one cannot be written,
-    none is.
+    Each file appears whole, and if one cannot be written, none is: see `assess.delivery`.
 
     Raises
     ------
     OutputError
         If a file cannot be written.
     """
+    taken = next((name for name in files if (folder / name).is_dir()), None)
+    if taken is not None:
+        raise OutputError(f"{folder / taken} could not be written: it is a folder. Move it away.")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".assess-writing-", dir=folder) as stage:
-            for name, data in files.items():
-                _write_through(Path(stage) / name, data)
-            taken = next((name for name in files if (folder / name).is_dir()), None)
-            if taken is not None:
-                raise OutputError(f"{folder / taken} could not be written: it is a folder. Move it away.")
-            for name in files:
-                (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                (Path(stage) / name).replace(folder / name)
+        save({folder / name: data for name, data in files.items()})
     except OSError as error:
         raise _fault(folder, error) from None
 
@@ -102,15 +95,6 @@ def _load(file: Path, name: str) -> Arrays | None:
         return found if str(found.pop(MARK)) == name else None
     except Exception:  # whatever is wrong with it, it is computed again
         return None
-
-
-def _write_through(file: Path, data: bytes) -> None:
-    """Write a file down to the disk, so that a full disk shows here; its folder is made if missing."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with file.open("wb") as stream:
-        stream.write(data)
-        stream.flush()
-        os.fsync(stream.fileno())
 
 
 def _fault(folder: Path, error: OSError) -> OutputError:
