@@ -6,6 +6,7 @@ from typing import Any
 import assess
 from assess.results import Results
 from assess.settings import Settings
+from assess.workbook.layout import LETTERS
 from assess.workbook.template import Content, Units, write_workbook
 
 RECORDS = Path(__file__).parents[1] / "samples" / "records"
@@ -21,6 +22,11 @@ ITEMS = [
     {"item": "A4", "floor": "2", "breadth": 45, "width": 90, "height": 90, "anchored": "yes"},
     {"item": "A5", "floor": "2", "type": "Bookcase 5 shelves", "x": 2.0, "y": 3.0, "angle_deg": 90},
 ]
+
+
+def address(field: str, row: int, sheet: str = "Items") -> str:
+    """Return the cell of such a workbook that holds a field, ``H2``; row 2 is that of the first item."""
+    return f"{LETTERS[sheet, field]}{row}"
 
 
 def write(

@@ -5,25 +5,29 @@ from pathlib import Path
 from assess.workbook.patch import patch_workbook
 from assess.workbook.read import read_inventory
 from tests.cli.calling import error, run
-from tests.workbooks import ITEMS, RECORDS, write
+from tests.workbooks import ITEMS, RECORDS, address, write
+
+BREADTH = address("breadth", 2)
+HEIGHTS = [address("height", row) for row in (2, 3, 4, 5)]
 
 
-def habits(path: Path, **items: object) -> Path:
-    """A workbook with these cells in Items."""
+def habits(path: Path, *typed: str, **cells: str) -> Path:
+    """A workbook with the first breadth and heights as they are typed, and with other cells of Items."""
     write(path)
-    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": items}).data)  # type: ignore[dict-item]
+    items = dict(zip((BREADTH, *HEIGHTS), typed, strict=False)) | cells
+    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": items}).data)
     return path
 
 
 def test_a_corrected_copy_is_written_and_listed(tmp_path):
-    path = habits(tmp_path / "book.xlsx", G2="30 cm", I2="200 cm", I3="2 m", I4="1.8 m", I5="0.9 m", K4="N")
+    path = habits(tmp_path / "book.xlsx", "30 cm", "200 cm", "2 m", "1.8 m", "0.9 m", **{address("anchored", 4): "N"})
     before = path.read_bytes()
     done = run("check", path, "--fix", tmp_path / "out.xlsx")
     assert (done.exit_code, done.stderr.count("error")) == (0, 0), done.output
     lines = done.stdout.splitlines()
     assert lines[0] == f"wrote {tmp_path / 'out.xlsx'}: 6 cells corrected."
-    assert "  Items!G2 '30 cm' -> 30. The unit is in the header." in lines
-    shown = "I2 '200 cm' -> 200, I3 '2 m' -> 200, I4 '1.8 m' -> 180 and 1 more"
+    assert f"  Items!{BREADTH} '30 cm' -> 30. The unit is in the header." in lines
+    shown = "{} '200 cm' -> 200, {} '2 m' -> 200, {} '1.8 m' -> 180 and 1 more".format(*HEIGHTS)
     assert f"  Items, 4 cells: {shown}. The unit is in the header." in lines
     assert lines[-1].startswith("book.xlsx: no errors.")
     assert path.read_bytes() == before
@@ -34,10 +38,10 @@ def test_a_corrected_copy_is_written_and_listed(tmp_path):
 
 
 def test_errors_that_remain_are_named_and_the_copy_is_written(tmp_path):
-    path = habits(tmp_path / "book.xlsx", G2="30 cm", I3="high")
+    path = habits(tmp_path / "book.xlsx", "30 cm", "200", "high")
     done = run("check", path, "--fix", tmp_path / "out.xlsx")
     assert done.exit_code == 2
-    assert "Items!I3: Height is the text 'high'" in done.stderr
+    assert f"Items!{HEIGHTS[1]}: Height is the text 'high'" in done.stderr
     assert done.stderr.endswith("1 error to correct by hand.\n")
     assert run("check", tmp_path / "out.xlsx").stderr.count("error ") == 1
 
@@ -50,7 +54,7 @@ def test_nothing_is_written_where_nothing_is_to_be_corrected(tmp_path):
 
 
 def test_the_workbook_itself_is_never_written(tmp_path):
-    path = habits(tmp_path / "book.xlsx", G2="30 cm")
+    path = habits(tmp_path / "book.xlsx", "30 cm")
     (tmp_path / "linked.xlsx").hardlink_to(path)
     before = path.read_bytes()
     for out in (path, tmp_path / "." / "book.xlsx", tmp_path / "linked.xlsx"):
@@ -59,7 +63,7 @@ def test_the_workbook_itself_is_never_written(tmp_path):
 
 
 def test_an_existing_file_is_replaced_on_demand_only(tmp_path):
-    path = habits(tmp_path / "book.xlsx", G2="30 cm")
+    path = habits(tmp_path / "book.xlsx", "30 cm")
     (tmp_path / "out.xlsx").write_text("mine")
     done = run("check", path, "--fix", tmp_path / "out.xlsx")
     assert (done.exit_code, done.stdout) == (1, "")
@@ -70,7 +74,7 @@ def test_an_existing_file_is_replaced_on_demand_only(tmp_path):
 
 
 def test_a_copy_that_cannot_be_written_is_refused_before_the_work(tmp_path):
-    path = habits(tmp_path / "book.xlsx", G2="30 cm")
+    path = habits(tmp_path / "book.xlsx", "30 cm")
     for out in ("out.xlsm", "out", "missing/out.xlsx", "x" * 300 + ".xlsx", "."):
         assert "copy" in error(run("check", path, "--fix", tmp_path / out))
     assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
@@ -80,7 +84,7 @@ def test_files_that_the_workbook_names_are_looked_for_next_to_it(tmp_path):
     record = next(one for one in sorted(RECORDS.rglob("*")) if one.suffix == ".csv")
     path = write(tmp_path / "book.xlsx", floors=[{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "record_x": record.name}])
     (tmp_path / record.name).write_bytes(record.read_bytes())
-    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": {"G2": "30 cm"}}).data)
+    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": {BREADTH: "30 cm"}}).data)
     (tmp_path / "other").mkdir()
     done = run("check", path, "--fix", tmp_path / "other" / "out.xlsx")
     assert "The files that the workbook names lie next to book.xlsx: copy them next to out.xlsx as well." in done.stdout

@@ -17,10 +17,14 @@ from assess.workbook.template import write_workbook
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts
 from tests.workbook.test_patch import changed_parts
+from tests.workbooks import address
 
+BREADTH, WIDTH, HEIGHT = (address(field, 2) for field in ("breadth", "width", "height"))
+SECOND, ANCHORED, WRONG = address("height", 3), address("anchored", 4), address("breadth", 5)
+PFA = address("pfa_x", 2, "Floors")
 HABITS: dict[str, dict[str, Any]] = {
-    "Items": {"G2": "30 cm", "H2": " 80", "I2": "200cm", "I3": "2 m", "K4": "N", "G5": "0,6"},
-    "Floors": {"D2": "0,3"},
+    "Items": {BREADTH: "30 cm", WIDTH: " 80", HEIGHT: "200cm", SECOND: "2 m", ANCHORED: "N", WRONG: "0,6"},
+    "Floors": {PFA: "0,3"},
 }
 
 
@@ -39,11 +43,11 @@ def stored(done: Corrected, path: Path) -> dict[tuple[str, str], Any]:
 def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path) -> None:
     path = example(tmp_path / "book.xlsx", HABITS)
     done = correct_workbook(path)
-    typed = {sheet: set(cells) - {"G5"} for sheet, cells in HABITS.items()}
+    typed = {sheet: set(cells) - {WRONG} for sheet, cells in HABITS.items()}
     assert {sheet: {one.cell for one in done.changed if one.sheet == sheet} for sheet in typed} == typed
     found, before = stored(done, tmp_path / "out.xlsx"), stored_cells(path)
-    assert [found["Items", cell] for cell in ("G2", "H2", "I2", "I3", "K4")] == [30, 80, 200, 200, "no"]
-    assert found["Floors", "D2"] == 0.3
+    assert [found["Items", cell] for cell in (BREADTH, WIDTH, HEIGHT, SECOND, ANCHORED)] == [30, 80, 200, 200, "no"]
+    assert found["Floors", PFA] == 0.3
     formulas = {(sheet, cell) for sheet in ("Items", "Lists") for cell in list_formulas(path.read_bytes(), sheet)}
     same = {key for key in before if found.get(key) == before[key]} | formulas
     assert {*before, *found} - same == {(one.sheet, one.cell) for one in done.changed}
@@ -63,7 +67,7 @@ def test_corrected_once_there_is_nothing_left_to_correct(tmp_path: Path) -> None
 
 
 def test_the_live_columns_store_what_they_show(tmp_path: Path) -> None:
-    done = correct_workbook(example(tmp_path / "book.xlsx", {**HABITS, "Items": {"G2": "30 cm", "I2": "2 m"}}))
+    done = correct_workbook(example(tmp_path / "book.xlsx", {**HABITS, "Items": {BREADTH: "30 cm", HEIGHT: "2 m"}}))
     page = openpyxl.load_workbook(io.BytesIO(done.inventory.data or b""), data_only=True)["Items"]
     places = {cell.value: cell.column for cell in page[1]}
     expected = live_values(done.inventory)
@@ -97,19 +101,20 @@ def test_libreoffice_recalculates_what_rests_on_corrected_cells(tmp_path: Path) 
 
 
 def test_a_formula_stays_a_formula(tmp_path: Path) -> None:
-    path = example(tmp_path / "book.xlsx", {"Items": {"G2": 30}})
+    path = example(tmp_path / "book.xlsx", {"Items": {BREADTH: 30}})
     sheet = f"xl/worksheets/sheet{1 + openpyxl.load_workbook(path).sheetnames.index('Items')}.xml"
-    cell = b'<c r="G2" t="str"><f>"30 "&amp;"cm"</f><v>30 cm</v></c>'
-    change_parts(path, {sheet: lambda data: re.sub(rb'<c r="G2".*?</c>', cell, data, count=1)})
+    place = BREADTH.encode()
+    cell = b'<c r="%b" t="str"><f>"30 "&amp;"cm"</f><v>30 cm</v></c>' % place
+    change_parts(path, {sheet: lambda data: re.sub(rb'<c r="%b".*?</c>' % place, cell, data, count=1)})
     done = correct_workbook(path)
-    assert ([one.cell for one in done.kept], done.changed) == (["G2"], ())
+    assert ([one.cell for one in done.kept], done.changed) == ([BREADTH], ())
     assert done.inventory.data == path.read_bytes()
 
 
 def test_corrections_of_one_kind_are_listed_together(tmp_path: Path) -> None:
     done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
     groups = group_corrections(done.changed)
-    assert ["I2", "I3"] in [[one.cell for one in group] for group in groups]
+    assert [HEIGHT, SECOND] in [[one.cell for one in group] for group in groups]
     assert sum(map(len, groups)) == len(done.changed)
 
 
@@ -120,7 +125,7 @@ def test_an_italian_workbook(tmp_path: Path) -> None:
     with speaking(load_catalogue("it")):
         write_workbook(path, with_live(example_content()))
     (sheet,) = (name for english, name in read_inventory(path).sheets.items() if english == "Items")
-    path.write_bytes(patch_workbook(path.read_bytes(), {sheet: {"G2": "30 cm"}}).data)
+    path.write_bytes(patch_workbook(path.read_bytes(), {sheet: {BREADTH: "30 cm"}}).data)
     done = correct_workbook(path)
     assert [one.value for one in done.changed] == [30]
     with speaking(load_catalogue("it")):
