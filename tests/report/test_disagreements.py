@@ -161,7 +161,7 @@ class TestExampleBuilding:
             "Kaneko-Hayashi formula (on 9)."
         )
         first, second = both.groups
-        assert (len(first.rows), first.named[:2], first.left) == (8, ["42-07", "42-08"], 0)
+        assert (len(first.rows), first.named[:2], first.left) == (8, ["25-01", "25-02"], 0)
         assert first.highest == "Proposed OR formula: ▲ high, 34.5 to 36.3 %"
         assert first.reasons[0].startswith("PFA 0.136 to 0.165 g is 0.59 to 0.66 times g·B/H, ")
         assert second.named == ["G-04"]
