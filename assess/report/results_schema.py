@@ -216,7 +216,7 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     (Settings, "scale"): {"type": "number", "exclusiveMinimum": 0, "maximum": MOST_SCALE},
     (Settings, "ductility_reduction"): {"type": "number", "minimum": 1},
     (UNCERTAINTY, "motion"): {"type": "number", "minimum": 0},
-    (Problem, "severity"): {"enum": ["warning", "note"]},
+    (Problem, "severity"): {"enum": ["error", "warning", "note"]},
 }
 """What is not as its type says."""
 

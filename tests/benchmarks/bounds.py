@@ -4,7 +4,6 @@ Each row is a command in a process of its own: time of the processor, and memory
 hold one of them.
 """
 
-import os
 import subprocess
 import sys
 import tempfile
@@ -144,18 +143,25 @@ def cases() -> Iterator[tuple[str, Callable[[Path], Path], list[str]]]:
     yield "a logo of 50 million pixels (PNG): run, PDF, HTML and Excel", with_picture, reports
 
 
+_CHILD = """
+import resource, subprocess, sys
+done = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(used.ru_utime + used.ru_stime, used.ru_maxrss)
+sys.exit(done.stderr[-2000:] if done.returncode else 0)
+"""
+
+
 def measure(command: list[str]) -> tuple[float, float]:
-    """Return time of the processor [s] and memory at the peak [MB] of a command."""
-    with Path(os.devnull).open("w") as nowhere:
-        child = subprocess.Popen(command, stdout=nowhere, stderr=subprocess.PIPE)
-        assert child.stderr is not None
-        said = child.stderr.read()
-        _, status, used = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode:
-        raise RuntimeError(said.decode()[-2000:])
-    scale = 1e6 if sys.platform == "darwin" else 1e3
-    return used.ru_utime + used.ru_stime, used.ru_maxrss / scale
+    """Return time of the processor [s] and memory at the peak [MB] of a command.
+
+    A small process starts it: the memory of the one that starts counts at the beginning.
+    """
+    done = subprocess.run([sys.executable, "-c", _CHILD, *command], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    seconds, peak = map(float, done.stdout.split())
+    return seconds, peak / (1e6 if sys.platform == "darwin" else 1e3)
 
 
 def main() -> None:
