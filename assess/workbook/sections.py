@@ -76,9 +76,10 @@ def describe_hidden_rows(numbers: Sequence[int], *, is_furniture: bool) -> Text:
 
 def describe_hidden_columns(labels: Sequence[str]) -> Text:
     """Say which hidden columns are read."""
+    listed = join(", ", map(fill, labels))
     return nfill(
         "the hidden column {labels} is read as well.", "{n:,} hidden columns are read as well: {labels}.",
-        len(labels), labels=join(", ", map(fill, labels)),
+        len(labels), labels=listed,
     )  # fmt: skip
 
 
