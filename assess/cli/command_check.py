@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ORDER = 2
 EXAMPLES = (
     "assess check building.xlsx",
-    "assess check building.xlsx --fix corrected.xlsx",
+    "assess check building.xlsx --fix corrected.xlsx --force",
     "assess check building.xlsx 2> problems.txt",
 )
 

@@ -21,6 +21,7 @@ ITEMS = [
     {"item": "b", "floor": "1", "breadth": 40, "height": 180, "axis": "Y"},
     {"item": "c", "floor": "1", "breadth": 40, "height": 180},
     {"item": "d", "floor": "2", "breadth": 90, "height": 180, "anchored": "yes"},
+    {"item": "e", "floor": "2", "breadth": 90, "height": 180, "anchored": "partly"},
 ]
 CONTENT = Content(
     {
@@ -32,12 +33,14 @@ CONTENT = Content(
 
 def test_a_record_on_any_axis_of_a_piece_asks_for_a_run(tmp_path):
     (tmp_path / "x.csv").write_text(RECORD, encoding="utf-8")
-    along_x, along_y, both, anchored = with_live(CONTENT, folder=tmp_path).live
+    along_x, along_y, both, anchored, partly = with_live(CONTENT, folder=tmp_path).live
     assert along_x[1:] == both[1:] == [RUN_ASSESS] * 5
     assert along_x[0] == along_y[0] == pytest.approx(40 / 180)
     assert along_y[1] == pytest.approx(0.4)
     assert along_y[4] == "■ very high"
-    assert anchored[4] == "◇ medium*", "outside the checked range, and classed as free-standing"
+    assert anchored[4] == "anchored"
+    assert partly[4] == "◇ medium*", "outside the checked range, and classed as free-standing"
+    assert anchored[:4] == partly[:4]
 
 
 def test_the_temporary_workbook_leaves_nothing_behind(tmp_path):
@@ -61,9 +64,11 @@ def test_given_motion_hides_the_record(tmp_path):
 def test_what_no_formula_knows_asks_for_a_run(tmp_path):
     floors = [{"floor": "1", "elevation": 0, "pfa_x": 0.4}, {"floor": "2", "elevation": 4}]
     content = Content({"Floors": floors, "Items": ITEMS, "Building": [{"ground_pga": 0.2}]})
-    assert [row[1] for row in with_live(content).live] == [pytest.approx(0.4)] * 3 + [RUN_ASSESS]
+    assert [row[1] for row in with_live(content).live] == [pytest.approx(0.4)] * 3 + [RUN_ASSESS] * 2
     by_code = replace(content, rows={**content.rows, "Building": [{"ground_pga": 0.2, "scenario_kind": "NTC 2018"}]})
-    assert [row[1:] for row in with_live(by_code).live] == [[RUN_ASSESS] * 5] * 4
+    unknown = [RUN_ASSESS] * 5
+    anchored = [*unknown[:3], "anchored", RUN_ASSESS]
+    assert [row[1:] for row in with_live(by_code).live] == [unknown, unknown, unknown, anchored, unknown]
 
 
 def test_they_are_the_results_of_the_run(tmp_path):
@@ -72,8 +77,9 @@ def test_they_are_the_results_of_the_run(tmp_path):
     write_workbook(path, Content({"Floors": floors, "Items": ITEMS, "Building": [{"period": 0.8}]}))
     inventory = read_inventory(path)
     run = compute(inventory, Settings(verify="none"))
-    for one, values in zip(run.governing, live_values(inventory), strict=True):
+    for item, one, values in zip(inventory.items, run.governing, live_values(inventory), strict=True):
         assert values[1] == run.cases.pfa[one] / GRAVITY
         assert values[2:-2] == [run.outcomes[method.key].value[one] for method in LIVE_METHODS]
         assert values[-1] == ("yes" if run.adoption.can_rock[one] else "no")
-        assert values[-2].startswith(say_class(RiskClass(run.adoption.risk[one])))
+        risk = say_class(RiskClass(run.adoption.risk[one]))
+        assert values[-2].startswith("anchored" if item.anchored == "yes" else risk)
