@@ -24,9 +24,7 @@ def write_samples(folder: Path) -> dict[str, Path]:
     os.environ["SOURCE_DATE_EPOCH"] = DAY
     with tempfile.TemporaryDirectory() as box:
         written = assess.write_reports(assess.run(assess.read_inventory(WORKBOOK)), box, FORMATS)
-        for kind, path in written.items():
-            written[kind] = Path(shutil.move(path, folder / f"market-street.{kind}"))
-    return written
+        return {kind: Path(shutil.move(written[kind], folder / f"market-street.{kind}")) for kind in FORMATS}
 
 
 if __name__ == "__main__":
