@@ -191,7 +191,8 @@ class ListsWriter:
         fields = ("ground_pga", "ground_pgv", "sds", "shaking", "height")
         building = {name: f"{gettext(BUILDING.name)}!$B${_line(name)}" for name in fields}
         letter, last = LETTERS["Floors", "elevation"], self.last["Floors"]
-        elevations = f"{gettext('Floors')}!${letter}$2:${letter}${last}"
+        floors = gettext("Floors")
+        elevations = f"{floors}!${letter}$2:${letter}${last}"
         for line, (name, formula) in enumerate(live_shaking.list_names(building, elevations), row):
             self._define(name, at, line, name, f"={formula}", "")
 
