@@ -169,10 +169,9 @@ BUILDING = Sheet(
                **_GROUND_VELOCITY),
         Column("sds", "SDS", "number", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank "
                "Ground PGA.", **_ACCELERATION),
-        Column("shaking", "Shaking", "choice", "For those who know none of these: how strongly the ground shakes, as MMI or "
-               "as JMA of Japan. Its published median PGA and PGV then serve every floor without a motion of its own, "
-               "and the reports say that the shaking is assumed.", choices=tuple(SHAKINGS),
-               default="no shaking is assumed"),
+        Column("shaking", "Shaking", "choice", "If you know none of these: the intensity of the shaking, MMI or JMA (Japan). "
+               "Its published median PGA and PGV serve every floor without a motion of its own; the reports say so.",
+               choices=tuple(SHAKINGS), default="no shaking is assumed"),
         Column("hazard", "Hazard file", "file", "Hazard curve of the site beside the workbook, for chances a year: a CSV "
                "file with pga_g,annual_rate, or OpenQuake's hazard_curve-mean-PGA.csv.",
                default="chances a year are not evaluated"),

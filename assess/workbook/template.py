@@ -89,6 +89,9 @@ _LIVE_FORMATS = {
 
 _LIVE_WIDTHS, _HELP_WIDTH = {CLASS: 17}, 90
 
+MOST_NAMED = 8
+"""Choices that a help names; of more, the drop-down shows them all, and a spreadsheet cuts long helps."""
+
 CREATED = datetime(2000, 1, 1)
 """Date in the properties of every workbook: the same content gives the same bytes."""
 
@@ -316,9 +319,9 @@ class _Writer:
 
 
 def describe(column: Column) -> str:
-    """Return the help of a column with its choices and what a blank means, in the language in use."""
+    """Return the help of a column with its choices, if they are few, and what a blank means, in the language in use."""
     parts = [gettext(column.help)]
-    if column.choices:
+    if 0 < len(column.choices) <= MOST_NAMED:
         parts.append(gettext("One of: {choices}.", choices=", ".join(map(gettext, column.choices))))
     if column.default:
         parts.append(gettext("Blank: {default}.", default=gettext(column.default)))

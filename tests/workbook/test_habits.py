@@ -172,7 +172,7 @@ def test_statements_on_different_floors_stay_apart(tmp_path: Path) -> None:
     """They share a column and a kind of message, yet each counts pieces of its own."""
     problems = read_inventory(Path(__file__).parents[2] / "inventories" / "market-street.xlsx").problems
     shown = [one.cell for one in group_problems(problems) if "have neither a position nor a Route" in one.message]
-    assert shown == ["M34", "M68", "M100"]
+    assert shown == ["N34", "N68", "N100"]
 
 
 # ---------------------------------------------------------------- rows that are no entries
