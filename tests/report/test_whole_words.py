@@ -2,8 +2,10 @@
 
 from itertools import pairwise
 
+import openpyxl
 import pytest
 
+import assess
 from assess.report.words import list_breaks
 from tests.report.reading import render
 from tests.workbooks import assessed
@@ -53,8 +55,12 @@ def of(box, kind):
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory):
-    results = assessed(tmp_path_factory.mktemp("words") / "w.xlsx", ITEMS, FLOORS, building="General Hospital")
+def results(tmp_path_factory):
+    return assessed(tmp_path_factory.mktemp("words") / "w.xlsx", ITEMS, FLOORS, building="General Hospital")
+
+
+@pytest.fixture(scope="module")
+def pages(results):
     html = render(results, for_print=True)
     return [page._page_box for page in weasyprint.HTML(string=html).render().pages]
 
@@ -86,3 +92,14 @@ def test_no_table_runs_past_the_margin(pages):
     for page in pages:
         for table in of(page, boxes.TableBox):
             assert table.position_x + table.margin_width() <= page.content_box_x() + page.width + 0.5
+
+
+def test_columns_of_the_excel_report_hold_the_longest_word(results, tmp_path):
+    written = assess.write_reports(results, tmp_path, ("xlsx",))["xlsx"]
+    book = openpyxl.load_workbook(written)
+    for name in ("item", "floor", "room", "description"):
+        sheet = book["Items"]
+        head = next(cell for cell in sheet[1] if cell.value == name.capitalize())
+        words = [word for row in ITEMS for word in str(row[name]).replace("-", "- ").split()]
+        assert sheet.column_dimensions[head.column_letter].width > max(map(len, words)), name
+    book.close()

@@ -28,7 +28,7 @@ from assess.report.xlsx.item_values import (
     upper_class,
     upper_end,
 )
-from assess.report.xlsx.pen import CHANCE, COUNT, LINE, LOOKS, Column, Pen, count_lines, of_field, with_unit
+from assess.report.xlsx.pen import CHANCE, COUNT, LINE, LOOKS, Column, Pen, count_lines, of_field, widen, with_unit
 from assess.results import BASES, ItemResult, Results
 from assess.workbook.schema import ITEMS
 
@@ -250,7 +250,7 @@ def _runs(one: ItemResult) -> int | None:
 
 def write_items(pen: Pen, page: Any, content: Content) -> None:
     """Write every row of furniture."""
-    columns = item_columns(content.run)
+    columns = widen(item_columns(content.run), content.results, ("text",))
     pen.heads(page, [column.label for column in columns], [column.width for column in columns])
     _comment(page, columns)  # now: what is above the row being written is left out
     cells = {column.key: f"${xl_col_to_name(at)}{ROW}" for at, column in enumerate(columns)}

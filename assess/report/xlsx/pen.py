@@ -90,6 +90,27 @@ def of_field(field: Field, **more: Any) -> Column:
     return replace(Column(field.heading(), field.width, field.read, field.format, field.key), **more)
 
 
+_WORD_ENDS = re.compile(r"\s+|(?<=-)")
+LOOKS_OF_TEXT = ("", "text")
+WIDEST = 30
+"""Characters that a column is widened to at most."""
+
+
+def widen(columns: Sequence[Column], rows: Iterable[Any], looks: Sequence[str] = LOOKS_OF_TEXT) -> list[Column]:
+    """Return columns of these `looks` at least as wide as the longest word in them, up to `WIDEST` characters."""
+    wide = {at: one for at, one in enumerate(columns) if one.look in looks and not one.is_hidden}
+    longest = dict.fromkeys(wide, 0)
+    for row in rows:
+        for at, column in wide.items():
+            text = column.read(row)
+            if isinstance(text, str) and len(text) > longest[at]:  # only then can a word of it be longer
+                longest[at] = max(longest[at], *map(len, _WORD_ENDS.split(text)))
+    return [
+        replace(one, width=max(one.width, min(longest[at] + 2, WIDEST))) if at in wide else one
+        for at, one in enumerate(columns)
+    ]
+
+
 class Pen:
     """Writes into the sheets of one workbook; makes each format once.
 
@@ -146,6 +167,7 @@ class Pen:
 
         A class or a state is coloured by the symbol that it begins with. Returns the row below the table.
         """
+        columns = widen(columns, rows)
         widths = [one.width for one in columns]
         self.heads(page, [one.label for one in columns], widths)
         below = self._rows(page, 1, columns, widths, rows)
