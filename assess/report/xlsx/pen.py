@@ -92,6 +92,7 @@ def of_field(field: Field, **more: Any) -> Column:
 
 _WORD_ENDS = re.compile(r"\s+|(?<=-)")
 LOOKS_OF_TEXT = ("", "text")
+"""Looks of columns that may hold texts."""
 WIDEST = 30
 """Characters that a column is widened to at most."""
 
