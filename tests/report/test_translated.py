@@ -18,11 +18,11 @@ from assess.report.content import build_content
 from assess.report.findings import motions
 from assess.workbook.template import Content, write_workbook
 from docs.texts import collect
+from tests.pictures import picture
 from tests.report.test_verified import _assess
 from tests.workbooks import RECORDS, write
 
 SMC = "0165a_u.smc"
-PNG = b"\x89PNG\r\n\x1a\n"
 BUILDING = {"ground_pga": 0.3, "sds": 0.9, "height": 40, "storeys": 4, "period": 9, "azimuth_deg": 45}
 FLOORS = [
     {"floor": "1", "elevation": 0, "record_x": SMC, "pfa_x": 0.9, "pfv_x": 900, "plan": "p.png"},
@@ -69,7 +69,7 @@ def _left(text, *names):
 
 def _write(folder, **last):
     shutil.copy(RECORDS / SMC, folder / SMC)
-    (folder / "p.png").write_bytes(PNG)
+    (folder / "p.png").write_bytes(picture("PNG"))
     path = folder / "w.xlsx"
     rows = {"Building": [BUILDING], "Floors": [*FLOORS[:-1], FLOORS[-1] | last], "Items": ITEMS, "Routes": ROUTES}
     write_workbook(path, Content(rows=rows))

@@ -8,6 +8,7 @@ from assess.i18n import load_catalogue, speaking
 from assess.pipeline.live_values import live_values
 from assess.workbook.catalogue import read_catalogue, read_table
 from assess.workbook.example import SCENARIO
+from assess.workbook.layout import PLACES
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LIVE, USES
 from assess.workbook.uses import ROOM, room_content
@@ -26,8 +27,9 @@ def new(folder, use, units="si", language="en", *, example=False):
 def stored(path):
     """Return the live values that the workbook holds, by row of Items."""
     book = openpyxl.load_workbook(path, data_only=True)
-    page, first = book.worksheets[3], len(ITEMS.columns)
-    return [row[first : first + len(LIVE)] for row in page.iter_rows(min_row=2, values_only=True) if row[0]]
+    places = [PLACES[ITEMS.name, label] for label in LIVE]
+    rows = book.worksheets[3].iter_rows(min_row=2, values_only=True)
+    return [tuple(row[at] for at in places) for row in rows if row[0]]
 
 
 def test_the_command_line_offers_every_use():
