@@ -7,7 +7,7 @@ from assess.workbook.habits import CellError
 
 MOST_RECORD_BYTES = 256_000_000
 """Bytes of the files of recorded motion that a workbook names; a set of a large building has 30 million."""
-MOST_RECORD_SAMPLES = 40_000_000
+MOST_RECORD_SAMPLES = 20_000_000
 """Samples of all their channels."""
 MOST_ARCHIVES = 50
 """Zip archives among them."""

@@ -3,7 +3,7 @@
 import struct
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -108,9 +108,9 @@ def test_blocks_are_joined_without_a_seam(monkeypatch: pytest.MonkeyPatch) -> No
 def test_no_more_than_a_block_is_taken_apart_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     sizes, real = [], plain_csv._read_block
 
-    def measured(lines: Sequence[bytes], *more: Any) -> list[float]:
-        sizes.append(len(b"\n".join(lines)))
-        return real(lines, *more)
+    def measured(block: bytes, *more: Any) -> list[float]:
+        sizes.append(len(block))
+        return real(block, *more)
 
     monkeypatch.setattr(plain_csv, "BLOCK", 1000)
     monkeypatch.setattr(plain_csv, "_read_block", measured)
@@ -118,6 +118,31 @@ def test_no_more_than_a_block_is_taken_apart_at_once(monkeypatch: pytest.MonkeyP
     parse_records(text.encode(), "a.csv")
     assert max(sizes) <= 1000
     assert len(sizes) >= len(text) // 1000
+
+
+@pytest.mark.parametrize(
+    ("row", "line"),
+    [
+        ("1.0", 3),
+        ("1.0,2,3", 3),
+        ("1.0,nan", 3),
+        ("1.0,1_0", 3),
+        ("1.0,", 3),
+        ("1.0,2;3", 3),
+        ("1.0,--2", 3),
+        (",2", 3),
+    ],
+)
+def test_a_row_that_is_wrong_in_an_even_block_is_named(row: str, line: int) -> None:
+    rows = [f"{at / 100:.2f},{at % 7}" for at in range(50)]
+    with pytest.raises(RecordError, match=r"line 3: "):
+        parse_records("\n".join(["time [s],a [g]", rows[0], row, *rows[1:]]).encode(), "a.csv")
+
+
+def test_two_rows_that_make_up_for_each_other_are_not_taken_for_even() -> None:
+    rows = [f"{at / 100:.2f},{at % 7},1" for at in range(50)]
+    with pytest.raises(RecordError, match=r"line 4: the number of cells is 2, but there are 3 headings"):
+        parse_records("\n".join(["time [s],a [g],b [g]", *rows[:2], "1,2", "1,2,3,4", *rows]).encode(), "a.csv")
 
 
 # --- other formats ---

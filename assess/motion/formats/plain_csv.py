@@ -43,7 +43,8 @@ MOST_HEAD = 2**19
 _ANSWERS = {"yes": True, "true": True, "no": False, "false": False, "": False}
 _VERTICAL = frozenset({"up", "down", "vertical", "vert", "ud", "z"})
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
-_PLAIN = b'0123456789+-.eE,; \t"'
+_PLAIN = b"0123456789+-.eE,; \t\n"
+"""With no other signs than these, float() takes what _NUMBER takes."""
 _LINE_END = re.compile(rb"\r\n?|\n")
 _DEGREES = re.compile(r"(\d{1,3}(?:\.\d+)?)\s*(?:deg|°)", re.IGNORECASE | re.ASCII)
 
@@ -237,7 +238,7 @@ def _check_rows(rows: int, width: int) -> None:
         raise too_many_values()
 
 
-def _blocks(data: bytes, table: _Table) -> Iterator[tuple[list[bytes], int]]:
+def _blocks(data: bytes, table: _Table) -> Iterator[tuple[bytes, int]]:
     """Yield the lines below the headings, about `BLOCK` bytes at a time, and the number of the first of them."""
     start, line = table.start, table.first
     while start < len(data):
@@ -247,21 +248,43 @@ def _blocks(data: bytes, table: _Table) -> Iterator[tuple[list[bytes], int]]:
             end = data.rfind(b"\n", start, end) + 1 or data.rfind(b"\r", start, end - 1) + 1
         if not end:
             raise _too_long(line)
-        lines = data[start:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n").removesuffix(b"\n").split(b"\n")
-        yield lines, line
-        start, line = end, line + len(lines)
+        block = data[start:end].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        yield block, line
+        start, line = end, line + block.count(b"\n")
 
 
-def _read_block(lines: Sequence[bytes], table: _Table, first: int) -> list[float]:
+def _read_block(block: bytes, table: _Table, first: int) -> list[float]:
     """Return the numbers of some lines, of which `first` is the number of the first."""
+    check_waits()
+    separator, width = table.separator.encode(), 1 + len(table.columns)
+    marked = block if separator == b"," else block.replace(b",", b".")
+    if not block.translate(None, _PLAIN) and _is_even(block, ord(separator), width):
+        try:
+            return [*map(float, marked.removesuffix(b"\n").replace(b"\n", separator).split(separator))]
+        except ValueError:
+            pass
+    return _read_lines(block.removesuffix(b"\n").split(b"\n"), table, first)
+
+
+def _is_even(block: bytes, separator: int, width: int) -> bool:
+    """Return whether each line of a block has `width` cells; the last line may end without a line feed."""
+    signs = np.frombuffer(block if block.endswith(b"\n") else block + b"\n", dtype=np.uint8)
+    ends = signs[(signs == separator) | (signs == ord("\n"))] == ord("\n")
+    if ends.size % width:
+        return False
+    cells = ends.reshape(-1, width)
+    return bool(cells[:, -1].all() and not cells[:, :-1].any())
+
+
+def _read_lines(lines: Sequence[bytes], table: _Table, first: int) -> list[float]:
+    """Do what `_read_block` does, line by line: blank ones, comments, quotes and cells left over at the ends."""
     separator, width, numbers = table.separator.encode(), 1 + len(table.columns), list[float]()
     tail = separator + b" \t"
     for line, text in enumerate(lines, start=first):
         if line % CHECKED_EVERY == 0:
             check_waits()
         cells = (text if separator == b"," else text.replace(b",", b".")).rstrip(tail).split(separator)
-        # With no other signs than these, float() takes what _NUMBER takes.
-        if len(cells) == width and not text.translate(None, _PLAIN):
+        if len(cells) == width and not text.translate(None, _PLAIN + b'"'):
             try:
                 numbers += [*map(float, (cell.strip(b' \t"') for cell in cells) if b'"' in text else cells)]
                 continue
