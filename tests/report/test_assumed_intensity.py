@@ -20,7 +20,7 @@ CHOICE = "MMI VII, very strong"
 PARAGRAPH = (
     "Assumed shaking: no motion of the ground is known for this building. MMI VII, very strong is assumed, with its "
     "published median PGA of 0.215 g and PGV of 20.0 cm/s (Worden et al. 2012). PGA scatters about it by 0.81 "
-    "(standard deviation of ln PGA), which Motion uncertainty is at least. Over the height the motion follows "
+    "(standard deviation of ln PGA); Motion uncertainty is at least that. Over the height the motion follows "
     "the design profile of ASCE 7-22."
 )
 SENTENCE = (
@@ -50,6 +50,7 @@ def test_the_cover_and_the_summary_of_the_html_report_say_so(written):
     summary = _section(html, '<section id="summary">', '<section id="floors">')
     assert PARAGRAPH in cover
     assert SENTENCE in summary
+    assert "With a dispersion of" not in summary, "less than the published scatter is not tried"
     assert "with a dispersion of 0.81 (standard deviation of ln amplitude; scatter of ln PGA given" in summary
     assert '<p class="conditions" role="note">Assumed shaking: MMI VII, very strong</p>' in html
     assert "Worden CB, Gerstenberger MC" in _section(html, '<section id="references">', "</main>")

@@ -35,7 +35,7 @@ def _say(found: AssumedShaking) -> Iterator[str]:
         sources=", ".join(found.sources),
     )  # fmt: skip
     yield _(
-        "PGA scatters about it by {scatter} (standard deviation of ln PGA), which Motion uncertainty is at least. Over "
+        "PGA scatters about it by {scatter} (standard deviation of ln PGA); Motion uncertainty is at least that. Over "
         "the height the motion follows the design profile of {code}.",
         scatter=number(found.scatter, "g"), code=found.profile,
     )  # fmt: skip

@@ -76,8 +76,11 @@ def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
 
 
 def _list_tried(results: Results, simulated: Sequence[tuple[ItemResult, Simulation]]) -> Iterator[str]:
+    """Yield what other dispersions would change; none below the scatter that a published relation gives."""
+    assumed = results.provenance.shaking
+    least = 0.0 if assumed is None else assumed.scatter
     for dispersion in simulated[0][1].tried:
-        if dispersion != results.provenance.uncertainty.motion:
+        if dispersion >= least and dispersion != results.provenance.uncertainty.motion:
             changes = _count((one, found.probability, found.tried[dispersion]) for one, found in simulated)
             yield _("With a dispersion of {dispersion}, {changes}.", dispersion=number(dispersion, "g"),
                     changes=_say_changes(*changes))  # fmt: skip
