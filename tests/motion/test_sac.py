@@ -102,3 +102,9 @@ def test_a_header_without_a_date() -> None:
     data = bytearray(write(unit="g"))
     data[280:284] = struct.pack("<i", -12345)
     assert read_one(bytes(data)).start == ""
+
+
+def test_an_event_that_is_unknown_in_both_halves_of_its_field() -> None:
+    data = bytearray(write(unit="g"))
+    data[448:464] = b"-12345  -12345  "
+    assert read_one(bytes(data)).event == ""

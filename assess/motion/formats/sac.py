@@ -113,7 +113,7 @@ def _read_header(data: bytes) -> _Header | None:
 
 def _read_text(data: bytes, start: int, length: int) -> str:
     text = data[TEXTS_FROM + start : TEXTS_FROM + start + length].decode("latin-1").partition("\0")[0].strip()
-    return "" if text == str(UNKNOWN) else text
+    return "" if {*text.split()} == {str(UNKNOWN)} else text  # KEVNM may hold it twice, once for each of its halves
 
 
 def _check_header(header: _Header, size: int) -> None:
