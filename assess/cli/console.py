@@ -40,7 +40,7 @@ STAGES = {
     "motions": "Preparing motions",
     "verification": "Simulating",
     "rocking": "Rocking",
-    "routes": "Evaluating routes",
+    "routes": "Evaluating",
     "rendering": "Writing",
 }
 """How stages are called; others by their own name."""

@@ -51,6 +51,7 @@ def report(share, stage="verification", detail="5 pieces on 2 floors", left=None
         (report(0.0), "Simulating 5 pieces on 2 floors: 0 %"),
         (report(0.437, left=95.0), "Simulating 5 pieces on 2 floors: 43 %, about 2 min left"),
         (report(0.999, left=0.1), "Simulating 5 pieces on 2 floors: 99 %, about 1 s left"),
+        (report(0.0, "routes", "3 segments of 1 route"), "Evaluating 3 segments of 1 route: 0 %"),
         (report(0.5, "reading", "", 89), "Reading: 50 %, about 89 s left"),
         (report(0.5, "soil response", "", 3600), "Soil response: 50 %, about 60 min left"),
     ],
