@@ -19,9 +19,9 @@ FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 6}]
 CHOICE = "MMI VII, very strong"
 PARAGRAPH = (
     "Assumed shaking: no motion of the ground is known for this building. MMI VII, very strong is assumed, with its "
-    "published median PGA of 0.215 g and PGV of 20.0 cm/s (Worden et al. 2012). PGA scatters about it by 0.81 "
-    "(standard deviation of ln PGA); Motion uncertainty is at least that. Over the height the motion follows "
-    "the design profile of ASCE 7-22."
+    "published median PGA of 0.215 g and PGV of 20.0 cm/s (Worden et al. 2012). PGA scatters about this median by "
+    "0.81 (standard deviation of ln PGA); Motion uncertainty is set to at least this value. Over the height the motion "
+    "follows the design profile of ASCE 7-22."
 )
 SENTENCE = (
     "Assumed shaking: MMI VII, very strong, by its published median PGA of 0.215 g and PGV of 20.0 cm/s, scatter of ln "

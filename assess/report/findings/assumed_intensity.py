@@ -35,8 +35,8 @@ def _say(found: AssumedShaking) -> Iterator[str]:
         sources=", ".join(found.sources),
     )  # fmt: skip
     yield _(
-        "PGA scatters about it by {scatter} (standard deviation of ln PGA); Motion uncertainty is at least that. Over "
-        "the height the motion follows the design profile of {code}.",
+        "PGA scatters about this median by {scatter} (standard deviation of ln PGA); Motion uncertainty is set to at "
+        "least this value. Over the height the motion follows the design profile of {code}.",
         scatter=number(found.scatter, "g"), code=found.profile,
     )  # fmt: skip
 
