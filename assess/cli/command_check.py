@@ -47,8 +47,8 @@ def command(
     try:
         if fix is not None:
             inventory = _write_corrected(path, fix, replaces=force)
-            if inventory.errors:
-                raise WorkbookError(inventory.problems, inventory.language)
+            if inventory.errors:  # read again as without --fix: nothing is left out, and so nothing said of that
+                read_inventory(inventory.data or b"", records=path.resolve().parent)
         else:
             with show_progress() as progress:
                 inventory = read_inventory(path, progress=progress)

@@ -46,6 +46,15 @@ def test_errors_that_remain_are_named_and_the_copy_is_written(tmp_path):
     assert run("check", tmp_path / "out.xlsx").stderr.count("error ") == 1
 
 
+def test_the_problems_are_those_that_a_check_of_the_copy_names(tmp_path):
+    path = habits(tmp_path / "book.xlsx", "30 cm")
+    floor = {address("pfa_x", 2, "Floors"): "far too strong"}
+    path.write_bytes(patch_workbook(path.read_bytes(), {"Floors": floor}).data)
+    shown = run("check", path, "--fix", tmp_path / "out.xlsx").stderr.splitlines()
+    assert shown[:-1] == run("check", tmp_path / "out.xlsx").stderr.splitlines()[:-1]
+    assert not any("left out" in line for line in shown)
+
+
 def test_nothing_is_written_where_nothing_is_to_be_corrected(tmp_path):
     done = run("check", write(tmp_path / "book.xlsx"), "--fix", tmp_path / "out.xlsx")
     assert done.exit_code == 0
