@@ -17,6 +17,7 @@ from assess.units import QUANTITIES, read_unit
 from assess.workbook.habits import CellError, Remark
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
 from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells, column_letters
+from assess.workbook.places import split_range
 from assess.workbook.schema import Column, Sheet
 from assess.workbook.sections import (
     FIRST_COLUMNS,
@@ -260,7 +261,7 @@ def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tu
     sheet = replace(own, columns=tuple(named.get(column.name, column) for column in own.columns))
     table = replace(table, sheet=sheet, blind=frozenset(parser.blind), places=parser.places, rows=tuple(read))
     table = replace(table, extra=tuple(parser.others.values()), corrections=tuple(parser.corrections))
-    return table.with_failed(parser.problems), parser.problems
+    return replace(table, failed=frozenset(parser.covered)).with_failed(parser.problems), parser.problems
 
 
 def _describe_far(source: Source) -> tuple[str, Text, Text]:
@@ -284,6 +285,7 @@ class _Parser:
         self.places: dict[str, int] = {}
         self.units: dict[str, str] = {}
         self.blind: set[str] = set()
+        self.covered: list[str] = []  # addresses of the cells that a reported merge hides
 
     def report(self, cell: str, message: str, fix: str = "", severity: Severity = "error", group: str = "") -> None:
         self.problems.append(Problem(severity, self.own.name, cell, message, fix, group))
@@ -366,6 +368,18 @@ class _Parser:
             if at < len(rows) and rows[at] < merged.stop:
                 message = fill("cells are merged inside the table.")
                 self.report(reference, message, fill("Unmerge them and fill each cell."))
+                self._cover(reference, rows[at : bisect_left(rows, merged.stop)])
+        covered = set(self.covered)
+        self.problems = [one for one in self.problems if one.severity != "error" or one.cell not in covered]
+
+    def _cover(self, reference: str, rows: Sequence[int]) -> None:
+        """Note the cells that a merge hides, all but its first: that they are blank is no error of its own."""
+        found = split_range(reference)
+        if found is None or len(self.covered) + len(rows) * len(self.columns) > MAX_ROWS:
+            return
+        left, right, top, _ = found
+        cells = ((row, at) for row in rows for at in self.columns if left <= at + 1 <= right)
+        self.covered += [self.source.address(*one) for one in cells if one != (top, left - 1)]
 
     def _note_hidden(self, found: Sequence[Row]) -> None:
         """Note the hidden rows and columns that are read."""

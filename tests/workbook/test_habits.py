@@ -199,6 +199,14 @@ def test_merged_cells_in_entries_and_headers_are_an_error(tmp_path: Path, merged
         read_merged(tmp_path, merged, items)
 
 
+@pytest.mark.parametrize("merged", ["B2:B4", "A3:A4", "D2:D4"])
+def test_what_merged_cells_leave_blank_is_no_error_of_its_own(tmp_path: Path, merged: str) -> None:
+    items = [ITEMS[0], ITEMS[1], ["A2", "1", 40, 180], ["A3", "1", 40, 180]]
+    with pytest.raises(WorkbookError) as caught:
+        read_merged(tmp_path, merged, items)
+    assert [one.cell for one in caught.value.problems if one.severity == "error"] == [merged]
+
+
 def test_a_floor_by_its_name_alone_is_a_heading_only_where_it_spans_columns(tmp_path: Path) -> None:
     floors = [*FLOORS, ["Upper floors"], ["2", 0.5]]
     assert errors_of(write(tmp_path, floors=floors))
