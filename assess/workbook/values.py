@@ -172,9 +172,10 @@ def _read_choice(column: Column, value: object, unit: str) -> str:
     own = say_choices(column.choices, column.language)
     words = {plain(word): word for word in (*column.choices, *own)}
     near = find_near(plain(text), words)
+    mark = "; " if any("," in one for one in own) else ", "
     raise CellError(
         fill("{label} is {text}, expected one of: {choices}.",
-             label=column.label, text=shorten(text), choices=", ".join(own)),
+             label=column.label, text=shorten(text), choices=mark.join(own)),
         fill("Did you mean {name}?", name=words[near]) if near else fill("Choose from the list."),
     )  # fmt: skip
 

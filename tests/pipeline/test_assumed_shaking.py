@@ -156,3 +156,8 @@ def test_else_elevation_stays_required(tmp_path, floors, building):
     with pytest.raises(assess.WorkbookError, match=r"no Elevation from which its motion could be derived") as caught:
         _read(tmp_path, floors, **building)
     assert caught.value.is_incomplete
+
+
+def test_the_choices_of_shaking_hold_commas_and_are_told_apart(tmp_path):
+    with pytest.raises(assess.WorkbookError, match=r"expected one of: MMI IV, light; MMI V, moderate; MMI VI, strong;"):
+        assess.read_inventory(write(tmp_path / "w.xlsx", shaking="MMI 7"))
