@@ -77,7 +77,8 @@ def command(
     if example:
         typer.echo(f"wrote {path}. Open it to see its classes. Assess it with: assess run {name}", err=True)
     elif use:
-        steps = "Put your furniture in place of the example room in Items, fill in how the floor shakes in Floors"
+        steps = "Put your furniture in place of the example room in Items, fill in how the floor shakes in Floors or "
+        steps += "choose Shaking in Building"
         typer.echo(f"wrote {path}. {steps}, then run: assess check {name}", err=True)
     else:
         typer.echo(f"wrote {path}. Fill in its sheets Floors and Items, then run: assess check {name}", err=True)
