@@ -81,7 +81,7 @@ def _report(inventory: "Inventory", path: Path) -> None:
 def _end_incomplete(path: Path, problems: Sequence[Problem]) -> Never:
     """Print what a workbook lacks and what completes it."""
     print_problems(problems)
-    typer.echo(f"{path.name} is incomplete: what is filled in can be used; still to be filled in:", err=True)
+    typer.echo(f"{path.name} is incomplete: what is filled in can be used.", err=True)
     print_ways(problems)
     raise typer.Exit(1)
 

@@ -147,7 +147,10 @@ def print_ways(problems: Sequence[Problem]) -> None:
     """Print to standard error what completes a workbook that lacks the shaking or the furniture."""
     from assess.workbook.completing import list_ways
 
-    for number, way in enumerate(list_ways(problems), 1):
+    ways = list_ways(problems)
+    if ways:
+        typer.echo("To fill in what is missing:", err=True)
+    for number, way in enumerate(ways, 1):
         typer.echo(f"  {number}. {way}", err=True)
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
 
-from assess.errors import Gap, Problem, WorkbookError
+from assess.errors import ElevationGap, Gap, Problem, WorkbookError
 from assess.i18n import fill
 from assess.intensity import SHAKINGS, Shaking
 from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
@@ -359,8 +359,9 @@ def _missing(floor: Floor, scenario: str, ground: Ground) -> list[Problem]:
         return [] if placed else [Problem("error", "Floors", floor.cell("elevation"), message, _FILL_IN)]
     if scenario == "as filled":
         message, fix = describe_unserved(f"'{floor.floor}'", has_elevation=placed)
-        where = "elevation" if ground.pga is not None and not placed else "pfa_x"
-        return [Gap("error", "Floors", floor.cell(where), message, fix)]
+        is_unplaced = ground.pga is not None and not placed
+        where, kind = ("elevation", ElevationGap) if is_unplaced else ("pfa_x", Gap)
+        return [kind("error", "Floors", floor.cell(where), message, fix)]
     wanted, where = {"recorded": (fill("record"), "record_x"), "given": ("PFA", "pfa_x")}[scenario]
     message = fill(
         "floor '{floor}' has no {wanted}, which the scenario '{scenario}' needs; it cannot be interpolated, as {why}.",

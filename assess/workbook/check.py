@@ -6,7 +6,7 @@ and notes the cells of errors, so that what has been reported once is not report
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from assess.errors import Gap, Problem
+from assess.errors import ElevationGap, Gap, Problem
 from assess.i18n import Text, fill, nfill
 from assess.model import AXES
 from assess.motion.storeys import find_storey
@@ -160,9 +160,9 @@ def _check_demands(table: Table, *, has_ground: bool, has_storeys: bool) -> Iter
         has_neighbours = level is not None and bool(heights) and min(heights) <= level <= max(heights)
         if level is None or not (has_ground or has_neighbours or not is_sure):
             message, fix = describe_unserved(row.quote("floor"), has_elevation=level is not None)
-            where = "elevation" if has_ground else "pfa_x"
+            where, kind = ("elevation", ElevationGap) if has_ground else ("pfa_x", Gap)
             found = table.problem(where if where in table.places else "floor", row, message, fix)
-            yield Gap(found.severity, found.sheet, found.cell, found.message, found.fix)
+            yield kind(found.severity, found.sheet, found.cell, found.message, found.fix)
 
 
 def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[Text, Text]:
