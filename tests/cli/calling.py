@@ -1,15 +1,19 @@
 """The command line, called inside the process of the tests."""
 
+import math
 import re
+from unittest.mock import patch
 
 from typer.testing import CliRunner
 
+from assess.cli import console
 from assess.cli.app import app
 
 
 def run(*words: object):
-    """Call `assess` with some words."""
-    return CliRunner().invoke(app, [str(word) for word in words])
+    """Call `assess` with some words; however long it takes, no line of progress is printed."""
+    with patch.object(console, "QUIET", math.inf):
+        return CliRunner().invoke(app, [str(word) for word in words])
 
 
 def error(done):

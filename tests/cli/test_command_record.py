@@ -6,13 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from assess.cli.app import app
 from assess.cli.command_record import write_figure
 from assess.errors import OutputError
 from assess.motion.formats import read_channels, read_records
 from assess.motion.record import treat
+from tests.cli.calling import run
 from tests.motion.writers import THREE, csmip_v2, zipped
 
 RECORDS = Path(__file__).parents[2] / "samples" / "records"
@@ -21,12 +20,12 @@ ROOF, SWEEP, VELOCITY = (
 )
 
 
-def run(*arguments: object):
-    return CliRunner().invoke(app, ["record", *map(str, arguments)])
+def record(*arguments: object):
+    return run("record", *map(str, arguments))
 
 
 def test_the_document_is_the_one_of_the_contract():
-    done = run(ROOF, "--json")
+    done = record(ROOF, "--json")
     assert (done.exit_code, done.stderr) == (0, "")
     document = json.loads(done.stdout)
     (channel,) = document["channels"]
@@ -43,12 +42,12 @@ def test_the_document_is_the_one_of_the_contract():
 
 
 def test_several_files_are_a_list_in_one_document():
-    documents = json.loads(run(ROOF, SWEEP, "--json").stdout)
+    documents = json.loads(record(ROOF, SWEEP, "--json").stdout)
     assert [len(document["channels"]) for document in documents] == [1, 3]
 
 
 def test_the_text_tells_a_person_the_same():
-    text = run(SWEEP).stdout
+    text = record(SWEEP).stdout
     assert "made-up-sweep.csv: plain CSV, 3 channels" in text
     assert "made-up-sweep.csv#north (channel north, 3rd floor, 0 deg)" in text
     assert "made-up-sweep.csv#up (channel up, 3rd floor, vertical)" in text
@@ -58,33 +57,33 @@ def test_the_text_tells_a_person_the_same():
 
 
 def test_one_channel_of_a_file():
-    (channel,) = json.loads(run(f"{SWEEP}#east", "--json").stdout)["channels"]
+    (channel,) = json.loads(record(f"{SWEEP}#east", "--json").stdout)["channels"]
     assert (channel["channel"], channel["name"]) == ("east", "made-up-sweep.csv#east")
 
 
 def test_a_set_in_a_zip_archive(tmp_path):
     (tmp_path / "set.zip").write_bytes(zipped({"CHAN.V2": csmip_v2(*THREE), "README.txt": b"hello"}))
-    done = run(tmp_path / "set.zip")
+    done = record(tmp_path / "set.zip")
     assert "set.zip: CSMIP V2, 3 channels" in done.stdout
     assert "set.zip#11 (channel 11, " in done.stdout
     assert "note: left out of the archive: README.txt" in done.stdout
 
 
 def test_a_file_that_cannot_be_read_is_named_and_the_others_are_told(tmp_path):
-    done = run(VELOCITY, ROOF)
+    done = record(VELOCITY, ROOF)
     assert done.exit_code == 1
     assert "error  1103.HN2.NP.RE_v.smc: the file holds velocities" in done.stderr
     assert ROOF.name in done.stdout
-    done = run(VELOCITY, tmp_path / "none.v2", "--json")
+    done = record(VELOCITY, tmp_path / "none.v2", "--json")
     assert (done.exit_code, done.stdout) == (2, "")
     assert "none.v2: there is no such file" in done.stderr
-    assert run(f"{SWEEP}#west").exit_code == 2
+    assert record(f"{SWEEP}#west").exit_code == 2
 
 
 @pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
 def test_the_figure(tmp_path, kind):
     path = tmp_path / f"figure.{kind}"
-    done = run(SWEEP, "--plot", path)
+    done = record(SWEEP, "--plot", path)
     assert (done.exit_code, done.stderr) == (0, f"wrote {path}\n")
     assert path.read_bytes().startswith({"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[kind])
     assert [one.name for one in tmp_path.iterdir()] == [path.name]
@@ -93,7 +92,7 @@ def test_the_figure(tmp_path, kind):
 
 
 def test_only_the_first_channels_are_drawn_and_the_rest_is_said(tmp_path):
-    done = run(*[SWEEP] * 5, "--plot", tmp_path / "many.png")
+    done = record(*[SWEEP] * 5, "--plot", tmp_path / "many.png")
     assert "3 more channels not drawn" in done.stderr
 
 
@@ -105,7 +104,7 @@ def test_figures_that_cannot_be_written(tmp_path):
         ("file.txt/x.png", "cannot be written there: name a file in a folder that exists"),
         (f"{'n' * 300}.png", "cannot be written there: name a file in a folder that exists"),
     ):
-        done = run(SWEEP, "--plot", tmp_path / name)
+        done = record(SWEEP, "--plot", tmp_path / name)
         assert (done.exit_code, done.stdout) == (2, "")
         assert message in done.stderr
 
@@ -122,7 +121,7 @@ def test_a_figure_that_is_open_elsewhere(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("name", ["n" * 300, f"{'n' * 300}#1"])
 def test_names_that_no_file_can_have(name):
-    done = run(name)
+    done = record(name)
     assert (done.exit_code, done.stdout) == (2, "")
     assert "error  " in done.stderr
 

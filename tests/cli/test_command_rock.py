@@ -10,12 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from typer.testing import CliRunner
 
 from assess.cli import command_rock
-from assess.cli.app import app
 from assess.cli.command_rock import describe, describe_outcome, list_lines, read_case, write_figure
 from assess.report.figures import draw as figures
+from tests.cli.calling import run
 from tests.motion.writers import THREE, csmip_v2, zipped
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +31,7 @@ USUAL = {"breadth": 40, "height": 180, "record": FLOOR}
 def rock(*flags: object, **options: object):
     given = {**USUAL, **options}
     arguments = [str(part) for name, value in given.items() for part in (f"--{name}", value)]
-    return CliRunner().invoke(app, ["rock", *arguments, *map(str, flags)])
+    return run("rock", *arguments, *map(str, flags))
 
 
 def document(**options):
@@ -64,7 +63,7 @@ def test_the_document_has_the_keys_of_the_contract():
 
 
 def test_the_motion_is_scaled_to_the_peak_that_is_asked_for():
-    own = json.loads(CliRunner().invoke(app, ["record", str(FLOOR), "--json"]).stdout)["channels"][0]["pfa_g"]
+    own = json.loads(run("record", str(FLOOR), "--json").stdout)["channels"][0]["pfa_g"]
     assert document()["pfa_g"] == own
     assert document(pfa=0.31)["pfa_g"] == 0.31
     assert document(pfa=own) == document()
@@ -190,7 +189,7 @@ def test_bad_input_is_named(tmp_path, options, message):
 @pytest.mark.parametrize("left_out", USUAL)
 def test_what_is_missing_is_named(left_out):
     arguments = [str(part) for name, value in USUAL.items() if name != left_out for part in (f"--{name}", value)]
-    assert f"Missing option '--{left_out}'" in error(CliRunner().invoke(app, ["rock", *arguments]))
+    assert f"Missing option '--{left_out}'" in error(run("rock", *arguments))
 
 
 @pytest.mark.parametrize(
@@ -231,7 +230,7 @@ def test_a_figure_that_cannot_be_put_in_its_place(tmp_path, monkeypatch):
 
 
 def test_help_names_the_units():
-    text = CliRunner().invoke(app, ["rock", "--help"]).output
+    text = run("rock", "--help").output
     for words in (
         "--breadth",
         "[cm]",
@@ -252,7 +251,7 @@ def test_the_example_of_the_documentation_is_what_is_printed(monkeypatch):
     text = (ROOT / "docs" / "commands.md").read_text("utf-8")
     found = re.search(r"^assess (rock .*)\n\n((?:.+\n)+?)```", text, re.MULTILINE)
     assert found
-    assert CliRunner().invoke(app, found[1].split()).stdout == found[2]
+    assert run(*found[1].split()).stdout == found[2]
 
 
 # ---------------------------------------------------------------- made-up responses: words and figure

@@ -8,14 +8,13 @@ import sys
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from assess.cli import command_study
-from assess.cli.app import app
 from assess.errors import OutputError
 from assess.resources import record
 from assess.studies import PAGE, PARTS, Finding, Options, Study, all_studies, check_folder, run_study, write_files
 from assess.studies.study_files import load_or_compute
+from tests.cli.calling import run
 
 NAMES = ["table1", "solver", "table2", "calibration", "contours", "table3", "fit"]
 OWN = {"calibration"}
@@ -23,7 +22,7 @@ OWN = {"calibration"}
 
 
 def study(*words):
-    return CliRunner().invoke(app, ["study", *map(str, words)])
+    return run("study", *map(str, words))
 
 
 def made_up(name, order=1, takes=(), of=lambda _: Finding(page=["a page"], summary=["a sentence"])):

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from assess.cli.app import app
 from assess.motion.formats import read_channel
 from assess.rocking.planar import Body, follow_body
 from assess.rocking.sliding import critical_friction, peak_slip
 from assess.units import GRAVITY as G
+from tests.cli.calling import run
 
 SAMPLES = Path(__file__).parents[2] / "samples" / "records"
 SWEEP, FLOOR, BASEMENT = SAMPLES / "made-up-sweep.csv", SAMPLES / "0165a_u.smc", SAMPLES / "1103.HNZ.NP.BE_a.smc"
@@ -22,7 +21,7 @@ VERDICT = {"overturned", "max_rotation_ratio", "impacts", "overturn_time_s"}
 
 def rock(*flags, record=f"{SWEEP}#north", breadth=40):
     given = ["rock", "--breadth", str(breadth), "--height", "180", "--record", str(record), *map(str, flags)]
-    return CliRunner().invoke(app, given)
+    return run(*given)
 
 
 def document(*flags, **options):
@@ -185,6 +184,6 @@ def test_files_without_one_vertical_channel(tmp_path, columns, message):
 
 
 def test_help_names_the_options():
-    text = CliRunner().invoke(app, ["rock", "--help"]).output
+    text = run("rock", "--help").output
     for words in ("--wall", "--vertical", "--friction"):
         assert words in text

@@ -8,16 +8,15 @@ import jsonschema
 import numpy as np
 import openpyxl
 import pytest
-from typer.testing import CliRunner
 
 import assess
-from assess.cli.app import app
 from assess.errors import InputError
 from assess.methods import all_methods
 from assess.methods._fitted_model import Polynomial
 from assess.pipeline.run import compute
 from assess.report.data import SCHEMA
 from assess.settings import Settings
+from tests.cli.calling import run
 from tests.methods.test_fitted import NO_FILE, ON, PROBIT, SURFACE, k, of, saved, spoilt
 from tests.workbooks import UNVERIFIED, write
 
@@ -103,7 +102,7 @@ class TestRun:
 
 
 def run_cli(book, *arguments):
-    return CliRunner().invoke(app, ["run", "--verify", "none", str(book), *arguments])
+    return run("run", "--verify", "none", str(book), *arguments)
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")

@@ -11,16 +11,15 @@ from types import SimpleNamespace
 import jsonschema
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import assess
 import assess.report
-from assess.cli.app import app
 from assess.motion.spectrum import pseudo_acceleration
 from assess.pipeline.run import compute
 from assess.report.data import SCHEMA
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
+from tests.cli.calling import run
 from tests.shaking import RECORDS, TIMES, write_record, write_records
 from tests.workbooks import assessed, write
 
@@ -49,7 +48,7 @@ ITEMS = [
 def _run(folder, path, *more, formats="json"):
     """The command, in this process; returns what it printed and wrote."""
     out = folder / "out"
-    done = CliRunner().invoke(app, ["run", str(path), "--out", str(out), "--formats", formats, *map(str, more)])
+    done = run("run", str(path), "--out", str(out), "--formats", formats, *map(str, more))
     assert done.exit_code == 0, done.output
     files = {file.name: file.read_bytes() for file in out.iterdir()}
     found = json.loads(files["results.json"])
@@ -425,7 +424,7 @@ def test_motions_of_ones_own(tmp_path, suite, scaled):
 def test_a_suite_that_cannot_be_read_ends_the_run(tmp_path, suite):
     (suite / "bad.csv").write_text("nothing of use", encoding="utf-8")
     path = _book(tmp_path)
-    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "out"), "--motions", str(suite)])
+    done = run("run", str(path), "--out", str(tmp_path / "out"), "--motions", str(suite))
     assert done.exit_code == 2
     assert re.search(r"error .*bad\.csv", done.stderr)
     assert not (tmp_path / "out").exists()
@@ -479,6 +478,6 @@ def test_a_folder_that_cannot_be_written_is_reported_before_the_long_work(tmp_pa
     monkeypatch.setattr("assess.pipeline.run.compute", lambda *_, **__: pytest.fail("the work has begun"))
     (tmp_path / "file").write_text("", encoding="utf-8")
     path = write(tmp_path / "w.xlsx")
-    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "file" / "out")])
+    done = run("run", str(path), "--out", str(tmp_path / "file" / "out"))
     assert done.exit_code == 1
     assert f"cannot be written to: {tmp_path / 'file'} is a file. Name another folder." in done.stderr

@@ -6,9 +6,8 @@ from typing import Any
 
 import openpyxl
 import pytest
-from typer.testing import CliRunner
 
-from assess.cli.app import app
+from tests.cli.calling import run
 from tests.workbook.books import FLOORS, ITEMS, Sheet, errors_of, problems_of, read, write, write_book
 
 HEADER = [
@@ -96,7 +95,7 @@ def test_one_run_names_every_fault(tmp_path: Path) -> None:
 def test_one_run_of_the_command_names_every_fault_and_writes_nothing(tmp_path: Path) -> None:
     path = faulty(tmp_path)
     before = sorted(tmp_path.rglob("*"))
-    done = CliRunner().invoke(app, ["run", str(path), "--out", str(tmp_path / "out")])
+    done = run("run", str(path), "--out", str(tmp_path / "out"))
     assert done.exit_code == 2
     shown = {line.removeprefix("error").strip() for line in done.stderr.splitlines() if line.startswith("error")}
     assert shown == EXPECTED

@@ -10,9 +10,7 @@ from typing import Any
 
 import openpyxl
 import pytest
-from typer.testing import CliRunner
 
-from assess.cli.app import app
 from assess.cli.command_new import write_new_workbook
 from assess.errors import WorkbookError
 from assess.i18n import LANGUAGES, find_language, gettext, load_catalogue, speaking
@@ -23,6 +21,7 @@ from assess.workbook.names import find_sheet, fold, plain, say_choices, say_live
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CLASS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.template import Units, describe
+from tests.cli.calling import run
 from tests.workbook.books import Sheet as Rows
 from tests.workbook.books import errors_of, problems_of, remarks, write_book
 
@@ -123,10 +122,10 @@ def test_the_example_says_the_same_in_both_languages(tmp_path: Path, units: Unit
 
 def test_the_command_line_names_the_language(tmp_path: Path) -> None:
     path = tmp_path / "nuovo.xlsx"
-    done = CliRunner().invoke(app, ["new", str(path), "--language", "Italiano"])
+    done = run("new", str(path), "--language", "Italiano")
     assert done.exit_code == 0
     assert {problem.sheet for problem in problems_of(path)} <= {"Piani", "Arredi"}
-    refused = CliRunner().invoke(app, ["new", str(tmp_path / "other.xlsx"), "--language", "fr"])
+    refused = run("new", str(tmp_path / "other.xlsx"), "--language", "fr")
     assert refused.exit_code == 2
     assert "language 'fr' is unknown: expected one of en, it" in refused.stderr
     assert not (tmp_path / "other.xlsx").exists()
