@@ -121,7 +121,7 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     yield from ((text, "assess/workbook/schema.py") for text in (HELP, LISTS))
     yield from (
         (text, "assess/workbook/lists.py")
-        for text in (lists.LISTS_NOTE, lists.RUN_ASSESS, lists.NO_UNIT, *lists.LISTED)
+        for text in (lists.LISTS_NOTE, lists.RUN_ASSESS, lists.NO_SHAKING, lists.NO_UNIT, *lists.LISTED)
     )
     hints = (live_row.NO_FLOOR, live_row.NO_AXIS, lists.WRONG, live_row.IS_ANCHORED)
     yield from ((text, "assess/workbook/live_row.py") for text in hints)

@@ -3,7 +3,6 @@
 The values are stored in a workbook next to the formulas, so that a viewer that does not calculate shows them too.
 """
 
-import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -23,7 +22,7 @@ from assess.settings import SCENARIOS, Settings
 from assess.units import GRAVITY
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
-from assess.workbook.lists import RUN_ASSESS
+from assess.workbook.lists import NO_SHAKING, RUN_ASSESS
 from assess.workbook.live_row import IS_ANCHORED
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CATALOGUE, CLASS, LIVE, NO, SHEETS, YES, Sheet
@@ -89,14 +88,13 @@ def _write_row(
     ratio: float, governing: Demand | None, values: Sequence[float], label: str, rocks: str
 ) -> list[float | str]:
     if governing is None:
-        return _write_unknown(ratio, label)
+        return _write_unknown(ratio, label, gettext(RUN_ASSESS))
     return [ratio, governing.pfa / GRAVITY, *("" if np.isnan(value) else value for value in values), label, rocks]
 
 
-def _write_unknown(ratio: float, label: str) -> list[float | str]:
+def _write_unknown(ratio: float, label: str, hint: str) -> list[float | str]:
     """Return the row of a piece of whose shaking the sheet knows nothing; `label` stands for its class."""
-    unknown = gettext(RUN_ASSESS)
-    return [ratio, *[unknown] * (LIVE.index(CLASS) - 1), label, unknown]
+    return [ratio, *[hint] * (LIVE.index(CLASS) - 1), label, hint]
 
 
 def with_live(content: Content, units: Units = "si", folder: Path | None = None) -> Content:
@@ -120,7 +118,7 @@ def with_live(content: Content, units: Units = "si", folder: Path | None = None)
 
 
 def without_shaking(content: Content, units: Units = "si") -> Content:
-    """Return a content whose floors have no shaking, with its live columns: B/H, and that the rest is not known.
+    """Return a content whose floors have no shaking, with its live columns: B/H, and that shaking is missing.
 
     Raises
     ------
@@ -129,11 +127,13 @@ def without_shaking(content: Content, units: Units = "si") -> Content:
     """
     floors = [{**row, "pfa_x": 1.0} for row in content.rows["Floors"]]  # of which no column shows anything
     items = _read({**content.rows, "Floors": floors}, units).items
-    return replace(content, live=[_write_unknown(*_known(item)) for item in items])
+    return replace(content, live=list(map(_write_unshaken, items)))
 
 
-def _known(item: Item) -> tuple[float, str]:
-    return item.breadth / item.height, _say_class(item, None, math.nan, is_outside=False)
+def _write_unshaken(item: Item) -> list[float | str]:
+    hint = gettext(NO_SHAKING)
+    label = gettext(IS_ANCHORED) if item.anchored == YES else hint
+    return _write_unknown(item.breadth / item.height, label, hint)
 
 
 def _read(rows: Mapping[str, Rows], units: Units, folder: Path | None = None) -> Inventory:

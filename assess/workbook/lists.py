@@ -32,8 +32,11 @@ ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 
 """Rows of each table that are prepared; a longer table is read all the same."""
 
 RUN_ASSESS = "run assess"
-"""What the live columns say of a floor with a record, which no spreadsheet formula can read, of one of which nothing is
-known, and of every floor where a code's profile is chosen."""
+"""What the live columns say of a floor whose motion only the program computes: from a record, by interpolation, or by a
+code's profile."""
+
+NO_SHAKING = "shaking?"
+"""What they say of a floor that nothing serves: `assess run` would name it in an error."""
 
 NO_UNIT = "unit?"
 """What they say where the bracket of a header holds no unit that is known."""
@@ -74,11 +77,11 @@ _WriteRow = Callable[[int, Mapping[str, str]], Iterator[str]]
 """Gives the formulas of one row by its number and the cells that they are written to."""
 
 _FLOOR_HELPERS = (
-    "key", "own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", *live_shaking.HELPERS,
+    "key", "own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", *live_shaking.HELPERS, "hint",
     "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best",
 )  # fmt: skip
-"""Columns of the sheet for a row of Floors: its name, its own motion by axis, that of an assumed shaking, and what
-serves each axis."""
+"""Columns of the sheet for a row of Floors: its name, its own motion by axis, that of an assumed shaking, what
+it shows if it has neither, and what serves each axis."""
 
 _TYPE_HELPERS = ("key", *_TYPE_SIZES, CENTRE)
 """Columns of the sheet for a row of the Catalogue: its name, its sizes [cm], and its centre of gravity [-]."""
@@ -188,7 +191,7 @@ class ListsWriter:
 
     def _write_shaking(self, row: int, at: int) -> None:
         """Write what follows from an assumed intensity."""
-        fields = ("ground_pga", "ground_pgv", "sds", "shaking", "height")
+        fields = ("ground_pga", "ground_pgv", "sds", "shaking", "height", "storeys")
         building = {name: f"{gettext(BUILDING.name)}!$B${_line(name)}" for name in fields}
         letter, last = LETTERS["Floors", "elevation"], self.last["Floors"]
         floors = gettext("Floors")
@@ -222,6 +225,8 @@ class ListsWriter:
         yield from self._own_pfa(row)
         yield from self._own_pfv(row, cells)
         yield from live_shaking.list_formulas(_typed("elevation", row), cells)
+        could_serve = live_shaking.could_serve(_typed("elevation", row))
+        yield f'IF({could_serve},"{gettext(RUN_ASSESS)}","{gettext(NO_SHAKING)}")'
         yield from _serving(cells)
         yield _best(cells)
 
@@ -232,7 +237,7 @@ class ListsWriter:
             number = f'IF({pfa}<0,"{wrong}",IFERROR({pfa}*{unit}/{GRAVITY!r},{unit}))'
             given = f'IF(scenario_kind="recorded","",{_if_number(pfa, number)})'
             aside = f'AND(TRIM({record})<>"",scenario_kind<>"given")'
-            yield f'IF(OR(scenario_is_own=0,{aside}),"{gettext(RUN_ASSESS)}",{given})'
+            yield f'IF(scenario_is_own=0,"",IF({aside},"{gettext(RUN_ASSESS)}",{given}))'
 
     def _own_pfv(self, row: int, cells: Mapping[str, str]) -> Iterator[str]:
         frequency = f"MIN(1/(period*unit_building_period),{HIGHEST_FLOOR_FREQUENCY!r})"
@@ -300,7 +305,7 @@ def _serving(cells: Mapping[str, str]) -> list[str]:
     nothing = {"pfa": f'AND({x}="",{y}="")', "pfv": "FALSE"}
     return [
         f"IF(ISNUMBER({cells['assumed_pfa']}),{cells[f'assumed_{what}']},"
-        f'IF({nothing[what]},"{gettext(RUN_ASSESS)}",'
+        f"IF({nothing[what]},{cells['hint']},"
         f'IF({cells[f"own_pfa_{axis}"]}="",{cells[f"own_{what}_{other}"]},{cells[f"own_{what}_{axis}"]})))'
         for what in ("pfa", "pfv")
         for axis, other in ("xy", "yx")

@@ -12,7 +12,7 @@ from assess.settings import Settings
 from assess.workbook import formulas as live
 from assess.workbook.cell_texts import find_row, is_among, trim
 from assess.workbook.layout import LETTERS
-from assess.workbook.lists import NO_UNIT, RUN_ASSESS, WRONG, between
+from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG, between
 from assess.workbook.schema import ITEMS, LIVE, NO, WORKINGS, YES
 
 ROW = "\x00"
@@ -59,7 +59,8 @@ class LiveRow:
         """Return the formula for the class; a piece that is anchored has none, whatever its motion."""
         is_anchored = is_among(self._own("anchored"), "anchored_words")
         either = f"IF({is_anchored},{_say(IS_ANCHORED)},IF(ISNUMBER({risk}),{found},{risk}))"
-        return f"=IF(OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)}),{either},{risk})"
+        is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"
+        return f"=IF({is_ready},{either},{risk})"
 
     def _size(self, name: str, kind: str) -> str:
         """Expression for a size [cm]: the row's own, else its type's, else nothing."""

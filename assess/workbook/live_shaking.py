@@ -52,6 +52,10 @@ def list_names(building: Mapping[str, str], elevations: str) -> Iterator[tuple[s
     yield "shaking_roof", f'IFERROR(IF({building["height"]}="",{highest},{height}),"")'
     yield "shaking_has_cap", f"NOT(ISNUMBER({building['ground_pgv']}))"
     yield "shaking_largest", f'IF(shaking_at>0,INDEX(shakings_pgv,shaking_at)*{cap_pfv(1)!r},"")'
+    given = ",".join(f'TRIM({building[name]})<>""' for name in ("ground_pga", "sds", "shaking"))
+    yield "profile_serves", f'AND(scenario_kind<>"recorded",scenario_kind<>"given",OR({given}))'
+    numbered = ",".join(f'TRIM({building[name]})<>""' for name in ("height", "storeys"))
+    yield "storeys_serve", f"AND({numbered},COUNT({elevations})=0)"
 
 
 def list_formulas(elevation: str, cells: Mapping[str, str]) -> Sequence[str]:
@@ -77,3 +81,16 @@ def list_formulas(elevation: str, cells: Mapping[str, str]) -> Sequence[str]:
         f'IF(AND(ISNUMBER(shaking_pga),ISNUMBER({ratio})),IFERROR(shaking_pga*({factor}),""),"")',
         f'IF(AND(ISNUMBER({pfa}),ISNUMBER(period)),MIN({estimate},{largest}),"")',
     )
+
+
+def could_serve(elevation: str) -> str:
+    """Return an expression for whether a profile or floors above and below could serve a floor with nothing of its own.
+
+    What is filled in counts, be it usable or not: what is wrong with it is the program's to say.
+    """
+    owning = '(floor_key<>0)*(1-(floor_own_pfa_x="")*(floor_own_pfa_y=""))*(typed_elevation<>"")'
+    below, above = (
+        f"SUMPRODUCT({owning}*((typed_elevation{sign}{elevation})+ISTEXT(typed_elevation)>0))" for sign in ("<=", ">=")
+    )
+    between = f"IF(ISNUMBER({elevation}),AND({below}>0,{above}>0),floors_owning>0)"
+    return f'IF(TRIM({elevation})="",AND(profile_serves,storeys_serve),IF(profile_serves,TRUE,{between}))'

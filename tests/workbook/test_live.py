@@ -4,7 +4,7 @@ Every stored result is overwritten with a wrong one first, so that an engine whi
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ import openpyxl
 import pytest
 from openpyxl.formula.translate import Translator
 
+from assess.errors import WorkbookError
 from assess.i18n import load_catalogue, speaking
 from assess.pipeline.live_values import live_values
 from assess.units import QUANTITIES
@@ -277,9 +278,10 @@ def test_live_columns_of_an_italian_workbook_equal_the_program(tmp_path: Path, u
 
 ITALIAN_WORDS = [
     ({"floor": "9"}, {}, ["piano?"] * 5), ({"axis": "Z"}, {}, ["asse?"] * 5),
-    ({}, {"scenario_kind": " REGISTRATO"}, ["eseguire assess"] * 5), ({}, {"scenario_kind": "Assegnato"}, None),
+    ({}, {"scenario_kind": " REGISTRATO"}, ["scuotimento?"] * 5), ({}, {"scenario_kind": "Assegnato"}, None),
     ({}, {"scenario_kind": "given"}, None), ({}, {"scenario_kind": "come-compilato"}, None), ({}, {}, None),
-    ({}, {"scenario_kind": "as filled"}, None), ({}, {"scenario_kind": "NTC 2018"}, ["eseguire assess"] * 5),
+    ({}, {"scenario_kind": "as filled"}, None), ({}, {"scenario_kind": "NTC 2018"}, ["scuotimento?"] * 5),
+    ({"floor": "2"}, {"ground_pga": 0.2}, ["eseguire assess"] * 5), ({"floor": "2"}, {}, ["scuotimento?"] * 5),
 ]  # fmt: skip
 
 
@@ -288,7 +290,7 @@ def test_words_of_an_italian_workbook(
     tmp_path: Path, item: dict[str, Any], building: dict[str, Any], words: list[str] | None
 ) -> None:
     with speaking(load_catalogue("it")):
-        shown = shown_of(tmp_path, item, **building)
+        shown = shown_of(tmp_path, item, [{"floor": "1", "pfa_x": 0.5}, {"floor": "2", "elevation": 4}], **building)
     assert shown[1:] == words if words else shown[1] == 0.5
 
 
@@ -379,8 +381,8 @@ def test_floors_with_records(
         assert shown[1] == 0.5
 
 
-KINDS = [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess"), ("ASCE 7-22", "run assess"),
-         (" GIVEN", 0.5), ("As_Filled", "run assess"), ("en 1998-1", "run assess")]  # fmt: skip
+KINDS = [("given", 0.5), ("recorded", "run assess"), ("as filled", "run assess"), ("ASCE 7-22", "shaking?"),
+         (" GIVEN", 0.5), ("As_Filled", "run assess"), ("en 1998-1", "shaking?")]  # fmt: skip
 
 
 @pytest.mark.parametrize(("kind", "pfa"), KINDS)
@@ -391,21 +393,77 @@ def test_scenario_kind(tmp_path: Path, kind: str, pfa: Any) -> None:
 
 def test_recorded_floors_without_a_record_show_no_class(tmp_path: Path) -> None:
     """They may be interpolated, which is the program's task."""
-    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["run assess"] * 5
+    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["shaking?"] * 5
+    floors = [{"floor": "1", "pfa_x": 0.5, "elevation": 4}, *({"floor": f"r{z}", "elevation": z} for z in (0, 8))]
+    between = [floors[0], *({**floor, "record_x": "roof.csv"} for floor in floors[1:])]
+    (tmp_path / "between").mkdir()
+    assert shown_of(tmp_path / "between", {}, between, scenario_kind="recorded")[1:] == ["run assess"] * 5
 
 
-@pytest.mark.parametrize("kind", [None, "as filled", "given", "recorded", "NTC 2018"])
-def test_a_floor_with_nothing_of_its_own_shows_no_class(tmp_path: Path, kind: str | None) -> None:
-    shown = shown_of(tmp_path, {}, [{"floor": "1", "elevation": 4}], scenario_kind=kind, ground_pga=0.2)
-    assert shown[1:] == ["run assess"] * 5
+UNSERVED = [
+    ({}, {}, False), ({"elevation": 4}, {}, False), ({"pfv_x": 30}, {}, False), ({"record_x": " "}, {}, False),
+    ({"elevation": 4}, {"ground_pga": 0.2}, True), ({"elevation": 4}, {"sds": 0.5}, True),
+    ({"elevation": 4}, {"ground_pga": 0.2, "scenario_kind": "as filled"}, True),
+    ({"elevation": 4}, {"ground_pga": 0.2, "scenario_kind": "given"}, False),
+    ({"elevation": 4}, {"shaking": "MMI VII, very strong", "scenario_kind": "recorded"}, False),
+    ({"elevation": 4}, {"ground_pga": 0.2, "scenario_kind": "NTC 2018"}, True),
+    ({"elevation": 4}, {"shaking": "JMA 7", "scenario_kind": "EN 1998-1"}, True),
+    ({"elevation": 4}, {"scenario_kind": "EN 1998-1"}, False), ({"pfa_x": 0.5}, {"scenario_kind": "EN 1998-1"}, False),
+    ({}, {"ground_pga": 0.2}, False), ({}, {"shaking": "JMA 7"}, False), ({}, {"ground_pgv": 20, "height": 9}, False),
+    ({}, {"ground_pga": 0.2, "height": 9, "storeys": 3}, True), ({}, {"height": 9, "storeys": 3}, False),
+    ({}, {"shaking": "JMA 7", "height": 9, "storeys": 3, "scenario_kind": "given"}, False),
+    ({}, {"shaking": "JMA 7", "height": 9}, False),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("floor", "building", "is_served"), UNSERVED)
+def test_what_a_floor_without_a_motion_of_its_own_shows(
+    tmp_path: Path, floor: dict[str, Any], building: dict[str, Any], is_served: bool
+) -> None:
+    """As the program finds it: where it refuses the floor, the row does not ask to run it."""
+    assert shown_of(tmp_path, {}, [{"floor": "1", **floor}], **building)[1:] == [
+        "run assess" if is_served else "shaking?"
+    ] * 5
+    if floor.keys() <= {"elevation", "pfa_x"}:
+        assert is_run(tmp_path / "book.xlsx") == is_served
+
+
+def is_run(path: Path) -> bool:
+    try:
+        live_values(read_inventory(path))
+    except WorkbookError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    ("elevations", "z", "is_served"),
+    [((0, 8), 4, True), ((0, 8), 8, True), ((0, 8), 9, False), ((0, 8), -1, False), ((0, 8), None, False),
+     ((0, None), 4, False), ((None, None), 0, False), ((4, None), 4, True), ((0, "8 m"), 4, True)],
+)  # fmt: skip
+def test_a_floor_between_two_is_left_to_the_program(
+    tmp_path: Path, elevations: Sequence[Any], z: float | None, is_served: bool, engine: Engine
+) -> None:
+    known = [{"floor": f"k{at}", "pfa_y": 0.3, "elevation": level} for at, level in enumerate(elevations)]
+    row = {"item": "A1", "floor": "1", "breadth": 40, "height": 180}
+    path = fill(tmp_path / "book.xlsx", [row], [{"floor": "1", "elevation": z}, *known], {})
+    assert is_run(path) == is_served
+    assert engine(poison(path))[2][1:] == ["run assess" if is_served else "shaking?"] * 5
+
+
+def test_a_blank_floor_sheet_row_serves_no_other(tmp_path: Path) -> None:
+    """Rows without a name are no floors, whatever else they hold."""
+    floors = [{"floor": "1", "elevation": 4}, {"pfa_x": 0.3, "elevation": 0}, {"pfa_x": 0.3, "elevation": 8}]
+    assert shown_of(tmp_path, {}, floors)[1:] == ["shaking?"] * 5
 
 
 @pytest.mark.parametrize("axis", [None, "X", "Y"])
 @pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
 def test_a_profile_serves_floors_with_a_pfa_too(tmp_path: Path, kind: str, axis: str | None) -> None:
-    assert (
-        shown_of(tmp_path, {"axis": axis}, [{"floor": "1", "pfa_x": 0.5}], scenario_kind=kind)[1:] == ["run assess"] * 5
-    )
+    floors = [{"floor": "1", "pfa_x": 0.5, "elevation": 3}]
+    shown = shown_of(tmp_path, {"axis": axis}, floors, scenario_kind=kind, ground_pga=0.2)
+    assert shown[1:] == ["run assess"] * 5
 
 
 def test_floors_beside_one_with_nothing_of_its_own_keep_theirs(tmp_path: Path) -> None:
@@ -543,6 +601,10 @@ def test_an_anchored_piece_of_an_unknown_floor_still_says_so(tmp_path: Path) -> 
     assert shown_of(tmp_path, {"anchored": "yes", "floor": "9"})[4] == "floor?"
     assert shown_of(tmp_path, {"anchored": "yes"}, [{"floor": "1", "record_x": "roof.csv"}])[1:] == [
         "run assess", "run assess", "run assess", "anchored", "run assess",
+    ]  # fmt: skip
+    (tmp_path / "none").mkdir()
+    assert shown_of(tmp_path / "none", {"anchored": "yes"}, [{"floor": "1"}])[1:] == [
+        "shaking?", "shaking?", "shaking?", "anchored", "shaking?",
     ]  # fmt: skip
 
 

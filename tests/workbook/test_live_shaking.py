@@ -59,7 +59,7 @@ def shown_of(folder: Path, floors: Rows, **building: Any) -> list[Any]:
 
 @pytest.mark.parametrize(
     "building",
-    [{"ground_pga": 0.2}, {"sds": 0.5}, {"scenario_kind": "NTC 2018"}, {"scenario_kind": "given"}, {"shaking": "much"}],
+    [{"ground_pga": 0.2}, {"sds": 0.5}, {"scenario_kind": "NTC 2018"}, {"shaking": "much"}],
 )
 def test_where_something_else_serves_the_floors_no_class_is_shown(tmp_path: Path, building: dict[str, Any]) -> None:
     shown = shown_of(tmp_path, FLOORS, **{"shaking": "MMI VII, very strong"} | building)
@@ -72,9 +72,15 @@ def test_a_floor_with_a_motion_of_its_own_leaves_the_others_to_the_program(tmp_p
     assert shown_of(tmp_path, floors, shaking="MMI VII, very strong")[1:] == ["run assess"] * 5
 
 
+@pytest.mark.parametrize("kind", ["given", "recorded"])
+def test_where_no_profile_serves_shaking_is_missing(tmp_path: Path, kind: str) -> None:
+    shown = shown_of(tmp_path, FLOORS, shaking="MMI VII, very strong", scenario_kind=kind)
+    assert shown[1:] == ["shaking?"] * 5
+
+
 def test_a_floor_without_elevation_shows_no_class(tmp_path: Path) -> None:
     floors = [*FLOORS[:2], {"floor": "2"}]
-    assert shown_of(tmp_path, floors, shaking="MMI VII, very strong")[1:] == ["run assess"] * 5
+    assert shown_of(tmp_path, floors, shaking="MMI VII, very strong")[1:] == ["shaking?"] * 5
 
 
 def test_whether_a_piece_can_rock_goes_by_the_larger_scatter(tmp_path: Path) -> None:

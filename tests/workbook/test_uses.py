@@ -13,6 +13,7 @@ from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LIVE, USES
 from assess.workbook.uses import ROOM, room_content
 from tests.cli.calling import error, run
+from tests.workbook.test_live import AGREEMENT, by_formualizer, poison
 
 UNITS = ("si", "imperial")
 LANGUAGES = ("en", "it")
@@ -64,11 +65,15 @@ def test_every_use_lacks_nothing_but_shaking(tmp_path, units, language):
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 @pytest.mark.parametrize("units", UNITS)
 def test_without_shaking_the_live_columns_tell_the_slenderness(tmp_path, units):
-    shown = stored(new(tmp_path, "Hospital", units))
+    path = new(tmp_path, "Hospital", units)
+    shown = stored(path)
     types = {row["type"]: row["breadth"] / row["height"] for row in read_catalogue()}
     named = [row["type"] for row in room_content("Hospital").rows["Items"]]
     assert [row[0] for row in shown] == [pytest.approx(types[name], rel=1e-3) for name in named]
-    assert all(set(row[1:]) == {"run assess"} for row in shown)
+    assert all(set(row[1:]) == {"shaking?"} for row in shown)
+    computed = by_formualizer(poison(path))
+    for at, row in enumerate(shown, 2):
+        assert computed[at] == [pytest.approx(row[0], abs=AGREEMENT), *row[1:]]
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
