@@ -55,11 +55,17 @@ FIRST_LINES = (
     "Columns marked * are required.",
     "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "
     "in this scenario, not per year. A * behind a class: outside the range in which the formula was checked by tests.",
+    "Words in place of a class: shaking?: nothing tells how the floor shakes: fill in its PFA, or choose Shaking in "
+    "Building. run assess: assess run works out the motion of the floor, from a record, from other floors or from the "
+    "ground. check: a cell holds a text, or a number out of range, with which nothing is computed here; assess check "
+    "tells which cell, and its option fix writes a copy in which such cells are corrected where they can be read in "
+    "one way only. floor?, axis?, unit?: the floor, the axis or the unit of a header is not known.",
 )
 
 CLASS_NOTE = (
     "Computed by Excel from this row. {mark} behind a class: outside the range in which the formula was checked "
-    "by tests."
+    "by tests. shaking?: nothing tells how the floor shakes. run assess: only assess run can tell. check: a cell holds "
+    "a text, or a number out of range; assess check tells which, and may take it all the same."
 )
 
 ROCK_NOTE = (
@@ -260,7 +266,9 @@ class _Writer:
         for label in (*LIVE, *WORKINGS):
             at = PLACES[ITEMS.name, label]
             self._write_head(page, at, say_live(label), _LIVE_WIDTHS.get(label, 10), None, is_live=True)
-        page.write_comment(0, PLACES[ITEMS.name, CLASS], gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 2})
+        page.write_comment(
+            0, PLACES[ITEMS.name, CLASS], gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 3, "y_scale": 1.6}
+        )
         page.write_comment(0, PLACES[ITEMS.name, "Can rock"], gettext(ROCK_NOTE), {"x_scale": 2})
         formulas = LiveRow().formulas()
         for row in range(2, self.last[ITEMS.name] + 1):

@@ -421,9 +421,10 @@ def test_what_a_floor_without_a_motion_of_its_own_shows(
     tmp_path: Path, floor: dict[str, Any], building: dict[str, Any], is_served: bool
 ) -> None:
     """As the program finds it: where it refuses the floor, the row does not ask to run it."""
-    assert shown_of(tmp_path, {}, [{"floor": "1", **floor}], **building)[1:] == [
-        "run assess" if is_served else "shaking?"
-    ] * 5
+    assert (
+        shown_of(tmp_path, {}, [{"floor": "1", **floor}], **building)[1:]
+        == ["run assess" if is_served else "shaking?"] * 5
+    )
     if floor.keys() <= {"elevation", "pfa_x"}:
         assert is_run(tmp_path / "book.xlsx") == is_served
 
@@ -452,7 +453,7 @@ def test_a_floor_between_two_is_left_to_the_program(
     assert engine(poison(path))[2][1:] == ["run assess" if is_served else "shaking?"] * 5
 
 
-def test_a_blank_floor_sheet_row_serves_no_other(tmp_path: Path) -> None:
+def test_a_row_without_a_name_serves_no_floor(tmp_path: Path) -> None:
     """Rows without a name are no floors, whatever else they hold."""
     floors = [{"floor": "1", "elevation": 4}, {"pfa_x": 0.3, "elevation": 0}, {"pfa_x": 0.3, "elevation": 8}]
     assert shown_of(tmp_path, {}, floors)[1:] == ["shaking?"] * 5

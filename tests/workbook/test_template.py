@@ -7,8 +7,12 @@ from typing import Any
 import openpyxl
 import pytest
 
+from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.layout import LETTERS, list_columns
+from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
+from assess.workbook.live_row import NO_AXIS, NO_FLOOR
+from assess.workbook.names import say_live
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CATALOGUE, CLASS, ITEMS, LIVE, SHEETS, WORKINGS, Column, Sheet
 from assess.workbook.template import CHECKED, ROWS, Content, Units, describe, write_workbook
@@ -19,6 +23,9 @@ TABLES = [sheet for sheet in SHEETS if sheet.layout == "table"]
 NAMES = [sheet.name for sheet in SHEETS]
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+HINTS = (NO_SHAKING, RUN_ASSESS, WRONG, NO_FLOOR, NO_AXIS, NO_UNIT)
+"""Words in place of a class; those in the comment of its column come first."""
 
 
 @pytest.fixture(scope="module", params=UNITS)
@@ -241,3 +248,21 @@ def test_describe() -> None:
 def test_a_blank_workbook_has_no_rows_even_with_live_formulas(path: Path) -> None:
     """The rows of formulas are no items, and their blank results are no faults."""
     assert not any("formula" in error for error in errors_of(path))
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_help_and_the_comment_of_the_class_explain_its_words(tmp_path: Path, code: str) -> None:
+    with speaking(load_catalogue(code)):
+        write_workbook(tmp_path / "book.xlsx")
+        words, others = ([gettext(one) for one in some] for some in (HINTS[:3], HINTS[3:]))
+        label = say_live(CLASS)
+    book = openpyxl.load_workbook(tmp_path / "book.xlsx")
+    (page,) = (book[name] for name in book.sheetnames[3:4])
+    (head,) = [cell for cell in page[1] if cell.value == label]
+    assert head.comment is not None
+    (line,) = [text for row in book.worksheets[0].iter_rows() if f"{words[0]}:" in (text := str(row[0].value))]
+    for word in words:
+        assert f"{word}:" in line
+        assert f"{word}:" in head.comment.text
+    assert all(word in line for word in others)
+    assert "assess check" in line
