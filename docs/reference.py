@@ -85,7 +85,8 @@ def _describe_workbook() -> Iterator[str]:
         yield from _build_table(("column", "Italian", "value", "what to fill in"), rows)
     yield "## Columns that Excel computes"
     yield ""
-    yield f"In Items, {CLASS} next to the item and the others at the right: {_join(LIVE)}, and what they are computed"
+    others = (label for label in LIVE if label != CLASS)
+    yield f"In Items, `{CLASS}` next to the item; at the right {_join(others)}, and what they are computed"
     yield f"from: {_join(WORKINGS)}. They update while you type, and are left out when the workbook is read."
 
 

@@ -37,6 +37,14 @@ def test_the_reference_of_the_workbook_holds_units_limits_and_italian_names():
     )
 
 
+def test_the_class_stands_next_to_the_item_and_not_among_the_others():
+    (line,) = [one for one in build_pages()["workbook.md"].splitlines() if one.startswith("In Items,")]
+    beside, right = line.split("; at the right ")
+    assert "`Class (formula)` next to the item" in beside
+    assert right.startswith("`B/H`, `PFA used [g]`, ")
+    assert "Class" not in right
+
+
 def test_the_readme_is_short_and_has_two_commands():
     lines = README.splitlines()
     assert len(lines) <= 150
