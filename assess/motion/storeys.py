@@ -8,7 +8,7 @@ higher than others, elevations may come out too low.
 import re
 
 _NUMBERED = re.compile(r"(?:floor|level|storey|story|piano|livello|[lfp])?[ .]*(\d{1,3})(?:°|st|nd|rd|th)?(?: floor)?")
-_BELOW = re.compile(r"(?:b|-|basement|interrato)[ .]*\d{0,2}")
+_BELOW = re.compile(r"(?:b|-)[ .]*\d{1,2}|(?:basement|interrato)[ .]*\d{0,2}")
 _GROUND = frozenset({"g", "gf", "ground", "ground floor", "pt", "p.t.", "terra", "piano terra", "eg", "rdc"})
 
 
