@@ -10,7 +10,7 @@ from assess.i18n import load_catalogue, speaking
 from assess.intensity import MIDORIKAWA, WORDEN
 from assess.report import write_reports
 from assess.report.content import build_content
-from assess.report.findings.assumed_intensity import say_shaking
+from assess.report.findings.assumed_intensity import say_shaking, say_shaking_shortly
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.workbooks import assessed, write
@@ -84,6 +84,36 @@ def test_a_report_without_it_says_nothing_of_it(tmp_path):
     )
     assert json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["assess"]["shaking"] is None
     assert say_shaking(results) == ""
+
+
+@pytest.mark.parametrize(
+    ("settings", "wanted"),
+    [
+        (Settings(verify="none"), "The formula takes the median; the scatter is not in it."),
+        (Settings(runs=25, ideal=True), "the simulation leaves this scatter out"),
+    ],
+    ids=["formula alone", "ideal"],
+)
+def test_where_the_scatter_is_left_out_it_is_not_said_to_be_in(tmp_path, settings, wanted):
+    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, settings=settings)
+    content = build_content(results)
+    paragraph, sentence = say_shaking(results), say_shaking_shortly(results)
+    assert wanted in paragraph
+    assert dict(content.assumptions)["Shaking"] == paragraph
+    assert "by 0.81 (standard deviation of ln PGA)" in paragraph
+    assert "Motion uncertainty" not in paragraph
+    assert "0.81" not in sentence
+    assert "scatter is not in the results" in sentence
+    assert "times" not in paragraph
+
+
+@pytest.mark.parametrize("runs", [None, 25])
+def test_a_factor_stands_next_to_the_medians(tmp_path, runs):
+    settings = Settings(verify="none", scale=0.5) if runs is None else Settings(runs=runs, scale=0.5)
+    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, settings=settings)
+    assert results.provenance.shaking.pga_g == pytest.approx(0.2152, rel=1e-3)
+    assert "(Worden et al. 2012). The results are for these medians times 0.5. PGA scatters" in say_shaking(results)
+    assert say_shaking_shortly(results).endswith("The results are for these medians times 0.5.")
 
 
 def test_a_derived_pga_and_an_open_class_are_among_the_assumptions(tmp_path):

@@ -11,7 +11,7 @@ from assess.results import AssumedShaking, Results
 def say_shaking(results: Results) -> str:
     """Return that the shaking is assumed, with all it rests on, in a paragraph; "" where it is not."""
     found = results.provenance.shaking
-    return "" if found is None else " ".join(_say(found))
+    return "" if found is None else " ".join(_say(found, results))
 
 
 def say_shaking_shortly(results: Results) -> str:
@@ -19,26 +19,68 @@ def say_shaking_shortly(results: Results) -> str:
     found = results.provenance.shaking
     if found is None:
         return ""
-    return _(
-        "Assumed shaking: {intensity}, by its published median PGA of {pga} g and PGV of {pgv} cm/s, scatter of ln PGA "
-        "{scatter} ({sources}), and the design profile of {code}.",
-        intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
-        scatter=number(found.scatter, "g"), sources=", ".join(found.sources), code=found.profile,
-    )  # fmt: skip
+    values = {
+        "intensity": _(found.choice), "pga": words.in_g(found.pga_g), "pgv": words.fixed(found.pgv_cm_s, 1),
+        "sources": ", ".join(found.sources), "code": found.profile, "scatter": number(found.scatter, "g"),
+    }  # fmt: skip
+    if _uses_scatter(results):
+        text = _(
+            "Assumed shaking: {intensity}, by its published median PGA of {pga} g and PGV of {pgv} cm/s, scatter of "
+            "ln PGA {scatter} ({sources}), and the design profile of {code}.",
+            **values,
+        )
+    else:
+        text = _(
+            "Assumed shaking: {intensity}, by its published median PGA of {pga} g and PGV of {pgv} cm/s ({sources}), "
+            "and the design profile of {code}; scatter is not in the results.",
+            **values,
+        )
+    return " ".join((text, *_say_factor(results)))
 
 
-def _say(found: AssumedShaking) -> Iterator[str]:
+def _uses_scatter(results: Results) -> bool:
+    """Return whether motions are drawn with the scatter of the intensity: the formulas take the median alone."""
+    return results.has_simulated and not results.settings.ideal
+
+
+def _say(found: AssumedShaking, results: Results) -> Iterator[str]:
     yield _(
         "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
         "published median PGA of {pga} g and PGV of {pgv} cm/s ({sources}).",
         intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
         sources=", ".join(found.sources),
     )  # fmt: skip
-    yield _(
-        "PGA scatters about this median by {scatter} (standard deviation of ln PGA); Motion uncertainty is set to at "
-        "least this value. Over the height the motion follows the design profile of {code}.",
-        scatter=number(found.scatter, "g"), code=found.profile,
-    )  # fmt: skip
+    yield from _say_factor(results)
+    yield _say_scatter(found, results)
+    yield _("Over the height the motion follows the design profile of {code}.", code=found.profile)
+
+
+def _say_factor(results: Results) -> Iterator[str]:
+    if results.settings.scale != 1:
+        factor = number(results.settings.scale, "g")
+        yield _("The results are for these medians times {factor}.", factor=factor)
+
+
+def _say_scatter(found: AssumedShaking, results: Results) -> str:
+    """Return what is made of the scatter of PGA given the intensity."""
+    scatter = number(found.scatter, "g")
+    if _uses_scatter(results):
+        return _(
+            "PGA scatters about this median by {scatter} (standard deviation of ln PGA); Motion uncertainty is set to "
+            "at least this value.",
+            scatter=scatter,
+        )
+    if results.has_simulated:
+        return _(
+            "PGA scatters about this median by {scatter} (standard deviation of ln PGA); the simulation leaves this "
+            "scatter out: its chances hold for the median alone.",
+            scatter=scatter,
+        )
+    return _(
+        "PGA scatters about this median by {scatter} (standard deviation of ln PGA). The formula takes the median; the "
+        "scatter is not in it.",
+        scatter=scatter,
+    )
 
 
 def list_assumptions(results: Results) -> list[tuple[str, str]]:
