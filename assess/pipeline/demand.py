@@ -222,9 +222,16 @@ def build_demands(
     return demands
 
 
+def find_assumed(demands: Demands) -> tuple[Shaking, Profile] | None:
+    """Return the assumed intensity that serves a floor, of which a run has one at most, with the profile over height."""
+    every = (one for parallel in demands.values() for one in parallel)
+    return next(((one.shaking, one.profile) for one in every if one.shaking and one.profile), None)
+
+
 def find_shaking(demands: Demands) -> Shaking | None:
     """Return the assumed intensity that serves a floor, of which a run has one at most."""
-    return next((one.shaking for parallel in demands.values() for one in parallel if one.shaking), None)
+    found = find_assumed(demands)
+    return None if found is None else found[0]
 
 
 def scale_demands(demands: Demands, factor: float) -> Demands:

@@ -10,11 +10,11 @@ import numpy as np
 from assess.annual_results import AnnualWays
 from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
-from assess.model import AXES, Building, Floor, Inventory, Item
+from assess.model import AXES, Floor, Inventory, Item
 from assess.motion.record import Record, treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile, cap_pfv, estimate_pfv
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.demand import Demand, Demands
+from assess.pipeline.demand import Demand, Demands, Ground, find_assumed, find_ground
 from assess.pipeline.versions import versions
 from assess.results import (
     AssumedShaking,
@@ -72,10 +72,12 @@ def list_demands(assessment: Assessment) -> list[Demand]:
 
 def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[MotionRow, ...]:
     """Return a row for each motion, with what pieces were simulated under."""
-    joints = assessment.joints
+    joints, inventory = assessment.joints, assessment.inventory
+    ground = find_ground(inventory)
     rows = []
     for index, demand in enumerate(demands):
-        row = replace(build_motion(index, demand), estimate=_describe_estimate(assessment.inventory.building, demand))
+        estimate = _describe_estimate(inventory.building.period, ground, demand)
+        row = replace(build_motion(index, demand), estimate=estimate)
         joint = joints.get(demand)
         rows.append(row if joint is None else replace(row, ensemble=_ensemble(assessment, joint)))
     return tuple(rows)
@@ -102,15 +104,13 @@ def build_motion(index: int, demand: Demand) -> MotionRow:
     return row if demand.record is None else _add_record(row, demand.record)
 
 
-def _describe_estimate(building: Building, demand: Demand) -> EstimateRow | None:
-    """Return what a PFV was estimated from; None where it was not, or is interpolated."""
-    if "pfv_estimated" not in demand.flags or demand.between or building.period is None:
+def _describe_estimate(period: float | None, ground: Ground, demand: Demand) -> EstimateRow | None:
+    """Return what a PFV was estimated from, with T1 [s]; None where it was not, or is interpolated."""
+    if "pfv_estimated" not in demand.flags or demand.between or period is None:
         return None
-    ground = building.ground_pgv
-    if ground is None and demand.shaking:
-        ground = demand.shaking.pgv
-    cap = None if ground is None else demand.scale * cap_pfv(ground)
-    return EstimateRow(_sure(estimate_pfv(GRAVITY, building.period), "cm/s"), edge(cap, "cm/s"))
+    pgv = ground.profile_pgv if demand.profile else ground.pgv
+    cap = None if pgv is None else demand.scale * cap_pfv(pgv)
+    return EstimateRow(_sure(estimate_pfv(GRAVITY, period), "cm/s"), edge(cap, "cm/s"))
 
 
 def _add_record(row: MotionRow, record: Record) -> MotionRow:
@@ -300,10 +300,10 @@ def build_provenance(assessment: Assessment) -> Provenance:
 
 
 def _describe_shaking(demands: Demands) -> AssumedShaking | None:
-    found = next((one for parallel in demands.values() for one in parallel if one.shaking), None)
-    if found is None or found.shaking is None or found.profile is None:
+    found = find_assumed(demands)
+    if found is None:
         return None
-    shaking = found.shaking
+    shaking, profile = found
     return AssumedShaking(
         choice=shaking.choice,
         name=shaking.name,
@@ -314,7 +314,7 @@ def _describe_shaking(demands: Demands) -> AssumedShaking | None:
         pgv_scatter=shaking.pgv_scatter,
         is_derived=shaking.is_derived,
         is_open=shaking.is_open,
-        profile=found.profile.key,
+        profile=profile.key,
         sources=shaking.sources,
         references=shaking.references,
     )

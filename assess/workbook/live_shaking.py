@@ -12,7 +12,13 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
 from assess.intensity import SHAKINGS
-from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
+from assess.motion.scenario import (
+    HIGHER_MODES_FROM,
+    HIGHER_MODES_POWER,
+    HIGHEST_FLOOR_FREQUENCY,
+    STEEPEST_GROWTH,
+    cap_pfv,
+)
 from assess.units import GRAVITY
 from assess.workbook.schema import LISTS
 
@@ -71,8 +77,10 @@ def list_formulas(elevation: str, cells: Mapping[str, str]) -> Sequence[str]:
     ratio, pfa, period = cells["height_ratio"], cells["assumed_pfa"], "(period*unit_building_period)"
     z = f"{elevation}*unit_floors_elevation"
     # ASCE 7-22, Equations (13.3-4) and, T1 unknown, (13.3-5)
-    known = f"1+MIN(1/{period},2.5)*{ratio}+MAX(1-(0.4/{period})^2,0)*{ratio}^10"
-    factor = f"IF(ISNUMBER(period),{known},1+2.5*{ratio})"
+    a_1 = f"MIN(1/{period},{STEEPEST_GROWTH!r})"
+    a_2 = f"MAX(1-({HIGHER_MODES_FROM!r}/{period})^2,0)"
+    known = f"1+{a_1}*{ratio}+{a_2}*{ratio}^{HIGHER_MODES_POWER}"
+    factor = f"IF(ISNUMBER(period),{known},1+{STEEPEST_GROWTH!r}*{ratio})"
     frequency = f"MIN(1/{period},{HIGHEST_FLOOR_FREQUENCY!r})"
     estimate = f"{pfa}*{GRAVITY * 100!r}/(2*PI()*{frequency})"
     largest = "IF(AND(shaking_has_cap,ISNUMBER(shaking_largest)),shaking_largest,largest_estimate)"
