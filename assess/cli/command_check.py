@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Never
 
 import typer
 
-from assess.cli.console import count, count_errors, print_problems, print_ways, show_progress
+from assess.cli.console import count, count_errors, print_numbered, print_problems, print_ways, show_progress
 from assess.cli.options import Workbook, check_new_file, save_file
 from assess.errors import Gap, Problem, WorkbookError
 from assess.settings import Settings
@@ -66,13 +66,17 @@ def command(
 
 def _report(inventory: "Inventory", path: Path) -> None:
     """Print what a workbook without errors holds, and what is remarkable."""
+    from assess.pipeline.demand import find_shaking
     from assess.pipeline.run import compute
+    from assess.workbook.completing import BETTER
 
     with show_progress() as progress:
         assessment = compute(inventory, Settings(verify="none"), progress=progress)
     if any(isinstance(one, Gap) for one in assessment.problems):
         _end_incomplete(path, assessment.problems)
     print_problems(assessment.problems)
+    if find_shaking(assessment.demands) is not None:
+        print_numbered("To know the shaking better:", BETTER)
     rows, floors = count(len(inventory.items), "row"), count(len(inventory.floors), "floor")
     segments = count(len(inventory.routes), "route segment")
     typer.echo(f"{path.name}: no errors. {rows} of furniture on {floors}, {segments}.")

@@ -147,11 +147,15 @@ def print_ways(problems: Sequence[Problem]) -> None:
     """Print to standard error what completes a workbook that lacks the shaking or the furniture."""
     from assess.workbook.completing import list_ways
 
-    ways = list_ways(problems)
-    if ways:
-        typer.echo("To fill in what is missing:", err=True)
-    for number, way in enumerate(ways, 1):
-        typer.echo(f"  {number}. {way}", err=True)
+    print_numbered("To fill in what is missing:", list_ways(problems))
+
+
+def print_numbered(heading: str, lines: Sequence[str]) -> None:
+    """Print a heading and a numbered list below it to standard error; nothing where the list is empty."""
+    if lines:
+        typer.echo(heading, err=True)
+    for number, line in enumerate(lines, 1):
+        typer.echo(f"  {number}. {line}", err=True)
 
 
 def print_warnings(problems: Sequence[Problem]) -> None:

@@ -3,12 +3,11 @@
 from collections.abc import Iterator
 
 from assess.errors import Problem
-from assess.i18n import fill, join
+from assess.i18n import fill
 from assess.intensity import SHAKINGS, Shaking
 from assess.model import Building, Inventory
 from assess.pipeline.demand import Demands, find_ground, find_shaking
 from assess.units import GRAVITY, VELOCITY
-from assess.workbook.completing import BETTER
 
 
 def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
@@ -25,10 +24,11 @@ def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Proble
         return
     message = fill(
         "the shaking is assumed: '{choice}' stands for a ground PGA of {pga:.3f} g and a PGV of {pgv:.1f} cm/s, the "
-        "published medians. There are three ways to know it better.",
+        "published medians.",
         choice=fill(used.choice), pga=used.pga / GRAVITY, pgv=used.pgv / VELOCITY["cm/s"],
     )  # fmt: skip
-    yield Problem("note", "Building", cell, message, join(" ", BETTER))
+    fix = fill("There are three ways to know it better: see `assess check`.")
+    yield Problem("note", "Building", cell, message, fix)
     yield from _remark_on_scatter(building, used)
 
 

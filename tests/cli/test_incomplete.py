@@ -57,13 +57,25 @@ def test_a_chosen_profile_without_ground_motion_is_incomplete_too(tmp_path, scen
     assert "Hazard map" in done.stderr
 
 
-def test_where_shaking_is_assumed_a_note_names_the_three_ways_to_know_it_better(tmp_path):
+def test_where_shaking_is_assumed_the_three_ways_to_know_it_better_are_a_list_below_the_note(tmp_path):
     done = run("check", write(tmp_path / "w.xlsx", floors=LACKING, shaking="MMI VII, very strong"))
     assert done.exit_code == 0
     (note,) = [line for line in done.stderr.splitlines() if "the shaking is assumed" in line]
     assert note.startswith("note ")
-    assert all(way in note for way in WAYS[:3])
     assert "0.215 g" in note
+    assert note.endswith("the published medians. There are three ways to know it better: see `assess check`.")
+    lines = done.stderr.splitlines()
+    at = lines.index("To know the shaking better:")
+    assert at > lines.index(note)
+    assert [line[:12] for line in lines[at + 1 :]] == [f"  {n}. {way}"[:12] for n, way in enumerate(WAYS[:3], 1)]
+    assert "no errors" in done.stdout
+
+
+def test_shaking_that_is_not_used_is_told_no_ways(tmp_path):
+    done = run("check", write(tmp_path / "w.xlsx", shaking="MMI VII, very strong"))
+    assert done.exit_code == 0
+    assert "Shaking is not used" in done.stderr
+    assert "To know the shaking better" not in done.stderr
 
 
 def test_a_complete_workbook_is_told_no_ways(tmp_path):
