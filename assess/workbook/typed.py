@@ -34,6 +34,9 @@ _GROUPED = re.compile(
     r"([1-9]\d{0,2}(?P<mark>[ ',.])\d{3}(?:(?P=mark)\d{3})*)(?:(?P<point>[.,])(?P<rest>\d*))?", re.ASCII
 )
 
+_ARABIC = re.compile(r"MMI ?(\d{1,2})(|,.*)", re.ASCII | re.IGNORECASE)
+_ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII")
+
 
 def straighten(text: str) -> str:
     """Return a text with plain spaces, dashes, apostrophes and digits in place of those that look alike."""
@@ -188,16 +191,22 @@ def find_meant(text: str, choices: tuple[str, ...], language: str) -> tuple[str 
     """Return the choice that a text means, in English, and the word that belongs into the cell.
 
     The word is in the language of the column, and "" where the cell holds that choice as it is written in any
-    language. Understood are letter case, spaces and accents left out, and the first letters of one choice alone; of
-    these the words for yes and no come first.
+    language. Understood are letter case, spaces and accents left out, the first letters of one choice alone (of these
+    the words for yes and no come first), and an intensity in Arabic numerals: ``MMI 7``.
     """
     typed = text.casefold()
     if any(typed == choice.casefold() for choice in choices):
         return find_choice(text, choices), ""
-    choice = find_choice(text, choices) or _find_short(plain(text), choices, language)
+    choice = find_choice(_with_roman(text), choices) or _find_short(plain(text), choices, language)
     if choice is None or any(typed == word.casefold() for code in LANGUAGES for word in say_choices(choices, code)):
         return choice, ""
     return choice, say_choices(choices, language)[choices.index(choice)]
+
+
+def _with_roman(text: str) -> str:
+    """Return the text of an MMI with its number as the scale writes it, in Roman numerals; any other as it is."""
+    match = _ARABIC.fullmatch(straighten(text))
+    return f"MMI {_ROMAN[int(match[1])]}{match[2]}" if match and int(match[1]) < len(_ROMAN) else text
 
 
 def _find_short(typed: str, choices: tuple[str, ...], language: str) -> str | None:

@@ -173,6 +173,7 @@ def test_a_cell_that_shows_a_percentage(tmp_path: Path) -> None:
 # ---------------------------------------------------------------- choices
 
 
+SHAKING = BUILDING.column("shaking")
 CHOICES = [
     (ANCHORED, "N", "no", "no"), (ANCHORED, "y", "yes", "yes"), (ANCHORED, "Ye", "yes", "yes"),
     (ANCHORED, "si", "yes", "yes"), (ANCHORED, "S", "yes", "yes"), (ANCHORED, "SI\u0300 ", "yes", "yes"),
@@ -182,6 +183,12 @@ CHOICES = [
     (WALL, "Y", "yes", "yes"), (SCENARIO, "rec", "recorded", "recorded"), (SCENARIO, "ASCE", None, ""),
     (SCENARIO, "en", "EN 1998-1", "EN 1998-1"), (ITEMS.column("axis"), "x", "X", ""),
     (ITEMS.column("importance"), "life", "life safety", "life safety"),
+    *((SHAKING, text, "MMI VII, very strong", "MMI VII, very strong")
+      for text in ("MMI VII", "MMI 7", "mmi7", " MMI\u00a0\uff17 ", "MMI 07", "MMI 7, very strong")),
+    (SHAKING, "MMI 10", "MMI X, extreme", "MMI X, extreme"), (SHAKING, "MMI 4", "MMI IV, light", "MMI IV, light"),
+    *((SHAKING, text, None, "") for text in ("VII", "7", "MCS VII", "MCS 7", "EMS 7", "EMS VII", "MMI 3", "MMI 13",
+                                             "MMI 0", "MMI 7.5", "MMI 7-8", "MMI", "MMI 7, strong", "JMA VII")),
+    (SHAKING, "JMA 7", "JMA 7", ""),
 ]  # fmt: skip
 
 
@@ -268,6 +275,27 @@ def test_every_cell_that_is_taken_has_a_note_and_a_correction(tmp_path: Path) ->
         "Items!D2: Height [cm]: '1.80 m' holds its unit; it is read as 180 cm.",
         "Items!E2: Anchored: 'N' is read as no.",
     }
+
+
+def test_an_intensity_in_arabic_numerals_is_taken_with_a_note_and_a_correction(tmp_path: Path) -> None:
+    rows: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A1", "1", 40, 180]]
+    sheets: dict[str, Sheet] = {"Building": [["Shaking", "MMI 7"]], "Items": rows,
+                                "Floors": [["Floor", "Elevation [m]"], ["1", 0]]}  # fmt: skip
+    inventory = read_inventory(write_book(tmp_path / "book.xlsx", sheets))
+    assert inventory.building.shaking == "MMI VII, very strong"
+    assert [(one.cell, one.was, one.value) for one in inventory.corrections] == [
+        ("B1", "MMI 7", "MMI VII, very strong")
+    ]
+    assert "Building!B1: Shaking: 'MMI 7' is read as MMI VII, very strong." in remarks(inventory, "note")
+
+
+@pytest.mark.parametrize("typed", ["VII", "MCS 7", "MCS VII", "EMS VII"])
+def test_an_intensity_of_another_scale_or_of_none_is_an_error(tmp_path: Path, typed: str) -> None:
+    rows: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A1", "1", 40, 180]]
+    sheets: dict[str, Sheet] = {"Building": [["Shaking", typed]], "Items": rows,
+                                "Floors": [["Floor", "Elevation [m]"], ["1", 0]]}  # fmt: skip
+    (error,) = errors_of(write_book(tmp_path / "book.xlsx", sheets))
+    assert error.startswith(f"Building!B1: Shaking is '{typed}', expected one of: MMI IV, light; ")
 
 
 def test_corrections_name_the_sheet_as_the_workbook_does_and_survive_errors(tmp_path: Path) -> None:
