@@ -17,7 +17,7 @@ from typing import Any, Self, TypeVar
 from xml.parsers import expat
 
 from assess.errors import Problem, WorkbookError
-from assess.i18n import fill
+from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
 
 MAX_FILE, MAX_PARTS, MAX_TOTAL, MAX_RATIO = 100 * 2**20, 2000, 128 * 2**20, 200
@@ -68,6 +68,15 @@ def unreadable(message: str, fix: str) -> WorkbookError:
 def damaged(message: str) -> WorkbookError:
     """Build the error for a part that no spreadsheet program writes."""
     return unreadable(fill("the workbook is damaged: {why}.", why=message), fill("Open it in Excel and save it again."))
+
+
+def _describe(error: BaseException) -> Text:
+    """Return in words what kind of damage an error of `DAMAGE` is of."""
+    if isinstance(error, expat.ExpatError):
+        return fill("its XML is broken")
+    if isinstance(error, (zipfile.BadZipFile, zlib.error, EOFError, OSError)):
+        return fill("a part of it cannot be unpacked")
+    return fill("a part of it is not as spreadsheet programs write it")
 
 
 def _bomb(name: str) -> WorkbookError:
@@ -545,9 +554,7 @@ class Book:
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         """Turn what a damaged file raises into one sentence."""
         if isinstance(error, DAMAGE) and not isinstance(error, WorkbookError):
-            message = fill(
-                "{name} is damaged or is no Excel workbook ({kind}).", name=self.name, kind=type(error).__name__
-            )
+            message = fill("{name} is damaged or is no Excel workbook: {why}.", name=self.name, why=_describe(error))
             raise unreadable(message, fill("Open it in Excel and save it again.")) from error
 
     def read(self, kind: type[_Kind], path: str) -> _Kind:

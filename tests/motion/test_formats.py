@@ -149,7 +149,7 @@ def test_any_file_is_a_record_error_at_worst(tmp_path: Path, data: bytes) -> Non
         ),
         (b"t,a\n0,1\n", r"time \[s\], north \[cm/s2\], east \[cm/s2\]"),
         (b"Timing,north [g]\n", r"the file format is not supported"),
-        (b"PK\x03\x04....", r"the zip archive is damaged \(File is not a zip file\)\. Get it again"),
+        (b"PK\x03\x04....", r"the zip archive is damaged: its directory cannot be read\. Get it again"),
         ("time [s],a [g]".encode("utf-16"), r"It is saved as UTF-16: save it as CSV UTF-8"),
         (b"%PDF-1.7", r"It is a PDF"),
         (b"\x1f\x8b\x08\0", r"It is a gzip archive: unpack it"),

@@ -48,7 +48,7 @@ def test_damaged_xml(tmp_path: Path, part: str) -> None:
     change_parts(path, {part: lambda data: data[: len(data) // 2]})
     (error,) = errors_of(path)
     assert re.fullmatch(
-        r"(book.xlsx is damaged or is no Excel workbook \(\w+\)|the workbook is damaged: .* breaks off)\. "
+        r"(book.xlsx is damaged or is no Excel workbook: its XML is broken|the workbook is damaged: .* breaks off)\. "
         r"Open it in Excel and save it again\.",
         error,
     )

@@ -130,16 +130,11 @@ def _open(data: bytes) -> zipfile.ZipFile:
     try:
         return zipfile.ZipFile(io.BytesIO(data))
     except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
-        raise _damaged(fill("the zip archive"), error) from error
+        raise RecordError(fill("the zip archive is damaged: its directory cannot be read. Get it again")) from error
 
 
 def _too_many() -> _BombError:
     return _BombError(fill("the zip archive has more than {most:,} members: unpack it", most=MOST_MEMBERS))
-
-
-def _damaged(what: Text, error: Exception) -> RecordError:
-    why = str(error) or type(error).__name__
-    return RecordError(fill("{what} is damaged ({why:.160}). Get it again", what=what, why=why))
 
 
 def _list_members(archive: zipfile.ZipFile, found: _Found) -> list[zipfile.ZipInfo]:
@@ -165,12 +160,16 @@ def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) ->
     """Unpack one member, whatever size the archive gives it, no further than the limits."""
     _check_member(member)
     room = min(LARGEST_MEMBER, MOST_UNPACKED - found.unpacked)
+    why = fill(
+        "the file is damaged: what stands before it is not what the directory of the zip archive says. Get it again"
+    )
     try:
         with archive.open(member) as file:
+            why = fill("the file is damaged: it cannot be unpacked, or not as it was packed. Get it again")
             # Of a member that is larger than its directory entry, no more than that is unpacked.
             content = file.read(min(room, member.file_size) + 1)
     except Exception as error:  # see above
-        raise _damaged(fill("the file"), error) from error
+        raise RecordError(why) from error
     found.unpacked += len(content)
     if len(content) > room:
         raise _BombError(
