@@ -1,4 +1,4 @@
-"""Text of unknown origin made safe to show: names in records and archives, cells, names of files.
+"""Text of unknown origin made safe to show: names in records and archives, cells, names of files; and its lines.
 
 Control characters can command a terminal, and marks that turn the direction of writing make a text show other than
 it reads (Unicode Standard Annex 9; CVE-2021-42574).
@@ -28,8 +28,17 @@ def plain_text(text: str) -> str:
     """
     if text.isascii() and text.isprintable():
         return text
-    lines = text.replace("\r\n", "\n").replace("\r", "\n")
-    return UNCLEAN.sub(lambda found: "" if found[1] else REPLACEMENT, lines)
+    return UNCLEAN.sub(lambda found: "" if found[1] else REPLACEMENT, with_line_feeds(text))
+
+
+def with_line_feeds(text: str) -> str:
+    """Return a text in which every line break is a line feed, whichever system it comes from."""
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def split_text(text: str) -> list[str]:
+    """Return the lines of a text; `str.splitlines` also splits at characters that may stand inside a name."""
+    return with_line_feeds(text).split("\n")
 
 
 def plain_line(text: str) -> str:

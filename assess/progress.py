@@ -30,7 +30,7 @@ class Report:
     share : float
         Share that is done [-]; 1.0 once at its end.
     detail : str
-        What is worked on, in plain English: "121 pieces on 4 floors".
+        What is worked on, in plain English: "121 rows on 4 floors".
     seconds_left : float, optional
         Estimate of the time left in this stage [s]; None while too little is done.
     """

@@ -146,6 +146,14 @@ def _describes(node: ast.ImportFrom) -> bool:
     return node.module == "assess.methods" and {alias.name for alias in node.names} <= DESCRIPTIONS
 
 
+def test_what_the_formats_of_records_share_is_their_own():
+    """Modules of `assess.motion.formats` with an underscore: in other packages a change of them would be a surprise."""
+    own = "assess.motion.formats"
+    others = (path for path in MODULES if not _name(path).startswith(own))
+    found = [(_place(path), name) for path in others for name in _imports(path) if name.startswith(f"{own}._")]
+    assert found == []
+
+
 def test_no_method_is_named_outside_its_own_file():
     """Studies compare methods and may name them; all others ask a method for its role, tier, title and columns."""
     keys = {method.key for method in all_methods()}

@@ -180,11 +180,11 @@ def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
     unknown = [name for name in wanted if name not in FILES]
     if unknown or not wanted:
         named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
-        raise InputError(f"--formats: {named}; expected some of: {', '.join(FILES)}")
+        raise InputError(f"--formats: {named}; expected some of: {', '.join(FILES)}.")
     if "npz" in wanted and verify == "none":
-        raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none")
+        raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none.")
     if open_report and not set(wanted) & set(OPENED):
-        raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats")
+        raise InputError(f"--open opens a report: write one of {', '.join(OPENED)} with --formats.")
     return wanted
 
 

@@ -274,7 +274,7 @@ def _repeat(line: _Line) -> Iterator[None]:
 
 
 def describe_progress(report: Report) -> str:
-    """Return stage, share and time left: "Simulating 240 pieces on 4 floors: 43 %, about 2 min left"."""
+    """Return stage, share and time left: "Simulating 240 rows on 4 floors: 43 %, about 2 min left"."""
     stage = STAGES.get(report.stage, report.stage.capitalize())
     left = "" if report.seconds_left is None else f", about {_round_time(report.seconds_left)} left"
     return f"{plain_line(' '.join((stage, report.detail))).strip()}: {int(100 * report.share)} %{left}"

@@ -116,18 +116,18 @@ def verify(
     """
     check_pairs(int((cases.ensemble >= 0).sum()), settings)
     chosen = (cases.ensemble >= 0) | (cases.slides_under >= 0)
-    pieces = len(np.unique(case_item[chosen]))
+    rows = len(np.unique(case_item[chosen]))
     floors = len({case_demand[one].floor.floor for one in np.flatnonzero(chosen)})
     evaluate, threads, parts = simulation().evaluate, jobs or count_processors(), len(cases.ensembles)
-    if not pieces:
+    if not rows:
         return evaluate(cases, settings)
-    with progress.stage("verification", describe_work(pieces, floors), parts) as stage:
+    with progress.stage("verification", describe_work(rows, floors), parts) as stage:
         return evaluate(cases, settings, threads=threads, stage=stage)
 
 
-def describe_work(pieces: int, floors: int) -> str:
-    """Return what is simulated in words: ``121 pieces on 4 floors``."""
-    return f"{count(pieces, 'piece')} on {count(floors, 'floor')}"
+def describe_work(rows: int, floors: int) -> str:
+    """Return what is simulated in words: ``121 rows on 4 floors``."""
+    return f"{count(rows, 'row')} on {count(floors, 'floor')}"
 
 
 def check_pairs(cases: int, settings: Settings, repeats: int = 1) -> None:

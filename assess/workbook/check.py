@@ -11,7 +11,7 @@ from assess.i18n import Text, fill, nfill
 from assess.model import AXES
 from assess.motion.storeys import find_storey
 from assess.units import ROUNDING
-from assess.workbook.names import find_near, key
+from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turned_axis
 
@@ -76,9 +76,8 @@ def check_references(
             if source.found and source.sheet.columns[0].name in source.places:
                 known = defined(source)
                 unknown = [row for row in named if key(row.get(name)) not in known]
-                near = {
-                    text: known.get(find_near(text, known) or "") for text in {key(row.get(name)) for row in unknown}
-                }
+                slips = {key(row.get(name)) for row in unknown}
+                near = {slip: known.get(find_near_name(slip, known) or "") for slip in slips}
                 for row in unknown:
                     names = source.sheet.name, near[key(row.get(name))]
                     yield _unknown(table, name, row, *names, is_spare=is_spare(table, name, row))

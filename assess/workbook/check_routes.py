@@ -1,7 +1,5 @@
 """Rows to problems: evacuation routes, the places that they join, and the furniture next to them."""
 
-import difflib
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, inf
@@ -11,7 +9,7 @@ from assess.i18n import fill, nfill
 from assess.model import split_names
 from assess.natural import natural_key
 from assess.workbook.check import check_references, check_unique, duplicates
-from assess.workbook.names import key
+from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import Segments, defined, defined_by, list_segments, places_by_name
 from assess.workbook.schema import DEFAULT_WIDTH
@@ -21,10 +19,8 @@ SAME_POINT, SAME_WIDTH = 0.01, 1e-6
 """Up to these distances [m] two places are at one point, and two widths are the same."""
 OUT = ("exit", "stair")
 """Kinds of places at which a way out of a floor ends."""
-NEAR, NEAR_WORD = 0.75, 0.8
-"""From these ratios on a name may be a slip of another, and one word of several a slip of another [-]."""
-MOST_NEAR, MOST_NAMED = 10, 3
-"""So many near names are compared; so many rooms are named in one sentence."""
+MOST_NAMED = 3
+"""So many rooms are named in one sentence."""
 
 
 def check_places(tables: Tables) -> Iterator[Problem]:
@@ -328,7 +324,7 @@ def check_segment_rooms(tables: Tables) -> Iterator[Problem]:
     known = defined(tables["Places"]) | defined_by(tables["Items"], "room")
     for row in table.rows:
         for room in split_names(row.get("room")):
-            near = None if key(room) in known else find_near_room(key(room), known)
+            near = None if key(room) in known else find_near_name(key(room), known)
             if near:
                 message = fill(
                     "no piece is in room {room}, so none counts beside this segment unless it names it.",
@@ -356,7 +352,7 @@ def check_item_rooms(tables: Tables) -> Iterator[Problem]:
         if floor in every and room not in used:
             rows.setdefault(room, {}).setdefault(floor, []).append(row)
     for room, floors in rows.items():
-        near = {floor: find_near_room(room, [one for one in every[floor] if one in stood_in]) for floor in floors}
+        near = {floor: find_near_name(room, [one for one in every[floor] if one in stood_in]) for floor in floors}
         meant = next((every[floor][one] for floor, one in near.items() if one), None)
         if meant is not None:
             yield _warn_room(items, [row for floor, own in floors.items() if near[floor] for row in own], meant)
@@ -373,19 +369,3 @@ def _warn_room(items: Table, rows: Sequence[Row], meant: str) -> Problem:
         meant=shorten(meant),
     )
     return items.problem("room", rows[0], message, fill("Did you mean {room}?", room=meant), "warning")
-
-
-def find_near_room(room: str, rooms: Iterable[str]) -> str | None:
-    """Return the room of which a name is most likely a slip, all as names are compared."""
-    near = difflib.get_close_matches(room, list(rooms), MOST_NEAR, NEAR)
-    return next((one for one in near if _could_be(room, one)), None)
-
-
-def _could_be(room: str, other: str) -> bool:
-    """Tell whether a name can be a slip of another: Room 12 is none of Room 11, nor South office of North office."""
-    if re.findall(r"\d+", room) != re.findall(r"\d+", other):
-        return False
-    pairs = list(zip(room.split(), other.split(), strict=False))
-    if len(pairs) < 2 or len(room.split()) != len(other.split()):
-        return True
-    return all(difflib.SequenceMatcher(None, one, two).ratio() >= NEAR_WORD for one, two in pairs)

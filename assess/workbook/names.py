@@ -20,6 +20,10 @@ from assess.workbook.schema import HELP, LISTS, LIVE, SHEETS, WORKINGS, Column, 
 ENGLISH, *_OTHERS = LANGUAGES
 DASHES = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\ufe58\ufe63\uff0d"), "-")
 """Signs that look like a hyphen or a minus sign."""
+NEAR, NEAR_WORD = 0.75, 0.8
+"""From these ratios on a name may be a slip of another, and one word of several a slip of another [-]."""
+MOST_NEAR = 10
+"""So many near names are compared word by word."""
 _BRACKET = re.compile(r"^(?P<label>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$", re.DOTALL)
 
 
@@ -56,10 +60,29 @@ def _bare(text: str) -> str:
     return "".join(sign for sign in parts if not unicodedata.combining(sign) and sign not in "'\u2019`\u00b4")
 
 
-def find_near(name: str, names: Collection[str], least: float = 0.75) -> str | None:
-    """Return the one of `names` that a name is most likely a slip of; None if none is near."""
-    near = difflib.get_close_matches(name, names, 1, least)
+def find_near(word: str, words: Collection[str]) -> str | None:
+    """Return the one of `words` that a word is most likely a slip of; None if none is near."""
+    near = difflib.get_close_matches(word, words, 1, NEAR)
     return near[0] if near else None
+
+
+def find_near_name(name: str, names: Collection[str]) -> str | None:
+    """Return the one of `names`, of one word or several, that a name is most likely a slip of; None if none is near.
+
+    Each word has to be near, not only the whole: Mystery cabinet is no slip of Tray cabinet.
+    """
+    near = difflib.get_close_matches(name, names, MOST_NEAR, NEAR)
+    return next((one for one in near if _could_be(name, one)), None)
+
+
+def _could_be(name: str, other: str) -> bool:
+    """Tell whether a name can be a slip of another: Room 12 is none of Room 11, nor South office of North office."""
+    if re.findall(r"\d+", name) != re.findall(r"\d+", other):
+        return False
+    pairs = list(zip(name.split(), other.split(), strict=False))
+    if len(pairs) < 2 or len(name.split()) != len(other.split()):
+        return True
+    return all(difflib.SequenceMatcher(None, one, two).ratio() >= NEAR_WORD for one, two in pairs)
 
 
 # ---------------------------------------------------------------- sheets and headers

@@ -91,8 +91,7 @@ def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tupl
         return 100 * value, _note_shown(column, value, unit)
     if not isinstance(value, str) or len(value) > LONGEST:
         return value, None
-    text = straighten(value)
-    match = _NUMBER.fullmatch(text)
+    match = _NUMBER.fullmatch(straighten(value).removeprefix("'").lstrip())  # the sign by which programs enter a text
     factor = _find_factor(match["unit"].strip(), column, unit) if match else None
     if match is None or factor is None:
         return value, None

@@ -185,7 +185,7 @@ def test_bad_input_writes_nothing(tmp_path):
             "--formats: 'docx' is an unknown format; expected some of: pdf, xlsx",
         ),
         (["--formats", ""], "--formats: no format is named"),
-        (["--open", "--formats", "json,csv"], "--open opens a report: write one of html, pdf, xlsx with --formats"),
+        (["--open", "--formats", "json,csv"], "--open opens a report: write one of html, pdf, xlsx with --formats."),
         (["--language", "fr"], "--language 'fr' is unknown: expected one of en, it"),
     ],
 )

@@ -38,7 +38,7 @@ def clock(monkeypatch):
     return clock
 
 
-def report(share, stage="verification", detail="5 pieces on 2 floors", left=None):
+def report(share, stage="verification", detail="5 rows on 2 floors", left=None):
     return Report(stage, share, detail, left)
 
 
@@ -48,9 +48,9 @@ def report(share, stage="verification", detail="5 pieces on 2 floors", left=None
 @pytest.mark.parametrize(
     ("given", "text"),
     [
-        (report(0.0), "Simulating 5 pieces on 2 floors: 0 %"),
-        (report(0.437, left=95.0), "Simulating 5 pieces on 2 floors: 43 %, about 2 min left"),
-        (report(0.999, left=0.1), "Simulating 5 pieces on 2 floors: 99 %, about 1 s left"),
+        (report(0.0), "Simulating 5 rows on 2 floors: 0 %"),
+        (report(0.437, left=95.0), "Simulating 5 rows on 2 floors: 43 %, about 2 min left"),
+        (report(0.999, left=0.1), "Simulating 5 rows on 2 floors: 99 %, about 1 s left"),
         (report(0.0, "routes", "3 segments of 1 route"), "Evaluating 3 segments of 1 route: 0 %"),
         (report(0.5, "reading", "", 89), "Reading: 50 %, about 89 s left"),
         (report(0.5, "soil response", "", 3600), "Soil response: 50 %, about 60 min left"),
@@ -78,7 +78,7 @@ def test_away_from_a_terminal_a_line_now_and_then(clock):
     line(report(0.2, "rendering", "report.pdf"))
     line.clear()
     assert stream.getvalue().splitlines() == [
-        "Simulating 5 pieces on 2 floors: 40 %, about 30 s left",
+        "Simulating 5 rows on 2 floors: 40 %, about 30 s left",
         "Writing report.pdf: 0 %",
         "Writing report.pdf: 20 %",
     ]
@@ -94,13 +94,13 @@ def test_on_a_terminal_one_line_changes_and_is_removed(clock):
     stream = Terminal()
     line = console._Line(stream)
     line(report(0.0))
-    assert shown(stream) == "Simulating 5 pieces on 2 floors: 0 %"
+    assert shown(stream) == "Simulating 5 rows on 2 floors: 0 %"
     clock.now = 0.1
     line(report(0.1))
-    assert shown(stream) == "Simulating 5 pieces on 2 floors: 0 %", "not more often than one can read"
+    assert shown(stream) == "Simulating 5 rows on 2 floors: 0 %", "not more often than one can read"
     clock.now = 0.3
     line(report(0.2))
-    assert shown(stream) == "Simulating 5 pieces on 2 floors: 20 %"
+    assert shown(stream) == "Simulating 5 rows on 2 floors: 20 %"
     line(report(1.0))
     assert shown(stream) == ""
     written = stream.getvalue()

@@ -42,7 +42,7 @@ def test_an_interrupted_verification_leaves_all_as_it_was(tmp_path, jobs):
     )
     command = [sys.executable, "-c", code]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert "Simulating 240 pieces on 4 floors: 0 %\n" in process.stderr
+        assert "Simulating 240 rows on 4 floors: 0 %\n" in process.stderr
         process.send_signal(signal.SIGINT)
         try:
             printed, errors = process.communicate(timeout=SOON)

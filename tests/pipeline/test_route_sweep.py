@@ -206,7 +206,7 @@ def test_progress_is_reported(tmp_path):
     reports: list[Report] = []
     fragility(assessed(tmp_path, *ITEMS), 0.2, jobs=1, progress=Progress(reports.append))
     own = [one for one in reports if one.stage == "rocking"]
-    assert {one.detail for one in own} == {"4 pieces on 1 floor"}
+    assert {one.detail for one in own} == {"4 rows on 1 floor"}
     assert [one.share for one in own] == sorted(one.share for one in own)
     assert (own[0].share, own[-1].share) == (0, 1)
 

@@ -29,9 +29,16 @@ def test_it_reports_one_stage_with_what_is_simulated(inventory):
     reports: list[Report] = []
     compute(inventory, Settings(verify="all", runs=4), progress=Progress(reports.append))
     own = [one for one in reports if one.stage == "verification"]
-    assert {one.detail for one in own} == {"6 pieces on 2 floors"}
+    assert {one.detail for one in own} == {"6 rows on 2 floors"}
     assert [own[0].share, own[-1].share] == [0.0, 1.0]
     assert [one.share for one in own] == sorted(one.share for one in own)
+
+
+def test_rows_are_counted_whatever_their_quantity():
+    reports: list[Report] = []
+    several = read_inventory({"Floors": FLOORS, "Items": [one | {"quantity": 3} for one in ITEMS]})
+    compute(several, Settings(verify="all", runs=4), progress=Progress(reports.append))
+    assert {one.detail for one in reports if one.stage == "verification"} == {"6 rows on 2 floors"}
 
 
 def test_nothing_to_simulate_is_no_stage(inventory):

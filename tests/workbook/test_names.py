@@ -1,6 +1,7 @@
 import pytest
 
 import assess
+from assess.workbook.names import find_near_name
 from tests.workbooks import write
 
 
@@ -55,3 +56,33 @@ def test_units_written_out_are_understood(tmp_path, unit, factor):
     book["Items"]["J2"] = 180 / factor
     book.save(path)
     assert assess.read_inventory(path).items[0].height == pytest.approx(1.8)
+
+
+TYPES = (
+    "tray cabinet",
+    "locker",
+    "locker 2 doors",
+    "coat stand",
+    "conference table",
+    "steel shelving",
+    "bookcase tall",
+)
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [("try cabinet", "tray cabinet"), ("tray cabnet", "tray cabinet"), ("lokcer", "locker"), ("lockr", "locker"),
+     ("steel shelfing", "steel shelving"), ("book case tall", "bookcase tall"), ("locker 2 dors", "locker 2 doors"),
+     ("mystery cabinet", None), ("tall cabinet", None), ("hat stand", None), ("conference cabinet", None),
+     ("locker 3 doors", None), ("bed", None)],
+)  # fmt: skip
+def test_each_word_of_a_slip_is_near(typed, meant):
+    assert find_near_name(typed, TYPES) == meant
+
+
+def test_a_poor_guess_is_not_made(tmp_path):
+    path = write(tmp_path / "w.xlsx", [{"item": "a", "floor": "1", "type": "Mystery cabinet"}])
+    with pytest.raises(assess.WorkbookError) as caught:
+        assess.read_inventory(path)
+    assert "Type 'Mystery cabinet' is not in the Catalogue sheet." in str(caught.value)
+    assert "Did you mean" not in str(caught.value)

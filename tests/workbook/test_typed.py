@@ -51,6 +51,10 @@ NUMBERS: list[tuple[Column, str, str, object, str]] = [
     (HEIGHT, "cm", "1 234,567", 1234.567, "thousands"),
     (HEIGHT, "cm", "１８０", 180, "signs"),
     (HEIGHT, "cm", "1.8e2", 180, "text"),
+    (HEIGHT, "cm", "'200", 200, "text"),
+    (HEIGHT, "cm", "\u2019200", 200, "signs"),
+    (HEIGHT, "cm", "' 1.80 m", 180, "unit"),
+    (X, "m", "'-1.5", -1.5, "text"),
     (X, "m", "\u22121,5", -1.5, "comma"),
     (X, "m", "\u2013 3", -3, "signs"),
     (X, "m", "+3", 3, "text"),
@@ -79,7 +83,8 @@ def test_numbers_as_they_are_typed(column: Column, unit: str, text: str, number:
 
 @pytest.mark.parametrize(
     "text", ["45 kg", "about 45", "40-45", "40 x 60", "1.2.3", "1,2,3", "12,34,567", "1.234,5.6", "4²", "½", "45 cm²",
-             "1e999", "0e999", "١,٥٠٠", "9" * 400, "#N/A", "--3", "high", "%"],
+             "1e999", "0e999", "١,٥٠٠", "9" * 400, "#N/A", "--3", "high", "%",
+             "'high", "''200", "'200'", "'"],
 )  # fmt: skip
 def test_texts_that_are_no_number_of_the_column(text: str) -> None:
     assert meant(HEIGHT, text) == (text, "")
@@ -296,6 +301,15 @@ def test_an_intensity_of_another_scale_or_of_none_is_an_error(tmp_path: Path, ty
                                 "Floors": [["Floor", "Elevation [m]"], ["1", 0]]}  # fmt: skip
     (error,) = errors_of(write_book(tmp_path / "book.xlsx", sheets))
     assert error.startswith(f"Building!B1: Shaking is '{typed}', expected one of: MMI IV, light; ")
+
+
+def test_a_number_behind_an_apostrophe_is_taken_with_a_note_and_a_correction(tmp_path: Path) -> None:
+    inventory = read(tmp_path, [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A1", "1", 40, "'200"]])
+    assert inventory.items[0].height == 2.0
+    assert [(one.cell, one.was, one.value) for one in inventory.corrections] == [("D2", "'200", 200)]
+    assert remarks(inventory, "note") == {
+        "Items!D2: Height [cm]: ''200' is a number stored as text; it is read as 200 cm."
+    }
 
 
 def test_corrections_name_the_sheet_as_the_workbook_does_and_survive_errors(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from assess.i18n import Text, fill, nfill
 from assess.motion.formats._format import MOST_CHANNELS, Format, check_channels, keep_readable
 from assess.motion.formats._values import read_real
 from assess.motion.record import MOST_SAMPLES, FloatArray, Record
+from assess.plain_text import with_line_feeds
 from assess.progress import check_waits
 
 LONGEST_TEXT = 160
@@ -118,15 +119,6 @@ def split_lines(data: bytes) -> Lines:
     return Lines(text, np.concatenate([one.astype(np.int32) for one in (*ends, *open_end)]))
 
 
-def split_text(text: str) -> list[str]:
-    """Return the lines of a text; `str.splitlines` also splits at characters that may stand inside a name."""
-    return _with_line_feeds(text).split("\n")
-
-
-def _with_line_feeds(text: str) -> str:
-    return text.replace("\r\n", "\n").replace("\r", "\n")
-
-
 def text_format(
     key: str,
     title: str,
@@ -157,7 +149,7 @@ def text_format(
     """
 
     def recognises(head: bytes) -> bool:
-        return recognised.match(_with_line_feeds(head.decode("latin-1"))) is not None
+        return recognised.match(with_line_feeds(head.decode("latin-1"))) is not None
 
     def read(data: bytes, file: str) -> tuple[Record, ...]:
         lines = split_lines(data)

@@ -25,8 +25,8 @@ from assess.motion.formats._format import (
     check_channels,
     too_many_values,
 )
-from assess.motion.formats._text import split_text
 from assess.motion.record import MOST_SAMPLES, FloatArray, Record, build_series
+from assess.plain_text import split_text
 from assess.progress import check_waits
 from assess.units import ACCELERATION, TIME, read_unit
 
@@ -148,7 +148,8 @@ def _split_head(data: bytes) -> tuple[list[str], int]:
 def _too_long(line: int) -> RecordError:
     return RecordError(
         fill(
-            "line {line} is longer than any row of {most} channels: is the end of a line missing?",
+            "line {line} has more than {most} channels, or the end of the line is missing: give a file with the "
+            "channels that are needed, one row to a line",
             line=line,
             most=MOST_CHANNELS,
         )
