@@ -394,7 +394,7 @@ def test_scenario_kind(tmp_path: Path, kind: str, pfa: Any) -> None:
 def test_recorded_floors_without_a_record_show_no_class(tmp_path: Path) -> None:
     """They may be interpolated, which is the program's task."""
     assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["shaking?"] * 5
-    floors = [{"floor": "1", "pfa_x": 0.5, "elevation": 4}, *({"floor": f"r{z}", "elevation": z} for z in (0, 8))]
+    floors: Rows = [{"floor": "1", "pfa_x": 0.5, "elevation": 4}, *({"floor": f"r{z}", "elevation": z} for z in (0, 8))]
     between = [floors[0], *({**floor, "record_x": "roof.csv"} for floor in floors[1:])]
     (tmp_path / "between").mkdir()
     assert shown_of(tmp_path / "between", {}, between, scenario_kind="recorded")[1:] == ["run assess"] * 5
