@@ -223,7 +223,7 @@ def build_demands(
 
 
 def find_assumed(demands: Demands) -> tuple[Shaking, Profile] | None:
-    """Return the assumed intensity that serves a floor, of which a run has one at most, with the profile over height."""
+    """Return the assumed intensity that serves a floor, of which a run has one at most, and its profile."""
     every = (one for parallel in demands.values() for one in parallel)
     return next(((one.shaking, one.profile) for one in every if one.shaking and one.profile), None)
 

@@ -22,7 +22,7 @@ from assess.workbook import formulas as live
 from assess.workbook import live_shaking
 from assess.workbook.cell_texts import list_words, trim
 from assess.workbook.layout import LETTERS
-from assess.workbook.schema import BUILDING, CATALOGUE, LISTS, SHEETS, YES, Column
+from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, LISTS, SHEETS, YES, Column
 
 Units = Literal["si", "imperial"]
 
@@ -234,7 +234,8 @@ class ListsWriter:
         for axis in "xy":
             pfa, record = (_typed(f"{what}_{axis}", row) for what in ("pfa", "record"))
             unit, wrong = f"unit_floors_pfa_{axis}", gettext(WRONG)
-            number = f'IF({pfa}<0,"{wrong}",IFERROR({pfa}*{unit}/{GRAVITY!r},{unit}))'
+            in_g, least = f"{pfa}*{unit}/{GRAVITY!r}", (FLOORS.column(f"pfa_{axis}").low or 0) * (1 - ROUNDING)
+            number = f'IFERROR(IF({in_g}<{least:.12g},"{wrong}",{in_g}),{unit})'
             given = f'IF(scenario_kind="recorded","",{_if_number(pfa, number)})'
             aside = f'AND(TRIM({record})<>"",scenario_kind<>"given")'
             yield f'IF(scenario_is_own=0,"",IF({aside},"{gettext(RUN_ASSESS)}",{given}))'

@@ -45,6 +45,8 @@ def span(low: float | None, high: float | None, column: Column, unit: str) -> Te
 
 def find_slip(column: Column, number: float, unit: str) -> Text | str:
     """Return what a number outside the range may mean: the units in which it would be usual, with what it is then."""
+    if number == 0:
+        return fill("Clear the cell if it is not known.")
     if number < 0:
         return fill("Remove the minus sign.") if (column.low or 0) >= 0 else ""
     if unit == "%" and number < 1 and is_within(column, 100 * number, unit):

@@ -121,7 +121,8 @@ _METRES = _LENGTH | {"low": -1e5, "high": 1e5}
 _TYPE_SIZE = _LENGTH | {"unit": "cm", "imperial": "in", "low": 5, "high": 600}
 _SIZE = _TYPE_SIZE | {"usual_low": 20, "usual_high": 300, "default": "the Type's in the Catalogue"}
 _ACCELERATION: dict[str, Any] = {
-    "quantity": "acceleration", "unit": "g", "imperial": "g", "low": 0, "high": 5, "usual_low": 0.01, "usual_high": 2,
+    "quantity": "acceleration", "unit": "g", "imperial": "g", "low": 0.0001, "high": 5, "usual_low": 0.01,
+    "usual_high": 2,
 }  # fmt: skip
 _VELOCITY: dict[str, Any] = {
     "quantity": "velocity", "unit": "cm/s", "imperial": "in/s", "low": 0.01, "high": 1000, "usual_low": 1,

@@ -231,8 +231,8 @@ def test_an_edited_acceleration_is_capped_as_in_a_run(capped, tmp_path, by):
     assert found == tuple(pytest.approx(one, abs=1e-9) for one in expected)
 
 
-def test_an_estimate_of_a_floor_at_rest_follows_an_edit(tmp_path):
-    results = assessed(tmp_path / "w.xlsx", ITEMS[:1], [{"floor": "1", "pfa_x": 0}], period=1.0)
+def test_an_estimate_of_a_floor_that_hardly_moves_follows_an_edit(tmp_path):
+    results = assessed(tmp_path / "w.xlsx", ITEMS[:1], [{"floor": "1", "pfa_x": 0.0001}], period=1.0)
     write_report(results, tmp_path / "r.xlsx")
     book = formualizer.load_workbook(str(_edit_pfa(tmp_path / "r.xlsx", [0.5], tmp_path / "edited.xlsx")))
     book.evaluate_all()

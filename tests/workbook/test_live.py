@@ -47,7 +47,7 @@ FLOORS: Rows = [
     {"floor": "Y more", "pfa_x": 0.2, "pfa_y": 0.25, "pfv_x": 60},
     {"floor": "6", "pfa_x": 0.15, "pfa_y": 0.95, "pfv_y": 45},
     {"floor": "strong", "pfa_x": 1.6, "pfa_y": 0.9, "pfv_x": 150, "pfv_y": 20},
-    {"floor": "still", "pfa_x": 0, "pfa_y": 0.02},
+    {"floor": "still", "pfa_x": 0.0001, "pfa_y": 0.02},
 ]
 SIZES: Rows = [
     {"breadth": 10, "height": 200},

@@ -350,7 +350,7 @@ def test_names_with_another_dash_are_the_same(tmp_path: Path) -> None:
 def test_a_percentage_is_thought_of_where_a_pfa_is_too_large(tmp_path: Path) -> None:
     path = write(tmp_path, floors=[["Floor", "PFA X [g]"], ["1", 15]])
     assert errors_of(path) == {
-        "Floors!B2: PFA X is 15 g, expected 0 to 5 g. Did you mean 15 %g = 0.15 g, or 15 m/s2 = 1.53 g?"
+        "Floors!B2: PFA X is 15 g, expected 0.0001 to 5 g. Did you mean 15 %g = 0.15 g, or 15 m/s2 = 1.53 g?"
     }
 
 

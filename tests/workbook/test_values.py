@@ -30,7 +30,7 @@ SHEET = "xl/worksheets/sheet1.xml"  # Items
 SIZES = [
     (1.8, "Height is 1.8 cm, expected 5 to 600 cm. Did you mean 1.8 m = 180 cm?"),
     (1800, "Height is 1800 cm, expected 5 to 600 cm. Did you mean 1800 mm = 180 cm?"),
-    (0, "Height is 0 cm, expected 5 to 600 cm. Check the number and the unit in the header."),
+    (0, "Height is 0 cm, expected 5 to 600 cm. Clear the cell if it is not known."),
     (4.99, "Height is 4.99 cm, expected 5 to 600 cm. Did you mean 4.99 ft = 152.1 cm?"),
     (-180, "Height is -180 cm, expected 5 to 600 cm. Remove the minus sign."),
     (1e30, "Height is 1e+30 cm, expected 5 to 600 cm. Check the number and the unit in the header."),
@@ -92,15 +92,24 @@ def test_cells_that_are_wrong(tmp_path: Path, header: str, value: Any, message: 
 @pytest.mark.parametrize(
     ("header", "value", "message"),
     [
-        ("PFA X [g]", 35, "PFA X is 35 g, expected 0 to 5 g. Did you mean 35 %g = 0.35 g, or 35 cm/s2 = 0.03569 g?"),
-        ("PFA X [g]", 9.81, "PFA X is 9.81 g, expected 0 to 5 g. Did you mean 9.81 %g = 0.0981 g, or 9.81 m/s2 = 1 g?"),
-        ("PFA X [g]", 350, "PFA X is 350 g, expected 0 to 5 g. Did you mean 350 cm/s2 = 0.3569 g?"),
-        ("PFA X [m/s2]", 350, "PFA X is 350 m/s2, expected 0 to 49.03 m/s2. Did you mean 350 cm/s2 = 3.5 m/s2?"),
+        (
+            "PFA X [g]",
+            35,
+            "PFA X is 35 g, expected 0.0001 to 5 g. Did you mean 35 %g = 0.35 g, or 35 cm/s2 = 0.03569 g?",
+        ),
+        ("PFA X [g]", 0, "PFA X is 0 g, expected 0.0001 to 5 g. Clear the cell if it is not known."),
+        (
+            "PFA X [g]",
+            9.81,
+            "PFA X is 9.81 g, expected 0.0001 to 5 g. Did you mean 9.81 %g = 0.0981 g, or 9.81 m/s2 = 1 g?",
+        ),
+        ("PFA X [g]", 350, "PFA X is 350 g, expected 0.0001 to 5 g. Did you mean 350 cm/s2 = 0.3569 g?"),
+        ("PFA X [m/s2]", 350, "PFA X is 350 m/s2, expected 0.0009807 to 49.03 m/s2. Did you mean 350 cm/s2 = 3.5 m/s2?"),
         ("PFV X [m/s]", 50, "PFV X is 50 m/s, expected 0.0001 to 10 m/s. Did you mean 50 cm/s = 0.5 m/s?"),
         (
             "PFV X [cm/s]",
             0,
-            "PFV X is 0 cm/s, expected 0.01 to 1000 cm/s. Check the number and the unit in the header.",
+            "PFV X is 0 cm/s, expected 0.01 to 1000 cm/s. Clear the cell if it is not known.",
         ),
         (
             "Elevation [m]",
@@ -119,7 +128,7 @@ UNUSUAL = [
     ("Items", "Height [in]", 120, "Items!D2: Height is 120 in, usual is 7.874 to 118.1 in."),
     ("Floors", "PFA X [g]", 2.5, "Floors!B2: PFA X is 2.5 g, usual is 0.01 to 2 g."),
     ("Floors", "PFA X [cm/s2]", 0.3, "Floors!B2: PFA X is 0.3 cm/s2, usual is 9.807 to 1961 cm/s2."),
-    ("Floors", "PFA X [g]", 0, "Floors!B2: PFA X is 0 g, usual is 0.01 to 2 g."),
+    ("Floors", "PFA X [g]", 0.001, "Floors!B2: PFA X is 0.001 g, usual is 0.01 to 2 g."),
 ]
 
 
