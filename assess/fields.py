@@ -514,7 +514,7 @@ MOTION_FIELDS = (
     ),
     Field(
         key="profile_verified", read=_profile("verified"), kind="flag", is_optional=True,
-        help="Whether the profile agrees with public implementations; the codes' own texts were not read.",
+        help="Whether the profile agrees with public implementations of the code.",
     ),
     _of_motion("clause"),
     _of_motion("height_ratio", "number", label=fill("z/h"), format="0.000", help="z/h of the profile."),

@@ -11,11 +11,11 @@ JMA 7) are taken as one whole unit of intensity about their number: a lower limi
 References
 ----------
 Worden CB, Gerstenberger MC, Rhoades DA, Wald DJ (2012). Probabilistic relationships between ground-motion parameters
-and Modified Mercalli intensity in California. BSSA 102(1):204-221. doi:10.1785/0120110156. Coefficients as in the code
-of USGS ShakeMap (esi-shakelib 1.2.1, gmice/wgrw12.py); the paper itself was not read.
+and Modified Mercalli intensity in California. BSSA 102(1):204-221. doi:10.1785/0120110156. Coefficients as
+implemented in USGS ShakeMap (esi-shakelib 1.2.1, gmice/wgrw12.py).
 Midorikawa S, Fujimoto K, Muramatsu I (1999). Correlation of new JMA instrumental seismic intensity with former JMA
-seismic intensity and ground motion parameters. Journal of Social Safety Science 1:51-56. The equation as in public code
-that cites it; the paper itself was not read.
+seismic intensity and ground motion parameters. Journal of Social Safety Science 1:51-56. The equation as
+implemented in public code that cites it.
 JMA notice of 1996: class limits of instrumental intensity.
 """
 
@@ -27,13 +27,12 @@ from types import MappingProxyType
 WORDEN = (
     "Worden CB, Gerstenberger MC, Rhoades DA, Wald DJ (2012). Probabilistic relationships between ground-motion "
     "parameters and Modified Mercalli intensity in California. Bulletin of the Seismological Society of America "
-    "102(1):204-221. doi:10.1785/0120110156. Coefficients as in the code of USGS ShakeMap (esi-shakelib 1.2.1); the "
-    "paper was not read."
+    "102(1):204-221. doi:10.1785/0120110156. Coefficients as implemented in USGS ShakeMap (esi-shakelib 1.2.1)."
 )
 MIDORIKAWA = (
     "Midorikawa S, Fujimoto K, Muramatsu I (1999). Correlation of new JMA instrumental seismic intensity with former "
     "JMA seismic intensity and ground motion parameters. Journal of Social Safety Science 1:51-56. "
-    "Equation as in public code that cites it; the paper was not read."
+    "Equation as implemented in public code that cites it."
 )
 
 

@@ -75,6 +75,49 @@ def test_examples_in_python_run(page, tmp_path, monkeypatch):
     assert "results" in space
 
 
+def _find(pattern, paths):
+    """Return the places where a pattern stands, whatever the line breaks inside it."""
+    texts = ((path, path.read_text(encoding="utf-8")) for path in paths)
+    return [
+        f"{path.relative_to(ROOT)}:{text.count(chr(10), 0, found.start()) + 1}: {found[0]}"
+        for path, text in texts
+        for found in re.finditer(pattern, text)
+    ]
+
+
+UNFINISHED = re.compile(r"^[\W_]*[A-Z]{4}[A-Z_]*[\W_]*$|\b(?:TODO|TBD|FIXME)\b", re.MULTILINE)
+
+
+def test_no_placeholder_is_left():
+    """A word in capitals alone on a line, or a mark of what is still to be written."""
+    assert _find(UNFINISHED, [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]) == []
+
+
+@pytest.mark.parametrize("line", ["COUNTS", "| MEASURED_LATER |", "* NUMBERS.", "takes TBD s", "TODO: say why"])
+def test_placeholders_are_found(line):
+    assert UNFINISHED.search(f"One line.\n{line}\n")
+
+
+@pytest.mark.parametrize("line", ["ASCE 7-22", "SDS", "MMI VII", "The TODOS of it", "`MOST_LINES` is 5"])
+def test_other_words_in_capitals_are_no_placeholders(line):
+    assert not UNFINISHED.search(f"One line.\n{line}\n")
+
+
+UNREAD = re.compile(
+    r"(?:original|paper|publication|decree|standard|texts?)\s(?:itself\s)?(?:was|were)\snot(?:\s(?:at\shand|read)|\.)|"
+    r"general\sknowledge"
+)
+
+
+def test_only_the_limits_tell_which_originals_were_not_consulted():
+    """References of a report say where a number comes from; docs/limits.md says which of them are secondary."""
+    pages = [one for one in (*(ROOT / "assess").rglob("*.py"), *PAGES) if one.name not in ("limits.md", "CHANGELOG.md")]
+    templates = [*(ROOT / "templates").rglob("*.j2")]
+    assert templates
+    assert _find(UNREAD, sorted([*pages, *templates])) == []
+    assert "## Sources that were read in secondary form\n" in (DOCS / "limits.md").read_text(encoding="utf-8")
+
+
 def test_the_readme_installs_from_the_source_code_not_from_an_index():
     """On PyPI another project has the name."""
     install = README.partition("## Install\n")[2].partition("\n## ")[0]

@@ -15,8 +15,8 @@ Rigid blocks that do not slide. The limits are lower limits: exceeded, overturni
 
 Departures
 ----------
-The velocity limit is taken in its rounded form, as in Japanese practice (4 of the Japanese rule is PFV = 40 cm/s); the
-original paper was not at hand. Where PFA alone is below its limit the answer is known without PFV.
+The velocity limit is taken in its rounded form, as in Japanese practice (4 of the Japanese rule is PFV = 40 cm/s).
+Where PFA alone is below its limit the answer is known without PFV.
 """
 
 import math

@@ -67,7 +67,7 @@ METHOD = Method(
         year="2010",
         title="Hondana tō no tentō bōshisaku ni tsuite (On measures against the overturning of bookshelves)",
         source="",
-        remark="As quoted by Japanese safety sites; the original was not at hand.",
+        remark="As quoted by Japanese safety sites.",
     ),
     needs=frozenset({"breadth", "height"}),
     evaluate=evaluate,

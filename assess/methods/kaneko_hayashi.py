@@ -3,7 +3,7 @@
 Reference
 ---------
 Kaneko M, Hayashi Y (2004), 13th World Conference on Earthquake Engineering, as equations (5) to (7) of "Overturning
-Risk of Furniture in Earthquake Affected Areas" print it (the original was not at hand).
+Risk of Furniture in Earthquake Affected Areas" print it.
 
 Equations
 ---------

