@@ -23,7 +23,7 @@ _IBC = Reference(
     year="2021",
     title="International Building Code",
     source="sections 1005.3 and 1020.3",
-    remark="The widths are taken from summaries, not checked against the code itself.",
+    remark="Widths as given in summaries, to be verified against the code.",
 )
 _JAPAN = Reference(
     authors="",

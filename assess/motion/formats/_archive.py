@@ -160,12 +160,10 @@ def _unpack(archive: zipfile.ZipFile, member: zipfile.ZipInfo, found: _Found) ->
     """Unpack one member, whatever size the archive gives it, no further than the limits."""
     _check_member(member)
     room = min(LARGEST_MEMBER, MOST_UNPACKED - found.unpacked)
-    why = fill(
-        "the file is damaged: what stands before it is not what the directory of the zip archive says. Get it again"
-    )
+    why = fill("the file is damaged: its header and the directory of the zip archive differ. Get it again")
     try:
         with archive.open(member) as file:
-            why = fill("the file is damaged: it cannot be unpacked, or not as it was packed. Get it again")
+            why = fill("the file is damaged: its data cannot be unpacked. Get it again")
             # Of a member that is larger than its directory entry, no more than that is unpacked.
             content = file.read(min(room, member.file_size) + 1)
     except Exception as error:  # see above
