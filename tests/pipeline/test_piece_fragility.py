@@ -316,7 +316,7 @@ def test_progress_is_reported_and_a_cancel_ends_it(tmp_path):
     reports: list[Report] = []
     found(assessment, 0.3, jobs=1, progress=Progress(reports.append))
     own = [one for one in reports if one.stage == "rocking"]
-    assert {one.detail for one in own} == {"1 piece on 1 floor"}
+    assert {one.detail for one in own} == {"1 row on 1 floor"}
     assert (own[0].share, own[-1].share) == (0, 1)
     cancel = Event()
 
