@@ -334,7 +334,7 @@ FAULTY_RECORDS = {
     "vuoto.csv": (b"", "il file è vuoto. Procurarsene una nuova copia"),
     "rumore.zip": (
         b"PK\x03\x04....",
-        "l'archivio zip è danneggiato (File is not a zip file). Procurarsene una nuova copia",
+        "l'archivio zip è danneggiato: il suo indice non può essere letto. Procurarsene una nuova copia",
     ),
     "velocità.smc": (
         SAMPLE.read_bytes(),
