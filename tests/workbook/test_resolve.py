@@ -203,7 +203,11 @@ def test_yes_and_no(tmp_path: Path, value: object, is_uncertain: bool) -> None:
         ("Motion uncertainty", 40, "Motion uncertainty is 40, expected 0 to 1.5. Check the number and the unit in the"),
         ("Piece uncertainty", 1, "Piece uncertainty is '1', expected one of: yes, no. Choose from the list."),
         ("Piece uncertainty", "partly", "Piece uncertainty is 'partly', expected one of: yes, no. Choose from the"),
-        ("Ground PGV [cm/s]", 0, "Ground PGV is 0 cm/s, expected 0.01 to 1000 cm/s. Clear the cell if it is not known."),
+        (
+            "Ground PGV [cm/s]",
+            0,
+            "Ground PGV is 0 cm/s, expected 0.01 to 1000 cm/s. Clear the cell if it is not known.",
+        ),
         ("Ground PGV [m/s]", 25, "Ground PGV is 25 m/s, expected 0.0001 to 10 m/s. Did you mean 25 cm/s = 0.25 m/s?"),
     ],
 )

@@ -104,7 +104,11 @@ def test_cells_that_are_wrong(tmp_path: Path, header: str, value: Any, message: 
             "PFA X is 9.81 g, expected 0.0001 to 5 g. Did you mean 9.81 %g = 0.0981 g, or 9.81 m/s2 = 1 g?",
         ),
         ("PFA X [g]", 350, "PFA X is 350 g, expected 0.0001 to 5 g. Did you mean 350 cm/s2 = 0.3569 g?"),
-        ("PFA X [m/s2]", 350, "PFA X is 350 m/s2, expected 0.0009807 to 49.03 m/s2. Did you mean 350 cm/s2 = 3.5 m/s2?"),
+        (
+            "PFA X [m/s2]",
+            350,
+            "PFA X is 350 m/s2, expected 0.0009807 to 49.03 m/s2. Did you mean 350 cm/s2 = 3.5 m/s2?",
+        ),
         ("PFV X [m/s]", 50, "PFV X is 50 m/s, expected 0.0001 to 10 m/s. Did you mean 50 cm/s = 0.5 m/s?"),
         (
             "PFV X [cm/s]",
