@@ -13,6 +13,7 @@ from assess.errors import RecordError
 from assess.motion.formats import _format, parse_records, plain_csv, read_records
 from assess.motion.formats._format import MOST_CHANNELS
 from assess.motion.record import MOST_SAMPLES
+from tests.apart import run_apart
 from tests.motion.writers import EAST, Signal, at2, csmip_v1, csmip_v2, mseed, sac, wave, zipped
 
 MOST_MEMORY = 400
@@ -29,25 +30,16 @@ try:
     print(sum(record.acceleration.size for record in read_records(Path(sys.argv[1]))), "samples")
 except RecordError as error:
     print(error)
-try:
-    with open("/proc/self/status") as status:
-        print(next(line for line in status if line.startswith("VmHWM")).split()[1])
-except FileNotFoundError:
-    print(0)  # no Linux: the memory is not checked there
 """
 
 
 def read_apart(folder: Path, data: bytes) -> str:
     """Read a file in a process of its own; return what it says, having checked how much memory it took."""
     (folder / "large").write_bytes(data)
-    done = subprocess.run(
-        [sys.executable, "-c", _CHILD, str(folder / "large")], capture_output=True, text=True, timeout=300, check=False
-    )
-    (folder / "large").unlink()
-    assert done.returncode == 0, done.stderr
-    text, _, peak = done.stdout.rstrip().rpartition("\n")
-    assert int(peak) / 1024 < MOST_MEMORY, f"{int(peak) // 1024} MB"
-    return text
+    try:
+        return run_apart(_CHILD, folder / "large", most_memory=MOST_MEMORY, seconds=300)
+    finally:
+        (folder / "large").unlink()
 
 
 # --- plain CSV ---

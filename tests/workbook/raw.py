@@ -1,12 +1,11 @@
 """Workbooks taken apart: their zip, their XML, and a process of its own to read them in."""
 
 import io
-import subprocess
-import sys
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from tests.apart import run_apart
 from tests.workbook.books import FLOORS, ITEMS
 
 STRINGS = "xl/sharedStrings.xml"
@@ -29,23 +28,12 @@ try:
     print(len(assess.read_inventory(sys.argv[1]).items), "items")
 except assess.WorkbookError as error:
     print(error)
-try:
-    with open("/proc/self/status") as status:
-        print(next(line for line in status if line.startswith("VmHWM")).split()[1])
-except FileNotFoundError:
-    print(0)  # no Linux: the memory is not checked there
 """
 
 
 def read_apart(path: Path) -> str:
     """Read a workbook in a process of its own; return what it says, having checked how much memory it took."""
-    command = [sys.executable, "-c", _CHILD, str(path)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=SECONDS, check=False)
-    assert done.returncode == 0, done.stderr
-    assert not done.stderr
-    text, _, peak = done.stdout.rstrip().rpartition("\n")
-    assert int(peak) / 1024 < MOST_MEMORY, f"{int(peak) // 1024} MB"
-    return text
+    return run_apart(_CHILD, path, most_memory=MOST_MEMORY, seconds=SECONDS)
 
 
 def add_part(path: Path, name: str, pieces: Iterator[bytes]) -> Path:
