@@ -23,6 +23,8 @@ from assess.units import GRAVITY
 FloatArray = NDArray[np.float64]
 
 COLUMNS = ("pga_g", "annual_rate")
+SHORTEST_TIME, LONGEST_TIME = 0.01, 1e6
+"""Span of the time for which chances of exceedance hold [years]."""
 LARGEST_FILE = 64_000_000
 """Bytes; a curve takes some hundreds, a national map of sites some millions."""
 MOST_CELLS = 1_500_000
@@ -301,6 +303,11 @@ def _read_comment(comments: str) -> tuple[float, tuple[Text, ...]]:
     years = float(text) if _NUMBER.fullmatch(text) else math.nan
     if not 0 < years < math.inf:
         raise InputError(fill("the first line has no investigation_time above 0, in years"))
+    if not SHORTEST_TIME <= years <= LONGEST_TIME:
+        spans = {"least": SHORTEST_TIME, "most": LONGEST_TIME}
+        raise InputError(
+            fill("investigation_time is {years:g}, expected {least:g} to {most:g} years", years=years, **spans)
+        )
     of = "mean" if kind is None else kind[1].strip()
     return years, () if of == "mean" else (fill("the curve is {kind!r}, not the mean", kind=of[:40]),)
 

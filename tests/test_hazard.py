@@ -184,6 +184,7 @@ def test_a_curve_that_is_not_the_mean_says_so():
     [
         (("imt='PGA'", "imt='SA(0.3)'"), "the curve is of SA(0.3), expected PGA"),
         (("investigation_time=50.0", "time=50.0"), "the first line has no investigation_time above 0"),
+        (("investigation_time=50.0", "investigation_time=1e-308"), "investigation_time is 1e-308, expected 0.01 to 1e"),
         (("investigation_time=50.0", "investigation_time=0"), "the first line has no investigation_time above 0"),
         (("poe-0.2000000", "poe-0.0500000"), "line 2: expected two or more columns poe-LEVEL with rising levels"),
         (("poe-0.2000000", "poe-x"), "line 2: poe-x is 'x', not a number"),
