@@ -95,6 +95,8 @@ def _decode(data: bytes) -> "Image":
             raise ValueError("two sizes")
         picture.draft(None, (SHOWN, SHOWN))
         picture.load()
+        if picture.mode == "P" and picture.palette is None:  # browsers show nothing of it
+            raise ValueError("no palette")
     except Exception:  # what Pillow raises of damaged pictures is any of ten kinds
         raise _damaged() from None
     return picture

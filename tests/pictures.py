@@ -23,3 +23,13 @@ def claim_size(png: bytes, width: int, height: int) -> bytes:
     """Return a PNG with another size in its header, and the sum of that header right."""
     header = b"IHDR" + struct.pack(">II", width, height) + png[24:29]
     return png[:12] + header + struct.pack(">I", zlib.crc32(header)) + png[33:]
+
+
+def leave_out(png: bytes, name: bytes) -> bytes:
+    """Return a PNG without its parts of a name."""
+    at, kept = 8, png[:8]
+    while at < len(png):
+        end = at + 12 + int(struct.unpack_from(">I", png, at)[0])
+        kept += b"" if png[at + 4 : at + 8] == name else png[at:end]
+        at = end
+    return kept

@@ -8,7 +8,7 @@ from PIL import Image
 
 from assess import pictures
 from assess.pictures import MOST_PIXELS, SHOWN, PictureError, check_picture, count_pixels, prepare_picture
-from tests.pictures import claim_size, picture
+from tests.pictures import claim_size, leave_out, picture
 
 PNG, JPEG = picture("PNG"), picture("JPEG")
 DAMAGED = r"^it is damaged\. Open it in a graphics program and save it again$"
@@ -43,6 +43,7 @@ def test_the_size_of_a_jpeg_stands_behind_other_segments() -> None:
         (PNG[:50] + b"\0\0" + PNG[52:], DAMAGED),  # the sum of its data is wrong
         (PNG[:30] + b"\0\0" + PNG[32:], DAMAGED),  # and that of its header
         (claim_size(PNG, 0, 30), DAMAGED),
+        (leave_out(picture("PNG", "P"), b"PLTE"), DAMAGED),  # no palette: browsers show nothing
         (PNG[:-16] + b"\0\0\0\0" + PNG[-12:], DAMAGED),
         (claim_size(PNG, 12_000, 12_000), r"it has 144 million pixels, expected at most 50\. Save it smaller"),
         (JPEG[:3], DAMAGED),
