@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli.completion import list_of
-from assess.cli.console import count, print_warnings, show_progress
+from assess.cli.console import print_warnings, show_progress
 from assess.cli.options import (
     AsJson,
     Draws,
@@ -20,9 +20,8 @@ from assess.cli.options import (
     Span,
     Workbook,
     check_file,
-    figure_kind,
     read_settings,
-    save_files,
+    save_with_figure,
 )
 from assess.errors import InputError
 from assess.settings import AUTO
@@ -170,13 +169,7 @@ def _write(curves: "Curves", formats: Sequence[str], folder: Path, plot: Path | 
     from assess.cli.fragility_output import FORMATS
 
     files = {folder / name: data for one in formats for name, data in FORMATS[one](curves).items()}
-    left = 0
-    if plot is not None:
-        files[plot], left = _draw(curves, figure_kind(plot))
-    save_files(files)
-    for file in files:
-        more = f"; {count(left, 'more curve')} not drawn" if file == plot and left else ""
-        typer.echo(f"wrote {file}{more}", err=True)
+    save_with_figure(files, plot, partial(_draw, curves), "curve")
 
 
 def _draw(curves: "Curves", kind: str) -> tuple[bytes, int]:

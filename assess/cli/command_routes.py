@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from assess.cli.console import count, print_warnings, show_progress
+from assess.cli.console import print_warnings, show_progress
 from assess.cli.options import (
     AsJson,
     Draws,
@@ -16,9 +16,8 @@ from assess.cli.options import (
     Span,
     Workbook,
     check_file,
-    figure_kind,
     read_settings,
-    save_files,
+    save_with_figure,
 )
 from assess.errors import InputError
 from assess.settings import AUTO
@@ -83,20 +82,8 @@ def command(
         fragility = find_fragility(assessment, peaks, jobs=jobs, progress=progress)
     sweep = Sweep(assessment, fragility)
     typer.echo(sweep.to_json() if as_json else sweep.to_text())
-    _write(sweep, csv, plot)
-
-
-def _write(sweep: "Sweep", csv: Path | None, plot: Path | None) -> None:
-    """Write the table and the figure, both or neither."""
-    files, left = {}, 0
-    if csv is not None:
-        files[csv] = sweep.to_csv().encode("utf-8-sig")
-    if plot is not None:
-        files[plot], left = _draw(sweep, figure_kind(plot))
-    save_files(files)
-    for file in files:
-        more = f"; {count(left, 'more route')} not drawn" if file == plot and left else ""
-        typer.echo(f"wrote {file}{more}", err=True)
+    files = {} if csv is None else {csv: sweep.to_csv().encode("utf-8-sig")}
+    save_with_figure(files, plot, partial(_draw, sweep), "route")
 
 
 def _draw(sweep: "Sweep", kind: str) -> tuple[bytes, int]:

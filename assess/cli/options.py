@@ -1,7 +1,7 @@
 """Options that several commands have: their help, and what turns them into arguments of the library."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from assess.cli.completion import one_of
+from assess.cli.console import count
 from assess.errors import InputError, OutputError
 from assess.settings import AUTO, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
 
@@ -111,6 +112,22 @@ def save_files(files: Mapping[Path, bytes]) -> None:
 
 def _list_names(error: OSError) -> list[str]:
     return [Path(name).name for name in (error.filename2, error.filename) if isinstance(name, str)]
+
+
+def save_with_figure(
+    files: Mapping[Path, bytes], plot: Path | None, draw: Callable[[str], tuple[bytes, int]], what: str
+) -> None:
+    """Write files and a figure, whole or none of them, and name each on stderr.
+
+    `draw` is given the kind of the figure; it returns the figure, and how many of `what` it has no room for.
+    """
+    everything, left = dict(files), 0
+    if plot is not None:
+        everything[plot], left = draw(figure_kind(plot))
+    save_files(everything)
+    for file in everything:
+        more = f"; {count(left, f'more {what}')} not drawn" if file == plot and left else ""
+        typer.echo(f"wrote {file}{more}", err=True)
 
 
 def figure_kind(path: Path) -> str:

@@ -25,6 +25,7 @@ ITEMS = [
     for floor in FLOORS
     for breadth in range(25, 85)
 ]
+HEAD = "import os, signal, sys, time\nfrom assess.cli import console, interrupts\n"
 SOON = 10
 """Seconds within which a process of these tests has to end; it takes a fraction of one."""
 
@@ -216,12 +217,18 @@ def test_a_signal_at_the_first_imports_or_moves(tmp_path, number, event, at):
     assert found[0] == (0 if event == "os.rename" else 128 + number)
 
 
+def _run_code(code, *words):
+    """Return exit status and stderr of a process that runs some code; the code sends the signal."""
+    done = subprocess.run(
+        [sys.executable, "-c", HEAD + code, *words], capture_output=True, text=True, timeout=60, check=False
+    )
+    return done.returncode, done.stderr
+
+
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
 def test_what_an_interrupt_became_on_its_way_is_no_error(tmp_path):
     """An import that is interrupted may raise ImportError, a compiled library anything."""
     code = (
-        "import os, signal, sys, time\n"
-        "from assess.cli import console, interrupts\n"
         "interrupts.answer_signals()\n"
         "def command():\n"
         "    with console.show_progress():\n"
@@ -232,16 +239,13 @@ def test_what_an_interrupt_became_on_its_way_is_no_error(tmp_path):
         "            raise ImportError('numpy is partially initialised') from None\n"
         "console.guard(command)()"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
-    assert (done.returncode, done.stderr) == (143, "\nInterrupted; nothing was written.\n")
+    assert _run_code(code) == (143, "\nInterrupted; nothing was written.\n")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
 def test_work_that_swallows_every_interrupt_is_ended(tmp_path):
     code = (
-        "import os, signal, sys, time\n"
         "from pathlib import Path\n"
-        "from assess.cli import console, interrupts\n"
         "from assess.delivery.traces import make_folder\n"
         "interrupts.PATIENCE = interrupts.CLEANING = 0.05\n"
         "interrupts.answer_signals()\n"
@@ -254,10 +258,7 @@ def test_work_that_swallows_every_interrupt_is_ended(tmp_path):
         "        except KeyboardInterrupt:\n"
         "            pass\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code, tmp_path], capture_output=True, text=True, timeout=60, check=False
-    )
-    assert (done.returncode, done.stderr) == (143, "\nInterrupted; nothing was written.\n")
+    assert _run_code(code, tmp_path) == (143, "\nInterrupted; nothing was written.\n")
     assert list(tmp_path.iterdir()) == []
 
 
