@@ -222,6 +222,15 @@ def test_a_disk_that_fills_leaves_the_old_workbook_whole(tmp_path, limit):
     assert path.read_bytes() == b"mine"
 
 
+def _measure_stage(folder):
+    """Return the bytes of the files that a run has begun to write, -1 before the first and once they move."""
+    try:
+        sizes = [part.stat().st_size for part in folder.glob(".assess-writing-*/new/*")]
+    except FileNotFoundError:  # moved or removed while it was looked at
+        return -1
+    return sum(sizes) if sizes else -1
+
+
 @pytest.mark.slow
 def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
     """Killed at six moments, from the first file on: what is in place is all old or all new."""
@@ -237,14 +246,15 @@ def test_a_killed_process_leaves_the_old_report_whole(tmp_path):
         shutil.rmtree(out, ignore_errors=True)
         shutil.copytree(tmp_path / "before", out)
         code = _code("run", new, "--verify", "none", "--out", out, "--formats", formats)
-        process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         size = wanted["results.json"] * moment // 6
-        while process.poll() is None:
-            parts = list(tmp_path.glob(".assess-writing-*/new/*"))
-            if sum(part.stat().st_size for part in parts if part.exists()) >= size and parts:
-                process.send_signal(signal.SIGKILL)
-                process.wait()
-                killed += 1
+        with subprocess.Popen(
+            [sys.executable, "-c", code], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
+        ) as new_run:
+            while new_run.poll() is None:
+                if _measure_stage(tmp_path) >= size:
+                    new_run.kill()
+                    new_run.wait()
+                    killed += 1
         now = _contents(out)
         assert now == before or {name: len(data) for name, data in now.items()} == wanted
     assert _run(new, out, "--formats", formats).returncode == 0
@@ -280,7 +290,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path):
         text=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
     )
-    while process.poll() is None and not list(tmp_path.glob(".assess-writing-*/new/*")):
+    while process.poll() is None and _measure_stage(tmp_path) < 0:
         os.sched_yield()
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=60)
