@@ -359,20 +359,48 @@ PIECE_FIELDS = (
 )  # fmt: skip
 
 
+def _of_anchor(key: str, label: str, **more: Any) -> Field:
+    return Field(
+        key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), label=label, is_optional=True,
+        **{"unit": "kN", "kind": "number", **more},
+    )  # fmt: skip
+
+
 ANCHOR_FIELDS = (
     _of_item("weight_kg", fill("Weight"), unit="kg", kind="number", is_optional=True),
+    _of_anchor("weight_kn", fill("Weight with contents")),
     Field(
-        key="bracket_height_cm", read=attrgetter("item.bracket_height_cm"), path=("anchor", "bracket_height_cm"),
-        label=fill("Bracket height"), unit="cm", kind="number", is_optional=True,
-        help="`anchor` is null where neither is given.",
+        key="weight_source", read=attrgetter("item.anchor.weight_source"), path=("anchor", "weight_source"),
+        label=fill("Source of the weight"), shows=DATA, choices=("given", "type", "estimate"),
+    ),
+    _of_anchor("bracket_height_cm", fill("Bracket height"), unit="cm"),
+    _of_anchor("bracket_capacity_kn", fill("Bracket capacity"), help="Tension that its bracket holds."),
+    _of_anchor("tension_kn", fill("Tension at the bracket")),
+    _of_anchor("tension_low_kn", fill("Tension at 16 % of PFA")),
+    _of_anchor("tension_high_kn", fill("Tension at 84 % of PFA")),
+    _of_anchor("tension_without_weight_kn", fill("Tension without the help of the weight")),
+    _of_anchor("shear_kn", fill("Shear at the base")),
+    _of_anchor(
+        "tension_code_kn", fill("Tension by the code"), help="For F_p of ASCE 7-22, where SDS or Ground PGA is known."
+    ),
+    _of_anchor("shear_code_kn", fill("Shear by the code")),
+    *(
+        Field(
+            key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), label=label, kind="flag",
+            is_optional=True, shows=DATA, help="Null where the capacity is not known.",
+        )
+        for key, label in (
+            ("holds", fill("Bracket holds at PFA")), ("holds_high", fill("Bracket holds at 84 % of PFA")),
+            ("holds_code", fill("Bracket holds by the code")),
+        )
     ),
     Field(
-        key="bracket_capacity_kn", read=attrgetter("item.bracket_capacity_kn"),
-        path=("anchor", "bracket_capacity_kn"), label=fill("Bracket capacity"), unit="kN", kind="number",
-        is_optional=True, help="Tension that its bracket holds.",
+        key="counts_as_anchored", read=attrgetter("item.is_held"), path=("anchor", "counts_as_anchored"),
+        label=fill("Counts as anchored"), kind="flag", shows=DATA,
+        help="It says so and its bracket is not known to fail, or it is partly anchored by one that holds at 84 %.",
     ),
 )  # fmt: skip
-"""What the workbook says of the weight and the bracket of a piece."""
+"""The weight of a piece, and what its bracket has to carry; all of it is screening, not design."""
 
 
 def _axis_record(case: CaseRow, methods: Sequence[MethodInfo]) -> dict[str, Any]:

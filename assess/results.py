@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import InputError, Problem
-from assess.i18n import count, fill, join, nfill
+from assess.i18n import Text, count, fill, join, nfill
 from assess.methods import MethodInfo, Outcome
 from assess.methods._method import ALIKE
 from assess.model import Building, CatalogueType, Place
@@ -26,6 +26,7 @@ from assess.motion.scenario import ROOF_FACTOR
 from assess.risk import RiskClass, classify
 from assess.rocking.draws import TRIED, Uncertainty
 from assess.route_results import RouteTables
+from assess.schedule_results import NOTHING, Schedule
 from assess.settings import Settings
 
 if TYPE_CHECKING:
@@ -255,6 +256,56 @@ class MotionRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AnchorRow:
+    """What a bracket at the wall has to carry to hold a piece: screening, not design.
+
+    Parameters
+    ----------
+    weight_kn : float
+        With contents.
+    weight_source : "given", "type" or "estimate"
+        Where the weight comes from; `weight_words` say it.
+    is_per_metre : bool
+        Whether the weight, and so every force, is that of one metre of the piece, as its width is not known.
+    bracket_height_cm, is_height_assumed : float, bool
+        Above the floor, and whether the workbook leaves it blank.
+    bracket_capacity_kn : float, optional
+        Tension that the bracket carries; None where the workbook leaves it blank.
+    tension_kn, tension_low_kn, tension_high_kn : float
+        At the bracket for PFA, and for its 16 % and 84 %, helped by the weight.
+    tension_without_weight_kn : float
+        The same for PFA without the help of the weight.
+    shear_kn : float
+        At the base for PFA.
+    needed_friction : float
+        Coefficient of friction below which the base slides out [-].
+    tension_code_kn, shear_code_kn : float, optional
+        For F_p of ASCE 7-22, 13.3.1; None where neither SDS nor Ground PGA is known.
+    holds, holds_high, holds_code : bool, optional
+        Whether the bracket carries the tension for PFA, for its 84 %, and for the code; None where that is not known.
+    """
+
+    weight_kn: float
+    weight_source: str
+    weight_words: Text
+    is_per_metre: bool
+    bracket_height_cm: float
+    is_height_assumed: bool
+    bracket_capacity_kn: float | None
+    tension_kn: float
+    tension_low_kn: float
+    tension_high_kn: float
+    tension_without_weight_kn: float
+    shear_kn: float
+    needed_friction: float
+    tension_code_kn: float | None
+    shear_code_kn: float | None
+    holds: bool | None
+    holds_high: bool | None
+    holds_code: bool | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ItemRow:
     """One row of furniture as it was assessed: what the workbook says, with blanks filled in from where `assumed` says.
 
@@ -263,7 +314,8 @@ class ItemRow:
     those that it names, or has a segment of which it can reach. `falls_toward_deg` is the direction in which a piece
     against a wall falls, anticlockwise from X, None where it is not known on which side its wall is. `governing`,
     `first_case` and `last_case` are places in `Results.cases`: the case that governs, and those of the item.
-    `annual` is how often a year it falls if it stands free, None where that was not evaluated.
+    `annual` is how often a year it falls if it stands free, None where that was not evaluated. `is_held` is whether it
+    counts as anchored: it says so and its bracket is not known to fail, or it is partly anchored by one that holds.
     """
 
     index: int
@@ -279,8 +331,6 @@ class ItemRow:
     height_cm: float
     centre_of_gravity: float
     weight_kg: float | None
-    bracket_height_cm: float | None
-    bracket_capacity_kn: float | None
     breadth_to_height: float
     axis_given: str | None
     angle_deg: float | None
@@ -300,6 +350,8 @@ class ItemRow:
     governing: int
     first_case: int
     last_case: int
+    anchor: AnchorRow
+    is_held: bool
     against_wall: bool | None = None
     falls_toward_deg: float | None = None
     annual: AnnualRow | None = None
@@ -486,7 +538,7 @@ class ItemResult:
     @property
     def is_anchored(self) -> bool:
         """Anchored pieces stand outside the classes: their risk depends on the anchor."""
-        return self.item.anchored == "yes"
+        return self.item.is_held
 
     @property
     def is_urgent(self) -> bool:
@@ -850,6 +902,8 @@ class Results:
         The worked example: what each method computes for the piece `worked_item` (its index), step by step.
     series : Series
         Where series for figures lie.
+    schedule : Schedule
+        What to fix, with what, and what is to be expected before and after.
     """
 
     settings: Settings
@@ -869,6 +923,7 @@ class Results:
     worked: tuple[WorkedMethod, ...]
     worked_item: int | None
     series: Series
+    schedule: Schedule = NOTHING
 
     def __len__(self) -> int:
         return len(self.item_rows)

@@ -23,6 +23,7 @@ checked range, or on a route; or all."""
 AUTO = "auto"
 RUNS, MOST_RUNS = 200, 100_000
 MOST_SCALE = 10.0
+MOST_FIRST = 1_000_000
 SEED = 1
 ROUTE_RISK = 0.03
 
@@ -72,6 +73,17 @@ def _read_number(value: Any, is_allowed: Callable[[float], bool]) -> float | Non
     return number if math.isfinite(number) and is_allowed(number) else None
 
 
+def _read_anchored(value: Any) -> int | tuple[str, ...] | None:
+    """Return the names of pieces, or the number of the first entries of the schedule; None for anything else."""
+    if isinstance(value, str):
+        count = re.fullmatch(r"\s*first\s*:\s*(\d{1,9})\s*", value, re.IGNORECASE)
+        value = int(count[1]) if count else [name.strip() for name in value.split(",")]
+    if isinstance(value, Iterable):
+        names = tuple(dict.fromkeys(value))
+        return names if all(isinstance(name, str) and name for name in names) else None
+    return _read_whole(value, 1, MOST_FIRST)
+
+
 def _read_flag(value: Any) -> bool | None:
     return value if isinstance(value, bool) else None
 
@@ -95,6 +107,10 @@ _RULES: Mapping[str, tuple[Callable[[Any], Any], Text]] = {
         partial(_read_number, is_allowed=lambda number: number >= 1),
         fill("at least 1, and finite"),
     ),
+    "anchor": (_read_anchored, fill("names of items, separated by commas, or first:N")),
+    "anchor_resonance": (_positive, fill("above 0, and finite")),
+    "anchor_strength": (_positive, fill("above 0, and finite")),
+    "anchor_importance": (_positive, fill("above 0, and finite")),
     "route_risk": (
         partial(_read_number, is_allowed=lambda number: 0 < number < 1),
         fill("above 0 and below 1 (write 3 % as 0.03)"),
@@ -136,6 +152,12 @@ class Settings:
     ductility_reduction : float
         R_mu of ASCE 7-22 [-], at least 1: the factor by which the building's ductility lowers the PFA that this code's
         profile gives above the ground. 1 is no reduction.
+    anchor : tuple of str or int
+        What if: names of pieces that are taken as anchored and holding, or how many of the first entries of the
+        schedule are; also as one text, ``"25-07, 25-08"`` or ``"first:3"``.
+    anchor_resonance, anchor_strength, anchor_importance : float
+        C_AR, R_po and I_p of ASCE 7-22, 13.3.1, for the force that the code asks of anchors [-]. 1.0 and 1.5 are those
+        of its table 13.5-1 for storage cabinets, shelving and laboratory equipment, as public implementations have it.
     route_risk : float
         Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: fixes are sought until every
         route is below it, and a route is called blocked or reduced from there on. 0.03 is where the class low ends.
@@ -157,6 +179,10 @@ class Settings:
     zeta_velocity: float = 0.5
     slide_coefficient: float = 1.0
     ductility_reduction: float = 1.0
+    anchor: tuple[str, ...] | int = ()
+    anchor_resonance: float = 1.0
+    anchor_strength: float = 1.5
+    anchor_importance: float = 1.0
     route_risk: float = ROUTE_RISK
 
     def __post_init__(self) -> None:

@@ -146,10 +146,12 @@ def build_falls(
     governing: NDArray[np.intp],
     settings: Settings,
     either_axis: Mapping[int, BoolArray],
+    held: BoolArray,
 ) -> Falls:
     """Return how the pieces of an inventory fall: a blank axis takes the outcomes of the governing one.
 
-    A piece of `either_axis` (by its index) takes those instead: in which draws it falls along either axis.
+    A piece of `either_axis` (by its index) takes those instead: in which draws it falls along either axis. `held` tells
+    which pieces count as anchored.
 
     Draw k is one earthquake for the whole building: all simulated pieces share its scale, and on floors whose motions
     were generated along one axis its phases. A piece whose simulated class may not be adopted is unconfirmed. With
@@ -172,6 +174,6 @@ def build_falls(
             if adoption.basis[case] == UNCONFIRMED
         },
         in_record=_numbers(found, "record_overturned")[governing],
-        anchored=np.array([item.anchored == "yes" for item in inventory.items], dtype=np.bool_),
+        anchored=held,
         quantity=np.array([item.quantity for item in inventory.items], dtype=np.intp),
     )

@@ -149,7 +149,7 @@ class _Annual:
         doubtful = self._list_doubtful(rocked)
         fell = {item: np.array([one.fell[item] for one in falls]) for item in sorted(falls[0].fell)}
         items = {item: integrate.of_draws(own, at_least=item in doubtful) for item, own in fell.items()}
-        counted = [item for item in items if assessment.inventory.items[item].anchored != "yes"]
+        counted = [item for item in items if not assessment.anchors.held[item]]
         several = {at for at, item in enumerate(assessment.inventory.items) if item.quantity > 1}
         ways = evaluate_ways(assessment, falls, integrate, doubtful | several, self.settings, progress)
         return Annual(self._describe(levels, integrate, items, fell, counted, doubtful), items, ways)
@@ -182,7 +182,7 @@ class _Annual:
         quantity = {item: inventory.items[item].quantity for item in counted}
         safety = {item: fell[item] for item in counted if inventory.items[item].importance == "life safety"}
         everything, stocky = sum(quantity.values()), self._count_stocky()
-        unknown = sum(one.quantity for one in inventory.items if one.anchored != "yes") - everything - stocky
+        unknown = sum(inventory.items[at].quantity for at in self._list_free()) - everything - stocky
         weak = sum(quantity[item] for item in counted if item in doubtful)
         found = replace(
             _describe_curve(self.curve),
@@ -203,8 +203,13 @@ class _Annual:
     def _count_stocky(self) -> int:
         """Count the free-standing pieces that are too stocky to rock."""
         stocky = {int(item) for item in self.assessment.case_item[self.cases.is_stocky]}
-        items = (self.assessment.inventory.items[at] for at in stocky)
-        return sum(one.quantity for one in items if one.anchored != "yes")
+        items = self.assessment.inventory.items
+        return sum(items[at].quantity for at in stocky.intersection(self._list_free()))
+
+    def _list_free(self) -> list[int]:
+        """Return the pieces that do not count as anchored, by their index."""
+        free: list[int] = np.flatnonzero(~self.assessment.anchors.held).tolist()
+        return free
 
     def _join(
         self, fell: Mapping[int, BoolArray], items: Mapping[int, AnnualRow], integrate: Integral
@@ -216,8 +221,8 @@ class _Annual:
         if not fell:
             return None
         stocky = set(self.assessment.case_item[self.cases.is_stocky].tolist())
-        every = enumerate(self.assessment.inventory.items)
-        wanted = {at for at, one in every if one.importance == "life safety" and one.anchored != "yes"} - stocky
+        every = self.assessment.inventory.items
+        wanted = {at for at in self._list_free() if every[at].importance == "life safety"} - stocky
         several = any(self.assessment.inventory.items[item].quantity > 1 for item in fell)
         at_least = several or bool(wanted - fell.keys()) or any(items[item].at_least for item in fell)
         return integrate.of_draws(np.any(list(fell.values()), axis=0), at_least=at_least)

@@ -13,6 +13,7 @@ from assess.methods import Cases, Method, Outcome, simulation
 from assess.methods._method import BoolArray, Joint
 from assess.model import Axis, Inventory
 from assess.pipeline.adopt import Adoption
+from assess.pipeline.anchors import Anchors
 from assess.pipeline.demand import Demand
 from assess.settings import Settings
 
@@ -49,6 +50,8 @@ class Assessment:
         Of each piece that may topple along both axes, in which draws it does along either.
     governing : (items,) array
         Index of each item's governing case.
+    anchors : Anchors
+        What the bracket of each item has to carry, and which count as anchored.
     obstructions : sequence of Obstructions
         What can reach the segments of evacuation routes.
     problems : tuple of Problem
@@ -71,6 +74,7 @@ class Assessment:
     adoption: Adoption
     either_axis: Mapping[int, BoolArray]
     governing: NDArray[np.intp]
+    anchors: Anchors
     obstructions: "Sequence[Obstructions]"
     problems: tuple[Problem, ...]
     annual: Annual | None = None

@@ -321,6 +321,11 @@ def _worst(demands: tuple[Demand, ...]) -> tuple[float, float]:
     return max(demand.pfa for demand in demands), max(demand.pfv for demand in demands)
 
 
+def find_height_ratio(elevation: float, roof: float) -> float:
+    """Return z/h of a floor, 0 at and below grade, at most 1 [-]; both heights are above the ground [m]."""
+    return min(elevation / roof, 1.0) if elevation > 0 else 0.0
+
+
 def serve_by_profile(
     floor: Floor, profile: Profile, ground: Ground, period: float | None, ductility_reduction: float
 ) -> _ByAxis:
@@ -328,7 +333,7 @@ def serve_by_profile(
     z, placed = ground.place(floor)
     if z is None or ground.pga is None or ground.roof is None:
         return {}
-    ratio = min(z / ground.roof, 1.0) if z > 0 else 0.0
+    ratio = find_height_ratio(z, ground.roof)
     amplification = profile.amplification(ratio, period, ductility_reduction=ductility_reduction)
     pfa = ground.pga * amplification
     pfv, flags = _velocity(pfa, math.nan, period, ground.profile_pgv)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from assess.methods import Cases, Joint, Outcome, adopted_formula, simulation
 from assess.methods._method import BoolArray, FloatArray
 from assess.pipeline.adopt import adopt, build_falls, find_governing
+from assess.pipeline.anchors import find_held
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.either_axis import unite_axes
 from assess.routes.chances import Falls
@@ -35,7 +36,8 @@ def find_falls(
     adoption = adopt(outcomes, scaled, settings)
     adoption, united = unite_axes(adoption, outcomes, inventory, case_item, assessment.case_demand, settings)
     governing = find_governing(adoption.probability, case_item, pfa)
-    return build_falls(inventory, adoption, outcomes, governing, settings, united)
+    held = find_held(inventory.items, pfa[governing], cases.uncertainty.motion)
+    return build_falls(inventory, adoption, outcomes, governing, settings, united, held)
 
 
 def _outcome(count: int, rocked: Sequence[tuple[NDArray[np.intp], BoolArray]]) -> Outcome:

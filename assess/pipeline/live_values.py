@@ -77,7 +77,7 @@ def _find_governing(item: Item, demands: Demands, live: Collection[str]) -> Dema
 
 def _say_class(item: Item, governing: Demand | None, adopted: float, is_outside: bool) -> str:
     if item.anchored == YES:
-        return gettext(IS_ANCHORED)
+        return gettext(IS_ANCHORED if item.bracket_capacity is None else RUN_ASSESS)
     if governing is None:
         return gettext(RUN_ASSESS)
     risk = classify(adopted)
@@ -132,7 +132,7 @@ def without_shaking(content: Content, units: Units = "si") -> Content:
 
 def _write_unshaken(item: Item) -> list[float | str]:
     hint = gettext(NO_SHAKING)
-    label = gettext(IS_ANCHORED) if item.anchored == YES else hint
+    label = _say_class(item, None, 0.0, is_outside=False) if item.anchored == YES else hint
     return _write_unknown(item.breadth / item.height, label, hint)
 
 

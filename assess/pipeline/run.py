@@ -3,7 +3,7 @@
 import math
 import tempfile
 import weakref
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -19,10 +19,12 @@ from assess.methods import Cases, Method, all_methods, simulation
 from assess.methods._method import NO_WALL, SIDE_UNKNOWN
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
+from assess.pipeline.anchors import find_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand, Demands, build_demands, find_shaking, scale_demands
 from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.remarks import list_too_low, remark
+from assess.pipeline.schedule import build_schedule, hold
 from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
     add_annual,
@@ -34,6 +36,7 @@ from assess.pipeline.tables import (
     list_demands,
 )
 from assess.pipeline.verify import choose_motions, find_uncertainty, remark_suite, verify
+from assess.pipeline.what_if import anchor_first, anchor_named
 from assess.pipeline.worked import choose_example, work_example
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
@@ -134,7 +137,12 @@ def compute(
     """Return the arrays of a run; parameters and errors are those of `run`."""
     every = _join_methods(methods)
     settings = settings if suite is None else replace(settings, runs=len(suite))
+    if isinstance(settings.anchor, tuple):
+        inventory = anchor_named(inventory, settings.anchor)
     assessment = progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress))
+    if isinstance(settings.anchor, int):
+        schedule = build_results(assessment, figures=False, progress=progress).schedule
+        assessment = anchor_first(assessment, schedule.rows)
     return replace(assessment, annual=_evaluate_annual(assessment, jobs, progress))
 
 
@@ -157,6 +165,7 @@ def _compute(
     outcomes[simulation().key] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
     adopted = adopt(outcomes, cases, settings)
     adoption, united = unite_axes(adopted, outcomes, inventory, case_item, case_demand, settings)
+    governing = find_governing(adoption.probability, case_item, cases.pfa)
     remarks = [*remark(inventory, filled, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
     return Assessment(
         inventory=inventory,
@@ -172,7 +181,8 @@ def _compute(
         outcomes=outcomes,
         adoption=adoption,
         either_axis=united,
-        governing=find_governing(adoption.probability, case_item, cases.pfa),
+        governing=governing,
+        anchors=find_anchors(inventory, cases, governing, settings),
         obstructions=obstructions,
         problems=(*inventory.problems, *map(inventory.place, (*remarks, *_route_problems(inventory, obstructions)))),
     )
@@ -212,7 +222,7 @@ def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
 def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Path, progress: Progress) -> Results:
     inventory, example = assessment.inventory, choose_example(assessment)
     routes = _evaluate_routes(assessment, progress)
-    return Results(
+    results = Results(
         settings=assessment.settings,
         provenance=build_provenance(assessment),
         building=inventory.building,
@@ -231,6 +241,8 @@ def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Pat
         worked_item=example,
         series=Series(folder / SERIES),
     )
+    schedule = build_schedule(results, inventory, lambda held: _evaluate_routes(assessment, progress, held))
+    return replace(results, schedule=schedule)
 
 
 def _write_series(path: Path, arrays: Arrays, progress: Progress) -> None:
@@ -330,17 +342,19 @@ def _find_obstructions(inventory: Inventory, progress: Progress) -> "Sequence[Ob
     return find_obstructions(inventory, progress)
 
 
-def _evaluate_routes(assessment: Assessment, progress: Progress) -> RouteTables:
+def _evaluate_routes(assessment: Assessment, progress: Progress, held: Collection[int] = ()) -> RouteTables:
+    """Return the routes, with further pieces (indices) held."""
     inventory, settings = assessment.inventory, assessment.settings
     if not inventory.routes:
         return RouteTables(risk=settings.route_risk)
     from assess.routes.evaluate import evaluate_routes
 
     falls = build_falls(
-        inventory, assessment.adoption, assessment.outcomes, assessment.governing, settings, assessment.either_axis
-    )
+        inventory, assessment.adoption, assessment.outcomes, assessment.governing, settings, assessment.either_axis,
+        hold(assessment.anchors.held, held),
+    )  # fmt: skip
     found = evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
-    return found if assessment.annual is None else add_annual(found, assessment.annual.ways)
+    return found if assessment.annual is None or held else add_annual(found, assessment.annual.ways)
 
 
 def _route_problems(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Iterator[Problem]:

@@ -13,6 +13,7 @@ from assess.methods._method import Joint
 from assess.model import AXES, Floor, Inventory, Item
 from assess.motion.record import Record, treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile, cap_pfv, estimate_pfv
+from assess.pipeline.anchors import Anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand, Demands, Ground, find_assumed, find_ground
 from assess.pipeline.versions import versions
@@ -189,15 +190,23 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
     annual = {} if assessment.annual is None else assessment.annual.items
     governing, named = assessment.governing.tolist(), _list_routes(inventory, routes)
     toward = {at: wall.falls_toward for at, wall in find_walls(inventory).items()}
+    anchors = assessment.anchors
     rows = (
-        _item(inventory.complete(item), index, governing[index], (firsts[index], firsts[index + 1]), named.get(index))
+        _item(
+            inventory.complete(item),
+            index,
+            anchors,
+            governing[index],
+            (firsts[index], firsts[index + 1]),
+            named.get(index),
+        )
         for index, item in enumerate(inventory.items)
     )
     return tuple(replace(row, falls_toward_deg=toward.get(row.index), annual=annual.get(row.index)) for row in rows)
 
 
 def _item(
-    item: Item, index: int, governing: int, cases: tuple[int, int],
+    item: Item, index: int, anchors: Anchors, governing: int, cases: tuple[int, int],
     routes: tuple[str, ...] | None,
 ) -> ItemRow:  # fmt: skip
     return ItemRow(
@@ -214,8 +223,6 @@ def _item(
         height_cm=_sure(item.height, "cm"),
         centre_of_gravity=item.centre_of_gravity,
         weight_kg=item.weight,
-        bracket_height_cm=edge(item.bracket_height, "cm"),
-        bracket_capacity_kn=edge(item.bracket_capacity, "kN"),
         breadth_to_height=item.breadth / item.height,
         axis_given=item.axis,
         angle_deg=item.angle_deg,
@@ -236,6 +243,8 @@ def _item(
         governing=governing,
         first_case=cases[0],
         last_case=cases[1],
+        anchor=anchors.describe(index),
+        is_held=bool(anchors.held[index]),
     )
 
 

@@ -21,9 +21,10 @@ def choose_example(assessment: Assessment) -> int | None:
         return None
     firsts, governing = np.searchsorted(assessment.case_item, np.arange(len(items))), assessment.governing
     upper = np.maximum.reduceat(assessment.adoption.upper, firsts)
-    is_anchored = np.array([item.anchored == "yes" for item in items])
     is_simulated = ~np.isnan(assessment.outcomes[simulation().key].value[governing])
-    return int(np.lexsort((-assessment.adoption.probability[governing], -upper, ~is_simulated, is_anchored))[0])
+    return int(
+        np.lexsort((-assessment.adoption.probability[governing], -upper, ~is_simulated, assessment.anchors.held))[0]
+    )
 
 
 def work_example(index: int, assessment: Assessment) -> tuple[WorkedMethod, ...]:

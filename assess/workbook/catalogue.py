@@ -2,19 +2,24 @@
 
 Sizes, weights (with what the piece holds) and centres of gravity are in cm, kg and percent of the height; what a
 source does not print is blank or marked *assumed* in the column ``source``. ``uses`` names the uses of
-`assess.workbook.schema.USES` that a type belongs to.
+`assess.workbook.schema.USES` that a type belongs to, ``contents`` one of `CONTENTS`: what it is mostly full of.
 """
 
 import re
 from csv import DictReader
+from functools import cache
 from importlib.resources import files
 from io import StringIO
 from typing import Any
 
-from assess.i18n import gettext
+from assess.i18n import LANGUAGES, gettext, load_catalogue
 from assess.units import QUANTITIES
 from assess.workbook.lists import Units
+from assess.workbook.names import key
 from assess.workbook.schema import CATALOGUE
+
+CONTENTS = ("open", "storage", "equipment", "paper", "dense", "solid")
+"""What a piece is, or is full of, by which its weight is estimated: lightest first."""
 
 ASSUMED = "assumed"
 """How the source of a type begins where no citable source prints its sizes; such a source is translated."""
@@ -49,6 +54,24 @@ def read_catalogue(units: Units = "si", use: str = "") -> list[dict[str, Any]]:
     """
     wanted = (line for line in catalogue_rows() if not use or use.lower() in line["uses"].split())
     return sorted((_read_type(line, units) for line in wanted), key=lambda row: _by_number(row["type"]))
+
+
+def find_contents(name: str) -> str:
+    """Return which of `CONTENTS` a built-in type has, by its name in any language; "" where the type is none."""
+    return _contents().get(key(name)) or (_contents_elsewhere().get(key(name), "") if name else "")
+
+
+@cache
+def _contents() -> dict[str, str]:
+    return {key(line["type"]): line["contents"] for line in catalogue_rows()}
+
+
+@cache
+def _contents_elsewhere() -> dict[str, str]:
+    """Return the same by the names of the other languages: loaded only for a name that is none in English."""
+    catalogues = [load_catalogue(code) for code in LANGUAGES if code != "en"]
+    lines = catalogue_rows()
+    return {key(one.find(line["type"], "", 1)): line["contents"] for one in catalogues for line in lines}
 
 
 def catalogue_texts() -> list[str]:

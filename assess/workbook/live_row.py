@@ -56,9 +56,13 @@ class LiveRow:
         return f'=IF({self._own("item")}="","",{formula})'
 
     def _class(self, risk: str, found: str) -> str:
-        """Return the formula for the class; a piece that is anchored has none, whatever its motion."""
-        is_anchored = is_among(self._own("anchored"), "anchored_words")
-        either = f"IF({is_anchored},{_say(IS_ANCHORED)},IF(ISNUMBER({risk}),{found},{risk}))"
+        """Return the formula for the class; a piece that is anchored has none, whatever its motion.
+
+        Whether a bracket of known capacity holds is for the program to say.
+        """
+        is_anchored, is_known = is_among(self._own("anchored"), "anchored_words"), self._own("bracket_capacity")
+        held = f'IF(TRIM({is_known})="",{_say(IS_ANCHORED)},{_say(RUN_ASSESS)})'
+        either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{found},{risk}))"
         is_ready = f"OR(ISNUMBER({risk}),{risk}={_say(RUN_ASSESS)},{risk}={_say(NO_SHAKING)})"
         return f"=IF({is_ready},{either},{risk})"
 

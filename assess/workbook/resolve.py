@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from assess.errors import Problem
 from assess.i18n import fill
-from assess.model import AXES, Axis, Building, CatalogueType, Floor, FloorRecord, Item, Place, Segment, axis_of
+from assess.model import AXES, Axis, Building, CatalogueType, Cost, Floor, FloorRecord, Item, Place, Segment, axis_of
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.schema import SHEETS
@@ -25,7 +25,7 @@ SIZES = ("breadth", "width", "height")
 FROM_TYPE = (*SIZES, "weight", "centre_of_gravity")
 """Fields of an item that its type of the catalogue gives where they are blank."""
 
-T = TypeVar("T", CatalogueType, Place, Segment)
+T = TypeVar("T", CatalogueType, Cost, Place, Segment)
 
 Segments = Mapping[str, Mapping[str, Row]]
 """Rows of Routes by the names of route and segment, as they are compared."""
