@@ -319,6 +319,16 @@ class CatalogueType:
     source: str = ""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cost:
+    """What it costs to fix one piece in the way that `detail` names, in the workbook's currency."""
+
+    row: int
+    detail: str
+    unit_cost: float
+    source: str = ""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Inventory:
     """A building's furniture, its floors and how they shake.
@@ -329,7 +339,7 @@ class Inventory:
         The workbook.
     sha256 : str
         Hash of the workbook's bytes.
-    building, floors, items, places, routes, catalogue
+    building, floors, items, places, routes, catalogue, costs
         The sheets.
     problems : tuple of Problem
         Warnings and notes; errors as well where it was read with ``strict=False``.
@@ -359,6 +369,7 @@ class Inventory:
     places: tuple[Place, ...] = ()
     routes: tuple[Segment, ...] = ()
     catalogue: tuple[CatalogueType, ...] = ()
+    costs: tuple[Cost, ...] = ()
     problems: tuple[Problem, ...] = ()
     extra_columns: tuple[str, ...] = ()
     hazard: HazardCurve | None = field(default=None, compare=False)

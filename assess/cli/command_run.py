@@ -65,6 +65,14 @@ def command(
     ] = False,
     scenario: Scenario = None,
     scale: Scale = 1.0,
+    anchor: Annotated[
+        str | None,
+        typer.Option(
+            help="What if these items were anchored and their anchors held: names separated by commas, or first:N for "
+            "the first N entries of what to fix.",
+            show_default=False,
+        ),
+    ] = None,
     ideal: Annotated[
         bool,
         typer.Option(
@@ -122,7 +130,7 @@ def command(
         raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
     settings = read_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
-        route_risk=route_risk,
+        route_risk=route_risk, anchor=anchor,
     )  # fmt: skip
     _check_folder(folder, wanted)
     options = _read_options(language, templates, accessible)

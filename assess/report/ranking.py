@@ -1,20 +1,17 @@
 """What to fix first: pieces in the order in which they are to be fixed, with what each saves, and steps for routes."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext
-from assess.natural import natural_key
+from assess.pipeline.schedule import fix_first
 from assess.report import words
 from assess.results import ItemResult, Results
-from assess.risk import RiskClass
 from assess.route_results import RouteTables
 
 NAMED = 2
 """Routes that a reason names; the rest are counted."""
-APART = ("", "unconfirmed", "formula")
-"""The bases in the order of lists: that of the run, and what stands apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,35 +110,3 @@ def list_fixes(results: Results, rows: Sequence[ItemResult], expected: float) ->
         together = sum_saved / expected if expected else 0.0
         fixes.append(Fix(place, one, saved, None if one.apart else together, tuple(steps.get(one.item.index, ()))))
     return fixes
-
-
-def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:
-    """Return the free-standing pieces of at least medium class and those that a route needs fixed, in order.
-
-    Sorted by basis, so that those that stand apart come last, then by whether the upper class is high or above, then
-    life safety and routes, then the upper class, then probability times quantity, then name. So a piece of low class
-    that a route needs comes after the urgent pieces of medium class and before those that are not urgent.
-
-    Parameters
-    ----------
-    results : iterable of ItemResult
-        All pieces.
-    needed : collection of int
-        Indices of the pieces that are to be fixed for a route whatever their class.
-    """
-    chosen = [
-        one
-        for one in results
-        if not one.is_anchored and (one.adopted.upper >= RiskClass.MEDIUM or one.item.index in needed)
-    ]
-    return sorted(
-        chosen,
-        key=lambda one: (
-            APART.index(one.apart),
-            one.adopted.upper < RiskClass.HIGH,
-            not one.is_urgent,
-            -one.adopted.upper,
-            -one.adopted.probability * one.item.quantity,
-            natural_key(one.item.item),
-        ),
-    )

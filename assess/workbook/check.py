@@ -6,8 +6,9 @@ and notes the cells of errors, so that what has been reported once is not report
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from assess.details import DETAILS
 from assess.errors import ElevationGap, Gap, Problem
-from assess.i18n import Text, fill, nfill
+from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES
 from assess.motion.storeys import find_storey
 from assess.units import ROUNDING
@@ -130,6 +131,20 @@ def check_catalogue(tables: Tables) -> Iterator[Problem]:
     yield from check_wildcards(table)
     for row in table.rows:
         yield from _check_plan_sides(table, row, row.get("breadth"), row.get("width"))
+
+
+def check_costs(tables: Tables) -> Iterator[Problem]:
+    """Check that each detail has one cost, and is one that the schedule may name."""
+    table = tables["Costs"]
+    yield from check_unique(table)
+    known = {key(name) for one in DETAILS.values() for name in one.names()}
+    for row in table.with_all("detail"):
+        if key(row.get("detail")) not in known:
+            listed = join(", ", [one.title for one in DETAILS.values()])
+            message = fill(
+                "Detail {name} is none that the schedule uses: its cost is left out.", name=row.quote("detail")
+            )
+            yield table.problem("detail", row, message, fill("Choose one of: {listed}", listed=listed), "warning")
 
 
 def check_floors(tables: Tables) -> Iterator[Problem]:

@@ -28,7 +28,7 @@ Units = Literal["si", "imperial"]
 
 LISTS_NOTE = "Lists, units and helper columns for the drop-downs and live columns. Please leave this sheet as it is."
 
-ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 200}
+ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 200, "Costs": 50}
 """Rows of each table that are prepared; a longer table is read all the same."""
 
 RUN_ASSESS = "run assess"

@@ -8,7 +8,7 @@ from typing import Any
 
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import fill
-from assess.model import Inventory, Place, Segment
+from assess.model import Cost, Inventory, Place, Segment
 from assess.progress import SILENT, Progress, Stage
 from assess.workbook import check, check_routes
 from assess.workbook.check import Check
@@ -219,6 +219,7 @@ def _checks(files: FileReader) -> tuple[Check, ...]:
         files.check_logo,
         files.check_hazard,
         check.check_catalogue,
+        check.check_costs,
         check.check_floors,
         files.check_records,
         check.check_velocities,
@@ -271,6 +272,7 @@ def _build(tables: Tables, files: FileReader) -> dict[str, Any]:
         "places": build_rows(Place, tables["Places"], "place", "floor"),
         "routes": build_rows(Segment, tables["Routes"], "route", "segment"),
         "catalogue": catalogue,
+        "costs": build_rows(Cost, tables["Costs"], "detail", "unit_cost"),
         "hazard": files.hazard,
         "extra_columns": tables["Items"].extra,
         "files": files.hashes,

@@ -8,6 +8,7 @@ A header is the label with its unit in brackets, ``Height [cm]``; the bracket is
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from assess.details import DETAILS
 from assess.intensity import SHAKINGS
 from assess.model import ANCHORED, AXES, IMPORTANCE
 from assess.settings import SCENARIOS
@@ -229,7 +230,8 @@ ITEMS = Sheet(
         Column("height", "Height", "number", "From the floor to the top.", **_SIZE),
         Column("axis", "Axis", "choice", "Building axis parallel to Breadth: the direction it topples.", choices=AXES,
                default="the worse of both", width=6),
-        Column("anchored", "Anchored", "choice", "Fixed to wall or floor? partly and unknown count as free-standing.",
+        Column("anchored", "Anchored", "choice", "Fixed to wall or floor? unknown counts as free-standing; partly, too, unless Bracket capacity is typed "
+               "and holds.",
                choices=ANCHORED, default="unknown", width=10),
         Column("friction", "Friction", "number", "Coefficient of friction with the floor: tells whether, and how far, "
                "the piece slides. It lowers no chance.", low=0.01, high=2, default="the building's, else no sliding", width=9),
@@ -250,14 +252,14 @@ ITEMS = Sheet(
         Column("against_wall", "Against wall", "flag", "yes: one of its long sides stands against a wall, so that it "
                "falls away from it. Which side that is follows from X, Y, Angle and the Outline of its room in Places.",
                choices=(YES, NO), default="not known: it may fall either way", width=10),
-        Column("weight", "Weight", "number", "With what it holds. Kept with the results.",
-               **_WEIGHT | {"usual_low": 1, "usual_high": 3000}, default="the Type's in the Catalogue, else not known",
+        Column("weight", "Weight", "number", "With what it holds: gives the force on its bracket.",
+               **_WEIGHT | {"usual_low": 1, "usual_high": 3000}, default="the Type's in the Catalogue, else estimated, assumed",
                width=9),
         Column("bracket_height", "Bracket height", "number", "Height above the floor at which its bracket holds it, at "
-               "most its own. Kept with the results.", **_LENGTH | {"unit": "cm", "imperial": "in", "low": 1, "high": 600},
-               width=9),
-        Column("bracket_capacity", "Bracket capacity", "number", "Tension that its bracket holds. Kept with the "
-               "results.", quantity="force", unit="kN", imperial="lbf", low=0.01, high=200, width=9),
+               "most its own.", **_LENGTH | {"unit": "cm", "imperial": "in", "low": 1, "high": 600},
+               default="0.9 of its Height, assumed", width=9),
+        Column("bracket_capacity", "Bracket capacity", "number", "Tension that its brackets hold together: the reports say whether they do.",
+               quantity="force", unit="kN", imperial="lbf", low=0.01, high=200, default="not known", width=9),
         Column("notes", "Notes", "text", "Anything else.", width=30),
     ),
 )  # fmt: skip
@@ -317,7 +319,18 @@ CATALOGUE = Sheet(
     ),
 )  # fmt: skip
 
-SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE)
+COSTS = Sheet(
+    "Costs", "table", False,
+    "What it costs to fix a piece, for the schedule of the reports: no cost is assumed.",
+    (
+        Column("detail", "Detail", "text", "How a piece is fixed: choose from the list.", required=True,
+               offered=tuple(str(one.title) for one in DETAILS.values()), width=34),
+        Column("unit_cost", "Unit cost", "number", "Of one piece, in any one currency.", required=True, low=0, high=1e6),
+        Column("source", "Source", "text", "Where the cost comes from: an offer, a price list.", width=60),
+    ),
+)  # fmt: skip
+
+SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE, COSTS)
 
 HELP, LISTS = "Help", "Lists"
 """Sheets of the empty workbook that hold no data; reading leaves them out."""

@@ -4,8 +4,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.report import words
 from assess.results import ItemResult, Results, Simulation
 from assess.risk import RiskClass, classify
+
+NAMED = 4
+"""Pieces that are named on every page."""
 
 
 def list_conditions(results: Results) -> list[str]:
@@ -17,7 +21,20 @@ def list_conditions(results: Results) -> list[str]:
         texts.append(_("Assumed: exactly this motion, and every piece exactly as given"))
     if results.settings.scale != 1:
         texts.append(_("Every floor's motion times {scale}", scale=number(results.settings.scale, "g")))
+    if results.settings.anchor:
+        texts.append(_say_anchored(results))
     return texts
+
+
+def _say_anchored(results: Results) -> str:
+    wanted = results.settings.anchor
+    if isinstance(wanted, int):
+        return ngettext(
+            "Taken as anchored and holding: the first entry of what to fix",
+            "Taken as anchored and holding: the first {n:,} entries of what to fix",
+            wanted,
+        )
+    return _("Taken as anchored and holding: {items}", items=words.name_first(wanted, NAMED))
 
 
 def say_assumed(results: Results) -> str:

@@ -1,0 +1,228 @@
+"""What to fix, in which order and with what; and what is to be expected before and after.
+
+Its entries are pieces, alike pieces of one room, and pieces that only help a route together. What comes after is not
+simulated again: the draws of the run are evaluated with the pieces of the schedule held, as a run with these pieces
+anchored would.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import accumulate
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.details import DETAILS, count_fixings
+from assess.model import Cost, Inventory, Item
+from assess.natural import natural_key
+from assess.results import ItemResult, Results
+from assess.risk import RiskClass
+from assess.route_results import RouteRow, RouteState, RouteTables
+from assess.schedule_results import Schedule, ScheduleRow, State
+from assess.workbook.names import key
+
+APART = ("", "unconfirmed", "formula")
+"""The bases in the order of lists: that of the run, and what stands apart."""
+FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet")
+"""Words of a description or type by which a piece is fixed at its base."""
+
+
+def build_schedule(
+    results: Results, inventory: Inventory, evaluate: Callable[[Collection[int]], RouteTables]
+) -> Schedule:
+    """Return the schedule of a run; `evaluate` returns its routes with further pieces (indices) held."""
+    rows = tuple(results)
+    chosen = fix_first(rows, {fix.item_index for route in results.route_tables.routes for fix in route.fixes})
+    entries = group_fixes(chosen, results.route_tables.routes)
+    avoided = [sum(map(count_falls, one)) for one in entries]
+    total = sum(count_falls(one) for one in rows if not one.is_anchored)
+    left = list(accumulate(avoided, lambda sum_left, one: max(0.0, sum_left - one), initial=total))[1:]
+    costs = _find_costs(inventory.costs)
+    together = _list_together(results.route_tables.routes)
+    held = {one.item.index for one in chosen}
+    return Schedule(
+        rows=tuple(
+            _describe(place, entry, inventory, costs, together, avoided[place - 1], left[place - 1])
+            for place, entry in enumerate(entries, 1)
+        ),
+        before=_sum_up(rows, results.route_tables, ()),
+        after=_sum_up(rows, evaluate(held) if held else results.route_tables, held),
+    )
+
+
+def count_falls(one: ItemResult) -> float:
+    """Return the expected number of falls of a row, 0 where it stands apart from the run's basis."""
+    return 0.0 if one.apart else one.adopted.probability * one.item.quantity
+
+
+# ---------------------------------------------------------------- order
+
+
+def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:
+    """Return the free-standing pieces of at least medium class and those that a route needs fixed, in order.
+
+    Sorted by basis, so that those that stand apart come last, then by whether the upper class is high or above, then
+    life safety and routes, then the upper class, then probability times quantity, then name. So a piece of low class
+    that a route needs comes after the urgent pieces of medium class and before those that are not urgent.
+
+    Parameters
+    ----------
+    results : iterable of ItemResult
+        All pieces.
+    needed : collection of int
+        Indices of the pieces that are to be fixed for a route whatever their class.
+    """
+    chosen = [
+        one
+        for one in results
+        if not one.is_anchored and (one.adopted.upper >= RiskClass.MEDIUM or one.item.index in needed)
+    ]
+    return sorted(
+        chosen,
+        key=lambda one: (
+            APART.index(one.apart),
+            one.adopted.upper < RiskClass.HIGH,
+            not one.is_urgent,
+            -one.adopted.upper,
+            -one.adopted.probability * one.item.quantity,
+            natural_key(one.item.item),
+        ),
+    )
+
+
+def group_fixes(chosen: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
+    """Return pieces as entries: those that only help together, and alike ones of one room, stand in one.
+
+    An entry stands where the first of its pieces does.
+    """
+    leader = {one.item.index: one.item.index for one in chosen}
+
+    def find(index: int) -> int:
+        while leader[index] != index:
+            index = leader[index]
+        return index
+
+    kinds: dict[tuple[object, ...], int] = {}
+    for one in chosen:
+        first = kinds.setdefault(_kind(one), one.item.index)
+        leader[find(one.item.index)] = find(first)
+    for joined in _list_together(routes):
+        own = sorted(joined & leader.keys())
+        for index in own[1:]:
+            leader[find(index)] = find(own[0])
+    entries: dict[int, list[ItemResult]] = {}
+    for one in chosen:
+        entries.setdefault(find(one.item.index), []).append(one)
+    return list(entries.values())
+
+
+def _kind(one: ItemResult) -> tuple[object, ...]:
+    """Return what alike pieces of one room share; a piece without a room is like no other."""
+    item, adopted = one.item, one.adopted
+    room = item.room or item.index
+    sizes = (item.breadth_cm, item.width_cm, item.height_cm, item.anchor.tension_high_kn)
+    return item.floor, room, item.type, item.description, sizes, item.importance, one.apart, adopted.upper, one.routes
+
+
+def _list_together(routes: Sequence[RouteRow]) -> list[frozenset[int]]:
+    """Return the sets of pieces that only help together: steps without effect, up to the one that has some."""
+    found = []
+    for route in routes:
+        waiting: list[int] = []
+        for step in route.fixes:
+            waiting.append(step.item_index)
+            if step.gain > 0:
+                found.append(frozenset(waiting))
+                waiting = []
+    return [one for one in found if len(one) > 1]
+
+
+# ---------------------------------------------------------------- entries
+
+
+def _describe(
+    place: int,
+    entry: Sequence[ItemResult],
+    inventory: Inventory,
+    costs: Mapping[str, Cost],
+    together: Sequence[frozenset[int]],
+    avoided: float,
+    left: float,
+) -> ScheduleRow:
+    first, indices = entry[0].item, tuple(one.item.index for one in entry)
+    detail = DETAILS[choose_detail(inventory.items[first.index])]
+    pieces, tension = sum(one.item.quantity for one in entry), max(map(_find_demand, entry))
+    cost = costs.get(detail.key)
+    return ScheduleRow(
+        place=place,
+        floor=first.floor,
+        room=first.room,
+        item_indices=indices,
+        pieces=pieces,
+        is_together=any(len(one & set(indices)) > 1 for one in together),
+        detail=detail.key,
+        tension_kn=tension,
+        fixings=count_fixings(detail, 1000 * tension),
+        unit_cost=None if cost is None else cost.unit_cost,
+        cost=None if cost is None else pieces * cost.unit_cost,
+        cost_source="" if cost is None else cost.source,
+        falls_avoided=avoided,
+        falls_left=left,
+    )
+
+
+def _find_costs(costs: Sequence[Cost]) -> dict[str, Cost]:
+    """Return costs by the key of the detail that each names, in whatever language."""
+    if not costs:
+        return {}
+    details = {key(name): one.key for one in DETAILS.values() for name in one.names()}
+    return {details[key(one.detail)]: one for one in costs if key(one.detail) in details}
+
+
+def _find_demand(one: ItemResult) -> float:
+    """Return the tension that the fixings of a piece are to carry [kN]."""
+    anchor = one.item.anchor
+    return max(anchor.tension_high_kn, anchor.tension_code_kn or 0.0)
+
+
+def choose_detail(item: Item) -> str:
+    """Return the generic detail for a piece: at the base where it stands free of walls or is a filing cabinet."""
+    named = f"{item.type} {item.description}".casefold()
+    if item.against_wall is False or any(word in named for word in FILES):
+        return "base_angle"
+    return "bracket"
+
+
+# ---------------------------------------------------------------- before and after
+
+
+def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[int]) -> State:
+    free = [one for one in rows if not (one.is_anchored or one.item.index in held)]
+    counted = [one for one in free if not one.apart]
+    classes = Counter[RiskClass]()
+    for one in counted:
+        classes[one.adopted.risk] += one.item.quantity
+    states = Counter(one.state for one in routes.routes)
+    return State(
+        falls=sum(map(count_falls, counted)),
+        apart=sum(one.item.quantity for one in free if one.apart),
+        classes=tuple(classes[risk] for risk in RiskClass),
+        anchored=sum(one.item.quantity for one in rows) - sum(one.item.quantity for one in free),
+        routes=tuple((str(state), states[state]) for state in RouteState if states[state]),
+        blocked_routes=routes.blocked_routes_expected,
+        cut_off_rooms=routes.cut_off_rooms_expected,
+        rooms_at_risk=tuple(_list_rooms_at_risk(routes)),
+    )
+
+
+def _list_rooms_at_risk(routes: RouteTables) -> Iterator[str]:
+    for room in routes.rooms:
+        if not room.is_known or room.loses_every_exit.probability >= routes.risk:
+            yield room.room
+
+
+def hold(held: NDArray[np.bool_], further: Collection[int]) -> NDArray[np.bool_]:
+    """Return which pieces count as anchored with further ones (indices) held."""
+    found = held.copy()
+    found[list(further)] = True
+    return found

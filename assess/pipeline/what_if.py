@@ -1,0 +1,60 @@
+"""What if some pieces were anchored, and their anchors held."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+
+from assess.errors import SettingsError
+from assess.i18n import fill, join
+from assess.model import Inventory
+from assess.pipeline.anchors import find_anchors
+from assess.pipeline.assessment import Assessment
+from assess.schedule_results import ScheduleRow
+from assess.workbook.names import key
+
+
+def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
+    """Return an inventory in which the items of these names are anchored, with brackets that hold.
+
+    Raises
+    ------
+    SettingsError
+        If there is no item of a name.
+    """
+    known = {key(one.item): at for at, one in enumerate(inventory.items)}
+    for name in names:
+        if key(name) not in known:
+            fault = fill("anchor: there is no item {name!r} in Items.", name=name)
+            near = get_close_matches(name, [one.item for one in inventory.items], 1, 0.6)
+            raise SettingsError(join(" ", (fault, *(fill("Did you mean {name}?", name=repr(one)) for one in near))))
+    return _anchor(inventory, {known[key(name)] for name in names})
+
+
+def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessment:
+    """Return an assessment in which the pieces of the first entries of its schedule are anchored and hold.
+
+    Nothing is simulated again: whether a piece is anchored changes no motion and no rocking.
+
+    Raises
+    ------
+    SettingsError
+        If the schedule has fewer entries.
+    """
+    wanted = assessment.settings.anchor
+    if isinstance(wanted, int) and wanted > len(rows):
+        text = fill(
+            "anchor: first:{wanted:,} is more than the {n:,} entries of the schedule", wanted=wanted, n=len(rows)
+        )
+        raise SettingsError(text)
+    held = {index for row in rows[: wanted if isinstance(wanted, int) else 0] for index in row.item_indices}
+    inventory = _anchor(assessment.inventory, held)
+    anchors = find_anchors(inventory, assessment.cases, assessment.governing, assessment.settings)
+    return replace(assessment, inventory=inventory, anchors=anchors)
+
+
+def _anchor(inventory: Inventory, indices: Collection[int]) -> Inventory:
+    items = (
+        replace(one, anchored="yes", bracket_capacity=None) if at in indices else one
+        for at, one in enumerate(inventory.items)
+    )
+    return replace(inventory, items=tuple(items))

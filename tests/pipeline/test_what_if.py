@@ -1,0 +1,76 @@
+"""What if pieces were anchored: the same numbers as of a workbook that says so, and as the schedule promises."""
+
+from dataclasses import replace
+
+import pytest
+
+import assess
+from assess.errors import SettingsError
+from assess.pipeline.what_if import anchor_named
+from assess.settings import Settings
+from tests.conftest import EXAMPLE
+
+SETTINGS = Settings(runs=60)
+
+
+@pytest.fixture(scope="module")
+def inventory():
+    return assess.read_inventory(EXAMPLE)
+
+
+@pytest.fixture(scope="module")
+def plain(inventory):
+    return assess.run(inventory, SETTINGS, figures=False)
+
+
+def test_before_and_after_are_those_of_a_second_run_with_the_pieces_anchored(inventory, plain):
+    held = [plain.item_rows[at].item for row in plain.schedule.rows for at in row.item_indices]
+    anchored = {one.item for one in inventory.items} & set(held)
+    items = tuple(replace(one, anchored="yes") if one.item in anchored else one for one in inventory.items)
+    second = assess.run(replace(inventory, items=items), SETTINGS, figures=False)
+    assert second.schedule.before == plain.schedule.after
+    assert plain.schedule.after != plain.schedule.before
+    assert second.schedule.rows == ()
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_the_first_entries(inventory, plain, count):
+    found = assess.run(inventory, SETTINGS, anchor=f"first:{count}", figures=False)
+    rows = plain.schedule.rows
+    names = [plain.item_rows[at].item for row in rows[:count] for at in row.item_indices]
+    by_name = assess.run(inventory, SETTINGS, anchor=",".join(names), figures=False)
+    assert by_name.schedule == found.schedule
+    assert by_name.route_tables == found.route_tables
+    assert [one.is_held for one in by_name.item_rows] == [one.is_held for one in found.item_rows]
+    assert found.schedule.before.falls == pytest.approx(rows[count - 1].falls_left, abs=1e-9)
+    assert [one.item_indices for one in found.schedule.rows] == [one.item_indices for one in rows[count:]]
+
+
+def test_what_was_taken_as_anchored_is_in_the_settings(inventory):
+    (first, second, *_) = (one.item for one in inventory.items)
+    results = assess.run(inventory, Settings(verify="none"), anchor=[first, f" {second.lower()} "], figures=False)
+    assert results[first].is_anchored
+    assert results[second].is_anchored
+
+
+def test_a_bracket_that_is_too_weak_is_taken_to_hold(inventory):
+    name = inventory.items[0].item
+    weak = replace(inventory, items=(replace(inventory.items[0], bracket_capacity=1.0), *inventory.items[1:]))
+    assert anchor_named(weak, [name]).items[0].bracket_capacity is None
+
+
+@pytest.mark.parametrize(
+    ("anchor", "message"),
+    [
+        ("42-0l", r"anchor: there is no item '42-0l' in Items\. Did you mean '42-\d\d'\?"),
+        ("first:0", r"anchor is 'first:0', expected names of items"),
+        ("first:9999", r"anchor: first:9,999 is more than the \d+ entries"),
+        ("first:x", r"anchor: there is no item 'first:x'"),
+        ("", r"anchor is '', expected names of items"),
+        ("42-01,,42-02", r"anchor is '42-01,,42-02', expected"),
+        (1.5, r"anchor is 1\.5, expected"),
+    ],
+)
+def test_what_cannot_be(inventory, anchor, message):
+    with pytest.raises(SettingsError, match=message):
+        assess.run(inventory, Settings(verify="none"), anchor=anchor, figures=False)
