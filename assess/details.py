@@ -55,10 +55,6 @@ class Detail:
     fixing: Text
     capacity: float | None = None
 
-    def names(self) -> tuple[str, ...]:
-        """Return its key and its title in every language, by which a workbook may name it."""
-        return self.key, *(load_catalogue(code).find(str(self.title), "", 1) for code in LANGUAGES)
-
 
 _SCREW = fill(
     "No. 10 wood screw, 2 in of thread in a stud of spruce-pine-fir: 0.85 kN in withdrawal (NDS equation, before the "
@@ -114,3 +110,14 @@ DETAILS: Mapping[str, Detail] = {
 def count_fixings(detail: Detail, tension: float) -> int:
     """Return how many fixings a tension [N] needs, `LEAST_FIXINGS` at least and where no capacity is printed."""
     return LEAST_FIXINGS if detail.capacity is None else max(LEAST_FIXINGS, math.ceil(tension / detail.capacity))
+
+
+def find_detail(name: str) -> Detail | None:
+    """Return the detail of this key, or of this title in any language; None where there is none."""
+    wanted = name.strip().casefold()
+    for code in LANGUAGES:
+        said = load_catalogue(code)
+        for one in DETAILS.values():
+            if wanted in (one.key, said.find(str(one.title)).casefold()):
+                return one
+    return None

@@ -6,7 +6,7 @@ import os
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
@@ -194,6 +194,11 @@ class Settings:
                 text = fill("{name} is {value}, expected {expected}", name=name, value=shown, expected=expected)
                 raise SettingsError(text)
             object.__setattr__(self, name, value)
+
+    def as_record(self) -> dict[str, Any]:
+        """Return the settings by name as they are written: what is taken as anchored as one text, "" for nothing."""
+        anchor = self.anchor
+        return asdict(self) | {"anchor": f"first:{anchor}" if isinstance(anchor, int) else ",".join(anchor)}
 
 
 def _show(value: object) -> str:

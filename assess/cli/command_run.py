@@ -26,6 +26,7 @@ EXAMPLES = (
     "assess run building.xlsx",
     "assess run building.xlsx --runs auto --out report --open",
     'assess run building.xlsx --verify none --scenario "ASCE 7-22" --formats xlsx,csv',
+    "assess run building.xlsx --anchor 25-07,25-08 --out anchored",
     "assess run building.xlsx --motions my-records --scale-motions",
     "assess run building.xlsx --scale 0.9 --ideal --seed 7 --jobs 2 --out weaker",
     "assess run building.xlsx --language it --accessible --route-risk 0.01",

@@ -115,7 +115,7 @@ def _in_kn(force: float) -> float:
 
 def find_anchors(inventory: Inventory, cases: "Cases", governing: NDArray[np.intp], settings: Settings) -> Anchors:
     """Return what the brackets of all pieces have to carry under the motion that governs each."""
-    items, weights = inventory.items, [find_weight(one) for one in inventory.items]
+    items, weights = inventory.items, [find_weight(one, inventory.language) for one in inventory.items]
     piece = _list_pieces(items, weights)
     pfa, capacity = cases.pfa[governing], _list_numbers([one.bracket_capacity for one in items])
     low, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa, cases.uncertainty.motion))
@@ -135,19 +135,20 @@ def find_anchors(inventory: Inventory, cases: "Cases", governing: NDArray[np.int
         needed_friction=find_needed_friction(weight=weight, acceleration=pfa / GRAVITY, tension=middle),
         tension_code=tension_code,
         shear_code=code * weight - tension_code,
-        held=find_held(items, pfa, cases.uncertainty.motion),
+        held=find_held(inventory, pfa, cases.uncertainty.motion),
     )
 
 
-def find_held(items: Sequence[Item], pfa: FloatArray, dispersion: float) -> BoolArray:
+def find_held(inventory: Inventory, pfa: FloatArray, dispersion: float) -> BoolArray:
     """Return which of n pieces count as anchored under their PFA (n,) [m/s2] with a dispersion of ln PFA [-]."""
+    items = inventory.items
     held = np.array([one.anchored == "yes" for one in items], dtype=np.bool_)
     known = [
         at for at, one in enumerate(items) if one.bracket_capacity is not None and one.anchored in ("yes", "partly")
     ]
     if known:
         own = [items[at] for at in known]
-        piece = _list_pieces(own, [find_weight(one) for one in own])
+        piece = _list_pieces(own, [find_weight(one, inventory.language) for one in own])
         capacity = _list_numbers([one.bracket_capacity for one in own])
         _, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa[known], dispersion))
         held[known] = capacity >= np.where(held[known], middle, high)

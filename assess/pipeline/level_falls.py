@@ -36,7 +36,7 @@ def find_falls(
     adoption = adopt(outcomes, scaled, settings)
     adoption, united = unite_axes(adoption, outcomes, inventory, case_item, assessment.case_demand, settings)
     governing = find_governing(adoption.probability, case_item, pfa)
-    held = find_held(inventory.items, pfa[governing], cases.uncertainty.motion)
+    held = find_held(inventory, pfa[governing], cases.uncertainty.motion)
     return build_falls(inventory, adoption, outcomes, governing, settings, united, held)
 
 

@@ -12,14 +12,13 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.details import DETAILS, count_fixings
+from assess.details import DETAILS, count_fixings, find_detail
 from assess.model import Cost, Inventory, Item
 from assess.natural import natural_key
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 from assess.route_results import RouteRow, RouteState, RouteTables
 from assess.schedule_results import Schedule, ScheduleRow, State
-from assess.workbook.names import key
 
 APART = ("", "unconfirmed", "formula")
 """The bases in the order of lists: that of the run, and what stands apart."""
@@ -173,10 +172,8 @@ def _describe(
 
 def _find_costs(costs: Sequence[Cost]) -> dict[str, Cost]:
     """Return costs by the key of the detail that each names, in whatever language."""
-    if not costs:
-        return {}
-    details = {key(name): one.key for one in DETAILS.values() for name in one.names()}
-    return {details[key(one.detail)]: one for one in costs if key(one.detail) in details}
+    found = ((find_detail(one.detail), one) for one in costs)
+    return {detail.key: one for detail, one in found if detail}
 
 
 def _find_demand(one: ItemResult) -> float:

@@ -62,13 +62,13 @@ class Weight:
     is_per_metre: bool = False
 
 
-def find_weight(item: Item) -> Weight:
-    """Return the weight of a piece with its contents."""
+def find_weight(item: Item, language: str = "en") -> Weight:
+    """Return the weight of a piece with its contents; `language` is that of the workbook, in which it names types."""
     if item.weight is not None:
         is_type = "weight" in item.assumed
         words = fill("as its Type in the Catalogue has it") if is_type else fill("as the workbook gives it")
         return Weight(item.weight * GRAVITY, "type" if is_type else "given", words, is_assumed=False)
-    contents = find_contents(item.type)
+    contents = find_contents(item.type, language)
     density = DENSITIES[contents or UNKNOWN]
     volume = item.breadth * (item.width or WIDTH) * item.height
     words = fill(

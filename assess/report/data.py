@@ -79,7 +79,7 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
         "assess": {
             "version": origin.version,
             "seed": results.settings.seed,
-            "settings": asdict(results.settings) | {"scenario": origin.scenario},
+            "settings": results.settings.as_record() | {"scenario": origin.scenario},
             "uncertainty": asdict(origin.uncertainty),
             "shaking": origin.shaking and asdict(origin.shaking),
             "platform": dict(origin.platform),

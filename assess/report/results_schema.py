@@ -212,6 +212,7 @@ _SPECIAL: Mapping[tuple[type, str], Schema] = {
     (AssumedShaking, "sources"): _list(TEXT),
     (AssumedShaking, "references"): _list(TEXT),
     (Settings, "scenario"): {"enum": list(SCENARIOS)},
+    (Settings, "anchor"): TEXT,
     (Settings, "route_risk"): INSIDE,
     (Settings, "scale"): {"type": "number", "exclusiveMinimum": 0, "maximum": MOST_SCALE},
     (Settings, "ductility_reduction"): {"type": "number", "minimum": 1},

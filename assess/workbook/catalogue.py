@@ -10,13 +10,15 @@ from csv import DictReader
 from functools import cache
 from importlib.resources import files
 from io import StringIO
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from assess.i18n import LANGUAGES, gettext, load_catalogue
+from assess.i18n import gettext, load_catalogue
 from assess.units import QUANTITIES
-from assess.workbook.lists import Units
 from assess.workbook.names import key
 from assess.workbook.schema import CATALOGUE
+
+if TYPE_CHECKING:
+    from assess.workbook.lists import Units
 
 CONTENTS = ("open", "storage", "equipment", "paper", "dense", "solid")
 """What a piece is, or is full of, by which its weight is estimated: lightest first."""
@@ -42,7 +44,7 @@ def read_table(name: str) -> list[dict[str, str]]:
     return list(DictReader(StringIO(text)))
 
 
-def read_catalogue(units: Units = "si", use: str = "") -> list[dict[str, Any]]:
+def read_catalogue(units: "Units" = "si", use: str = "") -> list[dict[str, Any]]:
     """Return the built-in types of furniture in the language in use, by name: the drop-down keeps this order.
 
     Parameters
@@ -56,22 +58,16 @@ def read_catalogue(units: Units = "si", use: str = "") -> list[dict[str, Any]]:
     return sorted((_read_type(line, units) for line in wanted), key=lambda row: _by_number(row["type"]))
 
 
-def find_contents(name: str) -> str:
-    """Return which of `CONTENTS` a built-in type has, by its name in any language; "" where the type is none."""
-    return _contents().get(key(name)) or (_contents_elsewhere().get(key(name), "") if name else "")
+def find_contents(name: str, language: str = "en") -> str:
+    """Return which of `CONTENTS` a built-in type has, by its name in a language or in English; "" where it is none."""
+    own = key(name)
+    return _contents("en").get(own) or _contents(language).get(own, "")
 
 
 @cache
-def _contents() -> dict[str, str]:
-    return {key(line["type"]): line["contents"] for line in catalogue_rows()}
-
-
-@cache
-def _contents_elsewhere() -> dict[str, str]:
-    """Return the same by the names of the other languages: loaded only for a name that is none in English."""
-    catalogues = [load_catalogue(code) for code in LANGUAGES if code != "en"]
-    lines = catalogue_rows()
-    return {key(one.find(line["type"], "", 1)): line["contents"] for one in catalogues for line in lines}
+def _contents(language: str) -> dict[str, str]:
+    said = load_catalogue(language)
+    return {key(said.find(line["type"])): line["contents"] for line in catalogue_rows()}
 
 
 def catalogue_texts() -> list[str]:
@@ -81,7 +77,7 @@ def catalogue_texts() -> list[str]:
     return [*(line["type"] for line in lines), *dict.fromkeys(sources)]
 
 
-def _read_type(line: dict[str, str], units: Units) -> dict[str, Any]:
+def _read_type(line: dict[str, str], units: "Units") -> dict[str, Any]:
     kind, source = line["type"], line["source"]
     row: dict[str, Any] = {"type": gettext(kind)}
     for name, header in _NUMBERS.items():
@@ -90,7 +86,7 @@ def _read_type(line: dict[str, str], units: Units) -> dict[str, Any]:
     return {**row, "source": gettext(source) if source.startswith(ASSUMED) else source}
 
 
-def _scale(name: str, units: Units) -> float:
+def _scale(name: str, units: "Units") -> float:
     """Return the factor from the unit of the file to that of the header."""
     column = CATALOGUE.column(name)
     factors = QUANTITIES[column.quantity]

@@ -6,7 +6,7 @@ and notes the cells of errors, so that what has been reported once is not report
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from assess.details import DETAILS
+from assess.details import DETAILS, find_detail
 from assess.errors import ElevationGap, Gap, Problem
 from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES
@@ -137,9 +137,8 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
     """Check that each detail has one cost, and is one that the schedule may name."""
     table = tables["Costs"]
     yield from check_unique(table)
-    known = {key(name) for one in DETAILS.values() for name in one.names()}
     for row in table.with_all("detail"):
-        if key(row.get("detail")) not in known:
+        if find_detail(row.get("detail")) is None:
             listed = join(", ", [one.title for one in DETAILS.values()])
             message = fill(
                 "Detail {name} is none that the schedule uses: its cost is left out.", name=row.quote("detail")

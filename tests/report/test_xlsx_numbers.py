@@ -215,7 +215,7 @@ def test_inputs_and_settings_are_those_of_the_results(run):
     files = {inputs["workbook"]: inputs["sha256"], **inputs["records"]}
     assert {("input", name, f"SHA-256 {digest}") for name, digest in files.items()} <= set(rows)
     assert {("platform", name, value) for name, value in made["platform"].items()} <= set(rows)
-    assert {("setting", name, str(value)) for name, value in made["settings"].items()} <= set(rows)
+    assert {("setting", name, str(value) or None) for name, value in made["settings"].items()} <= set(rows)
     assert ("program", "assess", made["version"]) in rows
     problems = [(one["severity"], one["message"]) for one in results["problems"]] or [("note", "No warnings or notes.")]
     assert [(row[0], row[2]) for row in rows if row[0] in ("warning", "note")] == problems

@@ -108,7 +108,7 @@ def test_the_example_says_the_same_in_both_languages(tmp_path: Path, units: Unit
     }
     # Types stand in the alphabetical order of each language.
     pairs["catalogue"] = ((replace(one, row=0), replace(types[find(one.type)], row=0)) for one in english.catalogue)
-    for english_sheet, sheet in zip(NAMES[1:], pairs, strict=True):
+    for english_sheet, sheet in zip([name for name in NAMES[1:] if name != "Costs"], pairs, strict=True):
         texts = {one.name for one in next(one for one in SHEETS if one.name == english_sheet).columns}
         texts -= {one.name for one in COLUMNS if one.kind != "text"}
         for one, other in pairs[sheet]:

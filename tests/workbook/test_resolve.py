@@ -265,7 +265,7 @@ def test_every_field_of_the_model_has_a_column() -> None:
     from assess import model
 
     kinds = {"Building": model.Building, "Items": model.Item, "Places": model.Place, "Routes": model.Segment,
-             "Catalogue": model.CatalogueType}  # fmt: skip
+             "Catalogue": model.CatalogueType, "Costs": model.Cost}  # fmt: skip
     for sheet in SHEETS:
         if sheet.name != "Floors":
             own = {one.name for one in fields(kinds[sheet.name])} - {"row", "assumed", "extra", "more", "cells"}

@@ -1,7 +1,6 @@
 """The sheets of texts: Methods, Assumptions with the values that formulas use, Quality log, Notes."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
@@ -139,7 +138,7 @@ def _list_provenance(content: Content) -> Iterator[Sequence[str]]:
         yield _("input"), name, f"SHA-256 {digest}", ""
     yield _("program"), "assess", content.version, ""
     yield _("program"), _("date"), content.date, ""
-    for name, value in (asdict(content.run.settings) | {"scenario": origin.scenario}).items():
+    for name, value in (content.run.settings.as_record() | {"scenario": origin.scenario}).items():
         yield _("setting"), name, str(value), ""
     for name, value in origin.platform.items():
         yield _("platform"), name, value, ""
