@@ -101,8 +101,8 @@ def test_an_edit_recomputes_class_and_counts_as_a_run_would(report, tmp_path):
     for row, floor in enumerate(floors, top + 1):
         own = [one for one in again if one.item.floor == floor["floor"]]
         by_class = [sum(one.adopted.risk == risk for one in own) for risk in RiskClass]
-        found = [book.get_value("Summary", row, column) for column in range(2, 9)]
-        assert found == [*by_class, len(own), 0, len(own)], "by class, their sum, anchored, all"
+        found = [book.get_value("Summary", row, column) for column in range(2, 10)]
+        assert found == [*by_class, len(own), 0, 0, len(own)], "by class, their sum, run again, anchored, all"
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -173,7 +173,7 @@ def test_a_size_that_is_cleared_shows_check_and_leaves_the_counts_alive(report):
         assert book.get_value("Items", 2, _column(sheet, label)) == "check"
     summary = openpyxl.load_workbook(path)["Summary"]
     top = next(cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor")
-    assert book.get_value("Summary", top + 1, 8) == 7
+    assert book.get_value("Summary", top + 1, 9) == 7
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")

@@ -91,9 +91,9 @@ def _shown(read, path):
     rows = range(2, 2 + len(ITEMS))
     classes = {read("Items", f"A{row}"): read("Items", f"{letters['Class']}{row}").rstrip("*") for row in rows}
     at = {cell.value: cell.row for cell in book["Summary"]["A"] if isinstance(cell.value, str)}
-    counts = {floor: [read("Summary", f"{letter}{at['Floor'] + int(floor)}") for letter in "BCDEGH"] for floor in "12"}
+    counts = {floor: [read("Summary", f"{letter}{at['Floor'] + int(floor)}") for letter in "BCDEHI"] for floor in "12"}
     total = [read("Summary", f"{letter}{at['Building'] + 1}") for letter in "BCDE"]
-    total += [read("Summary", f"F{at['Building'] + 2}"), read("Summary", f"F{at['Building'] + 3}")]
+    total += [read("Summary", f"F{at['Building'] + 3}"), read("Summary", f"F{at['Building'] + 4}")]
     assert total == [sum(both) for both in zip(*counts.values(), strict=True)]
     chances = [read("Summary", f"E{at['Item'] + row}") for row in range(1, 11)]
     return classes, counts, chances

@@ -87,9 +87,9 @@ def test_words_and_counts_are_translated(plain, tmp_path):
     book = openpyxl.load_workbook(tmp_path / "r.xlsx", data_only=True)
     assert book.sheetnames[0] == "Riepilogo"
     assert {"Piani e quote", "L'arredo", "Ipotesi"} <= set(book.sheetnames)
-    rows = list(book["Riepilogo"].iter_rows(max_col=8, values_only=True))
+    rows = list(book["Riepilogo"].iter_rows(max_col=9, values_only=True))
     assert next(row[1:5] for row in rows if row[0] == "Building") == ("○ basso", "◇ medio", "▲ alto", "■ molto alto")
-    assert next(row for row in rows if row[0] == "All floors")[6:8] == (1, sum(one.item.quantity for one in plain))
+    assert next(row for row in rows if row[0] == "All floors")[7:9] == (1, sum(one.item.quantity for one in plain))
     items = [cell.value for row in book["L'arredo"].iter_rows(min_row=2) for cell in row]
     assert "sì" in items
     assert not {"yes", "○ low", "◇ medium", "▲ high"} & set(items)

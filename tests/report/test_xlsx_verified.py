@@ -179,8 +179,8 @@ def test_items_show_what_the_program_found(report):
         found = {label: values[one.item.item] for label, values in shown.items()}
         adopted, mark = one.adopted, ANCHORED if one.is_anchored else ""
         assert found["Basis"] == BASES[adopted.basis]
-        assert found["OR"] == pytest.approx(one.by_formula.methods["proposed_or"].value, abs=1e-9)
-        assert found["Axis"] == one.by_formula.motion.axis
+        assert found["OR"] == pytest.approx(one.governing.methods["proposed_or"].value, abs=1e-9)
+        assert found["Axis"] == one.governing.motion.axis
         chances = [found[label] for label in CHANCES]
         if adopted.basis == "formula":
             assert found["Class"] == found["Class (formula)"]

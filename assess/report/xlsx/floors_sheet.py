@@ -1,5 +1,6 @@
 """The sheets on motions: Floors, to be edited, with whether it was; Motions, all of them; Verification, their fit."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
@@ -11,8 +12,9 @@ from assess.report import words
 from assess.report.content import Content
 from assess.report.findings.motions import describe_origin, describe_source, describe_treatment, factors
 from assess.report.xlsx import charts
-from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion
-from assess.report.xlsx.items_sheet import HEAD
+from assess.report.xlsx.item_formulas import FLOOR_AT, FLOOR_KEYS, edited_motion, top_motion
+from assess.report.xlsx.items_sheet import HEAD, has_brackets
+from assess.report.xlsx.motion_lines import list_lines
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, with_unit
 from assess.results import EstimateRow, MotionRow
 
@@ -22,26 +24,26 @@ _CODES = {"pfa": "0.000", "pfv": "0.0"}
 
 def write_floors(pen: Pen, page: Any, content: Content) -> None:
     """Write the motion that serves each floor and axis, to be edited: Items and Summary follow."""
-    run, rows = content.run, len(content.floors)
-    keys = FLOOR_KEYS if run.has_simulated else FLOOR_KEYS[: FLOOR_AT["edited_X"]]
-    widths = [_WIDTHS.get(key.split("_")[0], 20) for key in keys]
-    pen.heads(page, _heads()[: len(keys)], widths)
+    lines, rows = list_lines(content.run), len(content.floors)
+    pen.heads(page, _heads(), [_WIDTHS.get(key.split("_")[0], 20) for key in FLOOR_KEYS])
     _comment(page)  # now: what is above the row being written is left out
-    for row, floor_page in enumerate(content.floors, HEAD):
-        floor = floor_page.floor
-        motions = [_largest(run.motions_of(floor.floor, axis)) for axis in AXES]
-        texts = (floor.name, *map(_source, motions))
-        lines = map(count_lines, texts, (_WIDTHS["name"], _WIDTHS["source"], _WIDTHS["source"]))
-        page.set_row(row, LINE * max(lines))
+    for row, line in enumerate(lines, HEAD):
+        floor, motions = line.floor, line.motions
+        texts = (floor.name, *map(_source, motions.values()))
+        heights = map(count_lines, texts, (_WIDTHS["name"], _WIDTHS["source"], _WIDTHS["source"]))
+        page.set_row(row, LINE * max(heights))
         pen.put(page, row, FLOOR_AT["floor"], floor.floor, pen.style("text"))
         pen.put(page, row, FLOOR_AT["name"], floor.name, pen.style("text"))
-        for motion in motions:
+        for axis, motion in motions.items():
+            further = [at for at in line.further if axis in lines[at].motions]
             _write_motion(pen, page, row, motion)
-            if run.has_simulated:
-                _write_as_run(pen, page, row, motion)
+            _write_as_run(pen, page, row, [motion, *(lines[at].motions[axis] for at in further)], further)
+            if row < HEAD + rows:
+                _write_top(pen, page, row, motion, further)
         pen.put(page, row, FLOOR_AT["elevation"], floor.elevation_m, pen.style("plain"))
-    _dress(page, rows, len(keys))
-    charts.add_motion(pen, page, (HEAD + rows + 1, 0), (HEAD, HEAD + rows - 1), {a: FLOOR_AT[f"pfa_{a}"] for a in AXES})
+    _dress(page, len(lines), has_edits=content.run.has_simulated or has_brackets(content.run))
+    tops: dict[str, int] = {axis: FLOOR_AT[f"pfa_top_{axis}"] for axis in AXES}
+    charts.add_motion(pen, page, (HEAD + len(lines) + 1, 0), (HEAD, HEAD + rows - 1), tops)
 
 
 def _heads() -> list[str]:
@@ -50,32 +52,33 @@ def _heads() -> list[str]:
         with_unit(_("PFA Y"), "g"), with_unit(_("PFV Y"), "cm/s"), _("Source Y"), with_unit(_("Elevation"), "m"),
         _("X since the run"), _("Y since the run"), with_unit(_("PFA X as run"), "g"),
         with_unit(_("PFV X as run"), "cm/s"), with_unit(_("PFA Y as run"), "g"), with_unit(_("PFV Y as run"), "cm/s"),
+        with_unit(_("Largest PFA X"), "g"), with_unit(_("its PFV X"), "cm/s"), with_unit(_("Largest PFA Y"), "g"),
+        with_unit(_("its PFV Y"), "cm/s"),
     ]  # fmt: skip
 
 
 def _comment(page: Any) -> None:
     edit_here = _(
         "Edit the PFA and PFV here: rows that were not simulated follow; simulated rows on the floor say 'run again' "
-        "and leave all counts. Where several records serve an axis, the one with the largest PFA stands here; the "
-        "sheet Motions lists all. Interpolated floors and those of a code's profile hold numbers as run: they do not "
+        "and leave all counts. Where several records serve a floor, the one with the largest PFA stands in its line; "
+        "the others follow below the last floor. Simulated rows show the record that governed the run, other rows go "
+        "by the largest PFA. Interpolated floors and those of a code's profile hold numbers as run: they do not "
         "follow when another floor is edited."
     )
     page.write_comment(0, FLOOR_AT["pfa_X"], edit_here, {"x_scale": 2, "y_scale": 1.5})
 
 
-def _dress(page: Any, floors: int, columns: int) -> None:
+def _dress(page: Any, lines: int, *, has_edits: bool) -> None:
+    """Freeze, filter, hide what holds the run's motions, and what shows edits where no row asks for a new run."""
+    last = len(FLOOR_KEYS) - 1
     page.freeze_panes(1, 1)
     page.repeat_rows(0)
-    page.autofilter(0, 0, floors, columns - 1)
+    page.autofilter(0, 0, lines, last)
     for axis in AXES:
         at = FLOOR_AT[f"pfa_{axis}"]
-        page.data_validation(HEAD, at, floors, at, {"validate": "decimal", "criteria": ">=", "value": 0})
-    if columns == len(FLOOR_KEYS):
-        page.set_column(FLOOR_AT["pfa_run_X"], columns - 1, 10, None, {"hidden": True})
-
-
-def _largest(motions: list[MotionRow]) -> MotionRow:
-    return max(motions, key=lambda one: round(one.pfa_g, 9))
+        page.data_validation(HEAD, at, lines, at, {"validate": "decimal", "criteria": ">=", "value": 0})
+    first = "pfa_run_X" if has_edits else "edited_X"
+    page.set_column(FLOOR_AT[first], last, 10, None, {"hidden": True})
 
 
 def _write_motion(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
@@ -102,14 +105,26 @@ def _estimate(motion: MotionRow, estimate: EstimateRow, pfa: str) -> str:
     return f"={pfa}*{ratio!r}"
 
 
-def _write_as_run(pen: Pen, page: Any, row: int, motion: MotionRow) -> None:
-    """Write the motion of an axis as run, and whether it was edited since."""
-    axis, pfv = motion.axis, motion.pfv_cm_s
-    pen.put(page, row, FLOOR_AT[f"pfa_run_{axis}"], motion.pfa_g)
-    pen.put(page, row, FLOOR_AT[f"pfv_run_{axis}"], pfv)
-    cells = {name: _cell(f"{name}_{axis}", row) for name in ("pfa", "pfv", "pfa_run", "pfv_run")}
-    formula = edited_motion(pen.terms, cells, had_pfv=pfv is not None)
+def _write_as_run(pen: Pen, page: Any, row: int, motions: Sequence[MotionRow], further: Sequence[int]) -> None:
+    """Write the motion of an axis as run, and whether it, or one of the further lines, was edited since."""
+    axis = motions[0].axis
+    pen.put(page, row, FLOOR_AT[f"pfa_run_{axis}"], motions[0].pfa_g)
+    pen.put(page, row, FLOOR_AT[f"pfv_run_{axis}"], motions[0].pfv_cm_s)
+    names = ("pfa", "pfv", "pfa_run", "pfv_run")
+    cells = [{name: _cell(f"{name}_{axis}", at) for name in names} for at in (row, *(HEAD + at for at in further))]
+    formula = edited_motion(
+        pen.terms, [(own, one.pfv_cm_s is not None) for own, one in zip(cells, motions, strict=True)]
+    )
     page.write_formula(row, FLOOR_AT[f"edited_{axis}"], formula, pen.style("warning"), "")
+
+
+def _write_top(pen: Pen, page: Any, row: int, motion: MotionRow, further: Sequence[int]) -> None:
+    """Write the peaks of the record with the largest PFA along an axis: as run, that of the floor's own line."""
+    axis, rows = motion.axis, (row, *(HEAD + at for at in further))
+    pfa, pfv = ([_cell(f"{peak}_{axis}", at) for at in rows] for peak in ("pfa", "pfv"))
+    formulas = top_motion(pfa, pfv, _cell(f"pfa_top_{axis}", row))
+    for peak, formula, value in zip(("pfa", "pfv"), formulas, (motion.pfa_g, motion.pfv_cm_s), strict=True):
+        page.write_formula(row, FLOOR_AT[f"{peak}_top_{axis}"], formula, None, "" if value is None else value)
 
 
 def _cell(key: str, row: int) -> str:

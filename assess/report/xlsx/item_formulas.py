@@ -6,12 +6,13 @@ formulas write and compare is in the report's language.
 """
 
 import string
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext as _
+from assess.model import AXES
 from assess.risk import RiskClass
 from assess.workbook import formulas as live
 from assess.workbook.formulas import say_class
@@ -30,13 +31,15 @@ SAME = ("breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "friction")
 """Numbers of a row that a simulated class holds for; a blank one must stay blank."""
 SAME_WORDS = ("floor", "axis_given")
 """Texts of a row that a simulated class holds for."""
+BRACKET = ("bracket_capacity_kn", "bracket_height_cm", "weight_kg")
+"""Numbers of a row that decide whether its bracket holds: the capacity first, without which none of them does."""
 AT_RUN = ("chance", "low", "high", "beside")
 """What simulation found: shown while the row is as run."""
 FLOOR_KEYS = (
     "floor", "name", "pfa_X", "pfv_X", "source_X", "pfa_Y", "pfv_Y", "source_Y", "elevation", "edited_X", "edited_Y",
-    "pfa_run_X", "pfv_run_X", "pfa_run_Y", "pfv_run_Y",
+    "pfa_run_X", "pfv_run_X", "pfa_run_Y", "pfv_run_Y", "pfa_top_X", "pfv_top_X", "pfa_top_Y", "pfv_top_Y",
 )  # fmt: skip
-"""The columns of the sheet Floors, in order; those from ``edited_X`` on are there where pieces were simulated."""
+"""The columns of the sheet Floors, in order; the last four hold the peaks of the record with the largest PFA."""
 FLOOR_AT: Mapping[str, int] = {key: at for at, key in enumerate(FLOOR_KEYS)}
 
 
@@ -62,6 +65,8 @@ class Terms:
     """What formulas write and compare."""
 
     yes: str
+    no: str
+    partly: str
     edited: str
     check: str
     again: str
@@ -77,6 +82,8 @@ def build_terms() -> Terms:
     """Return the terms in the language in use."""
     return Terms(
         yes=_("yes"),
+        no=_("no"),
+        partly=_("partly"),
         edited=_("edited"),
         check=_("check"),
         again=_("run again"),
@@ -92,16 +99,30 @@ def build_terms() -> Terms:
 # ---------------------------------------------------------------- Floors
 
 
-def edited_motion(terms: Terms, cells: Mapping[str, str], *, had_pfv: bool) -> str:
+def edited_motion(terms: Terms, motions: Sequence[tuple[Mapping[str, str], bool]]) -> str:
     """Return the formula that shows whether a floor's motion along an axis differs from the one as run.
 
-    `cells` holds pfa and pfv, and both as run; where PFV was blank as run, any value differs.
+    `motions` are those of its parallel records: cells, which hold pfa and pfv, and both as run, and whether PFV was
+    known as run; where it was not, any value differs.
     """
-    tests = [
-        _differs(cells["pfa"], cells["pfa_run"]),
-        _differs(cells["pfv"], cells["pfv_run"]) if had_pfv else f'{cells["pfv"]}<>""',
-    ]
+    tests = []
+    for cells, had_pfv in motions:
+        tests.append(_differs(cells["pfa"], cells["pfa_run"]))
+        tests.append(_differs(cells["pfv"], cells["pfv_run"]) if had_pfv else f'{cells["pfv"]}<>""')
     return f'=IF(IFERROR(OR({",".join(tests)}),TRUE),{literal(terms.edited)},"")'
+
+
+def top_motion(pfa: Sequence[str], pfv: Sequence[str], top: str) -> tuple[str, str]:
+    """Return the formulas of the largest PFA of parallel records, and of the PFV of the record that has it.
+
+    `pfa` and `pfv` are their cells, `top` is the cell of the former formula.
+    """
+    if len(pfa) == 1:
+        return f'=IF({pfa[0]}="","",{pfa[0]})', f'=IF({pfv[0]}="","",{pfv[0]})'
+    found = '""'
+    for peak, velocity in zip(reversed(pfa), reversed(pfv), strict=True):
+        found = f'IF({peak}={top},IF({velocity}="","",{velocity}),{found})'
+    return f'=IF(COUNT({",".join(pfa)})=0,"",MAX({",".join(pfa)}))', f"={found}"
 
 
 def _differs(now: str, as_run: str) -> str:
@@ -120,7 +141,7 @@ class ItemFormulas:
     cells : mapping of str to str
         The cells of the row by the keys of their columns.
     floors : str
-        The sheet Floors as formulas write it, `last` its last row.
+        The sheet Floors as formulas write it, `last` the row of its last floor, `lowest` of its last record.
     formula : str
         Key of the adopted formula's method.
     """
@@ -128,82 +149,133 @@ class ItemFormulas:
     cells: Mapping[str, str]
     floors: str
     last: int
+    lowest: int
     terms: Terms
     formula: str
 
     def of(self, basis: str) -> dict[str, str]:
         """Return the formulas of a row whose class rests on one of `assess.results.BASES`, by keys of columns."""
-        found = self._of_any() | (self._of_formula() if basis == "formula" else self._of_run(basis))
+        found = self._of_formula() if basis == "formula" else self._of_run(basis)
+        found = self._of_any(is_run=basis != "formula") | found
         return {key: f"={one}" for key, one in found.items()}
 
     def _of_formula(self) -> dict[str, str]:
-        risk = self.cells[self.formula]
-        return {"class": self.cells["class_formula"], "order_formula": self._order(risk, _rank(risk), risk)}
+        """Return the formulas of a row that follows its inputs, unless they may change whether its bracket holds."""
+        risk, own, again = self.cells[self.formula], *map(literal, (self.terms.bases["formula"], self.terms.again))
+        is_edited = f"{self.cells['edited']}={literal(self.terms.edited)}"
+        return {
+            "edited": f'IF({self._bracket_decides()},{self._edited(*self._bracket_edits())},"")',
+            "basis": f"IF({is_edited},{again},{own})",
+            "class": f"IF({is_edited},{again},{self.cells['class_formula']})",
+            "order_formula": f'IF({is_edited},"",{self._order(risk, _rank(risk), risk)})',
+        }
 
     def _of_run(self, basis: str) -> dict[str, str]:
         """Return the formulas of a row whose class holds while its inputs are as run."""
         cells, rank, upper = self.cells, self.cells["rank"], self.cells["rank_upper"]
         own, again = literal(self.terms.bases[basis]), literal(self.terms.again)
         found = {
-            "edited": self._edited(),
+            "edited": self._edited(f"AND({self._bracket_decides()},OR({','.join(self._bracket_edits())}))"),
             "rank": self._rank_as_run(),
             "rank_upper": self._while_as_run(f"MAX({rank},{_rank(cells['upper_end'])})"),
             "basis": self._while_as_run(own, again),
             "class": self._while_as_run(f"{self._mark()}&{self.terms.label(rank)}", again),
             "class_upper": self._while_as_run(f"{self._mark()}&{self.terms.label(upper)}"),
             "class_notes": self._while_as_run(self._notes(is_settled=basis == "simulated")),
-            "rank_formula": f'IF(ISNUMBER({cells[self.formula]}),{_rank(cells[self.formula])},"")',
+            "rank_formula": self._while_as_run(_rank(cells["formula_run"])),
             f"order_{basis}": self._order(rank, upper, cells["chance_run"]),
         }
         if basis == "simulated":
             found |= {key: self._while_as_run(cells[f"{key}_run"]) for key in AT_RUN}
         return found
 
-    def _of_any(self) -> dict[str, str]:
+    def _of_any(self, *, is_run: bool) -> dict[str, str]:
         cells, check = self.cells, literal(self.terms.check)
         ratio, pfa, risk = cells["breadth_to_height"], cells["pfa_g"], cells[self.formula]
         breadth, height = cells["breadth_cm"], cells["height_cm"]
         classed = f"IF(ISNUMBER({risk}),{live.risk_class(risk, ratio, pfa, LIMITS)},{check})"
+        as_run = live.risk_class(cells["formula_run"], ratio, cells["formula_pfa_run"], LIMITS)
         methods = {
             key: f"IF(AND(ISNUMBER({ratio}),ISNUMBER({pfa})),{formula},{check})"
             for key, formula in live_formulas(cells).items()
         }
         return methods | {
             "breadth_to_height": f"IFERROR(IF(OR({breadth}<=0,{height}<=0),{check},{breadth}/{height}),{check})",
-            "axis": self._axis(),
-            "pfa_g": self._on_axis("pfa"),
-            "pfv_cm_s": self._on_axis("pfv"),
-            "class_formula": f"{self._mark()}&{classed}",
+            "axis": self._while_unedited(cells["axis_run"], self._axis()) if is_run else self._axis(),
+            "pfa_g": self._governing("pfa", is_run=is_run),
+            "pfv_cm_s": self._governing("pfv", is_run=is_run),
+            "class_formula": f"{self._mark()}&{self._while_unedited(as_run, classed) if is_run else classed}",
+            "held": self._held(),
         }
 
     def _floor(self, key: str) -> str:
         """Return the value in a column of Floors for the row's floor."""
-        letters = (xl_col_to_name(FLOOR_AT[one]) for one in (key, "floor"))
-        area, names = (f"{self.floors}${one}$2:${one}${self.last}" for one in letters)
+        area, names = (self._area(one, self.last) for one in (key, "floor"))
         return f"INDEX({area},MATCH({self.cells['floor']},{names},0))"
+
+    def _area(self, key: str, last: int) -> str:
+        """Return the cells of a column of Floors."""
+        letter = xl_col_to_name(FLOOR_AT[key])
+        return f"{self.floors}${letter}$2:${letter}${last}"
 
     def _axis(self) -> str:
         given = self.cells["axis_given"]
-        return f'IF({given}<>"",{given},{live.worse_axis(self._floor("pfa_X"), self._floor("pfa_Y"))})'
+        x, y = (f"MAX({self._floor(f'pfa_top_{axis}')})" for axis in AXES)  # of a reference: a blank counts as 0
+        return f'IF({given}<>"",{given},{live.worse_axis(x, y)})'
 
-    def _on_axis(self, peak: str) -> str:
-        chosen = f'IF({self.cells["axis"]}="X",{self._floor(f"{peak}_X")},{self._floor(f"{peak}_Y")})'
+    def _governing(self, peak: str, *, is_run: bool) -> str:
+        """Return the peak that governs: of the record as run, while that holds; else of the one with the largest PFA.
+
+        It is that along the row's axis.
+        """
+        floors = self._on_axis(self._floor(f"{peak}_top_X"), self._floor(f"{peak}_top_Y"))
+        if not is_run:
+            return floors
+        areas = (self._area(f"{peak}_{axis}", self.lowest) for axis in AXES)
+        as_run = self._on_axis(*(f"INDEX({area},{self.cells['motion_run']})" for area in areas))
+        return self._while_unedited(as_run, floors)
+
+    def _on_axis(self, x: str, y: str) -> str:
+        chosen = f'IF({self.cells["axis"]}="X",{x},{y})'
         return f'IF({chosen}="","",{chosen})'
 
+    def _held(self) -> str:
+        """Return whether the piece counts as anchored, by what its bracket does as run."""
+        cells, (yes, no, partly) = self.cells, map(literal, (self.terms.yes, self.terms.no, self.terms.partly))
+        word, if_partly = cells["anchored"], f"IF({cells['anchored']}={partly},{cells['held_partly']},0)"
+        return f"IF(IF({word}={yes},{cells['held_yes']},{if_partly})=1,{yes},{no})"
+
     def _mark(self) -> str:
-        return f'IF({self.cells["anchored"]}={literal(self.terms.yes)},{literal(ANCHORED)},"")'
+        return f'IF({self.cells["held"]}={literal(self.terms.yes)},{literal(ANCHORED)},"")'
+
+    def _while_unedited(self, value: str, edited: str) -> str:
+        return f"IF({self.cells['edited']}={literal(self.terms.edited)},{edited},{value})"
+
+    def _bracket_decides(self) -> str:
+        """Return whether it depends on a bracket of known capacity, now or as run, if the piece counts as anchored."""
+        cells, capacity = self.cells, BRACKET[0]
+        words = (f"{cells['anchored']}={literal(word)}" for word in (self.terms.yes, self.terms.partly))
+        known = f'{cells[capacity]}<>"",{cells[f"{capacity}_run"]}<>""'
+        return f"AND(OR({','.join(words)}),OR({known}))"
+
+    def _bracket_edits(self) -> list[str]:
+        return [_differs(self.cells[key], self.cells[f"{key}_run"]) for key in BRACKET]
 
     def _while_as_run(self, value: str, edited: str = '""') -> str:
         return f"IF(ISNUMBER({self.cells['rank']}),{value},{edited})"
 
-    def _edited(self) -> str:
-        """Return whether the piece, its floor, its axis or the motion along it differs from the one as run."""
+    def _edited(self, *more: str) -> str:
+        """Return whether the piece, its floor, its axis or the motion along it differs from the one as run.
+
+        `more` are further tests.
+        """
         cells, edited = self.cells, literal(self.terms.edited)
         axis = cells["axis_given"]
         tests = [
             *(_differs(cells[key], cells[f"{key}_run"]) for key in SAME),
             *(f"{cells[key]}<>{cells[f'{key}_run']}" for key in SAME_WORDS),
             *(f'IF({axis}="{other}",FALSE,{self._floor(f"edited_{own}")}={edited})' for own, other in ("XY", "YX")),
+            *more,
         ]
         return f'IF(IFERROR(OR({",".join(tests)}),TRUE),{edited},"")'
 
@@ -218,7 +290,7 @@ class ItemFormulas:
 
         There is none either where `known` is no number.
         """
-        free = f"AND({self.cells['anchored']}<>{literal(self.terms.yes)},ISNUMBER({known}))"
+        free = f"AND({self.cells['held']}<>{literal(self.terms.yes)},ISNUMBER({known}))"
         return f'IF({free},{CLASS_WEIGHT}*{rank}+{chance}-ROW()*{ROW_WEIGHT},"")'
 
     def _notes(self, *, is_settled: bool) -> str:

@@ -5,7 +5,9 @@ the far right, the inputs as run. `item_values` tells what a row holds.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from xlsxwriter.utility import xl_col_to_name
@@ -13,7 +15,7 @@ from xlsxwriter.utility import xl_col_to_name
 from assess.fields import Field, item_fields
 from assess.i18n import gettext as _
 from assess.report.content import Content
-from assess.report.xlsx.item_formulas import AT_RUN, ROW, ItemFormulas, build_terms, live_formulas
+from assess.report.xlsx.item_formulas import AT_RUN, BRACKET, ROW, ItemFormulas, build_terms, live_formulas
 from assess.report.xlsx.item_values import (
     chance_behind,
     class_by_formula,
@@ -28,6 +30,7 @@ from assess.report.xlsx.item_values import (
     upper_class,
     upper_end,
 )
+from assess.report.xlsx.motion_lines import find_places, list_lines
 from assess.report.xlsx.pen import CHANCE, COUNT, LINE, LOOKS, Column, Pen, count_lines, of_field, widen, with_unit
 from assess.results import BASES, ItemResult, Results
 from assess.workbook.schema import ITEMS
@@ -51,9 +54,10 @@ FRONT = (
 """The fields that the sheet begins with."""
 INPUTS = (
     "quantity", "breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "axis_given", "anchored", "friction",
+    *BRACKET,
 )  # fmt: skip
 """Those to edit."""
-_PLACED = (*FRONT, "breadth_to_height", "axis", "pfa_g", "pfv_cm_s")
+_PLACED = (*FRONT, "breadth_to_height", "axis", "pfa_g", "pfv_cm_s", "pfa_source")
 NUMBERS = ("breadth_cm", "width_cm", "height_cm", "friction")
 CLASSES = ("class_formula", "class", "class_upper")
 ORDERS = tuple(f"order_{basis}" for basis in BASES)
@@ -66,7 +70,7 @@ ORDERS = tuple(f"order_{basis}" for basis in BASES)
 def item_columns(results: Results) -> list[Column]:
     """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
     known = {one.key: one for one in item_fields(results)}
-    item, *front = (_centre_column() if key == "centre_of_gravity" else _given(known[key]) for key in FRONT)
+    item, *front = (column for key in FRONT for column in _front(key, known))
     shown = [
         item,
         *_class(results),
@@ -75,10 +79,35 @@ def item_columns(results: Results) -> list[Column]:
         *_in_force(results),
         *(_as_run(one) for one in results.methods if not one.is_live),
         Column(_("Marks (as run)"), 60, _marks, key="adopted_flags"),
-        *(_given(one) for key, one in known.items() if "excel" in one.shows and key not in _PLACED),
+        *(_further(one) for key, one in known.items() if "excel" in one.shows and key not in _PLACED),
     ]
     workings = list(_workings(results))
     return [*shown, *_own(results, {column.label for column in (*shown, *workings)}), *workings]
+
+
+def has_brackets(results: Results) -> bool:
+    """Tell whether it depends on a bracket of known capacity if a piece counts as anchored."""
+    return any(one.anchor.bracket_capacity_kn is not None for one in results.item_rows)
+
+
+def _front(key: str, known: Mapping[str, Field]) -> Iterator[Column]:
+    """Yield a column that the sheet begins with; whether a piece counts as anchored stands next to what it says."""
+    yield _centre_column() if key == "centre_of_gravity" else _given(known[key])
+    if key == "anchored":
+        held = known["counts_as_anchored"]
+        yield Column(held.heading(), 10, lambda one: say_held(one.is_anchored), key="held", look="live", is_live=True)
+
+
+def say_held(is_held: bool) -> str:
+    """Return whether a piece counts as anchored, as its formula has it."""
+    return _("yes") if is_held else _("no")
+
+
+def _further(field: Field) -> Column:
+    """Return a column of what follows no edit: what was computed says so."""
+    column = _given(field)
+    is_computed = field.place[0] == "anchor" and field.key not in INPUTS
+    return replace(column, label=_("{what} (as run)", what=column.label)) if is_computed else column
 
 
 def _centre_column() -> Column:
@@ -104,28 +133,17 @@ def _show(field: Field, one: ItemResult) -> Any:
 
 
 def _live(known: Mapping[str, Field], results: Results) -> Iterator[Column]:
-    """Yield what formulas compute under the motion that the formula alone would have govern."""
+    """Yield what formulas compute under the motion that governs."""
     yield of_field(known["breadth_to_height"], look="live", is_live=True)
-    yield of_field(known["axis"], read=lambda one: one.by_formula.motion.axis, look="live", is_live=True,
-                   align="center")  # fmt: skip
-    yield of_field(known["pfa_g"], read=lambda one: one.by_formula.motion.pfa_g, look="live", is_live=True)
-    yield of_field(known["pfv_cm_s"], read=lambda one: one.by_formula.motion.pfv_cm_s, look="live", is_live=True)
+    yield of_field(known["axis"], look="live", is_live=True, align="center")
+    yield of_field(known["pfa_g"], look="live", is_live=True)
+    yield of_field(known["pfv_cm_s"], look="live", is_live=True)
     names = live_formulas({})
     for method in (one for one in results.methods if one.is_live):
         for name in (column.name for column in method.columns if f"{method.key}_{column.name}" in names):
-            yield of_field(known[f"{method.key}_{name}"], read=_detail(method.key, name), look="live", is_live=True)
-        yield of_field(
-            known[method.key], label=_(method.short_title), read=_value(method.key), look="plain", is_live=True
-        )
+            yield of_field(known[f"{method.key}_{name}"], look="live", is_live=True)
+        yield of_field(known[method.key], label=_(method.short_title), look="plain", is_live=True)
     yield Column(_("Class (formula)"), 16, class_by_formula, key="class_formula", look="live", is_live=True)
-
-
-def _detail(method: str, name: str) -> Callable[[ItemResult], Any]:
-    return lambda one: one.by_formula.methods[method].detail[name]
-
-
-def _value(method: str) -> Callable[[ItemResult], Any]:
-    return lambda one: one.by_formula.methods[method].value
 
 
 def _class(results: Results) -> Iterator[Column]:
@@ -143,6 +161,7 @@ def _in_force(results: Results) -> Iterator[Column]:
         chosen: dict[str, Any] = {"is_hidden": is_hidden, "look": "text", **more}
         return Column(label, width, read, key=key, **chosen)
 
+    motion = attrgetter("governing.motion.label")
     yield column("basis", _("Basis"), 26, lambda one: bases[one.adopted.basis], is_live=True, is_hidden=False)
     for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
         yield column(key, label, 12, _found(at, is_ideal=is_ideal), format=CHANCE, look="plain", is_live=True)
@@ -150,6 +169,7 @@ def _in_force(results: Results) -> Iterator[Column]:
     yield column("runs", _("Runs"), 7, _runs, format=COUNT, look="plain")
     yield column("under_record", _("Under the record"), 20, under_record)
     yield column("axis_run", _("Axis (as run)"), 10, lambda one: one.governing.motion.axis)
+    yield column("pfa_source", _("Motion used (as run)"), 30, motion)
 
 
 def name_found(*, is_ideal: bool) -> tuple[str, str, str, str]:
@@ -195,13 +215,13 @@ def _extra(at: int) -> Callable[[ItemResult], str]:
 
 def _workings(results: Results) -> Iterator[Column]:
     """Yield what is hidden at the far right: the inputs as run, and the classes as numbers from 0, low, to 3."""
-    is_ideal = results.settings.ideal
+    is_ideal, places = results.settings.ideal, find_places(list_lines(results))
 
     def column(key: str, label: str, read: Read, **more: Any) -> Column:
         return Column(label, 24, read, key=key, is_hidden=True, **more)
 
     for key, label, read in _inputs():
-        yield column(f"{key}_run", label, _if_as_run(read))
+        yield column(f"{key}_run", label, read)
     for at, (key, label) in enumerate(zip(AT_RUN, name_found(is_ideal=is_ideal), strict=True)):
         read = _if_as_run(listed_chance) if key == "chance" else _found(at, is_ideal=is_ideal)
         yield column(f"{key}_run", _("{what} (as run)", what=label), read)
@@ -209,6 +229,13 @@ def _workings(results: Results) -> Iterator[Column]:
     yield column("fell", _("Fell under the record"), _if_as_run(lambda one: 1 if one.fell_in_record else ""))
     yield column("behind", _("Chance behind the class"), partial(chance_behind, is_ideal=is_ideal))
     yield column("upper_end", _("Upper end as run"), partial(upper_end, is_ideal=is_ideal))
+    yield column("formula_run", _("Largest chance by formula as run"), _if_as_run(lambda one: one.formula.value))
+    yield column("formula_pfa_run", _("Its PFA as run"), _if_as_run(lambda one: one.by_formula.motion.pfa_g))
+    yield column(
+        "motion_run", _("Line of the motion in Floors"), _if_as_run(lambda one: places[one.governing.motion.index])
+    )
+    yield column("held_yes", _("Held if anchored"), lambda one: int(one.item.anchor.holds is not False))
+    yield column("held_partly", _("Held if partly anchored"), lambda one: int(one.item.anchor.holds_high is True))
     yield column("settle", _("How to settle the class"), _settle)
     yield column("rank", _("Rank"), _if_as_run(lambda one: int(one.adopted.risk)), is_live=True)
     yield column("rank_upper", _("Rank, upper"), _if_as_run(lambda one: int(one.adopted.upper)), is_live=True)
@@ -218,7 +245,7 @@ def _workings(results: Results) -> Iterator[Column]:
 
 
 def _inputs() -> Iterator[tuple[str, str, Read]]:
-    """Yield the inputs that a simulated class holds for: key, heading as run, and how each is read."""
+    """Yield the inputs that a simulated class, or a bracket, holds for: key, heading as run, and how each is read."""
     yield "breadth_cm", with_unit(_("Breadth as run"), "cm"), lambda one: one.item.breadth_cm
     yield "width_cm", with_unit(_("Width as run"), "cm"), lambda one: one.item.width_cm
     yield "height_cm", with_unit(_("Height as run"), "cm"), lambda one: one.item.height_cm
@@ -226,6 +253,9 @@ def _inputs() -> Iterator[tuple[str, str, Read]]:
     yield "friction", _("Friction as run"), lambda one: one.item.friction
     yield "floor", _("Floor as run"), lambda one: one.item.floor
     yield "axis_given", _("Axis given as run"), lambda one: one.item.axis_given
+    yield "bracket_capacity_kn", _("Bracket capacity as run"), lambda one: one.item.anchor.bracket_capacity_kn
+    yield "bracket_height_cm", _("Bracket height as run"), lambda one: one.item.anchor.bracket_height_cm
+    yield "weight_kg", _("Weight as run"), lambda one: one.item.weight_kg
 
 
 def _centre(one: ItemResult) -> float:
@@ -254,8 +284,8 @@ def write_items(pen: Pen, page: Any, content: Content) -> None:
     pen.heads(page, [column.label for column in columns], [column.width for column in columns])
     _comment(page, columns)  # now: what is above the row being written is left out
     cells = {column.key: f"${xl_col_to_name(at)}{ROW}" for at, column in enumerate(columns)}
-    last = HEAD + len(content.floors)
-    formulas = ItemFormulas(cells, pen.refer("Floors"), last, pen.terms, content.run.formula.key)
+    last, lowest = HEAD + len(content.floors), HEAD + len(list_lines(content.run))
+    formulas = ItemFormulas(cells, pen.refer("Floors"), last, lowest, pen.terms, content.run.formula.key)
     by_basis = {basis: formulas.of(basis) for basis in BASES}
     plan = [(at, column, _style(pen, column)) for at, column in enumerate(columns)]
     texts = [(column.read, column.width) for column in columns if column.look == "text" and not column.is_hidden]
@@ -318,7 +348,9 @@ def _comment(page: Any, columns: Sequence[Column]) -> None:
         "breadth_cm": _(
             "Edit the coloured cells. Quantity and Anchored change the counts at once. A row that was simulated says "
             "'run again' once its size, centre of gravity, friction, axis, floor or the floor's motion is edited: it "
-            "then leaves all counts, lists and charts. A row that was not simulated follows by the formula."
+            "then leaves all counts, lists and charts. A row that was not simulated follows by the formula. A row that "
+            "is held by a bracket of known capacity says 'run again' too, and also where its bracket or weight is "
+            "edited, as the bracket may hold no longer."
         ),
         "class_formula": _(
             "By the limits in Assumptions. * behind a class: outside the range in which the formula was checked by "
@@ -352,7 +384,7 @@ def _validate(page: Any, letters: Mapping[str, str], last: int) -> None:
         "quantity": {"validate": "integer", "criteria": ">=", "value": 1},
         "axis_given": {"validate": "list", "source": ["X", "Y"]},
         "anchored": {"validate": "list", "source": choices},
-        **{key: {"validate": "decimal", "criteria": ">", "value": 0} for key in NUMBERS},
+        **{key: {"validate": "decimal", "criteria": ">", "value": 0} for key in (*NUMBERS, *BRACKET)},
         "centre_of_gravity": {"validate": "decimal", "criteria": "between", "minimum": 5, "maximum": 95},
     }
     for key, rule in rules.items():

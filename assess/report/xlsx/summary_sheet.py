@@ -76,7 +76,7 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
     areas, bases = item_areas(pen, content), list_bases(content.run)
     worst = {basis: find_worst(content.results, basis) for basis in bases}
     top = 2 + len(_list_lines(pen, content, areas, bases))
-    row = first = top + 3 + len(bases) + len(_list_apart(content)) + CHART_ROWS
+    row = first = top + 3 + len(bases) + len(_list_apart()) + CHART_ROWS
     lists, tables = {}, {}
     for basis, found in worst.items():
         lists[basis], row = row, row + 3 + len(found)
@@ -159,12 +159,13 @@ def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence
         if len(bases) > 1:
             yield _("What was simulated, what was not, and what is unconfirmed are counted apart."), ""
         yield from _follow(pen, content, areas, bases)
+    yield _say_again(pen, areas)
     yield _("Counts and chances follow the sheets Floors, Items and Assumptions when those are edited."), ""
 
 
 def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Yield the sentences with numbers that follow an edit."""
-    free = f"({areas['anchored']}<>{literal(pen.terms.yes)})"
+    free = f"({areas['held']}<>{literal(pen.terms.yes)})"
     if "unconfirmed" in bases:
         own = [one for one in content.results if one.adopted.is_unconfirmed]
         ways = "; ".join(dict.fromkeys(map(say_inputs_that_settle, own)))
@@ -178,10 +179,14 @@ def _follow(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequenc
     lowered = f'SUMPRODUCT(({rank}<>"")*({rank}<{areas["rank_formula"]}))'
     text = _("Rows whose class simulation lowers: {n}.")
     yield text.format(n=sum(one.adopted.lowered_from is not None for one in content.results)), sentence(text, n=lowered)
+
+
+def _say_again(pen: Pen, areas: Mapping[str, str]) -> tuple[str, str]:
+    """Return the sentence on rows to be run again, and its formula."""
     again = f"COUNTIF({areas['basis']},{literal(pen.terms.again)})"
     text = _("Rows to be run again, as an input was edited: {n}. They are in no count by class, list or chart until "
              "assess is run with the edited workbook.")  # fmt: skip
-    yield text.format(n=0), sentence(text, n=again)
+    return text.format(n=0), sentence(text, n=again)
 
 
 def _say_routes(content: Content) -> Iterator[str]:
@@ -203,10 +208,9 @@ def _say_routes(content: Content) -> Iterator[str]:
 # ---------------------------------------------------------------- counts
 
 
-def _list_apart(content: Content) -> list[str]:
+def _list_apart() -> list[str]:
     """Return what is counted without a class: rows to be run again, anchored pieces, and all pieces."""
-    again = [_("run again")] if content.run.has_simulated else []
-    return [*again, _("anchored"), _("all")]
+    return [_("run again"), _("anchored"), _("all")]
 
 
 def _write_building(plan: _Plan) -> None:
@@ -220,9 +224,9 @@ def _write_building(plan: _Plan) -> None:
             page.write_formula(row, at, formula, pen.style("total"), value)
     if not plan.bases:
         return
-    values = _count_apart(plan.content, plan.content.results)
+    values = _count_apart(plan.content.results)
     total = plan.total(plan.bases[0]) + 1
-    for at, (label, value) in enumerate(zip(_list_apart(plan.content), values, strict=True), 1):
+    for at, (label, value) in enumerate(zip(_list_apart(), values, strict=True), 1):
         page.write_string(row + at, 0, label, pen.style("total"))
         page.write_formula(row + at, SUM, f"={xl_col_to_name(SUM + at)}{total}", pen.style("total"), value)
 
@@ -234,11 +238,10 @@ def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
     return [*counts, sum(counts)]
 
 
-def _count_apart(content: Content, results: Sequence[ItemResult]) -> list[int]:
+def _count_apart(results: Sequence[ItemResult]) -> list[int]:
     """Return the numbers of `_list_apart` as run, when no row is to be run again."""
     anchored = sum(one.item.quantity for one in results if one.is_anchored)
-    counts = [anchored, sum(one.item.quantity for one in results)]
-    return [0, *counts] if content.run.has_simulated else counts
+    return [0, anchored, sum(one.item.quantity for one in results)]
 
 
 def _write_floors(plan: _Plan, basis: str) -> None:
@@ -247,17 +250,17 @@ def _write_floors(plan: _Plan, basis: str) -> None:
     title = _("Pieces by class and floor: {basis}", basis=pen.terms.bases[basis])
     page.write_string(top, 0, title, pen.style("heading"))
     is_first = basis == plan.bases[0]
-    _write_heads(plan, top + 1, _("Floor"), [_("pieces"), *(_list_apart(content) if is_first else ())])
+    _write_heads(plan, top + 1, _("Floor"), [_("pieces"), *(_list_apart() if is_first else ())])
     for number, floor in enumerate(content.floors, 1):
         row = top + 1 + number
         pen.put(page, row, 0, floor.title, pen.style("text"))
         page.set_row(row, row_height([floor.title], WIDTHS))
-        values = _count_as_run(floor.results, basis) + (_count_apart(content, floor.results) if is_first else [])
+        values = _count_as_run(floor.results, basis) + (_count_apart(floor.results) if is_first else [])
         formulas = _count(plan, basis, number, row + 1)
         for at, (formula, count) in enumerate(zip(formulas, values, strict=True), 1):
             page.write_formula(row, at, formula, pen.style("live"), count)
     values = _count_as_run(content.results, basis)
-    values += _count_apart(content, content.results) if is_first else []
+    values += _count_apart(content.results) if is_first else []
     page.write_string(plan.total(basis), 0, _("All floors"), pen.style("total"))
     for at, value in enumerate(values, 1):
         letter = xl_col_to_name(at)
@@ -278,7 +281,7 @@ def _count(plan: _Plan, basis: str, number: int, row: int) -> list[str]:
     """Return the formulas that count the pieces of a floor, the `number`-th, in the row `row` of its table."""
     areas, terms, quantity = plan.areas, plan.pen.terms, plan.areas["quantity"]
     on_floor = f"({areas['floor']}={plan.pen.refer('Floors')}$A${HEAD + number})"  # SUMIFS would read names as criteria
-    anchored = f"({areas['anchored']}={literal(terms.yes)})"
+    anchored = f"({areas['held']}={literal(terms.yes)})"
     free = f"{on_floor}*(1-{anchored})*({areas['basis']}={literal(terms.bases[basis])})"
     formulas = []
     for label in terms.labels:
@@ -294,9 +297,7 @@ def _count_others(plan: _Plan, on_floor: str, anchored: str, number: int, row: i
     """Return the formulas that count what has no class on a floor, and all pieces."""
     areas, letter = plan.areas, xl_col_to_name(SUM)
     again = f"({areas['basis']}={literal(plan.pen.terms.again)})"
-    each = [f"{on_floor}*(1-{again})*{anchored}"]
-    if plan.content.run.has_simulated:
-        each = [f"{on_floor}*{again}", *each]
+    each = [f"{on_floor}*{again}", f"{on_floor}*(1-{again})*{anchored}"]
     sums = [f"{letter}{plan.tables[basis] + 2 + number}" for basis in plan.bases]
     own = [f"{xl_col_to_name(SUM + at)}{row}" for at in range(1, 1 + len(each))]
     return [*(f"=SUMPRODUCT({one},{areas['quantity']})" for one in each), f"={'+'.join(sums + own)}"]
