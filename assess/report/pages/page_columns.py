@@ -157,7 +157,10 @@ def _say_place(one: ItemResult) -> str:
 
 
 def _say_formula(one: ItemResult) -> str:
-    return f"{words.risk_label(one.formula_class)}, {words.percent(one.formula.value)}"
+    """Return the class by formula and its chance; behind an arrow a larger one under another motion of the row."""
+    found, worst = one.governing.methods[one.formula_key].value, one.formula.value
+    more = f" → {words.percent(worst)}" if has_worse_motion(one, one.formula_key) else ""
+    return f"{words.risk_label(one.formula_class)}, {words.percent(found)}{more}"
 
 
 def _of_piece(field: Field, where: Where, method: "MethodInfo | None") -> PageColumn:
