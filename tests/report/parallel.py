@@ -32,8 +32,8 @@ BRACKETS: list[tuple[str, float | None]] = [
     ("yes", None), ("yes", 0.01), ("yes", 50.0), ("partly", None), ("partly", 0.01), ("partly", 50.0), ("no", 50.0),
 ]  # fmt: skip
 """What stands in Anchored, and the bracket's capacity [kN]: too small for any motion here, or large enough for all."""
-HELD = (True, False, True, False, False, True, False)
-"""Which of them count as anchored."""
+HELD = {"b": (True, False, True, False, False, True, False), "s": (True, True, True, False, True, True, False)}
+"""Which of them count as anchored: of slim pieces, and of stocky ones, which pull at no bracket here."""
 VERY_STOCKY = {"breadth": 150, "width": 160, "height": 100}
 """It does not rock: in a run that simulates every piece its class is that of the formula."""
 

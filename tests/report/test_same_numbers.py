@@ -184,7 +184,10 @@ def test_outcomes_npz_are_the_verification_of_results_json(written):
 
 
 def test_counts_are_the_same_everywhere(written):
-    """results.json counted by hand, the schedule's state before, the Excel summary, and the page, of which the PDF is made."""
+    """results.json counted by hand, the schedule's state before, the Excel summary, and the page.
+
+    The PDF is made of the same page.
+    """
     results = written.results
     items = read_json(written.paths["json"])["items"]
     free = [one for one in items if not one["anchor"]["counts_as_anchored"]]

@@ -16,8 +16,8 @@ import pytest
 from openpyxl.formula.translate import Translator
 
 from assess.errors import WorkbookError
-from assess.i18n import load_catalogue, speaking
-from assess.pipeline.live_values import live_values
+from assess.i18n import gettext, load_catalogue, speaking
+from assess.pipeline.live_values import live_values, without_shaking
 from assess.units import QUANTITIES
 from assess.workbook.formulas import LIVE_METHODS
 from assess.workbook.layout import LETTERS, PLACES
@@ -607,6 +607,40 @@ def test_an_anchored_piece_of_an_unknown_floor_still_says_so(tmp_path: Path) -> 
     assert shown_of(tmp_path / "none", {"anchored": "yes"}, [{"floor": "1"}])[1:] == [
         "shaking?", "shaking?", "shaking?", "anchored", "shaking?",
     ]  # fmt: skip
+
+
+BRACKETS: Rows = [
+    {"anchored": word, "bracket_capacity": capacity, "bracket_height": height}
+    for word in ("yes", "Sì", "partly", "no", "unknown")
+    for capacity, height in ((0.01, None), (50, 150), (None, 150), (" ", None))
+]  # fmt: skip
+"""Of the first two words a typed capacity leaves it to the program whether the piece counts as anchored."""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_a_typed_capacity_leaves_it_to_the_program(tmp_path: Path, engine: Engine, language: str) -> None:
+    """Such a row says "run assess" in the sheet and in what the program stores there."""
+    items = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180, **one} for at, one in enumerate(BRACKETS)]
+    with speaking(load_catalogue(language)):
+        path = fill(tmp_path / "book.xlsx", items, [{"floor": "1", "pfa_x": 0.5}], {})
+        check(path, engine)
+        shown, run = engine(path), gettext("run assess")
+        for row, one in enumerate(BRACKETS, 2):
+            *numbers, label, _ = shown[row]
+            is_left = one["anchored"] in ("yes", "Sì") and isinstance(one["bracket_capacity"], float | int)
+            assert (label == run) == is_left, one
+            assert all(isinstance(number, float) for number in numbers), "its chance as a free-standing piece"
+
+
+def test_a_typed_capacity_is_left_to_the_program_without_shaking(tmp_path: Path) -> None:
+    held = {"anchored": "yes", "bracket_capacity": 2.0}
+    assert shown_of(tmp_path, held, [{"floor": "1"}])[1:] == [
+        "shaking?", "shaking?", "shaking?", "run assess", "shaking?",
+    ]  # fmt: skip
+    unshaken = without_shaking(Content({"Items": [{"item": "A1", "floor": "1", "breadth": 40, "height": 180, **held}],
+                                        "Floors": [{"floor": "1"}], "Building": [{}]}))  # fmt: skip
+    assert [row[4] for row in unshaken.live or ()] == ["run assess"]
 
 
 # ---------------------------------------------------------------- what is no number, or no sensible one

@@ -1,0 +1,249 @@
+"""Edits of the Excel report: a weaker earthquake raises no count; a bracket that may hold no longer asks for a run."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import openpyxl
+import openpyxl.utils
+import pytest
+
+import assess
+from assess.report.xlsx.items_sheet import item_columns
+from assess.results import Results
+from assess.risk import RiskClass
+from assess.settings import Settings
+from tests.conftest import EXAMPLE
+from tests.recalculate import needs_libreoffice, stored_cells, write_report
+from tests.report.parallel import BRACKETS, HELD, Cells, Edit, assess_rich, read_items, recalculate
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+AGAIN, ANCHORED = "run again", "⚓ "
+LABELS = [risk.label for risk in RiskClass]
+ENGINES = ["formualizer", pytest.param("libreoffice", marks=[pytest.mark.libreoffice, needs_libreoffice])]
+DECIDED = {f"{floor}-{kind}{at}" for floor in "12" for kind in "bs" for at, (word, capacity) in enumerate(BRACKETS)
+           if word != "no" and capacity}  # fmt: skip
+"""Pieces of which a bracket of known capacity decides whether they count as anchored."""
+
+
+@dataclass(frozen=True)
+class Book:
+    """A run and its Excel report."""
+
+    results: Results
+    path: Path
+
+    @property
+    def letters(self) -> dict[str, str]:
+        """Columns of Items by key."""
+        return {one.key: openpyxl.utils.get_column_letter(at) for at, one in enumerate(item_columns(self.results), 1)}
+
+    def cell(self, item: str, key: str) -> tuple[str, str]:
+        """Sheet and cell of a value of Items."""
+        row = next(at for at, one in enumerate(self.results, 2) if one.item.item == item)
+        return "Items", f"{self.letters[key]}{row}"
+
+    def scaled(self, factor: float) -> list[Edit]:
+        """Return the edits that scale every PFA and PFV that is typed in Floors."""
+        sheet = openpyxl.load_workbook(self.path)["Floors"]
+        return [("Floors", cell.coordinate, factor * cell.value) for column in "CDFG" for cell in sheet[column][1:]
+                if isinstance(cell.value, float | int)]  # fmt: skip
+
+    def items(self, cells: Cells) -> dict[str, dict[str, Any]]:
+        """Return the rows of Items by item."""
+        return {one["item"]: one for one in read_items(cells, self.results)}
+
+    def counts(self, cells: Cells) -> dict[tuple[str, int], tuple[list[int], list[int]]]:
+        """Return what the tables by floor of the Summary show, by basis and place of the floor.
+
+        First the pieces of each class and above, then those that have no class: run again, anchored, all.
+        """
+        sheet = openpyxl.load_workbook(self.path)["Summary"]
+        floors, found = len(self.results.floor_rows), {}
+        for head in (cell.row for cell in sheet["A"] if cell.value == "Floor"):
+            basis = str(sheet.cell(head - 1, 1).value).split(": ")[1]
+            for row in range(head + 1, head + 1 + floors):
+                by_class = [cells.get(("Summary", f"{letter}{row}"), 0) for letter in "BCDE"]
+                others = [cells.get(("Summary", f"{letter}{row}"), 0) for letter in "GHI"]
+                found[basis, row - head] = [sum(by_class[at:]) for at in range(4)], others
+        return found
+
+
+def _rank(shown: str) -> int:
+    """Return the place of a class as the sheet shows it; -1 where the row is to be run again."""
+    return -1 if shown == AGAIN else LABELS.index(shown.removeprefix(ANCHORED).rstrip("*"))
+
+
+@pytest.fixture(scope="module", params=["none", "high", "all", pytest.param("example", marks=pytest.mark.slow)])
+def book(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("weaker")
+    if request.param == "example":
+        results = assess.run(assess.read_inventory(EXAMPLE), Settings())
+    else:
+        results = assess_rich(folder, Settings(verify=request.param, runs=40))
+    write_report(results, folder / "r.xlsx")
+    return Book(results, folder / "r.xlsx")
+
+
+@pytest.fixture(scope="module")
+def by_formula(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("by_formula")
+    results = assess_rich(folder, Settings(verify="none"))
+    write_report(results, folder / "r.xlsx")
+    return Book(results, folder / "r.xlsx")
+
+
+@pytest.fixture(scope="module")
+def simulated(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("simulated")
+    results = assess_rich(folder, Settings(verify="all", runs=40))
+    write_report(results, folder / "r.xlsx")
+    return Book(results, folder / "r.xlsx")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("factor", [0.9, 0.5])
+def test_weaker_floors_raise_no_count_and_no_class(book, tmp_path, factor, engine):
+    """Of each class and above: of a class alone there may be more, as those of higher classes fall into it."""
+    edits = book.scaled(factor)
+    assert len(edits) >= len(book.results.floor_rows)
+    stored, cells = stored_cells(book.path), recalculate(book.path, edits, engine, tmp_path)
+    before, after = book.counts(stored), book.counts(cells)
+    assert before.keys() == after.keys()
+    for place, (classes, others) in before.items():
+        assert all(new <= old for new, old in zip(after[place][0], classes, strict=True)), place
+        assert after[place][1][1] <= others[1], "anchored"
+        assert after[place][1][2] == others[2], "all"
+    rows = book.items(cells)
+    for item, row in book.items(stored).items():
+        assert _rank(rows[item]["class"]) <= _rank(row["class"]), item
+    _check_waiting(book, rows, cells)
+
+
+def _check_waiting(book: Book, rows: dict[str, dict[str, Any]], cells: Cells) -> None:
+    """Where every floor is edited, what was simulated waits for a run, and what a bracket decides."""
+    waiting = {one.item.item for one in book.results if one.adopted.basis != "formula"}
+    known = {one.item.item for one in book.results if one.item.item in DECIDED}
+    assert {item for item, row in rows.items() if row["class"] == AGAIN} == waiting | known
+    pieces = sum(one.item.quantity for one in book.results if one.item.item in waiting | known)
+    assert sum(others[0] for _, others in book.counts(cells).values() if isinstance(others[0], int | float)) == pieces
+    sheet = openpyxl.load_workbook(book.path)["Summary"]
+    tops = [cell.row for cell in sheet["A"] if str(cell.value).startswith("The pieces most likely to fall")]
+    for top in tops:  # the lists, which the charts draw
+        names = [str(cells.get(("Summary", f"A{row}")) or "").split(":")[0] for row in range(top + 2, top + 12)]
+        assert not (waiting | known) & set(names)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_stronger_floors_lower_no_class_of_a_row_that_follows(book, tmp_path, engine):
+    stored = stored_cells(book.path)
+    cells = recalculate(book.path, book.scaled(1.5), engine, tmp_path)
+    rows = book.items(cells)
+    for item, row in book.items(stored).items():
+        if rows[item]["class"] != AGAIN:
+            assert _rank(rows[item]["class"]) >= _rank(row["class"]), item
+    _check_waiting(book, rows, cells)
+
+
+# ---------------------------------------------------------------- brackets
+
+
+def test_what_counts_as_anchored_is_what_the_bracket_says(by_formula, simulated):
+    for one in (by_formula, simulated):
+        rows = one.items(stored_cells(one.path))
+        for floor in "12":
+            for kind in "bs":
+                shown = [rows[f"{floor}-{kind}{at}"] for at in range(len(BRACKETS))]
+                assert tuple(row["held"] == "yes" for row in shown) == HELD[kind]
+                assert tuple(row["class"].startswith(ANCHORED) for row in shown) == HELD[kind]
+
+
+def _count(book: Book, cells: Cells) -> tuple[int, int, int]:
+    """Return the pieces of the building that have a class, that are to be run again, and that are anchored."""
+    counts = book.counts(cells)
+    return (
+        sum(classes[0] for classes, _ in counts.values()),
+        *(sum(others[at] for _, others in counts.values() if isinstance(others[at], int | float)) for at in (0, 1)),
+    )
+
+
+YES, NO, PARTLY = 0, 6, 3
+"""Places in BRACKETS of an anchored piece without capacity, one not anchored, and a partly anchored one without."""
+SINGLE: dict[str, tuple[int, str, Any, str]] = {
+    "no longer anchored": (YES, "anchored", "no", "free"),
+    "anchored by a bracket that holds": (NO, "anchored", "yes", "held"),
+    "partly anchored by one that holds at 84 %": (NO, "anchored", "partly", "held"),
+    "partly anchored, capacity not known": (YES, "anchored", "partly", "free"),
+    "a bracket that fails stays one": (1, "anchored", "partly", "free"),
+    "a capacity is typed": (YES, "bracket_capacity_kn", 1.0, "again"),
+    "a capacity of a partly anchored one": (PARTLY, "bracket_capacity_kn", 1.0, "again"),
+    "a stronger bracket": (1, "bracket_capacity_kn", 50.0, "again"),
+    "a capacity is cleared": (2, "bracket_capacity_kn", None, "again"),
+    "a capacity that is no number": (2, "bracket_capacity_kn", "abc", "again"),
+    "its height": (2, "bracket_height_cm", 50.0, "again"),
+    "its weight": (5, "weight_kg", 4000.0, "again"),
+    "a capacity that nothing hangs on": (NO, "bracket_capacity_kn", 0.02, "free"),
+    "a weight that nothing hangs on": (YES, "weight_kg", 4000.0, "held"),
+}
+
+
+@pytest.mark.parametrize("edit", SINGLE)
+@pytest.mark.parametrize("kind", ["by_formula", "simulated"])
+def test_an_edited_anchor_or_bracket(kind, edit, tmp_path, request):
+    one = request.getfixturevalue(kind)
+    at, key, value, expected = SINGLE[edit]
+    cells = recalculate(one.path, [(*one.cell(f"1-b{at}", key), value)], "formualizer", tmp_path)
+    _check_single(one, cells, {f"1-b{at}": expected})
+
+
+def _check_single(book: Book, cells: Cells, expected: dict[str, str]) -> None:
+    """Hold edited rows, and the counts, against what is expected of each: held, free or again."""
+    as_run = book.items(stored_cells(book.path))
+    rows, wanted = book.items(cells), {item: _state(row) for item, row in as_run.items()} | expected
+    assert {item: _state(row) for item, row in rows.items()} == wanted
+    quantities = {item: row["quantity"] for item, row in rows.items()}
+    sums = tuple(
+        sum(quantities[item] for item, state in wanted.items() if state == one) for one in ("free", "again", "held")
+    )
+    assert _count(book, cells) == sums
+    for item, state in expected.items():
+        if state != "again":
+            assert rows[item]["class"].removeprefix(ANCHORED) == as_run[item]["class"].removeprefix(ANCHORED)
+
+
+def _state(row: dict[str, Any]) -> str:
+    if row["class"] == AGAIN:
+        return "again"
+    return "held" if row["class"].startswith(ANCHORED) else "free"
+
+
+@pytest.mark.parametrize("kind", ["by_formula", "simulated"])
+@pytest.mark.libreoffice
+@needs_libreoffice
+def test_single_cells_in_libreoffice(kind, tmp_path, request):
+    """A cell of many rows at once: each row answers for itself."""
+    one = request.getfixturevalue(kind)
+    chosen = {at: (key, value, expected) for at, key, value, expected in SINGLE.values()}
+    edits: list[Edit] = [(*one.cell(f"1-b{at}", key), value) for at, (key, value, _) in chosen.items()]
+    expected = {f"1-b{at}": state for at, (_, _, state) in chosen.items()}
+    follows = "free" if kind == "by_formula" else "again"
+    edits += [(*one.cell("1-1", "breadth_cm"), 30.5), (*one.cell("2-2", "height_cm"), 189.0)]
+    edits += [(*one.cell("2-s2", "width_cm"), 170.0), (*one.cell("2-b0", "friction"), 0.4)]
+    more = {"1-1": follows, "2-2": follows, "2-s2": "again", "2-b0": "held" if kind == "by_formula" else "again"}
+    cells = recalculate(one.path, edits, "libreoffice", tmp_path)
+    states = {item: _state(row) for item, row in one.items(cells).items()}
+    as_run = {item: _state(row) for item, row in one.items(stored_cells(one.path)).items()}
+    assert states == as_run | expected | more
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_a_row_by_formula_goes_by_the_largest_of_parallel_records(by_formula, tmp_path, engine):
+    """The record in the floor's own line is edited below the other one, which then governs."""
+    sheet = openpyxl.load_workbook(by_formula.path, data_only=True)["Floors"]
+    lines = {row[0].row: (row[2].value, row[3].value) for row in sheet.iter_rows(min_row=2) if row[0].value == "2"}
+    (first, (largest, _)), (_, (other, velocity)) = lines.items()
+    assert largest > other
+    cells = recalculate(by_formula.path, [("Floors", f"C{first}", other / 2)], engine, tmp_path)
+    row = by_formula.items(cells)["2-0"]
+    assert (row["axis"], row["pfa_g"], row["pfv_cm_s"]) == ("X", pytest.approx(other), pytest.approx(velocity))
