@@ -159,13 +159,11 @@ def test_what_counts_as_anchored_is_what_the_bracket_says(by_formula, simulated)
                 assert tuple(row["class"].startswith(ANCHORED) for row in shown) == HELD[kind]
 
 
-def _count(book: Book, cells: Cells) -> tuple[int, int, int]:
+def _count(book: Book, cells: Cells) -> list[int]:
     """Return the pieces of the building that have a class, that are to be run again, and that are anchored."""
-    counts = book.counts(cells)
-    return (
-        sum(classes[0] for classes, _ in counts.values()),
-        *(sum(others[at] for _, others in counts.values() if isinstance(others[at], int | float)) for at in (0, 1)),
-    )
+    counts = list(book.counts(cells).values())
+    apart = [others for _, others in counts if isinstance(others[0], int | float)]  # of the first table alone
+    return [sum(classes[0] for classes, _ in counts), *(sum(others[at] for others in apart) for at in (0, 1))]
 
 
 YES, NO, PARTLY = 0, 6, 3
@@ -203,9 +201,8 @@ def _check_single(book: Book, cells: Cells, expected: dict[str, str]) -> None:
     rows, wanted = book.items(cells), {item: _state(row) for item, row in as_run.items()} | expected
     assert {item: _state(row) for item, row in rows.items()} == wanted
     quantities = {item: row["quantity"] for item, row in rows.items()}
-    sums = tuple(
-        sum(quantities[item] for item, state in wanted.items() if state == one) for one in ("free", "again", "held")
-    )
+    states = ("free", "again", "held")
+    sums = [sum(quantities[item] for item, state in wanted.items() if state == one) for one in states]
     assert _count(book, cells) == sums
     for item, state in expected.items():
         if state != "again":

@@ -52,8 +52,8 @@ def _heads() -> list[str]:
         with_unit(_("PFA Y"), "g"), with_unit(_("PFV Y"), "cm/s"), _("Source Y"), with_unit(_("Elevation"), "m"),
         _("X since the run"), _("Y since the run"), with_unit(_("PFA X as run"), "g"),
         with_unit(_("PFV X as run"), "cm/s"), with_unit(_("PFA Y as run"), "g"), with_unit(_("PFV Y as run"), "cm/s"),
-        with_unit(_("Largest PFA X"), "g"), with_unit(_("its PFV X"), "cm/s"), with_unit(_("Largest PFA Y"), "g"),
-        with_unit(_("its PFV Y"), "cm/s"),
+        with_unit(_("Largest PFA X"), "g"), with_unit(_("PFV X of that record"), "cm/s"),
+        with_unit(_("Largest PFA Y"), "g"), with_unit(_("PFV Y of that record"), "cm/s"),
     ]  # fmt: skip
 
 

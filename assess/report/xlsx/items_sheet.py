@@ -230,7 +230,7 @@ def _workings(results: Results) -> Iterator[Column]:
     yield column("behind", _("Chance behind the class"), partial(chance_behind, is_ideal=is_ideal))
     yield column("upper_end", _("Upper end as run"), partial(upper_end, is_ideal=is_ideal))
     yield column("formula_run", _("Largest chance by formula as run"), _if_as_run(lambda one: one.formula.value))
-    yield column("formula_pfa_run", _("Its PFA as run"), _if_as_run(lambda one: one.by_formula.motion.pfa_g))
+    yield column("formula_pfa_run", _("PFA of that chance as run"), _if_as_run(lambda one: one.by_formula.motion.pfa_g))
     yield column(
         "motion_run", _("Line of the motion in Floors"), _if_as_run(lambda one: places[one.governing.motion.index])
     )
