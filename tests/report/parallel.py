@@ -32,8 +32,11 @@ BRACKETS: list[tuple[str, float | None]] = [
     ("yes", None), ("yes", 0.01), ("yes", 50.0), ("partly", None), ("partly", 0.01), ("partly", 50.0), ("no", 50.0),
 ]  # fmt: skip
 """What stands in Anchored, and the bracket's capacity [kN]: too small for any motion here, or large enough for all."""
-HELD = {"b": (True, False, True, False, False, True, False), "s": (True, True, True, False, True, True, False)}
-"""Which of them count as anchored: of slim pieces, and of stocky ones, which pull at no bracket here."""
+HELD = {"b": (True, False, True, False, False, True, False), "s": (True, True, True, False, None, True, False)}
+"""Which of them count as anchored: slim pieces, and stocky ones. None: where the weight holds it at 84 % of PFA.
+
+By hand: a stocky one pulls at its bracket where k z > B/2, with z = 0.8 m and B/2 = 0.75 m: from k = 0.94.
+"""
 VERY_STOCKY = {"breadth": 150, "width": 160, "height": 100}
 """It does not rock: in a run that simulates every piece its class is that of the formula."""
 

@@ -346,11 +346,10 @@ def _dress(pen: Pen, page: Any, columns: Sequence[Column], last: int) -> None:
 def _comment(page: Any, columns: Sequence[Column]) -> None:
     comments = {
         "breadth_cm": _(
-            "Edit the coloured cells. Quantity and Anchored change the counts at once. A row that was simulated says "
-            "'run again' once its size, centre of gravity, friction, axis, floor or the floor's motion is edited: it "
-            "then leaves all counts, lists and charts. A row that was not simulated follows by the formula. A row that "
-            "is held by a bracket of known capacity says 'run again' too, and also where its bracket or weight is "
-            "edited, as the bracket may hold no longer."
+            "Edit the coloured cells. Quantity and Anchored change the counts at once. A row that was not simulated "
+            "follows by the formula. A row that was simulated says 'run again' once its size, centre of gravity, "
+            "friction, axis, floor or the floor's motion is edited: it then leaves all counts, lists and charts. So "
+            "does a row held by a bracket of known capacity, and also once its bracket or weight is edited."
         ),
         "class_formula": _(
             "By the limits in Assumptions. * behind a class: outside the range in which the formula was checked by "
