@@ -148,6 +148,12 @@ def test_every_chart_draws_cells_that_follow_an_edit(path):
         for sheet, area in areas:
             cells = [cell for row in book[sheet][area.replace("$", "")] for cell in row]
             assert all(cell.data_type == "f" or cell.fill.fgColor.rgb == "FFFFFBE6" for cell in cells), (sheet, area)
+            if any(_is_hidden(book[sheet], cell.column) for cell in cells):
+                assert '<c:plotVisOnly val="1"/>' not in chart, "it would be empty"
+
+
+def _is_hidden(sheet, column):
+    return any(one.hidden and one.min <= column <= one.max for one in sheet.column_dimensions.values())
 
 
 def test_charts_have_the_colours_of_the_classes_and_patterns(path):

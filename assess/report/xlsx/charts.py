@@ -94,7 +94,7 @@ def count_rows(floors: int) -> int:
 
 
 def add_motion(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Mapping[str, int]) -> None:
-    """Draw the PFA of every floor along both axes; `columns` are where it stands, by the axis."""
+    """Draw the PFA of every floor along both axes; `columns` are where it stands, by the axis, and may be hidden."""
     sheet, (first, last) = pen.sheets["Floors"], rows
     chart = pen.book.add_chart({"type": "line"})
     for axis, column in columns.items():
@@ -105,6 +105,7 @@ def add_motion(pen: Pen, page: Any, cell: Cell, rows: Cell, columns: Mapping[str
              {"name": [sheet, 0, column], "line": line, "marker": mark})  # fmt: skip
     chart.set_x_axis({"name": _("Floor"), "num_font": {"size": 8}})
     chart.set_y_axis({"min": 0, "num_format": "0.0"})
+    chart.show_hidden_data()
     description = _("Peak acceleration of every floor along X and Y, as in the table above")
     _place(page, cell, chart, _("PFA by floor"), (1000, 300), description)
 
