@@ -31,6 +31,7 @@ EXAMPLES = (
     "assess routes building.xlsx",
     "assess routes building.xlsx --pfa 0.1:0.6:0.1 --plot routes.png --csv routes.csv",
     "assess routes building.xlsx --scenario recorded --runs 400 --json",
+    "assess routes building.xlsx --pfa 0.02:0.4:0.02",
 )
 
 PFA = Span("--pfa", "g", step="0.05", most=5, examples="0.1:1.0 or 0.1:1.0:0.05")
@@ -53,6 +54,10 @@ def command(
 ) -> None:
     """Show the chance that each evacuation route is blocked.
 
+    The output begins with the verdict: up to which PFA every route stays below 3 %, which one first does not, and
+    because of which pieces. Where the chance of any route differs by more than 20 percentage points between two values,
+    further values are inserted halfway, up to 24 of them and down to steps of 2 % of the PFA; they are marked.
+
     The chance is given against the peak floor acceleration (PFA): at each value every floor of a route shakes with that
     PFA along both axes, by the floor's own motions, each scaled by value / the floor's PFA. The same motions serve at
     every value; the spectrum keeps its shape, PFV scales along. As in a run, each draw is one earthquake, stronger or
@@ -60,6 +65,7 @@ def command(
     Piece uncertainty in the sheet Building.
 
     Rocking is not monotone: a piece may stand in a stronger motion and overturn in a weaker one, so a chance may fall.
+    Ranges are 95 % sampling intervals, for the number of draws only.
     """
     values, settings = PFA.read(pfa), read_settings(verify="none", runs=runs, seed=seed, scenario=scenario)
     if settings.runs == AUTO:
@@ -67,7 +73,7 @@ def command(
     check_file(csv, "table", (".csv",))
     check_file(plot, "figure")
     from assess.cli.route_output import Sweep
-    from assess.pipeline.route_sweep import find_fragility
+    from assess.pipeline.route_sweep import MOST_INSERTED, find_fragility
     from assess.pipeline.run import compute
     from assess.workbook.read import read_inventory
 
@@ -79,7 +85,7 @@ def command(
         assessment = compute(inventory, settings, progress=progress)
         print_warnings(assessment.problems)
         peaks = [value * GRAVITY for value in values]
-        fragility = find_fragility(assessment, peaks, jobs=jobs, progress=progress)
+        fragility = find_fragility(assessment, peaks, most_inserted=MOST_INSERTED, jobs=jobs, progress=progress)
     sweep = Sweep(assessment, fragility)
     typer.echo(sweep.to_json() if as_json else sweep.to_text())
     files = {} if csv is None else {csv: sweep.to_csv().encode("utf-8-sig")}

@@ -1,4 +1,4 @@
-"""Results of `assess routes`, the chance of blockage against PFA: as JSON, CSV and text."""
+"""Results of `assess routes`, the chance of blockage against PFA: as JSON, CSV and text, the verdict first."""
 
 import csv
 import io
@@ -10,8 +10,9 @@ from dataclasses import asdict, astuple, dataclass
 from typing import Any
 
 from assess.cli.console import count
+from assess.cli.route_verdict import Verdict, find_verdict
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.route_sweep import JUMP, Fragility, RouteFragility, find_passing
+from assess.pipeline.route_sweep import FINEST, JUMP, Fragility, RouteFragility, find_jumps, find_passing
 from assess.pipeline.versions import versions
 from assess.report import words
 from assess.report.data import disarm
@@ -22,13 +23,15 @@ from assess.version import __version__
 
 LEVELS = (0.03, 0.3, 0.5)
 """Chances of blockage whose PFA is given [-]."""
+MOST_CAUSES = 6
+"""Pieces named in the lines of a route."""
 A_LINE = 12
 """Values side by side in the text."""
 WIDE = 110
 """Characters of a line of its sentences."""
 HEADS = (
     "route", "floors", "pfa_g", "blocked", "low", "high", "independent", "correlated", "if_anchors_fail", "pieces",
-    "unverified", "runs",
+    "unverified", "runs", "inserted",
 )  # fmt: skip
 MEANING = (
     "Chance that an evacuation route is blocked if every floor of it shakes with the PFA along both axes; not a chance "
@@ -41,8 +44,17 @@ MEANING = (
     "the chance is the largest under three assumptions on their correlation, and the range covers all three.",
     "The PFA at which a chance reaches a level is interpolated linearly. Where the chance jumps by more than "
     f"{100 * JUMP:g} percentage points between two values, only these two are given (between_g, without pfa_g).",
+    "Values are inserted halfway between two at which the chance of any route differs by more than "
+    f"{100 * JUMP:g} percentage points, down to steps of {100 * FINEST:g} % of the PFA; the same draws serve there.",
 )
-FINER = "For a level between two values, take smaller steps: --pfa LOW:HIGH:STEP"
+NOTES = (
+    "Chances are of an earthquake with that PFA, not per year. The range (from, to) covers the number of draws only. "
+    "Sliding, castors and spilt contents are not modelled. Method: assess routes --help.",
+    f"* inserted, as the chance differs by more than {100 * JUMP:g} percentage points between the values next to it.",
+    "Between two values: the chance jumps from one to the other. For a level between them, take smaller steps: "
+    "--pfa LOW:HIGH:STEP",
+)
+"""What ends the text: always, where values are inserted, and where a wide step has a jump."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,7 +82,7 @@ class Sweep:
             if floors:
                 yield (
                     f"The motions of {name_floors(floors)} may be too weak, {why}: chances that rest on them are "
-                    f"lower bounds, and assess run leaves such routes not known where it matters. {fix}"
+                    f"lower bounds. {fix}"
                 )
         if stocky := self.fragility.stocky:
             yield (
@@ -93,12 +105,18 @@ class Sweep:
             return "Nothing is taken as uncertain but the phases of the motions: the PFA and every piece are exact."
         return f"Taken as uncertain in each draw: {'; '.join(parts)}. All pieces of a draw share its earthquake."
 
+    @property
+    def verdict(self) -> Verdict:
+        """Up to which PFA every route stays below the limit, and which one first does not."""
+        return find_verdict(self.fragility, self.pfa_g)
+
     def describe(self) -> dict[str, Any]:
         """Return the document of `assess routes --json`."""
         inventory, fragility = self.assessment.inventory, self.fragility
         return {
             "workbook": {"file": inventory.source.name, "sha256": inventory.sha256},
             "assess": {"version": __version__, "platform": dict(versions(has_rocked=True, has_routes=True))},
+            "verdict": self.verdict.describe(),
             "meaning": " ".join((*MEANING, self.say_uncertain())),
             "cautions": list(self.cautions()),
             "scenario": self.assessment.scenario,
@@ -106,12 +124,13 @@ class Sweep:
             "seed": fragility.seed,
             "uncertainty": None if fragility.uncertainty is None else asdict(fragility.uncertainty),
             "pfa_g": self.pfa_g,
+            "inserted_g": [_in_g(value) for value in fragility.values if value in fragility.inserted],
             "routes": [self._describe(route) for route in fragility.routes],
         }
 
     def _describe(self, one: RouteFragility) -> dict[str, Any]:
         anchored = one.if_anchors_fail or (None,) * len(one.blocked)
-        pairs = zip(self.pfa_g, one.blocked, anchored, strict=True)
+        pairs = zip(self.pfa_g, one.blocked, anchored, self._inserted, strict=True)
         peaks = one.scenario_pfa
         return {
             "route": one.route,
@@ -119,11 +138,20 @@ class Sweep:
             "scenario_pfa_g": None if peaks is None else [_in_g(peak) for peak in peaks],
             "evaluated": one.is_evaluated,
             "doubtful_pieces": one.doubtful,
-            "chances": [{"pfa_g": pfa, **_chance(chance, fails)} for pfa, chance, fails in pairs if one.is_evaluated],
+            "causes": [{"item": piece.item, "row": piece.row} for piece in one.causes],
+            "chances": [
+                {"pfa_g": pfa, "inserted": inserted, **_chance(chance, fails)}
+                for pfa, chance, fails, inserted in pairs
+                if one.is_evaluated
+            ],
             "passes": [self._pass(one.blocked, level) for level in LEVELS if one.is_evaluated],
             "passes_if_anchors_fail": one.if_anchors_fail
             and [self._pass(one.if_anchors_fail, level) for level in LEVELS],
         }
+
+    @property
+    def _inserted(self) -> list[bool]:
+        return [value in self.fragility.inserted for value in self.fragility.values]
 
     def _pass(self, chances: Sequence[Chance], level: float) -> dict[str, Any]:
         found = self._passing(chances, level)
@@ -167,36 +195,57 @@ class Sweep:
 
     def _lines(self) -> Iterator[str]:
         fragility = self.fragility
+        yield from textwrap.wrap(self.verdict.say(), WIDE)
+        blocks = [list(self._route_lines(one)) for one in fragility.routes]
+        for block in (one for one in blocks if len(one) > 1):
+            yield from ("", *block)
+        if short := [line for block in blocks if len(block) == 1 for line in block]:
+            yield from ("", *short)
+        yield ""
+        for paragraph in (*self.cautions(), *self._notes()):
+            yield from textwrap.wrap(paragraph, WIDE)
         yield (
             f"{self.assessment.inventory.source.name}: scenario {self.assessment.scenario}, "
             f"{count(fragility.runs, 'draw')}, seed {fragility.seed}"
         )
-        for one in fragility.routes:
-            yield ""
-            yield from self._route_lines(one)
-        every = [way for one in fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
-        if any(self._passing(way, level).is_jump for way in every for level in LEVELS):
-            yield from ("", FINER)
-        for paragraph in (*self.cautions(), self.say_uncertain(), *MEANING):
-            yield ""
-            yield from textwrap.wrap(paragraph, WIDE)
+
+    def _notes(self) -> Iterator[str]:
+        """Yield what the table leaves open, shortly."""
+        always, inserted, finer = NOTES
+        if self.fragility.inserted:
+            yield inserted
+        every = [way for one in self.fragility.routes for way in (one.blocked, one.if_anchors_fail) if way]
+        passed = [self._passing(way, level) for way in every for level in LEVELS]
+        if any(one.is_jump and one.high - one.low >= FINEST * one.high for one in passed):
+            yield finer
+        yield always
+
+    def _shown(self, one: RouteFragility) -> list[int]:
+        """Return the numbers of the values that the text gives: those asked for, and inserted ones at a jump of it."""
+        asked = [at for at, is_inserted in enumerate(self._inserted) if not is_inserted]
+        shown = set(asked)
+        for way in (one.blocked, one.if_anchors_fail or ()):
+            for jump in find_jumps([way[at].probability for at in asked] if way else []):
+                shown |= set(range(asked[jump], asked[jump + 1]))
+        return sorted(shown)
 
     def _route_lines(self, one: RouteFragility) -> Iterator[str]:
         first, floors = one.blocked[0], ", ".join(one.floors)
         where = f" (floor{'' if len(one.floors) == 1 else 's'} {words.cut(floors, 60)})" if floors else ""
-        rows = {"PFA [g]": [f"{pfa:g}" for pfa in self.pfa_g]}
+        shown = self._shown(one)
+        rows = {"PFA [g]": [f"{self.pfa_g[at]:.4g}*" if self._inserted[at] else f"{self.pfa_g[at]:g}" for at in shown]}
         if first.pieces:
-            rows |= {
-                "chance [%]": [words.in_percent(chance.probability) for chance in one.blocked],
-                "  from": [words.in_percent(chance.low) for chance in one.blocked],
-                "  to": [words.in_percent(chance.high) for chance in one.blocked],
-            }
+            for label, name in (("chance [%]", "probability"), ("  from", "low"), ("  to", "high")):
+                rows[label] = [words.in_percent(getattr(one.blocked[at], name)) for at in shown]
         if one.if_anchors_fail:
-            rows["if anchors fail"] = [words.in_percent(chance.probability) for chance in one.if_anchors_fail]
+            rows["if anchors fail"] = [words.in_percent(one.if_anchors_fail[at].probability) for at in shown]
         yield f"{words.cut(one.route, 60)}{where}: {_describe_pieces(one)}"
         yield from _grid(rows) if len(rows) > 1 else ()
         if first.pieces:
             yield f"  reaches {self._describe_levels(one.blocked)}"
+        if one.causes:
+            named = words.name_first([repr(words.cut(piece.item, 40)) for piece in one.causes], MOST_CAUSES)
+            yield f"  {100 * self.fragility.limit:g} % first because of {named}"
         if one.if_anchors_fail:
             yield f"  if anchors fail, {self._describe_levels(one.if_anchors_fail)}"
 
@@ -250,7 +299,7 @@ def name_floors(floors: Sequence[str]) -> str:
 def _format_pfa(value: float, values: Sequence[float]) -> str:
     """Return a PFA [g], or on which side of the values it lies; one of the values as it was typed."""
     if math.isfinite(value):
-        return f"{value:g}" if value in values else f"{value:.2f}"
+        return f"{value:.4g}" if value in values else f"{value:.2f}"
     return f"below {values[0]:g}" if value < 0 else f"above {values[-1]:g}"
 
 

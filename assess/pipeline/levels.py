@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.methods import Cases, make_batches, rock_cases, rock_draws, run_side_by_side
-from assess.methods._method import BoolArray, FloatArray
+from assess.methods._method import BoolArray, FloatArray, Motions
 from assess.motion.target_fit import measure_peaks
 from assess.pipeline.demand import Demand
 from assess.pipeline.verify import check_pairs, describe_work
@@ -21,6 +21,8 @@ from assess.units import ROUNDING
 
 BATCH = 100
 """Motions made at once: the generator keeps its first hundred."""
+MOST_OPENED = 32
+"""Ensembles whose motions are kept ready from one call to the next, about 8 MB each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,6 +58,7 @@ def rock_levels(
     dispersion: float | None,
     wanted: BoolArray | None = None,
     jobs: int | None = None,
+    opened: dict[int, Motions] | None = None,
     progress: Progress = SILENT,
 ) -> list[RockedLevels]:
     """Return what the cases of each ensemble do at each level.
@@ -76,6 +79,8 @@ def rock_levels(
         At which levels each case is rocked; at all by default.
     jobs : int, optional
         Threads; they do not change a result.
+    opened : dict, optional
+        Motions that are ready, by the number of their ensemble; takes up to `MOST_OPENED` for further calls.
     progress : Progress
         Receives the stage "rocking".
 
@@ -98,7 +103,12 @@ def rock_levels(
 
         def work(number: int, own: NDArray[np.intp]) -> RockedLevels:
             every = np.ones((len(own), factors.shape[1]), dtype=np.bool_) if wanted is None else wanted[own]
-            return _Run(cases, own, settings, dispersion, each, stage).rock(number, factors[number], every)
+            run = _Run(cases, own, settings, dispersion, each, stage)
+            motions = opened.get(number) if opened else None
+            motions = motions or cases.ensembles[number].open(each, progress)
+            if opened is not None and len(opened) < MOST_OPENED:
+                opened[number] = motions
+            return run.rock(number, motions, factors[number], every)
 
         done = dict(zip((number for number, _ in tasks), run_side_by_side(work, tasks, side_by_side), strict=True))
     none = np.zeros((factors.shape[1], 0, int(settings.runs)), dtype=np.bool_)
@@ -112,7 +122,7 @@ def find_factor(value: float, of: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Run:
-    """The cases `own` under one ensemble: its motions are made once, and scaled."""
+    """The cases `own` under the motions of one ensemble, which are made once, and scaled."""
 
     cases: Cases
     own: NDArray[np.intp]
@@ -121,9 +131,8 @@ class _Run:
     threads: int
     stage: Stage
 
-    def rock(self, number: int, factors: FloatArray, wanted: BoolArray) -> RockedLevels:
-        progress, runs = self.stage.progress, int(self.settings.runs)
-        motions = self.cases.ensembles[number].open(self.threads, progress)
+    def rock(self, number: int, motions: Motions, factors: FloatArray, wanted: BoolArray) -> RockedLevels:
+        runs = int(self.settings.runs)
         fell = np.zeros((len(factors), len(self.own), runs), dtype=np.bool_)
         peaks = np.empty((runs, 2))
         for at, batch, time_step in make_batches(motions, 0, runs, BATCH):

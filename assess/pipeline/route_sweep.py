@@ -9,11 +9,15 @@ PFA. A blank axis takes the worse one at each value.
 
 Unlike in an assessment, the formula never stands in for what rocking gives: it gives chances with no shaking at all.
 Where the motions may be too weak, the chances are lower bounds, and those pieces are counted.
+
+Where the chance of a route jumps from one value to the next, further values are inserted halfway, until it no longer
+does, the step is small, or a number of them is reached. The same draws serve there too, so that a chance at one value
+does not depend on which others are evaluated.
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -22,8 +26,8 @@ from numpy.typing import NDArray
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.methods import Cases, interval_width
-from assess.methods._method import Ensemble
-from assess.model import AXES
+from assess.methods._method import Ensemble, Motions
+from assess.model import AXES, Segment
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import GeneratedEnsemble
 from assess.pipeline.level_falls import find_falls
@@ -32,17 +36,21 @@ from assess.pipeline.verify import choose_motions, find_uncertainty
 from assess.progress import SILENT, Progress
 from assess.rocking.block import stocky_limit
 from assess.rocking.draws import Uncertainty
-from assess.route_results import Chance
-from assess.routes.chances import Happens
-from assess.routes.network import build_course
+from assess.route_results import Chance, PieceRef
+from assess.routes.fixes import find_fixes
+from assess.routes.network import Course, build_course
 from assess.routes.obstructions import Obstructions, find_obstructions
-from assess.routes.scene import Scene
+from assess.routes.scene import Judgement, Scene
 from assess.routes.widths import kinds_of
 from assess.settings import AUTO
 from assess.units import ROUNDING
 
 JUMP = 0.2
-"""A chance that rises or falls by more than this between two values is not interpolated [-]."""
+"""A chance that rises or falls by more than this between two values is not interpolated [-]; values are inserted."""
+FINEST = 0.02
+"""Step under which no value is inserted, as a share of the larger of its two values [-]."""
+MOST_INSERTED = 24
+"""Values that `assess routes` inserts at most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +73,9 @@ class RouteFragility:
         Pieces that reach it whose motions may be too weak; anchored ones count.
     scenario_pfa : pair of float, optional
         The least and the largest PFA of the scenario on its floors [m/s2]; None where its segments name no floor.
+    causes : tuple of PieceRef
+        The smallest set found of pieces without which it stays below the limit at the first value at which it does
+        not; none where it stays below at every value, or where it is blocked with nothing fallen.
     """
 
     route: str
@@ -74,12 +85,14 @@ class RouteFragility:
     is_evaluated: bool
     doubtful: int
     scenario_pfa: tuple[float, float] | None
+    causes: tuple[PieceRef, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fragility:
     """How likely each route is blocked at each of `values` of PFA on its floors [m/s2].
 
+    `inserted` are those of them that were not asked for. `limit` is the chosen risk [-], by which `causes` are found.
     `runs` is the number of draws, from `seed`; `uncertainty` is that of each, None where motions and pieces were taken
     as they are. `generic` names the floors whose motions follow a generic spectrum, `unshaped` those of them for which
     neither T1 nor the building's height is known, `weak` those whose motions are weaker than the floor's, as far as
@@ -87,6 +100,8 @@ class Fragility:
     """
 
     values: tuple[float, ...]
+    inserted: frozenset[float]
+    limit: float
     runs: int
     seed: int
     uncertainty: Uncertainty | None
@@ -98,7 +113,12 @@ class Fragility:
 
 
 def find_fragility(
-    assessment: Assessment, values: Sequence[float], *, jobs: int | None = None, progress: Progress = SILENT
+    assessment: Assessment,
+    values: Sequence[float],
+    *,
+    most_inserted: int = 0,
+    jobs: int | None = None,
+    progress: Progress = SILENT,
 ) -> Fragility:
     """Find how likely each route is blocked at each PFA.
 
@@ -107,11 +127,13 @@ def find_fragility(
     assessment : Assessment
         Of a building with routes, simulated or not; its settings give the number of the motions and their seed.
     values : sequence of float
-        PFA on the floors of the routes [m/s2], above 0.
+        PFA on the floors of the routes [m/s2], above 0 and rising.
+    most_inserted : int
+        How many values are inserted at most, where a chance jumps.
     jobs : int, optional
         Threads; as many as there are processors by default. They do not change a result.
     progress : Progress
-        Receives the stage "rocking".
+        Receives the stage "rocking", more than once where values are inserted.
 
     Raises
     ------
@@ -125,17 +147,38 @@ def find_fragility(
         raise InputError(
             fill('runs: the sweep over PFA needs a fixed number of generated motions, not "auto" or a suite')
         )
-    return progress.wait_for(lambda: _find_fragility(assessment, values, jobs, progress))
+    return progress.wait_for(lambda: _find_fragility(assessment, values, most_inserted, jobs, progress))
 
 
-def _find_fragility(assessment: Assessment, values: Sequence[float], jobs: int | None, progress: Progress) -> Fragility:
-    inventory = assessment.inventory
-    obstructions = find_obstructions(inventory, progress)
+def _find_fragility(
+    assessment: Assessment, values: Sequence[float], most: int, jobs: int | None, progress: Progress
+) -> Fragility:
+    obstructions = find_obstructions(assessment.inventory, progress)
     beside = np.array(sorted({one.item_index for segment in obstructions for one in segment.pieces}), dtype=np.intp)
-    sweep = _Sweep(assessment, obstructions, _choose(assessment, beside), tuple(values))
-    rocked = sweep.rock(jobs, progress)
-    scenes = [sweep.scene(at, rocked, progress) for at in range(len(values))]
-    ensembles = list(zip(sweep.cases.ensembles, rocked, strict=True))
+    opened: dict[int, Motions] | None = {} if most else None
+    sweep = _Sweep(assessment, obstructions, _choose(assessment, beside), jobs, progress, opened=opened)
+    names = list(dict.fromkeys(one.segment.route for one in obstructions))
+    sweep.add(values, names)
+    while new := _halve(sweep, most + len(values) - len(sweep.levels)):
+        sweep.add(new, names)
+    return _describe(sweep, values, beside, names)
+
+
+def _halve(sweep: "_Sweep", most: int) -> list[float]:
+    """Return values halfway between two at which the chance of any route jumps, the largest jumps first."""
+    values = sweep.values
+    largest: dict[int, float] = {}
+    for chances in sweep.ways():
+        for at in find_jumps(chances):
+            largest[at] = max(largest.get(at, 0.0), abs(chances[at + 1] - chances[at]))
+    wide = [at for at in largest if values[at + 1] - values[at] >= FINEST * values[at + 1]]
+    chosen = sorted(wide, key=lambda at: (-largest[at], at))[: max(most, 0)]
+    return [(values[at] + values[at + 1]) / 2 for at in sorted(chosen)]
+
+
+def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp], names: Sequence[str]) -> Fragility:
+    assessment, inventory = sweep.assessment, sweep.assessment.inventory
+    ensembles = list(zip(sweep.cases.ensembles, sweep.rocked, strict=True))
     doubtful = {int(case) for made, one in ensembles if made.is_unshaped or one.is_weak for case in one.own}
     items = frozenset(int(assessment.case_item[case]) for case in doubtful)
 
@@ -146,13 +189,13 @@ def _find_fragility(assessment: Assessment, values: Sequence[float], jobs: int |
     beside_them = [inventory.items[at] for at in beside]
     too_stocky = [one for one in beside_them if one.breadth / one.height >= stocky_limit(one.centre_of_gravity)]
     return Fragility(
-        values=tuple(values),
+        values=tuple(sweep.values),
+        inserted=frozenset(sweep.values) - set(values),
+        limit=assessment.settings.route_risk,
         runs=int(assessment.settings.runs),
         seed=assessment.settings.seed,
         uncertainty=None if assessment.settings.ideal else sweep.cases.uncertainty,
-        routes=tuple(
-            _route(assessment, scenes, name, items) for name in dict.fromkeys(one.segment.route for one in obstructions)
-        ),
+        routes=tuple(_route(sweep, name, items) for name in names),
         generic=name_floors(made for made, _ in ensembles if made.is_generic),
         unshaped=name_floors(made for made, _ in ensembles if made.is_unshaped),
         weak=name_floors(made for made, one in ensembles if one.is_weak),
@@ -193,56 +236,113 @@ def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
     return choose_motions(cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None)
 
 
+@dataclass(frozen=True, slots=True)
+class _Level:
+    """The building at one value of PFA: its segments with how pieces fall, and the chances of each route there."""
+
+    scene: Scene
+    routes: Mapping[str, Judgement]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sweep:
-    """The cases of an assessment with their motions, at several values of PFA."""
+    """The cases of an assessment with their motions, at several values of PFA [m/s2]."""
 
     assessment: Assessment
     obstructions: tuple[Obstructions, ...]
     cases: Cases
-    values: tuple[float, ...]
+    jobs: int | None
+    progress: Progress
+    levels: dict[float, _Level] = field(default_factory=dict)
+    rocked: list[RockedLevels] = field(default_factory=list)
+    """Of the values that were added last."""
+    opened: dict[int, Motions] | None = None
 
-    def rock(self, jobs: int | None, progress: Progress) -> list[RockedLevels]:
+    @property
+    def values(self) -> list[float]:
+        """Return the values evaluated so far, the least first."""
+        return sorted(self.levels)
+
+    def add(self, values: Sequence[float], names: Sequence[str]) -> None:
+        """Evaluate further values; what was evaluated before stays as it is."""
+        self.rocked[:] = self._rock(values)
+        for at, value in enumerate(values):
+            scene = self._scene(at, value)
+            self.levels[value] = _Level(scene, {name: self._judge(scene, name) for name in names})
+
+    def ways(self) -> Iterator[list[float]]:
+        """Yield the chances of each route at the values, if anchors hold, and if they fail where there are any."""
+        levels = [self.levels[value] for value in self.values]
+        for name in levels[0].routes:
+            judged = [one.routes[name] for one in levels]
+            yield [one.chances[0].probability for one in judged]
+            if all(one.if_anchors_fail for one in judged):
+                yield [one.if_anchors_fail.probability for one in judged if one.if_anchors_fail]
+
+    def course(self, segments: Mapping[int, Segment]) -> Course:
+        """Return how some segments make up a route."""
+        return build_course(segments, kinds_of(self.assessment.inventory.places))
+
+    def _judge(self, scene: Scene, name: str) -> Judgement:
+        """Return the chances that a route is blocked."""
+        segments = scene.segments_of(name)
+        course = self.course(segments)
+        return scene.judge(segments, lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)])
+
+    def _rock(self, values: Sequence[float]) -> list[RockedLevels]:
         """Return what the cases of each ensemble do at each value."""
         cases, settings = self.cases, self.assessment.settings
         peaks = [self.assessment.case_demand[np.argmax(cases.ensemble == at)].pfa for at in range(len(cases.ensembles))]
-        factors = np.array([[find_factor(value, pfa) for value in self.values] for pfa in peaks])
+        factors = np.array([[find_factor(value, pfa) for value in values] for pfa in peaks])
         return rock_levels(
-            cases, self.assessment.case_item, self.assessment.case_demand, factors.reshape(-1, len(self.values)),
-            settings, dispersion=None if settings.ideal else cases.uncertainty.motion, jobs=jobs, progress=progress,
+            cases, self.assessment.case_item, self.assessment.case_demand, factors.reshape(-1, len(values)), settings,
+            dispersion=None if settings.ideal else cases.uncertainty.motion, jobs=self.jobs, opened=self.opened,
+            progress=self.progress,
         )  # fmt: skip
 
-    def scene(self, at: int, rocked: Sequence[RockedLevels], progress: Progress) -> Scene:
-        """Return the segments with how the pieces fall at value `at`."""
-        settings, value = self.assessment.settings, self.values[at]
+    def _scene(self, at: int, value: float) -> Scene:
+        """Return the segments with how the pieces fall at value `at` of those that were rocked last."""
+        settings = self.assessment.settings
         every = np.full(self.cases.pfa.size, value)
-        falls = find_falls(self.assessment, self.cases, every, [(one.own, one.fell[at]) for one in rocked], settings)
+        fell = [(one.own, one.fell[at]) for one in self.rocked]
+        falls = find_falls(self.assessment, self.cases, every, fell, settings)
         z = interval_width(settings)
         return Scene(
-            self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed, z, progress
+            self.assessment.inventory, self.obstructions, falls, settings.route_risk, settings.seed, z, self.progress
         )
 
 
 # ---------------------------------------------------------------- the routes
 
 
-def _route(assessment: Assessment, scenes: Sequence[Scene], name: str, doubtful: frozenset[int]) -> RouteFragility:
-    segments = scenes[0].segments_of(name)
-    course = build_course(segments, kinds_of(assessment.inventory.places))
+def _route(sweep: _Sweep, name: str, doubtful: frozenset[int]) -> RouteFragility:
+    levels, inventory = [sweep.levels[value] for value in sweep.values], sweep.assessment.inventory
+    scene, judged = levels[0].scene, [one.routes[name] for one in levels]
+    segments = scene.segments_of(name)
     floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))
-    peaks = [demand.pfa for floor in floors for axis in AXES for demand in assessment.demands[floor, axis]]
-
-    def happens(scene: Scene) -> Happens:
-        return lambda draws: [course.is_blocked(scene.blocked(draws, segments), draws.every)]
-
-    reaching = {item for item, _ in scenes[0].keys(segments, anchors_fail=True)}
-    judged = [scene.judge(segments, happens(scene)) for scene in scenes]
+    peaks = [demand.pfa for floor in floors for axis in AXES for demand in sweep.assessment.demands[floor, axis]]
+    reaching = {item for item, _ in scene.keys(segments, anchors_fail=True)}
     return RouteFragility(
         route=name,
         floors=floors,
         blocked=tuple(one.chances[0] for one in judged),
         if_anchors_fail=tuple(one.if_anchors_fail for one in judged if one.if_anchors_fail) or None,
-        is_evaluated=any(scenes[0].obstructions[at].is_evaluated for at in segments),
-        doubtful=sum(assessment.inventory.items[item].quantity for item in reaching & doubtful),
+        is_evaluated=any(scene.obstructions[at].is_evaluated for at in segments),
+        doubtful=sum(inventory.items[item].quantity for item in reaching & doubtful),
         scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
+        causes=_find_causes(sweep, levels, name, segments),
     )
+
+
+def _find_causes(
+    sweep: _Sweep, levels: Sequence[_Level], name: str, segments: Mapping[int, Segment]
+) -> tuple[PieceRef, ...]:
+    """Return the pieces to blame at the first value at which a route is not below the limit."""
+    risk = sweep.assessment.settings.route_risk
+    scene = next((one.scene for one in levels if one.routes[name].chances[0].probability >= risk), None)
+    if scene is None:
+        return ()
+    lanes = {at: sweep.obstructions[at] for at in segments}
+    course = sweep.course(segments)
+    steps, _ = find_fixes(scene.couplings(segments), lanes, course.is_blocked, risk, sweep.progress)
+    return tuple(scene.piece(item) for item, _, _ in steps)

@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -20,8 +21,9 @@ from assess.cli.command_routes import PFA
 from assess.cli.route_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
 from assess.cli.route_output import Sweep
 from assess.pipeline.route_sweep import Fragility, RouteFragility
+from assess.report import words
 from assess.rocking.draws import Uncertainty
-from assess.route_results import Chance
+from assess.route_results import Chance, PieceRef
 from assess.units import GRAVITY
 from assess.workbook.template import Content, write_workbook
 from tests.cli.calling import error, run
@@ -42,7 +44,7 @@ ITEMS = [
 ]
 FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.5}]
 SWEEP = ("--pfa", "0.1:0.9:0.2", "--runs", "20", "--seed", "3")
-HEADS = "route,floors,pfa_g,blocked,low,high,independent,correlated,if_anchors_fail,pieces,unverified,runs"
+HEADS = "route,floors,pfa_g,blocked,low,high,independent,correlated,if_anchors_fail,pieces,unverified,runs,inserted"
 
 
 def write(folder: Path, **rows: Any) -> Path:
@@ -76,7 +78,9 @@ def test_the_document(swept):
     assert document["workbook"]["sha256"] == assess.read_inventory(folder / "w.xlsx").sha256
     assert {"shapely", "networkx", "numba"} <= set(document["assess"]["platform"])
     assert (document["runs"], document["seed"], document["scenario"]) == (20, 3, "as filled")
-    assert document["pfa_g"] == [0.1, 0.3, 0.5, 0.7, 0.9]
+    asked = [0.1, 0.3, 0.5, 0.7, 0.9]
+    assert document["inserted_g"] == [pfa for pfa in document["pfa_g"] if pfa not in asked]
+    assert sorted({*asked, *document["inserted_g"]}) == document["pfa_g"] != asked
     assert "Rocking is not monotone" in document["meaning"]
     aula, bar, closet = document["routes"]
     assert [one["route"] for one in (aula, bar, closet)] == ["Aula", "=Bar", "Closet"]
@@ -85,11 +89,12 @@ def test_the_document(swept):
     assert (closet["chances"], closet["passes"]) == ([], []), "nothing tells what can reach it"
     for one in (aula, bar):
         assert [at["pfa_g"] for at in one["chances"]] == document["pfa_g"]
+        assert [at["pfa_g"] for at in one["chances"] if at["inserted"]] == document["inserted_g"]
         assert all(at["low"] <= at["blocked"] <= at["high"] for at in one["chances"])
     assert aula["chances"][0]["blocked"] == bar["chances"][0]["blocked"] == 0, "0.1 g lies below B/H"
     assert aula["chances"][-1]["blocked"] > 0.5
     assert all(at["if_anchors_fail"]["blocked"] >= at["blocked"] for at in aula["chances"])
-    assert [at["if_anchors_fail"] for at in bar["chances"]] == [None] * 5
+    assert {at["if_anchors_fail"] for at in bar["chances"]} == {None}
     assert (aula["chances"][0]["pieces"], bar["chances"][0]["pieces"]) == (1, 2)
     (caution,) = document["cautions"]
     assert caution == "Only peaks are known for floor '2': the motions follow a generic spectrum."
@@ -115,9 +120,63 @@ def test_the_pfa_at_which_levels_are_passed(swept):
                 assert at["between_g"] is None
                 assert f"{100 * at['chance']:g} % at " in text
             assert (at["earliest_g"] or 0) <= x0 <= x1 <= (at["latest_g"] or 1)
-    assert any(at["between_g"] for one in (aula, bar) for at in one["passes"])
     assert "between_g, without pfa_g" in document["meaning"]
-    assert "\n\nFor a level between two values, take smaller steps: --pfa LOW:HIGH:STEP\n\n" in text
+    assert "Between two values" not in text, "no wide step has a jump any more"
+
+
+def test_the_verdict_comes_first_as_text_and_as_data(swept):
+    _, document, text = swept
+    verdict, (aula, bar, _) = document["verdict"], document["routes"]
+    assert " ".join(text.split("\n\n")[0].split()) == verdict["text"]
+    assert (verdict["limit"], verdict["evaluated_routes"], verdict["not_evaluated"]) == (0.03, 2, ["Closet"])
+    at = next(
+        n for n, _ in enumerate(document["pfa_g"]) if max(x["chances"][n]["blocked"] for x in (aula, bar)) >= 0.03
+    )
+    assert (verdict["below_up_to_g"], verdict["reached_at_g"]) == tuple(document["pfa_g"][at - 1 : at + 1])
+    (first,) = verdict["first"]
+    assert first == {"route": "=Bar", "pieces": [{"item": "b1", "row": 4}]}
+    assert bar["causes"] == first["pieces"]
+    assert verdict["text"].startswith(
+        f"Both evaluated routes stay below 3 % up to {verdict['below_up_to_g']:.4g} g. From "
+    )
+    assert "'=Bar' (because of 'b1') reaches 3 %; up to 0.9 g, 2 of 2 evaluated routes do." in verdict["text"]
+    assert verdict["text"].endswith("Not evaluated: 'Closet'.")
+    assert len(text.split("\n\n")[-1].splitlines()) <= 6, "notes are short, and last"
+
+
+@pytest.mark.parametrize(
+    ("chances", "anchors", "said"),
+    [
+        ([0.0, 0.02], None, "The only route stays below 3 % up to 0.2 g, the largest PFA evaluated."),
+        ([0.0, 0.03], None, "The only route stays below 3 % up to 0.1 g. From 0.2 g 'A' (because of 'p') reaches 3 %."),
+        ([0.5, 0.0], None, "Already at 0.1 g, the smallest PFA evaluated, 'A' (because of 'p') reaches 3 %."),
+        (
+            [0.0, 0.0, 0.5], [0.0, 0.1, 0.6],
+            "The only route stays below 3 % up to 0.2 g. From 0.3 g 'A' (because of 'p') reaches 3 %. If the anchors "
+            "fail, 'A' reaches 3 % from 0.2 g.",
+        ),
+    ],
+)  # fmt: skip
+def test_what_the_verdict_says(chances, anchors, said):
+    sweep = swept_with(chances, 0, anchors)
+    (route,) = sweep.fragility.routes
+    blamed = replace(route, causes=(PieceRef(item="p", row=2, item_index=0),))
+    verdict = replace(sweep, fragility=replace(sweep.fragility, routes=(blamed,))).verdict
+    assert verdict.say() == said
+
+
+def test_the_verdict_of_routes_of_which_nothing_is_known():
+    sweep = swept_with([0.0, 0.0], 0)
+    (route,) = sweep.fragility.routes
+    bare = replace(sweep, fragility=replace(sweep.fragility, routes=(replace(route, is_evaluated=False),)))
+    assert bare.verdict.say() == "No route can be evaluated: the workbook places no furniture next to any."
+    assert bare.verdict.below_up_to_g is None
+    many = replace(sweep.fragility, routes=tuple(replace(route, route=name, doubtful=1) for name in "ABCD"))
+    said = replace(sweep, fragility=many).verdict.say()
+    assert said == (
+        "All 4 routes stay below 3 % up to 0.2 g, the largest PFA evaluated. The chances of 'A', 'B', 'C' and 1 more "
+        "are lower bounds."
+    )
 
 
 def swept_with(chances: list[float], spread: float, anchors: list[float] | None = None) -> Sweep:
@@ -133,11 +192,12 @@ def swept_with(chances: list[float], spread: float, anchors: list[float] | None 
     route = RouteFragility(
         route="A", floors=(), blocked=tuple(map(chance, chances)), scenario_pfa=(1.5, 2.5), is_evaluated=True,
         if_anchors_fail=anchors and tuple(map(chance, anchors)), doubtful=0,
+        causes=(),
     )  # fmt: skip
     values = tuple(GRAVITY * (1 + at) / 10 for at in range(len(chances)))
     found = Fragility(
-        values=values, runs=100, seed=1, uncertainty=Uncertainty(), routes=(route,), generic=(), unshaped=(), weak=(),
-        stocky=0,
+        values=values, inserted=frozenset(), limit=0.03, runs=100, seed=1, uncertainty=Uncertainty(), routes=(route,),
+        generic=(), unshaped=(), weak=(), stocky=0,
     )  # fmt: skip
     inventory = SimpleNamespace(source=Path("w.xlsx"), sha256="")
     return Sweep(cast("Any", SimpleNamespace(inventory=inventory, scenario="as filled")), found)
@@ -158,12 +218,12 @@ def swept_with(chances: list[float], spread: float, anchors: list[float] | None 
 def test_no_level_is_read_off_a_jump(chances, spread, line):
     text = swept_with(chances, spread).to_text()
     assert f"\n  reaches {line}\n" in f"{text}\n"
-    assert ("\n\nFor a level between two values" in text) == ("between" in line)
+    assert ("\nBetween two values: " in text) == ("between" in line)
 
 
 def test_a_jump_where_anchors_fail_asks_for_smaller_steps_too():
     sweep = swept_with([0.0, 0.0], 0, anchors=[0.0, 0.9])
-    assert "\n\nFor a level between two values" in sweep.to_text()
+    assert "\nBetween two values: " in sweep.to_text()
     (one,) = sweep.describe()["routes"]
     assert [at["between_g"] for at in one["passes_if_anchors_fail"]] == [[0.1, 0.2]] * 3
     assert [at["between_g"] for at in one["passes"]] == [None] * 3
@@ -190,8 +250,9 @@ def test_the_csv_is_the_document(swept):
     data = (folder / "t.csv").read_bytes()
     assert data.startswith(b"\xef\xbb\xbf" + HEADS.encode() + b"\r\n")
     rows = list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
-    assert [row["route"] for row in rows] == ["Aula"] * 5 + ["'=Bar"] * 5 + ["Closet"]
-    assert [row["floors"] for row in rows] == ["1"] * 5 + ["2"] * 6
+    number = len(document["pfa_g"])
+    assert [row["route"] for row in rows] == ["Aula"] * number + ["'=Bar"] * number + ["Closet"]
+    assert [row["floors"] for row in rows] == ["1"] * number + ["2"] * number + ["2"]
     assert set(list(rows.pop().values())[2:]) == {""}, "nothing tells what can reach the closet"
     every = [at for one in document["routes"] for at in one["chances"]]
     for row, at in zip(rows, every, strict=True):
@@ -202,22 +263,28 @@ def test_the_csv_is_the_document(swept):
 
 def test_the_text_is_the_document(swept):
     _, document, text = swept
-    assert text.startswith("w.xlsx: scenario as filled, 20 draws, seed 3\n\nAula (floor 1): ")
+    assert text.endswith("\nw.xlsx: scenario as filled, 20 draws, seed 3\n")
     assert (
-        "\n\nChance that an evacuation route is blocked if every floor of it shakes with the PFA along both axes"
-        in text
+        "\n* inserted, as the chance differs by more than 20 percentage points between the values next to it.\n" in text
     )
+    assert "\nChances are of an earthquake with that PFA, not per year." in text
     assert "\nAula (floor 1): 1 piece; 20 draws, all together\n" in text
     assert "\n=Bar (floor 2): 2 pieces; 20 draws, all together\n" in text
     assert "\nCloset (floor 2): not evaluated: the workbook places no furniture there\n" in text
     blocks = {block.split(" (")[0]: block for block in text.split("\n\n")[1:]}
     for one in document["routes"][:2]:
         for label, name in (("chance [%]", "blocked"), ("  from", "low"), ("  to", "high")):
-            (line,) = re.findall(rf"^  {re.escape(label)} +(.*)$", blocks[one["route"]], re.MULTILINE)
-            assert line.split() == [f"{100 * at[name]:.1f}" for at in one["chances"]]
-    (line,) = re.findall(r"^  if anchors fail +([\d. ]+)$", text, re.MULTILINE)
-    fails = [at["if_anchors_fail"]["blocked"] for at in document["routes"][0]["chances"]]
-    assert line.split() == [f"{100 * one:.1f}" for one in fails]
+            lines = re.findall(rf"^  {re.escape(label)} +(.*)$", blocks[one["route"]], re.MULTILINE)
+            every = {
+                f"{at['pfa_g']:.4g}{'*' if at['inserted'] else ''}": words.in_percent(at[name]) for at in one["chances"]
+            }
+            heads = re.findall(r"^  PFA \[g\] +(.*)$", blocks[one["route"]], re.MULTILINE)
+            shown = dict(zip(" ".join(heads).split(), " ".join(lines).split(), strict=True))
+            assert shown.items() <= every.items()
+            assert {f"{pfa:.4g}" for pfa in (0.1, 0.3, 0.5, 0.7, 0.9)} < shown.keys(), "asked for, and where it jumps"
+    lines = re.findall(r"^  if anchors fail +([\d. ]+)$", text, re.MULTILINE)
+    fails = [words.in_percent(at["if_anchors_fail"]["blocked"]) for at in document["routes"][0]["chances"]]
+    assert set(" ".join(lines).split()) <= set(fails)
 
 
 def test_it_is_what_a_run_finds_at_the_floors_own_pfa(swept):
@@ -263,6 +330,7 @@ def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
             is_evaluated=True,
             scenario_pfa=None,
             doubtful=0,
+            causes=(),
         )
 
     live, still = [route(str(at), 0.1) for at in range(70)], [route("still", 0.0)]
@@ -383,8 +451,18 @@ def test_a_risk_of_routes_is_used(tmp_path, monkeypatch):
 def test_help_tells_the_meaning():
     text = " ".join(run("routes", "--help").output.split())
     assert "Show the chance that each evacuation route is blocked." in text
-    for words in ("LOW:HIGH[:STEP]", "[default: 0.1:1.0]", "--csv", "--json", "--plot", "along both axes", "monotone"):
-        assert words in text
+    for part in (
+        "begins with the verdict",
+        "up to 24 of them",
+        "LOW:HIGH[:STEP]",
+        "[default: 0.1:1.0]",
+        "--csv",
+        "--json",
+        "--plot",
+        "along both axes",
+        "monotone",
+    ):
+        assert part in text
 
 
 def test_help_and_bad_values_load_nothing_heavy():

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from threading import Event
 from typing import Any
@@ -11,8 +12,9 @@ import pytest
 
 import assess
 from assess.methods import Cases, proposed_or
+from assess.pipeline import levels
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.route_sweep import find_fragility, find_jumps, find_passing
+from assess.pipeline.route_sweep import FINEST, JUMP, MOST_INSERTED, find_fragility, find_jumps, find_passing
 from assess.pipeline.run import build_results, compute
 from assess.pipeline.verify import choose_motions
 from assess.progress import Progress, Report
@@ -200,6 +202,55 @@ def test_values_and_threads_change_nothing(tmp_path):
     several = fragility(assessment, 0.2, 0.4, 0.6, jobs=1)
     assert fragility(assessment, 0.2, 0.4, 0.6, jobs=3) == several
     assert chances(fragility(assessment, 0.4)) == chances(several)[1:2]
+
+
+def test_values_are_inserted_at_a_jump_and_change_nothing_else(tmp_path, monkeypatch):
+    """Nothing is uncertain but the phases: the chance rises steeply. No case is rocked twice at one value."""
+    assessment, asked = assessed(tmp_path, *ITEMS, building=EXACT), (0.1, 0.2, 0.6, 0.9)
+    plain = fragility(assessment, *asked)
+    assert find_jumps(chances(plain))
+    done: list[tuple[int, float]] = []
+    rock, made = levels._Run.rock, []
+
+    def note(run, number, motions, factors, wanted):
+        done.extend((number, factor) for factor in factors)
+        made.append(id(motions))
+        return rock(run, number, motions, factors, wanted)
+
+    monkeypatch.setattr(levels._Run, "rock", note)
+    fine = fragility(assessment, *asked, most_inserted=MOST_INSERTED)
+    assert len(set(done)) == len(done)
+    assert len(set(made)) == len({number for number, _ in done}) < len(made), "motions are made ready once"
+    assert 0 < len(fine.inserted) <= MOST_INSERTED
+    assert fine.inserted == set(fine.values) - set(plain.values)
+    at = [fine.values.index(value) for value in plain.values]
+    for one, other in zip(plain.routes, fine.routes, strict=True):
+        assert tuple(other.blocked[number] for number in at) == one.blocked
+        assert other.if_anchors_fail is None or tuple(other.if_anchors_fail[number] for number in at) == (
+            one.if_anchors_fail
+        )
+    step = [high / low - 1 for low, high in pairwise(fine.values)]
+    for one in fine.routes:
+        for way in (one.blocked, one.if_anchors_fail or ()):
+            assert all(step[jump] < 2.1 * FINEST for jump in find_jumps([chance.probability for chance in way]))
+
+
+def test_no_more_values_are_inserted_than_wanted(tmp_path):
+    found = fragility(assessed(tmp_path, building=EXACT), 0.1, 0.9, most_inserted=2)
+    assert len(found.inserted) == 2
+    assert 0.5 in [round(value / GRAVITY, 6) for value in found.inserted]
+    assert chances(found, "B") == [0, 0, 0, 0]
+    assert not fragility(assessed(tmp_path), 0.02, 0.03, most_inserted=9).inserted, "no chance jumps by over 0.2"
+    assert JUMP == 0.2
+
+
+def test_the_pieces_to_blame_are_those_without_which_it_stays_below(tmp_path):
+    """a1 leaves nothing of the corridor; a2, a small one far from it, cannot block it."""
+    far = {**CABINET, "item": "a2", "breadth": 20, "height": 60, "edge_distance": 0.2}
+    found = fragility(assessed(tmp_path, CABINET, far), 0.02, 0.6)
+    assert [[piece.item for piece in one.causes] for one in found.routes] == [["a1"], []]
+    assert found.limit == SETTINGS.route_risk
+    assert fragility(assessed(tmp_path, CABINET, far), 0.02).routes[0].causes == ()
 
 
 def test_progress_is_reported(tmp_path):
