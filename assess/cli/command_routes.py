@@ -83,11 +83,11 @@ def command(
             sheet = inventory.sheets.get("Routes", "Routes")
             raise InputError(f"{path.name} has no routes: fill in the sheet {sheet}.")
         assessment = compute(inventory, settings, progress=progress)
-        print_warnings(assessment.problems)
         peaks = [value * GRAVITY for value in values]
         fragility = find_fragility(assessment, peaks, most_inserted=MOST_INSERTED, jobs=jobs, progress=progress)
     sweep = Sweep(assessment, fragility)
     typer.echo(sweep.to_json() if as_json else sweep.to_text())
+    print_warnings(assessment.problems)
     files = {} if csv is None else {csv: sweep.to_csv().encode("utf-8-sig")}
     save_with_figure(files, plot, partial(_draw, sweep), "route")
 

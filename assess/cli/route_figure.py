@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from assess.cli.route_verdict import find_verdict
 from assess.pipeline.route_sweep import Fragility, RouteFragility, find_jumps
 from assess.report import words
 from assess.report.figures.draw import label
@@ -21,14 +22,15 @@ LINES = (
 )  # fmt: skip
 """Colour, line and marker of the routes of a panel; the last two tell them apart without colour."""
 MOST_MARKS = 10
+LONGEST = 600
+"""Characters of the verdict."""
 MOST_NAMED = 12
 """Routes that no piece can block whose names are listed."""
 ROOM = 130
-"""Characters of a line above one panel."""
+"""Characters of a line below one panel."""
 MEANING = (
     "Chance that a route is blocked if its floors shake with the PFA along both axes; anchors hold. Light bands or "
-    "bars: range of the chance. Thin dots: a jump, with nothing known between the two values. Broad: the scenario's "
-    "PFA on the route's floors, both axes. A piece may stand in a stronger motion and overturn in a weaker one."
+    "bars: its range. Thin dots: a jump. Broad: the scenario's PFA on the route's floors."
 )
 
 Panels = Sequence[Sequence[RouteFragility]]
@@ -48,7 +50,7 @@ def size(panels: Panels) -> tuple[float, float]:
 
 
 def paint(fragility: Fragility, panels: Panels, pfa_g: Sequence[float], figure: Any) -> None:
-    """Paint the panels, and above them what the marks mean."""
+    """Paint the panels, above them the verdict, and below them what the marks mean."""
     columns = min(len(panels), 2)
     every = figure.subplots(math.ceil(len(panels) / columns), columns, squeeze=False, sharex=True, sharey=True)
     for axes, routes in zip(every.flat, panels, strict=False):
@@ -64,7 +66,9 @@ def paint(fragility: Fragility, panels: Panels, pfa_g: Sequence[float], figure: 
         every[lowest, column].set_xlabel("PFA on the route's floors [g]")
         every[lowest, column].tick_params(labelbottom=True)
     wide = ROOM if columns == 1 else 2 * ROOM
-    figure.suptitle("\n".join(_notes(fragility, wide)), x=0.01, ha="left", fontsize=7.5)
+    verdict = textwrap.wrap(label(find_verdict(fragility, pfa_g).say(), LONGEST), wide * 5 // 6)
+    figure.suptitle("\n".join(verdict), x=0.01, ha="left", fontsize=9)
+    figure.supxlabel("\n".join(_notes(fragility, wide)), x=0.01, ha="left", fontsize=7)
 
 
 def _paint_route(axes: Any, one: RouteFragility, pfa_g: Sequence[float], style: tuple[str, str, str]) -> None:

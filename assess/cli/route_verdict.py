@@ -42,6 +42,8 @@ class Verdict:
         `reached_at_g`; else None.
     anchored : tuple of RouteFragility
         The routes of which that is so.
+    unplaced : int
+        Pieces that are left out, as the workbook does not place them.
     """
 
     limit: float
@@ -55,6 +57,7 @@ class Verdict:
     reaching: int
     anchored_at_g: float | None
     anchored: tuple[RouteFragility, ...]
+    unplaced: int
 
     @property
     def lower_bounds(self) -> tuple[str, ...]:
@@ -78,6 +81,7 @@ class Verdict:
             "reached_at_g_if_anchors_fail": self.anchored_at_g or self.reached_at_g,
             "first_if_anchors_fail": [one.route for one in self.anchored],
             "lower_bounds": list(self.lower_bounds),
+            "pieces_left_out": self.unplaced,
         }
 
     def say(self) -> str:
@@ -96,6 +100,8 @@ class Verdict:
             yield f"The chances of {_name(self.lower_bounds, MOST_ROUTES)} are lower bounds."
         if self.not_evaluated:
             yield f"Not evaluated: {_name(self.not_evaluated, MOST_ROUTES)}."
+        if self.unplaced:
+            yield f"Left out: {count(self.unplaced, 'piece')} without a usable position or route."
 
     def _say_reached(self) -> Iterator[str]:
         level, number = f"{100 * self.limit:g} %", len(self.evaluated)
@@ -141,6 +147,7 @@ def find_verdict(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
         reaching=sum(own is not None for _, own in ways),
         anchored_at_g=pfa_g[early] if early is not None and is_early else None,
         anchored=tuple(one for one, own in anchored if is_early and own == early),
+        unplaced=fragility.unplaced,
     )
 
 

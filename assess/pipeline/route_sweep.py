@@ -40,6 +40,7 @@ from assess.route_results import Chance, PieceRef
 from assess.routes.fixes import find_fixes
 from assess.routes.network import Course, build_course
 from assess.routes.obstructions import Obstructions, find_obstructions
+from assess.routes.rooms import count_unplaced
 from assess.routes.scene import Judgement, Scene
 from assess.routes.widths import kinds_of
 from assess.settings import AUTO
@@ -96,7 +97,8 @@ class Fragility:
     `runs` is the number of draws, from `seed`; `uncertainty` is that of each, None where motions and pieces were taken
     as they are. `generic` names the floors whose motions follow a generic spectrum, `unshaped` those of them for which
     neither T1 nor the building's height is known, `weak` those whose motions are weaker than the floor's, as far as
-    pieces on them were rocked; `stocky` counts the pieces that are too stocky to rock.
+    pieces on them were rocked; `stocky` counts the pieces that are too stocky to rock, `unplaced` those on the floors
+    of the routes that have neither a usable position nor a Route: they are left out.
     """
 
     values: tuple[float, ...]
@@ -110,6 +112,7 @@ class Fragility:
     unshaped: tuple[str, ...]
     weak: tuple[str, ...]
     stocky: int
+    unplaced: int
 
 
 def find_fragility(
@@ -178,6 +181,7 @@ def _halve(sweep: "_Sweep", most: int) -> list[float]:
 
 def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp], names: Sequence[str]) -> Fragility:
     assessment, inventory = sweep.assessment, sweep.assessment.inventory
+    scene = sweep.levels[sweep.values[0]].scene
     ensembles = list(zip(sweep.cases.ensembles, sweep.rocked, strict=True))
     doubtful = {int(case) for made, one in ensembles if made.is_unshaped or one.is_weak for case in one.own}
     items = frozenset(int(assessment.case_item[case]) for case in doubtful)
@@ -200,7 +204,13 @@ def _describe(sweep: "_Sweep", values: Sequence[float], beside: NDArray[np.intp]
         unshaped=name_floors(made for made, _ in ensembles if made.is_unshaped),
         weak=name_floors(made for made, one in ensembles if one.is_weak),
         stocky=sum(one.quantity for one in too_stocky),
+        unplaced=sum(count_unplaced(scene, floor.floor, _list_on(scene, floor.floor)) for floor in inventory.floors),
     )
+
+
+def _list_on(scene: Scene, floor: str) -> list[int]:
+    """Return the segments of a floor by their number."""
+    return [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
 
 
 def find_jumps(chances: Sequence[float]) -> list[int]:

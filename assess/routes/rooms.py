@@ -111,11 +111,11 @@ def evaluate_floor(
         cut_off_rooms_expected=sum(room.loses_every_exit.probability for room in own if room.is_known),
         unknown_rooms=sum(not room.is_known for room in own),
         any_room_cut_off=_find_any_cut_off(scene, here) if here else None,
-        uncounted_pieces=_count_unknown(scene, floor, segments),
+        uncounted_pieces=count_unplaced(scene, floor, segments),
     )
 
 
-def _count_unknown(scene: Scene, floor: str, segments: Sequence[int]) -> int:
+def count_unplaced(scene: Scene, floor: str, segments: Sequence[int]) -> int:
     """Count the pieces of a floor of which it is not known whether they fall onto one of its segments."""
     has_plan = any(scene.obstructions[at].band for at in segments)
     items = [item for item in scene.inventory.items if item.floor == floor and not item.route] if segments else []

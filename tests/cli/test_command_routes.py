@@ -21,7 +21,7 @@ from assess.cli.command_routes import PFA
 from assess.cli.route_figure import A_PANEL, MOST_PANELS, choose_drawn, paint
 from assess.cli.route_output import Sweep
 from assess.pipeline.route_sweep import Fragility, RouteFragility
-from assess.report import words
+from assess.report.words import in_percent
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef
 from assess.units import GRAVITY
@@ -179,6 +179,17 @@ def test_the_verdict_of_routes_of_which_nothing_is_known():
     )
 
 
+def test_the_verdict_counts_the_pieces_that_are_left_out(tmp_path):
+    """A verdict on routes of which not everything beside them is known says so; warnings come after it."""
+    loose = {"item": "c1", "floor": "1", "breadth": 40, "height": 180, "quantity": 3}
+    path = write(tmp_path, Items=[*ITEMS, loose])
+    done = run("routes", path, "--pfa", "0.1:0.1", "--runs", 5, "--json")
+    verdict = json.loads(done.stdout)["verdict"]
+    assert verdict["pieces_left_out"] == 3
+    assert verdict["text"].endswith(" Left out: 3 pieces without a usable position or route.")
+    assert "neither a position nor a Route" in done.stderr
+
+
 def swept_with(chances: list[float], spread: float, anchors: list[float] | None = None) -> Sweep:
     """A sweep over 0.1, 0.2, ... g of one route, with these chances and a range of this much to both sides."""
 
@@ -197,7 +208,7 @@ def swept_with(chances: list[float], spread: float, anchors: list[float] | None 
     values = tuple(GRAVITY * (1 + at) / 10 for at in range(len(chances)))
     found = Fragility(
         values=values, inserted=frozenset(), limit=0.03, runs=100, seed=1, uncertainty=Uncertainty(), routes=(route,),
-        generic=(), unshaped=(), weak=(), stocky=0,
+        generic=(), unshaped=(), weak=(), stocky=0, unplaced=0,
     )  # fmt: skip
     inventory = SimpleNamespace(source=Path("w.xlsx"), sha256="")
     return Sweep(cast("Any", SimpleNamespace(inventory=inventory, scenario="as filled")), found)
@@ -275,15 +286,13 @@ def test_the_text_is_the_document(swept):
     for one in document["routes"][:2]:
         for label, name in (("chance [%]", "blocked"), ("  from", "low"), ("  to", "high")):
             lines = re.findall(rf"^  {re.escape(label)} +(.*)$", blocks[one["route"]], re.MULTILINE)
-            every = {
-                f"{at['pfa_g']:.4g}{'*' if at['inserted'] else ''}": words.in_percent(at[name]) for at in one["chances"]
-            }
+            every = {f"{at['pfa_g']:.4g}{'*' if at['inserted'] else ''}": in_percent(at[name]) for at in one["chances"]}
             heads = re.findall(r"^  PFA \[g\] +(.*)$", blocks[one["route"]], re.MULTILINE)
             shown = dict(zip(" ".join(heads).split(), " ".join(lines).split(), strict=True))
             assert shown.items() <= every.items()
             assert {f"{pfa:.4g}" for pfa in (0.1, 0.3, 0.5, 0.7, 0.9)} < shown.keys(), "asked for, and where it jumps"
     lines = re.findall(r"^  if anchors fail +([\d. ]+)$", text, re.MULTILINE)
-    fails = [words.in_percent(at["if_anchors_fail"]["blocked"]) for at in document["routes"][0]["chances"]]
+    fails = [in_percent(at["if_anchors_fail"]["blocked"]) for at in document["routes"][0]["chances"]]
     assert set(" ".join(lines).split()) <= set(fails)
 
 
@@ -467,9 +476,9 @@ def test_help_tells_the_meaning():
 
 def test_help_and_bad_values_load_nothing_heavy():
     heavy = ("numpy", "scipy", "numba", "shapely", "networkx", "matplotlib", "openpyxl", "jinja2")
-    for words, status in ((["--help"], 0), (["w.xlsx", "--pfa", "1:0"], 2)):
+    for given, status in ((["--help"], 0), (["w.xlsx", "--pfa", "1:0"], 2)):
         code = (
-            f"import sys\nsys.argv = {['assess', 'routes', *words]!r}\nfrom assess.cli.app import main\n"
+            f"import sys\nsys.argv = {['assess', 'routes', *given]!r}\nfrom assess.cli.app import main\n"
             f"try:\n    main()\nexcept SystemExit as stop:\n    assert stop.code == {status}\n"
             f"print([name for name in {heavy!r} if name in sys.modules])"
         )
