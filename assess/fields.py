@@ -371,7 +371,7 @@ ANCHOR_FIELDS = (
     _of_anchor("weight_kn", fill("Weight with contents")),
     Field(
         key="weight_source", read=attrgetter("item.anchor.weight_source"), path=("anchor", "weight_source"),
-        label=fill("Source of the weight"), shows=DATA, choices=("given", "type", "estimate"),
+        label=fill("Source of the weight (estimate: assumed)"), choices=("given", "type", "estimate"),
     ),
     _of_anchor("bracket_height_cm", fill("Bracket height"), unit="cm"),
     _of_anchor("bracket_capacity_kn", fill("Bracket capacity"), help="Tension that its bracket holds."),

@@ -80,7 +80,8 @@ MOTION_FLAGS: Mapping[str, str] = {
     ),
     "pfv_estimated": fill("PFV was not given: estimated from PFA and the building's period T1"),
     "pfv_capped": fill(
-        "the estimate of PFV was larger than {factor:.2f} times Ground PGV, and is set to that", factor=ROOF_FACTOR
+        "the estimate of PFV was larger than {factor:.2f} times Ground PGV, an assumed factor, and is set to that",
+        factor=ROOF_FACTOR,
     ),
 }
 """Flags of a floor's motion, and their meanings."""

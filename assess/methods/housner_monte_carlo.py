@@ -444,9 +444,10 @@ METHOD = Method(
         "by Shenton's limits (1996), resting and sliding friction being equal. So is the peak slip of a block that "
         "slides and does not rock (Newmark 1965), under the same draws: it depends on the friction and the floor "
         "alone, and is 0 in draws in which the piece, by its size, does not slide. Neither lowers a chance or a class.",
-        "With a wall at its back, a piece turns away from it alone and rebounds as by Sorrentino et al. (2011), to be "
-        "checked against the printed paper. The wall moves with the floor and does not pound. Where the side of the "
-        "wall is not known, the larger chance of the two directions counts. It is shown beside, and lowers nothing.",
+        "With a wall at its back, a piece turns away from it alone and rebounds as by Sorrentino et al. (2011); this "
+        "rebound is assumed, not compared with the printed paper. The wall moves with the floor and does not pound. "
+        "Where the side of the wall is not known, the larger chance of the two directions counts. It is shown beside, "
+        "and lowers nothing.",
         'With N "auto", motions are added at 125, 250, 500, 1,000, 2,500 and 5,000, and a piece is done once its '
         "interval (z = 2.64: 95 % for all six checks together) lies within one class. Slip and what a wall changes are "
         "found under the first 125.",
@@ -462,7 +463,8 @@ METHOD = Method(
     ),
     flags={
         "fell_in_record": "it overturns under the recorded motion itself, so its class is at least high",
-        "generic_spectrum": "no record of this floor is known: its motions were made for a generic spectrum",
+        "generic_spectrum": "no record of this floor is known: its motions were made for a generic spectrum, "
+        "which is assumed",
         "unknown_period": "neither T1 nor the building's height is known, so that the generic spectrum may be too weak "
         "at long periods: simulation may raise a class, never lower it",
         "weak_motions": "the motions are weaker than the floor's: simulation may raise a class, never lower it",

@@ -2,7 +2,7 @@
 
 Reference
 ---------
-Consumer Affairs Agency of Japan (2010), at second hand (two Japanese safety sites that quote it).
+Consumer Affairs Agency of Japan (2010). The limit is assumed: it is as Japanese safety guidance quotes it.
 
 Equations
 ---------
@@ -67,7 +67,7 @@ METHOD = Method(
         year="2010",
         title="Hondana tō no tentō bōshisaku ni tsuite (On measures against the overturning of bookshelves)",
         source="",
-        remark="As quoted by Japanese safety sites.",
+        remark="Assumed: the limit is as Japanese safety guidance quotes it, not compared with the publication.",
     ),
     needs=frozenset({"breadth", "height"}),
     evaluate=evaluate,

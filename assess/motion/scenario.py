@@ -18,7 +18,7 @@ from types import MappingProxyType
 PGA_OF_SDS = 0.4
 """Ground PGA over SDS: ASCE 7's horizontal acceleration of the ground is 0.4 SDS."""
 
-UNVERIFIED = "not checked against the code's own text"
+UNVERIFIED = "assumed: not checked against the code's own text"
 """Status of a profile that has not been checked."""
 
 VERIFIED = "agrees with public implementations of the code"
@@ -190,7 +190,7 @@ def estimate_pfv(pfa: float, period: float) -> float:
 
 VELOCITY_AMPLIFICATION = 2.30
 """Pseudo-velocity of an oscillator of 5 % damping over PGV [-], largest over all periods, 84th percentile: Newmark and
-Hall (1982). To be checked against the publication; their median, 1.65, is that of public implementations."""
+Hall (1982). Assumed: not compared with the publication; their median, 1.65, is that of public implementations."""
 
 ROOF_PARTICIPATION = 4 / math.pi
 """Roof of a uniform shear beam over an oscillator, in the first mode [-]: Miranda and Taghavi (2005)."""

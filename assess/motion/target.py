@@ -6,7 +6,8 @@ assumption, built from the shape of ICC-ES AC156 and checked against the recorde
 References
 ----------
 ICC-ES AC156, Acceptance criteria for seismic certification by shake-table testing of nonstructural components: corners
-at 8.3 and 33.3 Hz, slope of the long-period branch, and envelope of 5, 15 and 10 s, at second hand.
+at 8.3 and 33.3 Hz, slope of the long-period branch, and envelope of 5, 15 and 10 s. Assumed: not compared with the
+document.
 """
 
 import math

@@ -12,7 +12,7 @@ Association International: double-faced library shelving of 21 in by 7.5 ft, boo
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from assess.i18n import Text, fill
 from assess.model import Item
@@ -71,8 +71,8 @@ def find_weight(item: Item, language: str = "en") -> Weight:
     contents = find_contents(item.type, language)
     density = DENSITIES[contents or UNKNOWN]
     volume = item.breadth * (item.width or WIDTH) * item.height
-    words = fill(
-        "estimated: {density:g} kg/m³, {meaning} ({source})", density=density.value, meaning=density.meaning,
-        source=density.source,
-    )  # fmt: skip
+    filled: dict[str, Any] = {"density": density.value, "meaning": density.meaning, "source": density.source}
+    words = fill("estimated: {density:g} kg/m³, {meaning} ({source})", **filled)
+    if not contents:
+        words = fill("estimated: {density:g} kg/m³, assumed to be full of {meaning} ({source})", **filled)
     return Weight(density.value * volume * GRAVITY, "estimate", words, is_assumed=True, is_per_metre=item.width is None)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.pipeline.anchors import BRACKET
 from assess.report import words
 from assess.report.findings import assumed_intensity, motions
 from assess.report.findings.route_words import say_risk
@@ -13,6 +14,7 @@ from assess.results import MOTION_FLAGS, PIECE_FLAG_TEXTS, Results
 from assess.route_results import FLAGS as ROUTE_FLAGS
 from assess.route_results import RouteTables
 from assess.units import GRAVITY
+from assess.workbook.catalogue import is_assumed
 from assess.workbook.schema import ITEMS
 
 if TYPE_CHECKING:
@@ -53,6 +55,10 @@ def list_assumptions(results: Results) -> Lines:
             where = ngettext("{column} blank in {n:,} row", "{column} blank in {n:,} rows", counted[name],
                              column=_(ITEMS.column(name).label))  # fmt: skip
             lines.append((where, text))
+    if sizes := _count_assumed_sizes(results):
+        where = ngettext("Sizes by Type in {n:,} row", "Sizes by Type in {n:,} rows", sizes)
+        lines.append((where, _("assumed: usual sizes, no citable source")))
+    lines += _list_for_anchors(results)
     if axes := sum(item.axis_given is None for item in items):
         where = ngettext("Axis unknown in {n:,} row", "Axis unknown in {n:,} rows", axes)
         lines.append((where, _("the worse of X and Y governs")))
@@ -60,6 +66,27 @@ def list_assumptions(results: Results) -> Lines:
         where = ngettext("Friction unknown in {n:,} row", "Friction unknown in {n:,} rows", frictions)
         lines.append((where, _("no sliding, as the paper assumes")))
     return [*lines, *_list_for_routes(results), *_list_constants(results)]
+
+
+def _list_for_anchors(results: Results) -> Lines:
+    """Return what was assumed of the weights and brackets of pieces."""
+    anchors, lines = [item.anchor for item in results.item_rows], Lines()
+    if weights := sum(one.weight_source == "estimate" for one in anchors):
+        where = ngettext("Weight unknown in {n:,} row", "Weight unknown in {n:,} rows", weights)
+        text = _("estimated for forces on brackets, by a density of what the Type holds; densities are assumed unless "
+                 "a source stands beside them")  # fmt: skip
+        lines.append((where, text))
+    if heights := sum(one.is_height_assumed for one in anchors):
+        where = ngettext("Bracket height unknown in {n:,} row", "Bracket height unknown in {n:,} rows", heights)
+        lines.append((where, _("assumed: {share:g} % of the height of the piece", share=100 * BRACKET)))
+    return lines
+
+
+def _count_assumed_sizes(results: Results) -> int:
+    """Count the rows with a size taken from a type of the Catalogue whose source says that it is assumed."""
+    assumed = {one.type for one in results.catalogue if is_assumed(one.source)}
+    sizes = {"breadth", "width", "height", "centre_of_gravity"}
+    return sum(item.type in assumed and not sizes.isdisjoint(item.assumed) for item in results.item_rows)
 
 
 def _assumed() -> Mapping[str, str]:

@@ -11,7 +11,7 @@ of America 53(2):403-417.
 
 Sorrentino L, AlShawa O, Decanini LD (2011). The relevance of energy damping in unreinforced masonry rocking mechanisms.
 Experimental and analytic investigations. Bulletin of Earthquake Engineering 9(5):1617-1642.
-doi:10.1007/s10518-011-9291-1. The restitution of the one-sided motion is to be checked against the printed paper.
+doi:10.1007/s10518-011-9291-1. The restitution of the one-sided motion is assumed: not compared with the printed paper.
 """
 
 import math

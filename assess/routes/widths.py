@@ -23,14 +23,14 @@ _IBC = Reference(
     year="2021",
     title="International Building Code",
     source="sections 1005.3 and 1020.3",
-    remark="Widths as given in summaries, to be verified against the code.",
+    remark="Assumed: widths as given in summaries, not compared with the code.",
 )
 _JAPAN = Reference(
     authors="",
     year="",
     title="Building Standards Law Enforcement Order (Japan)",
     source="Article 119",
-    remark="Widths as given in a summary, to be verified against the order.",
+    remark="Assumed: widths as given in a summary, not compared with the order.",
 )
 _TOKYO = Reference(
     authors="Tokyo Metropolitan Government",
@@ -44,7 +44,7 @@ _ITALY = Reference(
     year="2015",
     title="D.M. 3 agosto 2015, Codice di prevenzione incendi",
     source="section S.4.8",
-    remark="Widths as commonly quoted, to be verified against the decree.",
+    remark="Assumed: widths as commonly quoted, not compared with the decree.",
 )
 
 RULES = (
@@ -63,7 +63,8 @@ RULES = (
 """Widths that codes and guidance ask for, for the reader to choose from; which applies, the workbook has to say."""
 
 LEVEL, STAIR = 0.00508, 0.00762
-"""Width that an occupant needs [m]: 0.2 in, on stairs 0.3 in (International Building Code, section 1005.3)."""
+"""Width that an occupant needs [m]: 0.2 in, on stairs 0.3 in. Assumed: the International Building Code, section 1005.3,
+as given in summaries."""
 
 
 def needed_width(segment: Segment, kinds: dict[str, str]) -> float | None:

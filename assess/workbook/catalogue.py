@@ -77,6 +77,20 @@ def catalogue_texts() -> list[str]:
     return [*(line["type"] for line in lines), *dict.fromkeys(sources)]
 
 
+def is_assumed(source: str) -> bool:
+    """Return whether the source of a type says, in any language, that its sizes are assumed."""
+    return source.split(":", maxsplit=1)[0].strip().casefold() in _words_for_assumed()
+
+
+@cache
+def _words_for_assumed() -> frozenset[str]:
+    """Return how the sources of assumed types begin, in every language."""
+    sources = [one for one in catalogue_texts() if one.startswith(ASSUMED)]
+    catalogues = [load_catalogue(code) for code in LANGUAGES]
+    found = {one.find(source, "", 1).split(":")[0].casefold() for one in catalogues for source in sources}
+    return frozenset({ASSUMED, *found})
+
+
 def _read_type(line: dict[str, str], units: "Units") -> dict[str, Any]:
     kind, source = line["type"], line["source"]
     row: dict[str, Any] = {"type": gettext(kind)}

@@ -6,7 +6,7 @@ import pytest
 
 from assess.i18n import load_catalogue, speaking
 from assess.units import QUANTITIES
-from assess.workbook.catalogue import ASSUMED, catalogue_rows, catalogue_texts, read_catalogue
+from assess.workbook.catalogue import ASSUMED, catalogue_rows, catalogue_texts, is_assumed, read_catalogue
 from assess.workbook.lists import ROWS
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CATALOGUE, USES
@@ -58,6 +58,18 @@ def test_what_is_assumed_is_said_in_a_few_sentences():
     sources = {row["source"] for row in catalogue_rows() if row["source"].startswith(ASSUMED)}
     assert sources < set(catalogue_texts())
     assert len(sources) <= 4
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_an_assumed_source_is_known_in_every_language(language):
+    with speaking(load_catalogue(language)):
+        marked = {row["type"] for row in read_catalogue() if is_assumed(row["source"])}
+        plain = {row["type"] for row in read_catalogue()} - marked
+    rows = catalogue_rows()
+    assert len(marked) == sum(row["source"].startswith(ASSUMED) for row in rows) > 0
+    assert len(plain) == len(rows) - len(marked) > 0
+    assert not is_assumed("Assumedly: a size")
+    assert not is_assumed("")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
