@@ -22,16 +22,35 @@ def record(name: str) -> Path:
 
 
 def fonts() -> dict[tuple[str, str], Path]:
-    """Return the report's fonts by family and style: the DejaVu fonts that matplotlib brings along."""
-    spec = importlib.util.find_spec("matplotlib")
-    if spec is None or spec.origin is None:
-        return {}
-    folder = Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf"
-    names = {
-        ("Report", "regular"): "DejaVuSans.ttf",
-        ("Report", "bold"): "DejaVuSans-Bold.ttf",
-        ("Report", "italic"): "DejaVuSans-Oblique.ttf",
-        ("Report Mono", "regular"): "DejaVuSansMono.ttf",
-        ("Report Mono", "bold"): "DejaVuSansMono-Bold.ttf",
+    """Return the report's fonts by family and style.
+
+    "Report" is IBM Plex Sans, "Report Signs" holds the signs that it lacks and "Report Mono" has equal widths: the
+    DejaVu fonts that matplotlib brings along.
+    """
+    plex = Path(__file__).with_name("fonts")
+    found = {
+        ("Report", "regular"): plex / "IBMPlexSans-Regular.ttf",
+        ("Report", "bold"): plex / "IBMPlexSans-SemiBold.ttf",
+        ("Report", "italic"): plex / "IBMPlexSans-Italic.ttf",
     }
-    return {style: folder / name for style, name in names.items() if (folder / name).is_file()}
+    spec = importlib.util.find_spec("matplotlib")
+    if spec is not None and spec.origin is not None:
+        signs = Path(spec.origin).parent / "mpl-data" / "fonts" / "ttf"
+        found |= {
+            ("Report Signs", "regular"): signs / "DejaVuSans.ttf",
+            ("Report Signs", "bold"): signs / "DejaVuSans-Bold.ttf",
+            ("Report Signs", "italic"): signs / "DejaVuSans-Oblique.ttf",
+            ("Report Mono", "regular"): signs / "DejaVuSansMono.ttf",
+            ("Report Mono", "bold"): signs / "DejaVuSansMono-Bold.ttf",
+        }
+    return {style: path for style, path in found.items() if path.is_file()}
+
+
+def web_fonts() -> dict[tuple[str, str], Path]:
+    """Return the fonts that an HTML report holds, compressed, by family and style; slanted letters are made of these."""
+    plex = Path(__file__).with_name("fonts")
+    found = {
+        ("Report", "regular"): plex / "IBMPlexSans-Regular.woff2",
+        ("Report", "bold"): plex / "IBMPlexSans-SemiBold.woff2",
+    }
+    return {style: path for style, path in found.items() if path.is_file()}

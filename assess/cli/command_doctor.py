@@ -20,7 +20,7 @@ EXAMPLES = ("assess doctor", "assess doctor > doctor.txt")
 
 DEVELOPMENT = "dev"
 """The extra that only developers need; it is not examined."""
-FONTS = 5
+FONTS = 8
 """Fonts of the reports."""
 _REQUIREMENT = re.compile(
     r"(?P<name>[A-Za-z0-9._-]+)[^;>]*(>=\s*(?P<least>[0-9.]+))?[^;]*(;.*extra\s*==\s*['\"](?P<extra>[^'\"]+))?"
@@ -64,7 +64,7 @@ def examine() -> Iterator[Finding]:
     templates = resources.templates() / "report.html.j2"
     yield Finding("templates", templates.is_file(), str(templates.parent))
     fonts = [path.name for path in resources.fonts().values()]
-    fix = "pip install --force-reinstall matplotlib"
+    fix = "pip install --force-reinstall assess matplotlib"
     yield Finding("fonts", len(fonts) == FONTS, ", ".join(fonts) if len(fonts) == FONTS else fix)
     yield _examine_pdf()
     yield _examine_cache()

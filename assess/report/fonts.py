@@ -1,13 +1,23 @@
 """The report's own fonts: their style rules, the characters that they hold, and what else of the machine helps out."""
 
 import base64
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from assess import resources
 
+FIGURE_FAMILY = "IBM Plex Sans"
+"""The report's own face as its files call it."""
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
+
+
+EAST_ASIAN = (
+    "Noto Sans CJK JP", "Noto Sans JP", "Noto Sans CJK SC", "Noto Sans SC", "Source Han Sans", "Hiragino Sans",
+    "Yu Gothic", "PingFang SC", "Microsoft YaHei", "Malgun Gothic", "WenQuanYi Micro Hei",
+)  # fmt: skip
+"""Families with Chinese, Japanese and Korean characters that systems bring along or offer, the best match first."""
 
 
 @cache
@@ -17,15 +27,49 @@ def font_faces() -> str:
     Signs such as ⚓, which are emoji as well, are looked for in a family of the name emoji first: it is this font, too.
     """
     own = resources.fonts()
-    emoji = {
-        ("emoji", style): path for (family, style), path in own.items() if (family, style) == ("Report", "regular")
-    }
+    signs = {("emoji", style): path for (family, style), path in own.items() if family == "Report Signs"}
+    return _write_faces(own | {key: path for key, path in signs.items() if key[1] == "regular"})
+
+
+@cache
+def web_font_faces() -> str:
+    """Return the compressed fonts of an HTML report as @font-face rules, each with its whole file."""
+    return _write_faces(resources.web_fonts())
+
+
+def _write_faces(fonts: Mapping[tuple[str, str], Path]) -> str:
     return "\n".join(
         f"@font-face {{ font-family: '{family}'; font-weight: {'bold' if style == 'bold' else 'normal'}; "
         f"font-style: {'italic' if style == 'italic' else 'normal'}; "
-        f"src: url(data:font/ttf;base64,{base64.b64encode(path.read_bytes()).decode()}); }}"
-        for (family, style), path in (own | emoji).items()
+        f"src: url(data:font/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode()}); }}"
+        for (family, style), path in fonts.items()
     )
+
+
+@cache
+def figure_families() -> tuple[str, ...]:
+    """Return the families of a figure's text for matplotlib: the report's own, then one with East Asian characters.
+
+    The latter is left out where this machine has none.
+    """
+    from matplotlib.font_manager import fontManager
+
+    known = {font.name for font in fontManager.ttflist}
+    listed = {font.fname for font in fontManager.ttflist}
+    for (family, _style), path in resources.fonts().items():
+        if family == "Report" and str(path) not in listed:
+            fontManager.addfont(path)
+    lent = [name for name in EAST_ASIAN if name in known]
+    return (FIGURE_FAMILY, "DejaVu Sans", *lent[:1])
+
+
+def find_undrawn(text: str) -> str:
+    """Return the characters of a text that no font of figures holds, each once, in their order."""
+    from matplotlib.font_manager import findfont
+
+    lent = figure_families()[2:]
+    held = [font for family in lent if (font := _open_font(findfont(family))) is not None]
+    return "".join(sign for sign in find_missing(text) if not any(font.get_char_index(ord(sign)) for font in held))
 
 
 def find_missing(text: str) -> str:
@@ -35,11 +79,14 @@ def find_missing(text: str) -> str:
     return "".join(sign for sign in dict.fromkeys(text) if not sign.isascii() and ord(sign) not in _held())
 
 
+_TEXT = (("Report", "regular"), ("Report Signs", "regular"))
+
+
 @cache
 def _held() -> frozenset[int]:
-    """Return the code points of the regular font; what another style lacks is taken from it."""
-    path = resources.fonts().get(("Report", "regular"))
-    return frozenset(_open_font(str(path)).get_charmap()) if path else frozenset()
+    """Return the code points of the regular fonts; what another style lacks is taken from them."""
+    fonts = [path for key, path in resources.fonts().items() if key in _TEXT]
+    return frozenset(code for path in fonts for code in _open_font(str(path)).get_charmap())
 
 
 def replace_signs(text: str, signs: Collection[str]) -> str:

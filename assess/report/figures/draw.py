@@ -14,7 +14,7 @@ import numpy as np
 from assess.i18n import spoken
 from assess.progress import ASKED_EVERY, SILENT, Progress
 from assess.report import words
-from assess.report.fonts import find_missing, replace_signs
+from assess.report.fonts import figure_families, find_undrawn, replace_signs
 from assess.risk import RiskClass
 
 MOST_POINTS = 1500
@@ -34,8 +34,7 @@ def draw(
     thread that is left behind, as the defaults of matplotlib have to be set back by then.
     """
     Figure, rc_context = progress.wait_for(_import_matplotlib)
-    style = rc_context({"svg.hashsalt": "assess", "svg.fonttype": "path", "font.size": 8, "hatch.linewidth": 0.5})
-    with _one_at_a_time(progress), style:
+    with _one_at_a_time(progress), rc_context(_style()):
         figure = Figure(figsize=(width, height), layout="constrained")
         figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
         paint(figure)
@@ -45,6 +44,19 @@ def draw(
         figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
     progress.check()
     return _shorten(file.getvalue()) if kind == "svg" else file.getvalue()
+
+
+def _style() -> dict[str, Any]:
+    """Return the style of every figure: the report's face, thin grey axes without a box, a light grid."""
+    return {
+        "svg.hashsalt": "assess", "svg.fonttype": "path", "hatch.linewidth": 0.5,
+        "font.family": list(figure_families()), "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8,
+        "axes.titleweight": "semibold", "axes.edgecolor": "#767c82", "axes.linewidth": 0.6,
+        "axes.spines.top": False, "axes.spines.right": False, "xtick.color": "#767c82", "ytick.color": "#767c82",
+        "xtick.labelcolor": "#1c1c1c", "ytick.labelcolor": "#1c1c1c", "xtick.major.width": 0.6,
+        "ytick.major.width": 0.6, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "legend.fontsize": 7.5,
+        "grid.color": "#dfe3e6", "grid.linewidth": 0.5,
+    }  # fmt: skip
 
 
 def _import_matplotlib() -> tuple[Any, Any]:
@@ -72,7 +84,7 @@ def _replace_missing(figure: Any) -> None:
     from matplotlib.text import Text
 
     for one in figure.findobj(Text):
-        if missing := find_missing(one.get_text()):
+        if missing := find_undrawn(one.get_text()):
             one.set_text(replace_signs(one.get_text(), missing))
 
 

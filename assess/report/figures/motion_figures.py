@@ -203,8 +203,8 @@ def _paint_panels(traced: Sequence[Traced], paint: Callable[[Any, Traced, bool],
         paint(axes, traced[at], at == 0)
         one = traced[at].one
         floor = _("floor {floor}", floor=label(one.item.floor, 12))
-        axes.set_title(f"{label(one.item.item, 20)}\n{floor}", fontsize=7, loc="left")
-        axes.tick_params(labelsize=6)
+        axes.set_title(f"{label(one.item.item, 20)}\n{floor}", fontsize=8, loc="left")
+        axes.tick_params(labelsize=7)
         axes.spines[["top", "right"]].set_visible(False)
     return panels[min(columns, len(traced)) - 1]
 
@@ -214,10 +214,10 @@ def _paint_convergences(traced: Sequence[Traced], z: float, is_long: bool, figur
     last = _paint_panels(traced, partial(_paint_convergence, z, is_long), figure)
     edges = np.sqrt([0, *LIMITS, 1])
     for risk, middle in zip(RiskClass, (edges[1:] + edges[:-1]) / 2, strict=True):
-        name = last.text(1.06, middle, words.risk_label(risk), transform=last.transAxes, fontsize=6, va="center")
+        name = last.text(1.06, middle, words.risk_label(risk), transform=last.transAxes, fontsize=7, va="center")
         name.set_gid("class")
     drawn, names = last.get_legend_handles_labels()
-    figure.legend(drawn[::-1], names[::-1], loc="outside lower center", ncols=3, fontsize=6, frameon=False)
+    figure.legend(drawn[::-1], names[::-1], loc="outside lower center", ncols=3, fontsize=7, frameon=False)
 
 
 def _paint_convergence(z: float, is_long: bool, axes: Any, one: Traced, is_first: bool) -> None:
@@ -235,9 +235,9 @@ def _paint_convergence(z: float, is_long: bool, axes: Any, one: Traced, is_first
     axes.set_yticks([0, *LIMITS, 1], [f"{number(100 * tick, 'g')} %" for tick in (0, *LIMITS, 1)])
     axes.set_xscale("log" if is_long else "linear")
     axes.set_xlim(1, max(2, one.fell.size))
-    axes.set_xlabel(_("motions"), fontsize=6)
+    axes.set_xlabel(_("motions"), fontsize=7)
     if is_first:
-        axes.set_ylabel(_("chance of overturning"), fontsize=7)
+        axes.set_ylabel(_("chance of overturning"), fontsize=8)
 
 
 def _root(values: Any) -> Any:
@@ -246,7 +246,7 @@ def _root(values: Any) -> Any:
 
 def _paint_all_rotations(traced: Sequence[Traced], figure: Any) -> None:
     _paint_panels(traced, _paint_rotations, figure)
-    figure.supxlabel(_("largest rotation, over the critical angle"), fontsize=7)
+    figure.supxlabel(_("largest rotation, over the critical angle"), fontsize=8)
 
 
 def _paint_rotations(axes: Any, one: Traced, is_first: bool) -> None:
@@ -264,7 +264,7 @@ def _paint_rotations(axes: Any, one: Traced, is_first: bool) -> None:
     axes.set_xticks([-1, BINS / 2, BINS, BINS + 3], names, rotation=60, ha="right", rotation_mode="anchor")
     axes.set_ylim(0, 100)
     if is_first:
-        axes.set_ylabel(_("share of the motions [%]"), fontsize=7)
+        axes.set_ylabel(_("share of the motions [%]"), fontsize=8)
 
 
 # ---------------------------------------------------------------- motions and their spectra
@@ -316,12 +316,12 @@ def _paint_motions(accelerations: Sequence[Acceleration], spectra: Spectra | Non
         colour = RECORD if gid == "record" else MOTION
         axes.plot(times, shown, color=colour, linewidth=0.5)[0].set_gid(gid)
         title = _("{name}: PFA {pfa:.3f} g", name=name, pfa=float(np.abs(values).max()))
-        axes.set_title(title, loc="left", fontsize=7)
+        axes.set_title(title, loc="left", fontsize=8)
         axes.margins(x=0)
-        axes.tick_params(labelsize=6)
+        axes.tick_params(labelsize=7)
         axes.spines[["top", "right"]].set_visible(False)
-    left.supylabel(_("acceleration [g]"), fontsize=7)
-    panels[-1].set_xlabel(_("time [s]"), fontsize=7)
+    left.supylabel(_("acceleration [g]"), fontsize=8)
+    panels[-1].set_xlabel(_("time [s]"), fontsize=8)
     if spectra is not None:
         axes = right.subplots()
         _paint_spectra(axes, spectra)
@@ -354,10 +354,10 @@ def _frame_spectra(axes: Any, periods: FloatArray) -> None:
     axes.minorticks_off()
     axes.set_xlim(periods[0], periods[-1])
     axes.set_ylim(bottom=0)
-    axes.set_xlabel(_("period [s]"), fontsize=7)
-    axes.set_title(_("5 % pseudo-acceleration [g]"), loc="left", fontsize=7)
-    axes.tick_params(labelsize=6)
+    axes.set_xlabel(_("period [s]"), fontsize=8)
+    axes.set_title(_("5 % pseudo-acceleration [g]"), loc="left", fontsize=8)
+    axes.tick_params(labelsize=7)
     axes.grid(visible=True, color="#e0e0e0", linewidth=0.5)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(fontsize=6, frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    axes.legend(fontsize=7, frameon=False, ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.14))

@@ -160,7 +160,7 @@ def _paint(contours: Contours, figure: Any) -> None:
         _frame(axes, method, contours)
         taken = paint_chances(axes, lines, places)
         paint_names(axes, places, taken)
-    panels[0].set_ylabel(_("PFA [g]"), fontsize=7)
+    panels[0].set_ylabel(_("PFA [g]"), fontsize=8)
     paint_legend(figure)
 
 
@@ -177,5 +177,5 @@ def _frame(axes: Any, method: "MethodInfo", contours: Contours) -> None:
     axes.set_xlim(*contours.breadth_cm[[0, -1]])
     axes.set_ylim(*contours.pfa_g[[0, -1]])
     axes.set_title(_(method.title), fontsize=8, loc="left")
-    axes.set_xlabel(_("breadth [cm]"), fontsize=7)
-    axes.tick_params(labelsize=6)
+    axes.set_xlabel(_("breadth [cm]"), fontsize=8)
+    axes.tick_params(labelsize=7)

@@ -98,7 +98,7 @@ def paint_chances(axes: Any, lines: Sequence[Line], places: Mapping[Place, objec
         at = find_clearest(along, PANEL, others, 3 * GAP) if len(along) else None
         if at is not None:
             text = f"{number(100 * level, 'g')} %"
-            axes.text(*vertices[at], text, fontsize=6, ha="center", va="center", color=INK, zorder=4,
+            axes.text(*vertices[at], text, fontsize=7, ha="center", va="center", color=INK, zorder=4,
                       bbox=_BACKING).set_gid("chance")  # fmt: skip
             others = np.vstack([others, along[at]])
             x, y = along[at].tolist()
@@ -114,7 +114,7 @@ def paint_names(axes: Any, places: Mapping[Place, Sequence[ItemResult]], taken: 
         box = find_room(tuple(at), name, PANEL, taken) if named < MOST_NAMES else None
         if box is not None:
             offset = ((box[0] + box[2]) / 2 - at[0], (box[1] + box[3]) / 2 - at[1])
-            axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=6, ha="center", va="center",
+            axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=7, ha="center", va="center",
                           color=INK, zorder=6, bbox=_BACKING).set_gid("name")  # fmt: skip
             taken.append(box)
             named += 1
@@ -129,7 +129,7 @@ def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
                     label=words.risk_label(one)) for one in RiskClass]  # fmt: skip
     checked = Line2D([], [], color=INK, linewidth=1.2, linestyle=":", label=_("range in which the formula is checked"))
     handles = [*fields, checked] if has_checked else fields
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=6, frameon=False)
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7, frameon=False)
 
 
 # ---------------------------------------------------------------- where texts go, in points

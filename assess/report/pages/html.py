@@ -11,7 +11,7 @@ from typing import Any
 from assess.errors import InputError, Problem
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
-from assess.report.fonts import font_faces
+from assess.report.fonts import font_faces, web_font_faces
 from assess.report.pages.context import FILTERS, GLOBALS, build_context, list_missing_figures
 from assess.report.report_options import ReportOptions
 from assess.report.words import class_name, list_breaks
@@ -133,8 +133,8 @@ def _import_errors() -> tuple[type[Exception], type[Exception]]:
 def _style(options: ReportOptions, for_print: bool) -> str:
     names = ("base.css", "print.css") if for_print else ("base.css", "screen.css")
     colours = [f".{class_name(risk)} {{ background: {risk.fill}; color: {risk.ink}; }}" for risk in RiskClass]
-    fonts = [font_faces()] if for_print else []
-    return "\n".join([*fonts, *colours, *(options.read(f"style/{name}") for name in names)])
+    fonts = font_faces() if for_print else web_font_faces()
+    return "\n".join([fonts, *colours, *(options.read(f"style/{name}") for name in names)])
 
 
 def hash_script(text: str) -> str:
