@@ -34,7 +34,7 @@ def draw(
     thread that is left behind, as the defaults of matplotlib have to be set back by then.
     """
     Figure, rc_context = progress.wait_for(_import_matplotlib)
-    with _one_at_a_time(progress), rc_context(_style()):
+    with one_at_a_time(progress), rc_context(_style()):
         figure = Figure(figsize=(width, height), layout="constrained")
         figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
         paint(figure)
@@ -51,7 +51,7 @@ def _style() -> dict[str, Any]:
     return {
         "svg.hashsalt": "assess", "svg.fonttype": "path", "hatch.linewidth": 0.5,
         "font.family": list(figure_families()), "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8,
-        "axes.titleweight": "semibold", "axes.edgecolor": "#767c82", "axes.linewidth": 0.6,
+        "axes.edgecolor": "#767c82", "axes.linewidth": 0.6,
         "axes.spines.top": False, "axes.spines.right": False, "xtick.color": "#767c82", "ytick.color": "#767c82",
         "xtick.labelcolor": "#1c1c1c", "ytick.labelcolor": "#1c1c1c", "xtick.major.width": 0.6,
         "ytick.major.width": 0.6, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "legend.fontsize": 7.5,
@@ -71,7 +71,8 @@ def _import_matplotlib() -> tuple[Any, Any]:
 
 
 @contextmanager
-def _one_at_a_time(progress: Progress) -> Iterator[None]:
+def one_at_a_time(progress: Progress) -> Iterator[None]:
+    """Wait until no other figure is drawn; CancelledError."""
     while not _DRAWING.acquire(timeout=ASKED_EVERY):
         progress.check()
     try:
