@@ -40,7 +40,9 @@ _GREEK = {
 _RELATIONS = {"≤": r"\leq", "≥": r"\geq"}
 _SIGNS = {"−": "-", "±": r"\pm"}
 _LOWER, _UPPER = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789"), str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
-_NAME = re.compile(r"(?P<base>B/H|PFV(?=50)|[A-Z]{2,}|.)(?P<index>50|_[A-Za-z0-9α-ω]+|[₀-₉]+)?(?P<star>[*]?)(?P<primes>[′″]*)")
+_NAME = re.compile(
+    r"(?P<base>B/H|PFV(?=50)|[A-Z]{2,}|.)(?P<index>50|_[A-Za-z0-9α-ω]+|[₀-₉]+)?(?P<star>[*]?)(?P<primes>[′″]*)"
+)
 
 
 class NotationError(ValueError):
@@ -154,8 +156,13 @@ def _is_number_of_equation(tokens: list[Token], at: int) -> bool:
 
 
 def _bounds(stretch: list[Token]) -> Iterator[tuple[int, int]]:
+    """Yield start and end of a stretch without what belongs to the words around it; not of one that words interrupt."""
+    if [one.kind for one in stretch[-2:]] == ["name", "open"]:
+        return
     while stretch and stretch[0].kind in ("space", "close"):
         stretch = stretch[1:]
+    if stretch and stretch[0].kind == "relation":
+        return
     while stretch and stretch[-1].kind in ("space", "open"):
         stretch = stretch[:-1]
     if any(one.kind == "relation" or (one.kind == "operator" and one.text in "·/^") for one in stretch):
@@ -384,4 +391,4 @@ def _write_base(base: str) -> str:
 
 
 def _write_index(index: str) -> str:
-    return _GREEK.get(index, index) if len(index) == 1 else rf"\mathrm{{{index}}}"
+    return _GREEK.get(index, index) if len(index) == 1 or index.isdigit() else rf"\mathrm{{{index}}}"

@@ -1,6 +1,7 @@
 """Equations drawn by matplotlib's mathtext as small SVG pictures, as large as the text around them."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -17,6 +18,7 @@ FACE = "stix"
 """STIX, a face for mathematics that matplotlib brings along."""
 ENLARGED = 1.06
 """By how much its letters are enlarged, so that they look as large as those of the text."""
+_UNNAMED = re.compile(r"[^A-Za-z0-9]+")
 _LETTERS = {1: "M", 2: "L", 3: "Q", 4: "C", 79: "Z"}
 """What SVG calls the codes of `matplotlib.path.Path`."""
 _POINTS = {1: 1, 2: 1, 3: 2, 4: 3, 79: 1}
@@ -25,12 +27,45 @@ _POINTS = {1: 1, 2: 1, 3: 2, 4: 3, 79: 1}
 
 @dataclass(frozen=True, slots=True)
 class MathFigure:
-    """An equation as a picture: SVG, and its width, height and what of that is below the line of writing, in em."""
+    """An equation as a picture.
 
-    svg: str
-    width: float
-    height: float
+    Parameters
+    ----------
+    letters : mapping of str to str
+        The outline of each letter as an SVG path, by a name that is the same in every equation.
+    placed : str
+        SVG elements that use the letters, and rules.
+    box : tuple of float
+        Left, top, width and height [units].
+    depth : float
+        What of the height is below the line of writing [units].
+    """
+
+    letters: Mapping[str, str]
+    placed: str
+    box: tuple[float, float, float, float]
     depth: float
+
+    @property
+    def view(self) -> str:
+        """The viewBox."""
+        return " ".join(f"{one:.0f}" for one in self.box)
+
+    @property
+    def style(self) -> str:
+        """The measures in em of the text around it."""
+        width, height, depth = (value * ENLARGED / UNITS for value in (*self.box[2:], self.depth))
+        return f"width: {width:.2f}em; aspect-ratio: {width:.2f} / {height:.2f}; vertical-align: {-depth:.2f}em"
+
+    def write_alone(self) -> str:
+        """Return it as an SVG file, with its letters."""
+        head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{self.view}" fill="{INK}">'
+        return f"{head}{write_letters(self.letters)}{self.placed}</svg>"
+
+
+def write_letters(letters: Mapping[str, str]) -> str:
+    """Return the outlines of letters as SVG definitions, which equations use."""
+    return f"<defs>{''.join(f'<path id="{name}" d="{path}"/>' for name, path in letters.items())}</defs>"
 
 
 @cache
@@ -42,25 +77,23 @@ def draw_math(tex: str) -> MathFigure:
     ValueError
         If it is no TeX that mathtext reads.
     """
-    from matplotlib import rc_context
+    from matplotlib import rc_context, rcParamsDefault
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
 
     face, text = FontProperties(size=UNITS, math_fontfamily=FACE), f"${tex}$"
-    with one_at_a_time(SILENT), rc_context({"mathtext.default": "it"}):
+    with one_at_a_time(SILENT), rc_context({"mathtext.default": rcParamsDefault["mathtext.default"]}):
         width, height, depth, *_ = text_to_path.mathtext_parser.parse(text, text_to_path.DPI, face)
         glyphs, shapes, rules = text_to_path.get_glyphs_mathtext(face, text)
-    names = {name: f"g{at}" for at, name in enumerate(shapes)}
-    defined = "".join(f'<path id="{names[name]}" d="{_write_path(*shape)}"/>' for name, shape in shapes.items())
-    used = "".join(_place(names[name], x, y, size) for name, x, y, size in glyphs)
-    ruled = "".join(f'<path d="{_write_path(*rule)}"/>' for rule in rules)
-    box = [-MARGIN, -(height - depth) - MARGIN, width + 2 * MARGIN, height + 2 * MARGIN]
-    svg = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{" ".join(f"{one:.0f}" for one in box)}" fill="{INK}">'
-        f"<defs>{defined}</defs>{used}{ruled}</svg>"
+    names = {shape: _UNNAMED.sub("-", f"math-{shape}") for shape in shapes}
+    placed = [_place(names[shape], x, y, size) for shape, x, y, size in glyphs]
+    ruled = [f'<path d="{_write_path(*rule)}"/>' for rule in rules]
+    return MathFigure(
+        letters={names[shape]: _write_path(*outline) for shape, outline in shapes.items()},
+        placed="".join([*placed, *ruled]),
+        box=(-MARGIN, -(height - depth) - MARGIN, width + 2 * MARGIN, height + 2 * MARGIN),
+        depth=depth + MARGIN,
     )
-    em = UNITS / ENLARGED
-    return MathFigure(svg, box[2] / em, box[3] / em, (depth + MARGIN) / em)
 
 
 def _place(name: str, x: float, y: float, size: float) -> str:

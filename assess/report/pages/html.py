@@ -4,7 +4,9 @@ import base64
 import hashlib
 import re
 import traceback
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -14,7 +16,7 @@ from assess.progress import SILENT, Progress
 from assess.report.content import Content
 from assess.report.equations import Part, split_line
 from assess.report.fonts import font_faces, web_font_faces
-from assess.report.figures.math_figures import draw_math
+from assess.report.figures.math_figures import draw_math, write_letters
 from assess.report.pages.context import FILTERS, GLOBALS, build_context, list_missing_figures
 from assess.report.report_options import ReportOptions
 from assess.report.words import class_name, list_breaks
@@ -60,9 +62,10 @@ def render(
     script = "" if for_print else options.read(SCRIPT)
     context = build_context(content, options, for_print=for_print, progress=progress)
     context |= {"script": script, "script_hash": hash_script(script), "style": _style(options, for_print)}
-    parts = []
+    parts, letters = list[str](), dict[str, str]()
     try:
-        template = progress.wait_for(lambda: _environment(options).get_template("report.html.j2"))
+        environment = progress.wait_for(lambda: _environment(options, None if for_print else letters))
+        template = progress.wait_for(lambda: environment.get_template("report.html.j2"))
         for part in template.generate(**context):
             progress.check()
             parts.append(part)
@@ -70,7 +73,7 @@ def render(
         if options.templates is None:
             raise  # the standard templates are right, or it is a fault of this program
         raise InputError(_describe(error, options)) from None
-    return "".join(parts)
+    return _add_letters("".join(parts), letters)
 
 
 def check_templates(options: ReportOptions) -> None:
@@ -106,8 +109,11 @@ def _place(path: Path, options: ReportOptions) -> str:
     return next(path.relative_to(folder).as_posix() for folder in options.folders if path.is_relative_to(folder))
 
 
-def _environment(options: ReportOptions) -> Any:
-    """Return where templates are rendered: a sandbox that escapes every text and is strict about names."""
+def _environment(options: ReportOptions, letters: dict[str, str] | None = None) -> Any:
+    """Return where templates are rendered: a sandbox that escapes every text and is strict about names.
+
+    `letters` gets what the page has to hold of its equations (`write_equation`).
+    """
     from jinja2 import FileSystemLoader, StrictUndefined
     from jinja2.sandbox import ImmutableSandboxedEnvironment
 
@@ -118,7 +124,11 @@ def _environment(options: ReportOptions) -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {**FILTERS, "equation": write_equation, "breakable": write_breakable}
+    environment.filters |= {
+        **FILTERS,
+        "equation": partial(write_equation, letters=letters),
+        "breakable": write_breakable,
+    }
     environment.globals |= GLOBALS
     return environment
 
@@ -160,25 +170,44 @@ def write_breakable(text: str) -> Any:
     return Markup("<wbr>").join(escape(part) for part in list_breaks(text))
 
 
-def write_equation(text: str) -> Any:
+def write_equation(text: str, letters: dict[str, str] | None = None) -> Any:
     """Return a line of a method as HTML: its equations as pictures, of which the plain text is the alternative.
+
+    Without `letters` each picture is a file of its own; with them it is a part of the page, and adds to `letters` the
+    outlines that it uses, which the page has to hold (`write_letters`): each once.
 
     Source: WCAG 2.2, 1.1.1 (non-text content).
     """
     from markupsafe import Markup
 
-    return Markup("").join(_draw(part) if part.tex else lower_indices(part.text) for part in split_line(text))
+    return Markup("").join(_draw(part, letters) if part.tex else lower_indices(part.text) for part in split_line(text))
 
 
-def _draw(part: Part) -> Any:
+def _draw(part: Part, letters: dict[str, str] | None) -> Any:
     from markupsafe import Markup
 
     drawn = draw_math(part.tex)
-    return Markup('<img class="math" src="data:image/svg+xml,{}" alt="{}" style="{}">').format(
-        quote(drawn.svg, safe=" /:=,;()-"), part.text,
-        f"width: {drawn.width:.2f}em; aspect-ratio: {drawn.width:.2f} / {drawn.height:.2f}; "
-        f"vertical-align: {-drawn.depth:.2f}em",
-    )  # fmt: skip
+    if letters is None:
+        data = quote(drawn.write_alone(), safe=" /:=,;()-")
+        return Markup('<img class="math" src="data:image/svg+xml,{}" alt="{}" style="{}">').format(
+            data, part.text, drawn.style
+        )
+    letters |= drawn.letters
+    return Markup('<svg class="math" role="img" aria-label="{}" viewBox="{}" style="{}">{}</svg>').format(
+        part.text,
+        drawn.view,
+        drawn.style,
+        Markup(drawn.placed),  # noqa: S704 - numbers and names of letters
+    )
+
+
+def _add_letters(page: str, letters: Mapping[str, str]) -> str:
+    """Return a page that holds the outlines of the letters of its equations, at its end."""
+    if not letters:
+        return page
+    before, end, after = page.rpartition("</body>")
+    held = f'<svg width="0" height="0" aria-hidden="true" style="position: absolute">{write_letters(letters)}</svg>'
+    return f"{before}{held}\n{end}{after}"
 
 
 def lower_indices(text: str) -> Any:

@@ -1,0 +1,119 @@
+"""Equations: what of a line is one, its TeX, and that every equation of a method is typeset."""
+
+import re
+import unicodedata
+
+import pytest
+
+from assess.i18n import gettext, load_catalogue, speaking
+from assess.methods import all_methods
+from assess.motion.scenario import PROFILES
+from assess.report.equations import NotationError, Part, split_line, write_tex
+from assess.report.figures.math_figures import draw_math
+
+NAMED = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "varepsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ", "lambda": "λ",
+    "mu": "μ", "pi": "π", "Phi": "Φ", "pm": "±", "leq": "≤", "geq": "≥", "sqrt": "√", "ast": "*",
+}  # fmt: skip
+LAYOUT = re.compile(r"\\(dfrac|frac|mathrm|left|right|cdot)(?![a-zA-Z])|\\[,;]")
+LINES = [text for method in all_methods() for text in method.equations] + [one.equation for one in PROFILES.values()]
+
+
+@pytest.mark.parametrize(
+    ("plain", "tex"),
+    [
+        ("B/H", r"\dfrac{B}{H}"),
+        ("b/(B/H)", r"\dfrac{b}{B/H}"),
+        ("d/(B/H)²", r"\dfrac{d}{\left(B/H\right)^{2}}"),
+        ("f·PFA/(B/H)", r"\dfrac{f\cdot \mathrm{PFA}}{B/H}"),
+        ("a/2/3", r"\dfrac{a}{2 \cdot 3}"),
+        ("a/b·c", r"\dfrac{a}{b}\cdot c"),
+        ("(1/2 + x)/(a + b)", r"\dfrac{1/2 + x}{a + b}"),
+        ("(a + b)·(c + d)/e", r"\dfrac{\left(a + b\right)\cdot \left(c + d\right)}{e}"),
+        ("ln(a/b)/c", r"\dfrac{\ln\left(a/b\right)}{c}"),
+        ("Φ((x - y)/z)", r"\Phi\left(\dfrac{x - y}{z}\right)"),
+        ("√(3g/4r)", r"\sqrt{\dfrac{3 g}{4 r}}"),
+        ("15.6/√H (1 + B/H)^-1.5", r"\dfrac{15.6}{\sqrt{H}}\, \left(1 + B/H\right)^{-1.5}"),
+        ("(1 + x)^(-1,5)", r"\left(1 + x\right)^{- 1{,}5}"),
+        ("sin²α", r"\sin^{2}\, \alpha"),
+        ("θ″ = -p²", r"\theta'' = - p^{2}"),
+        ("|a_g|/g ≤ H_f", r"\dfrac{|a_{g}|}{g} \leq H_{f}"),
+        ("PFV50 = V_imp", r"\mathrm{PFV}_{50} = V_{\mathrm{imp}}"),
+        ("B/H* = -2d", r"(B/H)^{\ast} = - 2 d"),
+        ("a₁ (z/h)¹⁰", r"a_{1}\, \left(z/h\right)^{10}"),
+        ("p = 2.5 rad/s", r"p = 2.5\;\mathrm{rad/s}"),
+        ("g = 9.8 m/s²", r"g = 9.8\;\mathrm{m/s^2}"),
+        ("ε_k = N(0; 1)", r"\varepsilon_{k} = N\left(0,\, 1\right)"),
+    ],
+)
+def test_tex(plain, tex):
+    assert write_tex(plain) == tex
+
+
+@pytest.mark.parametrize("plain", ["", "a +", "(a + b", "a + b)", "(a]", "a ^", "√", "|a", "as given", "a § b", "a/"])
+def test_what_is_no_equation(plain):
+    with pytest.raises(NotationError):
+        write_tex(plain)
+
+
+@pytest.mark.parametrize(
+    ("line", "equations"),
+    [
+        ("Rocking starts where |a_g|/g > B/H", ["|a_g|/g > B/H"]),
+        ("R = k/N   (5), PFA in cm/s²", ["R = k/N"]),
+        ("Possibile dove PFA > g·(B/H) e PFV > 10·B/√H (cm, cm/s)", ["PFA > g·(B/H)", "PFV > 10·B/√H"]),
+        ("a = 0,5, b = N(0; 1); c = 2", ["a = 0,5", "b = N(0; 1)", "c = 2"]),
+        ("B/H = 28/202 = 0.13861", ["B/H = 28/202", "= 0.13861"]),
+        ("PFA is not above PFA*: it is used as it is.", []),
+        ("It overturned in 144 of 200 draws of a motion.", []),
+        ("The piece (see a) has 2 sides; k of them", []),
+    ],
+)
+def test_equations_of_a_line(line, equations):
+    parts = split_line(line)
+    assert [one.text for one in parts if one.tex] == equations
+    assert "".join(one.text for one in parts) == line
+
+
+def test_parts_are_words_and_equations():
+    assert split_line("so a = b.") == [Part("so "), Part("a = b", "a = b"), Part(".")]
+
+
+@pytest.mark.parametrize("code", ["en", "it"])
+def test_every_equation_of_a_method_is_typeset_in_every_language(code):
+    """Each has the symbols and numbers of the plain text, which is its alternative, and mathtext draws it."""
+    with speaking(load_catalogue(code)):
+        lines = [gettext(line) for line in LINES]
+    for line, english in zip(lines, LINES, strict=True):
+        parts = [one for one in split_line(line) if one.tex]
+        assert parts, line
+        assert len(parts) == sum(1 for one in split_line(english) if one.tex), line
+        for one in parts:
+            assert _symbols(_read(one.tex)) == _symbols(one.text)
+            drawn = draw_math(one.tex)
+            assert drawn.letters
+            assert drawn.box[2] > 10
+
+
+def test_words_left_of_an_equation_have_no_signs_of_one():
+    """What is not typeset is words, units and numbers of equations: no relation and no product."""
+    left = {one.text for line in LINES for one in split_line(line) if not one.tex}
+    assert sorted(text for text in left if re.search("[=<>≤≥·√^]", text)) == [
+        ", z_c/H = N(as given, 0.05), restitution = N(as given or as above, 0.04)",
+        "Risk = overturned / N; interval: ",
+    ]
+
+
+def _read(tex):
+    """Return TeX with its letters as they are, without what only lays it out."""
+    for name, letter in NAMED.items():
+        tex = re.sub(rf"\\{name}(?![a-zA-Z])", letter, tex)
+    return LAYOUT.sub("", tex).replace("{,}", ",").replace("\\", "")
+
+
+def _symbols(text):
+    """Return the letters, digits and relations of an equation, sorted; brackets and strokes may have become a fraction."""
+    plain = unicodedata.normalize(
+        "NFKC", text.replace("½", "12").replace("−", "-").replace("″", "''").replace("′", "'")
+    )
+    return sorted(one for one in plain if one.isalnum() or one in "=<>≤≥±√'*+-")

@@ -1,0 +1,154 @@
+"""The HTML report of the worked example on a phone, and what axe-core says of it."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+import assess
+from docs.screenshot import find_browser
+
+AXE = Path(__file__).parents[1] / "data" / "axe-core" / "axe.min.js"
+PHONE, DESK = 390, 1400
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        find_browser() is None and "ASSESS_CI" not in os.environ, reason="no Chromium or Chrome is installed"
+    ),
+]
+
+OVER_THE_EDGE = """width => [...document.querySelectorAll("body *")]
+    .filter((one) => !one.closest("svg *, .scroller") && one.getBoundingClientRect().width > 0)
+    .filter((one) => one.getBoundingClientRect().right > width + 0.5)
+    .map((one) => `${one.tagName}.${one.className}: ${one.textContent.trim().slice(0, 40)}`)"""
+MARK_SCROLLERS = """() => [...document.querySelectorAll("body *")]
+    .filter((one) => /auto|scroll/.test(getComputedStyle(one).overflowX) && one.scrollWidth > one.clientWidth + 1)
+    .map((one) => (one.classList.add("scroller"), [one.tabIndex, one.ariaLabel ?? one.getAttribute("aria-labelledby")]))"""
+CELLS_WITHOUT_A_LABEL = """() => [...document.querySelectorAll("table:has(thead) tbody td")]
+    .filter((one) => one.dataset.label === undefined || (one.dataset.label === "" && one.textContent.trim() !== ""))
+    .map((one) => one.closest("table").className + ": " + one.textContent.trim().slice(0, 40))"""
+
+
+@pytest.fixture(scope="module")
+def report(example, tmp_path_factory):
+    return assess.write_reports(example, tmp_path_factory.mktemp("phone"), "html")["html"]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=find_browser())
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser, report):
+    pages = []
+
+    def open_page(width, path=report):
+        pages.append(browser.new_page(viewport={"width": width, "height": 844}))
+        pages[-1].goto(path.as_uri())
+        return pages[-1]
+
+    yield open_page
+    for page in pages:
+        page.close()
+
+
+@pytest.mark.parametrize("width", [PHONE, 320])
+def test_nothing_runs_off_the_edge(open_page, width):
+    page = open_page(width)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    for tab_index, name in page.evaluate(MARK_SCROLLERS):
+        assert tab_index == 0
+        assert name
+    assert page.evaluate(OVER_THE_EDGE, width) == []
+
+
+def test_an_element_that_does_run_off_is_found(open_page):
+    page = open_page(PHONE)
+    page.evaluate("document.querySelector('main').insertAdjacentHTML('beforeend', '<p style=\"width: 50rem\">x</p>')")
+    page.evaluate(MARK_SCROLLERS)
+    assert page.evaluate(OVER_THE_EDGE, PHONE) == ["P.: x"]
+
+
+def test_rows_are_cards_whose_cells_have_the_heads_of_their_columns(open_page):
+    page = open_page(PHONE)
+    assert page.evaluate(CELLS_WITHOUT_A_LABEL) == []
+    heads = page.locator("#pieces thead th").evaluate_all("all => all.map(one => one.textContent)")
+    row = page.locator("#row-1 td")
+    assert row.evaluate_all("all => all.map(one => one.dataset.label)") == heads
+    shown = "one => getComputedStyle(one, '::before').content"
+    assert row.first.evaluate(shown) == '"Item"'
+    boxes = [row.nth(at).bounding_box() for at in range(3)]
+    assert boxes[0]["y"] < boxes[1]["y"] < boxes[2]["y"]
+    for name in ("routes", "segments", "beside"):
+        first, second = (page.locator(f"table.{name} tbody tr").first.locator("td").nth(at) for at in (0, 1))
+        assert first.bounding_box()["y"] < second.bounding_box()["y"]
+        assert first.evaluate(shown) != "none"
+
+
+def test_the_table_of_signatures_is_whole(open_page):
+    page = open_page(PHONE)
+    table = page.locator("table.signing")
+    for role in ("Prepared by", "Checked by", "Approved by"):
+        box = table.get_by_text(role, exact=True).bounding_box()
+        assert box["height"] < 40, "on one line"
+    labels = table.locator("tbody tr").first.locator("td").evaluate_all("all => all.map(one => one.dataset.label)")
+    assert labels == ["Name", "Signature", "Date"]
+    assert all(one.bounding_box()["height"] > 20 for one in table.locator("tbody td").all()), "room to sign in"
+
+
+def test_filters_work_with_a_thumb(open_page):
+    page = open_page(PHONE)
+    bar = page.locator("#filter-bar")
+    floors = bar.get_by_label("Floor", exact=True)
+    floors.select_option("42")
+    shown = page.locator("#pieces tbody tr:visible")
+    assert 0 < shown.count() < page.locator("#pieces tbody tr").count()
+    assert set(shown.evaluate_all("all => all.map(one => one.dataset.floor)")) == {"42"}
+    for control in bar.locator("select:visible, input:visible, button:visible").all():
+        assert control.bounding_box()["height"] >= 44, "WCAG 2.2, 2.5.5: a target of 44 pixels"
+
+
+def test_figures_and_equations_fit(open_page):
+    page = open_page(PHONE)
+    pictures = page.locator("main img, main svg")
+    assert pictures.count() > 10
+    assert page.locator("svg.math").count() > 30
+    widths = pictures.evaluate_all("all => all.map(one => one.getBoundingClientRect().width)")
+    assert max(widths) <= PHONE
+
+
+def test_the_report_brings_its_own_face(open_page):
+    page = open_page(PHONE)
+    page.evaluate("document.fonts.ready")
+    loaded = "[...document.fonts].map(one => [one.family.replaceAll(/['\"]/g, ''), one.weight, one.status])"
+    assert sorted(page.evaluate(loaded)) == [["Report", "bold", "loaded"], ["Report", "normal", "loaded"]]
+    assert page.evaluate("getComputedStyle(document.body).fontFamily").startswith("Report,")
+
+
+@pytest.mark.parametrize("width", [DESK, PHONE])
+def test_axe_finds_nothing_serious(open_page, width):
+    """Also none of less weight: whatever axe-core is sure of."""
+    page = open_page(width)
+    assert page.evaluate("matchMedia('(prefers-color-scheme: dark)').matches") is False, "there is one scheme"
+    assert _examine(page) == []
+
+
+def test_axe_can_find_something(open_page):
+    page = open_page(PHONE)
+    page.evaluate("document.querySelector('main').innerHTML = '<img src=\"data:,\"><p style=\"color: #ccc\">pale</p>'")
+    assert {name for name, _impact, _html in _examine(page)} >= {"image-alt", "color-contrast"}
+
+
+def _examine(page):
+    """Return what axe-core finds: rule, impact and the first element of each."""
+    page.evaluate(AXE.read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
+    return [(one["id"], one["impact"], one["nodes"][0]["html"]) for one in found]
