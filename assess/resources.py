@@ -47,7 +47,7 @@ def fonts() -> dict[tuple[str, str], Path]:
 
 
 def web_fonts() -> dict[tuple[str, str], Path]:
-    """Return the fonts that an HTML report holds, compressed, by family and style; slanted letters are made of these."""
+    """Return the compressed fonts of an HTML report by family and style; slanted letters are made of these."""
     plex = Path(__file__).with_name("fonts")
     found = {
         ("Report", "regular"): plex / "IBMPlexSans-Regular.woff2",

@@ -9,6 +9,7 @@ needless are left out.
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 FUNCTIONS = ("asin", "acos", "atan", "sin", "cos", "tan", "exp", "ln", "max", "min", "sgn")
 _UNITS = r"cm/s²|m/s²|cm/s|rad/s|rad|Hz|cm|m|g|s"
@@ -91,7 +92,7 @@ def _split_relations(equation: str) -> list[Part]:
         depth += (token.kind == "open") - (token.kind == "close")
         starts += [token.start] if token.kind == "relation" and depth == 0 else []
     ends = [0, *starts[1:], len(equation)]
-    texts = [equation[start:end] for start, end in zip(ends, ends[1:], strict=False)]
+    texts = [equation[start:end] for start, end in pairwise(ends)]
     return [
         part
         for text in texts
@@ -345,7 +346,8 @@ class _Parser:
         self.in_brackets -= deeper
         if self.take("close") != _CLOSING[opened]:
             raise NotationError(opened)
-        return rf"\left{opened}{r',\, '.join(parts)}\right{_CLOSING[opened]}"
+        listed = r",\, ".join(parts)
+        return rf"\left{opened}{listed}\right{_CLOSING[opened]}"
 
 
 def _number(text: str) -> str:
@@ -357,19 +359,19 @@ def _bare(tex: str) -> str:
     for opened, closed in _CLOSING.items():
         left, right = rf"\left{opened}", rf"\right{closed}"
         inner = tex.removeprefix(left).removesuffix(right)
-        if tex.startswith(left) and tex.endswith(right) and r"\left" not in _outside(inner):
+        if tex.startswith(left) and tex.endswith(right) and _is_balanced(inner):
             return inner
     return tex
 
 
-def _outside(tex: str) -> str:
-    r"""Return a ``\left`` where brackets close within that were not opened there, so that the outer ones are two pairs."""
+def _is_balanced(tex: str) -> bool:
+    """Tell whether no bracket closes in a TeX that was not opened there."""
     depth = 0
     for found in re.finditer(r"\\(left|right)(?=[(\[)\]])", tex):
         depth += 1 if found[1] == "left" else -1
         if depth < 0:
-            return r"\left"
-    return ""
+            return False
+    return True
 
 
 def write_name(name: str) -> str:

@@ -112,7 +112,7 @@ def _read(tex):
 
 
 def _symbols(text):
-    """Return the letters, digits and relations of an equation, sorted; brackets and strokes may have become a fraction."""
+    """Return the letters, digits and relations of an equation, sorted; brackets and strokes may have gone."""
     plain = unicodedata.normalize(
         "NFKC", text.replace("½", "12").replace("−", "-").replace("″", "''").replace("′", "'")
     )

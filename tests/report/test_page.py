@@ -34,7 +34,7 @@ def test_an_equation_is_a_picture_with_the_plain_text_as_its_alternative():
 
 
 def test_a_page_holds_each_letter_of_its_equations_once():
-    letters = {}
+    letters: dict[str, str] = {}
     lines = [str(write_equation(text, letters)) for text in ("B/H = 0.5", "B/H = 0.25")]
     used = [re.findall(r'href="#([^"]+)"', line) for line in lines]
     assert [len(one) for one in used] == [6, 7]

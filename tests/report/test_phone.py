@@ -25,7 +25,8 @@ OVER_THE_EDGE = """width => [...document.querySelectorAll("body *")]
     .map((one) => `${one.tagName}.${one.className}: ${one.textContent.trim().slice(0, 40)}`)"""
 MARK_SCROLLERS = """() => [...document.querySelectorAll("body *")]
     .filter((one) => /auto|scroll/.test(getComputedStyle(one).overflowX) && one.scrollWidth > one.clientWidth + 1)
-    .map((one) => (one.classList.add("scroller"), [one.tabIndex, one.ariaLabel ?? one.getAttribute("aria-labelledby")]))"""
+    .map((one) => (one.classList.add("scroller"), one))
+    .map((one) => [one.tabIndex, one.ariaLabel ?? one.getAttribute("aria-labelledby")])"""
 CELLS_WITHOUT_A_LABEL = """() => [...document.querySelectorAll("table:has(thead) tbody td")]
     .filter((one) => one.dataset.label === undefined || (one.dataset.label === "" && one.textContent.trim() !== ""))
     .map((one) => one.closest("table").className + ": " + one.textContent.trim().slice(0, 40))"""

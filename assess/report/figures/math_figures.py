@@ -1,7 +1,7 @@
 """Equations drawn by matplotlib's mathtext as small SVG pictures, as large as the text around them."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -65,7 +65,8 @@ class MathFigure:
 
 def write_letters(letters: Mapping[str, str]) -> str:
     """Return the outlines of letters as SVG definitions, which equations use."""
-    return f"<defs>{''.join(f'<path id="{name}" d="{path}"/>' for name, path in letters.items())}</defs>"
+    outlines = [f'<path id="{name}" d="{path}"/>' for name, path in letters.items()]
+    return f"<defs>{''.join(outlines)}</defs>"
 
 
 @cache
@@ -103,7 +104,7 @@ def _place(name: str, x: float, y: float, size: float) -> str:
     return f'<use href="#{name}" transform="translate({x:.0f} {-y:.0f})scale({size:.2g})"/>'
 
 
-def _write_path(points: Sequence[Any], codes: Sequence[int]) -> str:
+def _write_path(points: Any, codes: Any) -> str:
     """Return a path as SVG has it, y downwards, in whole units: a hundredth of a letter's size."""
     parts, at = [], 0
     while at < len(codes):

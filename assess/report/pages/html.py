@@ -15,8 +15,8 @@ from assess.errors import InputError, Problem
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
 from assess.report.equations import Part, split_line
-from assess.report.fonts import font_faces, web_font_faces
 from assess.report.figures.math_figures import draw_math, write_letters
+from assess.report.fonts import font_faces, web_font_faces
 from assess.report.pages.context import FILTERS, GLOBALS, build_context, list_missing_figures
 from assess.report.report_options import ReportOptions
 from assess.report.words import class_name, list_breaks
