@@ -24,7 +24,7 @@ _HEAD = 4 << 20
 """Bytes at the head of results.json within which its first two entries stand."""
 
 
-def find_reports(folder: Path, wanted: Collection[str]) -> frozenset[str]:
+def find_reports(folder: Path, wanted: Collection[str], data: str = DATA) -> frozenset[str]:
     """Return the names of the files in a folder that are an earlier run's.
 
     Parameters
@@ -33,6 +33,8 @@ def find_reports(folder: Path, wanted: Collection[str]) -> frozenset[str]:
         May be missing.
     wanted : collection of str
         Names of the files that are to be written.
+    data : str
+        Name of the file that lists those of the earlier run.
 
     Raises
     ------
@@ -40,10 +42,10 @@ def find_reports(folder: Path, wanted: Collection[str]) -> frozenset[str]:
         If a folder or a file of the user's stands at one of these names, or a report was changed after it was written.
     """
     try:
-        listed = read_list(folder / DATA)
+        listed = read_list(folder / data)
         found = {name for name in {*wanted, *listed} if os.path.lexists(folder / name)}
         for name in sorted(found):
-            _check(folder / name, name in wanted, listed, folder / DATA)
+            _check(folder / name, name in wanted, listed, folder / data)
     except OSError as error:
         why = error.strerror or str(error)
         raise InputError(fill("{path} cannot be read: {why}.", path=error.filename or folder, why=why)) from None
@@ -62,13 +64,14 @@ def _check(path: Path, is_wanted: bool, listed: Mapping[str, str | None], data: 
     if path.name not in listed:
         raise InputError(
             fill(
-                "{path} would be replaced, but it is not a report of an earlier run: no results.json next to it lists "
-                "it. Move or rename it, or choose another folder for the reports.",
+                "{path} would be replaced, but it is not a report of an earlier run: no {data} next to it lists it. "
+                "Move or rename it, or choose another folder for the reports.",
                 path=path,
+                data=data.name,
             )
         )
     known = listed[path.name]
-    if known != digest if known else path.name == "report.pdf" and not is_sealed(path, data):
+    if known != digest if known else path.suffix == ".pdf" and not is_sealed(path, data):
         raise InputError(
             fill(
                 "{path} was changed after it was written. Move or rename it to keep it, or choose another folder for "
@@ -81,7 +84,7 @@ def _check(path: Path, is_wanted: bool, listed: Mapping[str, str | None], data: 
 def read_list(path: Path) -> Mapping[str, str | None]:
     """Return the reports that a results.json lists, itself among them, with their SHA-256 where it is known.
 
-    Empty if the file is missing or not of this program. Only its head is read: it may be large.
+    Another file that begins alike may take its place. Empty if the file is missing or not of this program. Only its head is read: it may be large.
     """
     if path.is_symlink() or not path.is_file():
         return {}
@@ -94,11 +97,11 @@ def read_list(path: Path) -> Mapping[str, str | None]:
         return {}
     files = origin.get("files")
     if not isinstance(files, dict):
-        return dict.fromkeys(BEFORE)
+        return dict.fromkeys(BEFORE if path.name == DATA else ())
     plain = {
         name: digest for name, digest in files.items() if name not in (".", "..") and not set(name) & set("/\\:\0")
     }
-    return {name: digest if isinstance(digest, str) else None for name, digest in plain.items()} | {DATA: None}
+    return {name: digest if isinstance(digest, str) else None for name, digest in plain.items()} | {path.name: None}
 
 
 def _read_head(text: str) -> dict[str, Any]:

@@ -58,14 +58,19 @@ def render(
         If the work was cancelled.
     """
     options = options or ReportOptions()
-    TemplateError, SecurityError = progress.wait_for(_import_errors)
     script = "" if for_print else options.read(SCRIPT)
     context = build_context(content, options, for_print=for_print, progress=progress)
-    context |= {"script": script, "script_hash": hash_script(script), "style": _style(options, for_print)}
+    context |= {"script": script, "script_hash": hash_script(script), "style": build_style(options, for_print)}
+    return render_page("report.html.j2", context, options, progress)
+
+
+def render_page(name: str, context: Mapping[str, Any], options: ReportOptions, progress: Progress = SILENT) -> str:
+    """Return a template with its names filled in; raises what `render` does."""
+    TemplateError, SecurityError = progress.wait_for(_import_errors)
     parts, letters = list[str](), dict[str, str]()
     try:
-        environment = progress.wait_for(lambda: _environment(options, None if for_print else letters))
-        template = progress.wait_for(lambda: environment.get_template("report.html.j2"))
+        environment = progress.wait_for(lambda: _environment(options, None if context["for_print"] else letters))
+        template = progress.wait_for(lambda: environment.get_template(name))
         for part in template.generate(**context):
             progress.check()
             parts.append(part)
@@ -143,8 +148,9 @@ def _import_errors() -> tuple[type[Exception], type[Exception]]:
 # ---------------------------------------------------------------- parts of the page that are no plain text
 
 
-def _style(options: ReportOptions, for_print: bool) -> str:
-    names = ("base.css", "print.css") if for_print else ("base.css", "screen.css")
+def build_style(options: ReportOptions, for_print: bool, *more: str) -> str:
+    """Return the style of a page: what screen and print share, one of them, and `more` files."""
+    names = ("base.css", "print.css" if for_print else "screen.css", *more)
     colours = [f".{class_name(risk)} {{ background: {risk.fill}; color: {risk.ink}; }}" for risk in RiskClass]
     fonts = font_faces() if for_print else web_font_faces()
     return "\n".join([fonts, *colours, *(options.read(f"style/{name}") for name in names)])

@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import IO
@@ -74,7 +75,17 @@ def write_pdf(
 
 
 def _build_job(html: str, content: Content, path: Path, options: ReportOptions, data: Path | None) -> bytes:
-    files = list_attached(content.run, data)
+    return _pack_job(html, list_attached(content.run, data), path, options)
+
+
+def print_page(
+    html: str, path: Path, files: Sequence[Attached], options: ReportOptions, progress: Progress = SILENT
+) -> None:
+    """Write a page that was rendered for print as a PDF that carries `files`; raises what `write_pdf` does."""
+    _lay_out(progress.wait_for(lambda: _pack_job(html, files, path, options)), progress)
+
+
+def _pack_job(html: str, files: Sequence[Attached], path: Path, options: ReportOptions) -> bytes:
     job = {
         "html": replace_signs(html, find_nowhere(find_missing(html))),
         "path": str(path),
@@ -112,15 +123,16 @@ def fix() -> str:
 
 def list_attached(results: Results, data: Path | None = None) -> list[Attached]:
     """Return what to attach, sorted by name as a PDF wants it: the workbook as it was read, and results.json."""
-    files = [_attach(DATA, "Data", _("The results, for other programs"), _read_data(results, data))]
+    files = [attach(DATA, "Data", _("The results, for other programs"), _read_data(results, data))]
     if "workbook" in results.series:
         description = _("The inventory that this report was made from")
         workbook = results.series["workbook"].tobytes()
-        files.append(_attach(results.provenance.workbook, "Source", description, workbook))
+        files.append(attach(results.provenance.workbook, "Source", description, workbook))
     return sorted(files, key=lambda file: file.name.encode("utf-8", "ignore"))
 
 
-def _attach(name: str, relationship: str, description: str, data: bytes) -> Attached:
+def attach(name: str, relationship: str, description: str, data: bytes) -> Attached:
+    """Return a file as it is attached to a PDF; `relationship` is one of PDF/A-3's."""
     kind = _KINDS.get(Path(name).suffix.lower(), "application/octet-stream")
     return Attached(name, kind, relationship, description, base64.b64encode(data).decode())
 

@@ -285,15 +285,19 @@ def _say_conditions_shortly(run: Results) -> str:
 
 def set_print(page: Any, title: str, sheet: str, run: Results) -> None:
     """Set up the printed pages of a sheet: A4 across, fit to the width, with headers; a sheet may set more itself."""
+    set_page(page, words.cut(title, 80), sheet, _say_conditions_shortly(run), say_scenario(run).rstrip("."))
+
+
+def set_page(page: Any, title: str, sheet: str, conditions: str, footer: str) -> None:
+    """Set up the printed pages of a sheet with texts above, in the middle what holds for all numbers, and below."""
     page.set_landscape()
     page.set_paper(A4)
     page.set_margins(left=0.5, right=0.5, top=0.75, bottom=0.75)
     page.fit_to_pages(1, 0)
     pages = _plain(_("Page {page} of {pages}", page=_PAGE, pages=_PAGES)).replace(_PAGE, "&P").replace(_PAGES, "&N")
-    conditions = _plain(_say_conditions_shortly(run))
-    middle = f"&C&8 {conditions}" if conditions else ""
-    page.set_header(f"&L&8 {_plain(words.cut(title, 80))}{middle}&R&8 {_plain(sheet)}")
-    page.set_footer(f"&L&8 {_plain(say_scenario(run).rstrip('.'))}&R&8 {pages}")
+    middle = f"&C&8 {_plain(conditions)}" if conditions else ""
+    page.set_header(f"&L&8 {_plain(title)}{middle}&R&8 {_plain(sheet)}")
+    page.set_footer(f"&L&8 {_plain(footer)}&R&8 {pages}")
 
 
 def _plain(text: str) -> str:

@@ -1,0 +1,165 @@
+"""What a comparison knows of a run: the part of its results.json that is compared, as typed rows."""
+
+import datetime
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from assess.risk import RiskClass
+
+CLASSES = tuple(risk.word for risk in reversed(RiskClass))
+"""The words of the classes, the highest first."""
+UNCONFIRMED, BY_FORMULA, ANCHORED = "unconfirmed", "by formula", "anchored"
+APART = (UNCONFIRMED, BY_FORMULA, ANCHORED)
+"""What stands outside the classes of a run."""
+AT_RISK, BELOW, NOT_KNOWN = "at risk", "below the limit", "not known"
+"""The standing of a room: its chance of losing every exit against the limit of its run."""
+
+
+@dataclass(frozen=True, slots=True)
+class PastChance:
+    """A chance [-] with the ends of its interval, None where there is none."""
+
+    probability: float
+    low: float | None = None
+    high: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PastPiece:
+    """One row of furniture.
+
+    Parameters
+    ----------
+    item, floor, room, description
+        As the workbook has them.
+    quantity : int
+        Pieces of the row.
+    is_held : bool
+        Whether it counts as anchored: then it has no class.
+    basis : str
+        What its chance rests on: "simulated", "formula", or "unconfirmed", where the formula's stands.
+    risk : RiskClass
+        The adopted class.
+    chance : PastChance
+        The adopted chance; with the sampling interval where it was simulated.
+    inputs : mapping of str to object
+        What the run was given or used for it, by field.
+    """
+
+    item: str
+    floor: str
+    room: str
+    description: str
+    quantity: int
+    is_held: bool
+    basis: str
+    risk: RiskClass
+    chance: PastChance
+    inputs: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PastRoute:
+    """One evacuation route: its state in the words of its run, and the chance of being blocked, None if not known."""
+
+    route: str
+    state: str
+    chance: PastChance | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PastRoom:
+    """One room: one of `AT_RISK`, `BELOW` and `NOT_KNOWN`, and its chance of losing every exit."""
+
+    room: str
+    floor: str
+    state: str
+    chance: PastChance | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PastRun:
+    """One run, as its results.json has it.
+
+    Parameters
+    ----------
+    path : Path
+        Its results.json.
+    sha256 : str
+        Of that file.
+    written : datetime
+        When that file was last changed, in UTC.
+    schema, version : str
+        Of results.json and of the program.
+    platform : mapping of str to str
+        Versions of Python and its packages, system and processor.
+    settings : mapping of str to object
+        As given, by name.
+    building : mapping of str to object
+        The lines of the sheet Building.
+    uncertainty : mapping of str to object
+        What the draws of the simulation vary.
+    shaking : str
+        Name of an assumed intensity; "" where none is assumed.
+    workbook, workbook_sha256 : str
+        Name and hash of the inventory.
+    motions : mapping of str to str
+        Hashes of the recorded motions, by the names of their files.
+    is_simulated : bool
+        Whether any piece was simulated: then pieces by formula alone stand outside its classes.
+    pieces, routes, rooms
+        The rows that are compared.
+    route_risk : float
+        Limit on the chance that a route is blocked [-].
+    blocked_routes, cut_off_rooms : float
+        Expected number of routes that are blocked and of rooms that lose every exit, among those known.
+    unknown_routes, unknown_rooms : int
+        Those that are not known.
+    """
+
+    path: Path
+    sha256: str
+    written: datetime.datetime
+    schema: str
+    version: str
+    platform: Mapping[str, str]
+    settings: Mapping[str, Any]
+    building: Mapping[str, Any]
+    uncertainty: Mapping[str, Any]
+    shaking: str
+    workbook: str
+    workbook_sha256: str
+    motions: Mapping[str, str]
+    is_simulated: bool
+    pieces: tuple[PastPiece, ...]
+    routes: tuple[PastRoute, ...]
+    rooms: tuple[PastRoom, ...]
+    route_risk: float
+    blocked_routes: float
+    cut_off_rooms: float
+    unknown_routes: int
+    unknown_rooms: int
+
+    @property
+    def name(self) -> str:
+        """Name of the building; "" where it has none."""
+        return str(self.building.get("building") or "")
+
+    @property
+    def main_basis(self) -> str:
+        """What its classes, counts and sums rest on: "simulated" or "formula"."""
+        return "simulated" if self.is_simulated else "formula"
+
+    def is_counted(self, piece: PastPiece) -> bool:
+        """Whether a piece is in the classes and sums of the run: free-standing, and of the basis of the run."""
+        return not piece.is_held and piece.basis == self.main_basis
+
+    def standing(self, piece: PastPiece) -> str:
+        """Return the class of a piece in words, or one of `APART`."""
+        if piece.is_held:
+            return ANCHORED
+        if piece.basis == self.main_basis:
+            return piece.risk.word
+        return UNCONFIRMED if piece.basis == UNCONFIRMED else BY_FORMULA

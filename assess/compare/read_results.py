@@ -1,0 +1,340 @@
+"""results.json of unknown origin, read back: a `PastRun`, or an error that names the file, the place and the fault.
+
+Read are the files of one major version of the schema. Of a later minor version what is new is left alone.
+"""
+
+import datetime
+import hashlib
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Never, TypeVar
+
+from assess.compare import past_run as past
+from assess.errors import InputError
+from assess.i18n import Text, fill
+from assess.plain_text import plain_line
+from assess.report.results_schema import VERSION
+from assess.results import BASES
+from assess.risk import RiskClass
+from assess.workbook.names import key
+
+DATA = "results.json"
+COMPARISON = "comparison"
+"""Entry that tells compare.json, which is no run, from results.json."""
+MOST_BYTES = 1 << 30
+"""Size [bytes] above which a file is not read: 20,000 items take a tenth of it."""
+INPUTS = (
+    "floor", "room", "type", "quantity", "breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "weight_kg",
+    "anchored", "against_wall", "pfa_g", "pfv_cm_s",
+)  # fmt: skip
+"""Fields of a piece whose change explains that of its chance."""
+_CLASSES = {risk.word: risk for risk in RiskClass}
+_TOP = ("building", "floors", "items", "routes")
+_MISSING = object()
+_MOST = 1e15
+"""Size of a number that is shown as it is."""
+_Row = TypeVar("_Row")
+
+
+def read_run(path: Path) -> past.PastRun:
+    """Read the results of a run.
+
+    Parameters
+    ----------
+    path : Path
+        A results.json under any name, or the folder that holds one.
+
+    Raises
+    ------
+    InputError
+        If there is none, it cannot be read, is cut off, was written by another program or by a version of this one
+        with another major version of the schema, or a value in it is not what it may be.
+    """
+    file = path / DATA if path.is_dir() else path
+    data, written = _load(path, file)
+    record = _parse(file, data)
+    _check_origin(file, record)
+    return _Reader(file).run(record, hashlib.sha256(data).hexdigest(), written)
+
+
+def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
+    """Return the bytes of a file and when it was written."""
+    try:
+        if not file.is_file():
+            if path.is_dir():
+                raise InputError(
+                    fill("{folder} holds no {name}: name the folder of a report, or its {name}.", folder=path,
+                         name=DATA)
+                )  # fmt: skip
+            raise InputError(fill("{path} is not there: name a {name}, or the folder that holds it.", path=path,
+                                  name=DATA))  # fmt: skip
+        status = file.stat()
+        if status.st_size > MOST_BYTES:
+            raise InputError(fill("{path} has {size:,} MB, more than the {most:,} MB that are read.", path=file,
+                                  size=status.st_size >> 20, most=MOST_BYTES >> 20))  # fmt: skip
+        return file.read_bytes(), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise InputError(fill("{path} cannot be read: {why}.", path=file, why=why)) from None
+
+
+def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
+    """Return the object in JSON that a file holds."""
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(
+            fill("{path} is no JSON: name a {name} that assess has written, or its folder.", path=file, name=DATA)
+        ) from None
+    try:
+        found = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError) as error:
+        raise InputError(_describe_fault(file, text, error)) from None
+    if not isinstance(found, dict):
+        raise InputError(_describe_foreign(file))
+    return found
+
+
+def _refuse(name: str) -> Never:
+    raise ValueError(name)
+
+
+def _describe_fault(file: Path, text: str, error: Exception) -> Text:
+    """Return what is wrong with a text that is no JSON: it is cut off, or something else than a results.json."""
+    whole = text.strip()
+    if not whole:
+        return fill("{path} is empty: run assess again, or take another copy of the file.", path=file)
+    at_end = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
+    if whole.startswith("{") and (at_end or not whole.endswith("}")):
+        return fill("{path} is cut off: run assess again, or take another copy of the file.", path=file)
+    if not whole.startswith(("{", "[")):
+        return fill("{path} is no JSON: name a {name} that assess has written, or its folder.", path=file, name=DATA)
+    where = f"{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
+    if where:
+        return fill("{path} is damaged: line {line} is no JSON. Run assess again.", path=file, line=where)
+    return fill("{path} is damaged: it is no JSON that can be read. Run assess again.", path=file)
+
+
+def _describe_foreign(file: Path) -> Text:
+    return fill("{path} is JSON of another program: name a {name} that assess has written.", path=file, name=DATA)
+
+
+def _check_origin(file: Path, record: Mapping[str, Any]) -> None:
+    """Raise InputError unless a record is that of a run, by a version whose schema is read."""
+    schema, origin = record.get("schema"), record.get("assess")
+    if not isinstance(schema, str) or not isinstance(origin, dict):
+        raise InputError(_describe_foreign(file))
+    if COMPARISON in record:
+        raise InputError(fill("{path} is a comparison, not a run: name the {name} of each run.", path=file, name=DATA))
+    major, ours = (text.partition(".")[0] for text in (schema, VERSION))
+    if not (major.isascii() and major.isdigit() and len(major) < 6):
+        raise InputError(_describe_foreign(file))
+    if int(major) < int(ours):
+        raise InputError(
+            fill("{path} was written by an earlier version of assess: its schema is {schema}, this version reads "
+                 "{ours}.x. Run its workbook again.", path=file, schema=schema[:20], ours=ours)
+        )  # fmt: skip
+    if int(major) > int(ours):
+        raise InputError(
+            fill("{path} was written by a later version of assess: its schema is {schema}, this version reads "
+                 "{ours}.x. Update assess.", path=file, schema=schema[:20], ours=ours)
+        )  # fmt: skip
+    missing = [name for name in _TOP if name not in record]
+    if missing:
+        raise InputError(fill("{path} lacks {name}: it is no whole {data}. Run assess again.", path=file,
+                              name=missing[0], data=DATA))  # fmt: skip
+
+
+class _Reader:
+    """Turns the parts of a record into rows; `file` is named where a value is not what it may be."""
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+
+    def run(self, record: Mapping[str, Any], sha256: str, written: datetime.datetime) -> past.PastRun:
+        """Return the run."""
+        origin = self.part(record, "assess", "")
+        inputs = self.part(origin, "inputs", "assess")
+        routes = self.part(record, "routes", "")
+        risk = self.share(routes, "risk", "routes")
+        items = self.rows(record, "items", "")
+        return past.PastRun(
+            path=self.file,
+            sha256=sha256,
+            written=written,
+            schema=plain_line(record["schema"])[:20],
+            version=self.text(origin, "version", "assess"),
+            platform=self.texts(origin, "platform", "assess"),
+            settings=self.plainly(self.part(origin, "settings", "assess")),
+            building=self.plainly(self.part(record, "building", "")),
+            uncertainty=self.plainly(self.part(origin, "uncertainty", "assess")),
+            shaking=self.shaking(origin),
+            workbook=self.text(inputs, "workbook", "assess.inputs"),
+            workbook_sha256=self.text(inputs, "sha256", "assess.inputs"),
+            motions=self.texts(inputs, "records", "assess.inputs") | self.texts(inputs, "motions", "assess.inputs"),
+            is_simulated=self.is_simulated(record, items),
+            pieces=self.unique(items, "items", self.piece, lambda one: key(one.item)),
+            routes=self.unique(
+                self.rows(routes, "routes", "routes"), "routes.routes", self.route, lambda one: key(one.route)
+            ),
+            rooms=self.unique(
+                self.rows(routes, "rooms", "routes"), "routes.rooms",
+                lambda row, place: self.room(row, place, risk), lambda one: (key(one.floor), key(one.room)),
+            ),
+            route_risk=risk,
+            blocked_routes=self.number(routes, "blocked_routes_expected", "routes"),
+            cut_off_rooms=self.number(routes, "cut_off_rooms_expected", "routes"),
+            unknown_routes=self.count(routes, "unknown_routes", "routes"),
+            unknown_rooms=self.count(routes, "unknown_rooms", "routes"),
+        )  # fmt: skip
+
+    def is_simulated(self, record: Mapping[str, Any], items: Sequence[Mapping[str, Any]]) -> bool:
+        """Whether the run simulated any piece."""
+        demands = (
+            demand
+            for at, floor in enumerate(self.rows(record, "floors", ""))
+            for demand in self.rows(floor, "demands", f"floors[{at}]")
+        )
+        return any(one.get("ensemble") for one in demands) or any(one.get("verification") for one in items)
+
+    def piece(self, row: Mapping[str, Any], place: str) -> past.PastPiece:
+        """Return a piece."""
+        adopted, anchor = self.part(row, "adopted", place), row.get("anchor")
+        inside = f"{place}.adopted"
+        held = anchor.get("counts_as_anchored") if isinstance(anchor, dict) else None
+        return past.PastPiece(
+            item=self.text(row, "item", place),
+            floor=self.text(row, "floor", place),
+            room=self.text(row, "room", place),
+            description=self.text(row, "description", place),
+            quantity=self.count(row, "quantity", place),
+            is_held=held if isinstance(held, bool) else row.get("anchored") == "yes",
+            basis=self.choice(adopted, "basis", inside, BASES),
+            risk=_CLASSES[self.choice(adopted, "class", inside, tuple(_CLASSES))],
+            chance=self.chance(adopted, inside),
+            inputs={name: _plain(row.get(name)) for name in INPUTS},
+        )
+
+    def route(self, row: Mapping[str, Any], place: str) -> past.PastRoute:
+        """Return a route."""
+        return past.PastRoute(
+            route=self.text(row, "route", place),
+            state=self.text(row, "state", place),
+            chance=self.chance_or_none(row, "blocked", place),
+        )
+
+    def room(self, row: Mapping[str, Any], place: str, risk: float) -> past.PastRoom:
+        """Return a room; `risk` is the limit [-] by which it is at risk."""
+        chance = self.chance_or_none(row, "loses_every_exit", place)
+        is_known = chance is not None and row.get("is_known") is not False
+        state = past.AT_RISK if chance is not None and chance.probability >= risk else past.BELOW
+        return past.PastRoom(
+            room=self.text(row, "room", place),
+            floor=self.text(row, "floor", place),
+            state=state if is_known else past.NOT_KNOWN,
+            chance=chance,
+        )
+
+    def shaking(self, origin: Mapping[str, Any]) -> str:
+        """Return the name of the assumed intensity; "" where there is none."""
+        found = origin.get("shaking")
+        return plain_line(str(found.get("name", ""))) if isinstance(found, dict) else ""
+
+    def chance_or_none(self, row: Mapping[str, Any], name: str, place: str) -> past.PastChance | None:
+        """Return a chance that may be null or absent."""
+        found = row.get(name)
+        return None if found is None else self.chance(self.part(row, name, place), f"{place}.{name}")
+
+    def chance(self, row: Mapping[str, Any], place: str) -> past.PastChance:
+        """Return a chance with its interval."""
+        ends = (self.share(row, name, place) if row.get(name) is not None else None for name in ("low", "high"))
+        return past.PastChance(self.share(row, "probability", place), *ends)
+
+    # ------------------------------------------------------------ values
+
+    def unique(
+        self, rows: Sequence[Mapping[str, Any]], place: str, read: Callable[[Any, str], _Row],
+        name: Callable[[_Row], Any],
+    ) -> tuple[_Row, ...]:  # fmt: skip
+        """Return the rows that `read` makes; raises InputError where two have one name."""
+        found: dict[Any, _Row] = {}
+        for at, row in enumerate(rows):
+            one = read(row, f"{place}[{at}]")
+            if name(one) in found:
+                raise InputError(fill("{path}: {place}: the same name is there before. Run assess again.",
+                                      path=self.file, place=f"{place}[{at}]"))  # fmt: skip
+            found[name(one)] = one
+        return tuple(found.values())
+
+    def get(self, row: Mapping[str, Any], name: str, place: str, expected: Text, is_right: Callable[[Any], bool]) -> Any:
+        """Return a value; raises InputError where it is missing or not what it may be."""
+        value = row.get(name, _MISSING)
+        if value is _MISSING or not is_right(value):
+            where = f"{place}.{name}" if place else name
+            shown = fill("missing") if value is _MISSING else repr(value)[:40]
+            raise InputError(
+                fill("{path}: {place} is {value}, expected {expected}. Run assess again.", path=self.file, place=where,
+                     value=shown, expected=expected)
+            )  # fmt: skip
+        return value
+
+    def part(self, row: Mapping[str, Any], name: str, place: str) -> dict[str, Any]:
+        """Return an object."""
+        return dict(self.get(row, name, place, fill("an object"), lambda value: isinstance(value, dict)))
+
+    def rows(self, row: Mapping[str, Any], name: str, place: str) -> list[Mapping[str, Any]]:
+        """Return a list of objects."""
+        return list(
+            self.get(row, name, place, fill("a list of objects"),
+                     lambda value: isinstance(value, list) and all(isinstance(one, dict) for one in value))
+        )  # fmt: skip
+
+    def text(self, row: Mapping[str, Any], name: str, place: str) -> str:
+        """Return a text on one line, safe to show."""
+        return plain_line(self.get(row, name, place, fill("a text"), lambda value: isinstance(value, str)))
+
+    def texts(self, row: Mapping[str, Any], name: str, place: str) -> dict[str, str]:
+        """Return an object of texts."""
+        found = self.part(row, name, place)
+        return {plain_line(one): self.text(found, one, f"{place}.{name}") for one in found}
+
+    def choice(self, row: Mapping[str, Any], name: str, place: str, choices: Sequence[str]) -> str:
+        """Return one of some words."""
+        expected = fill("one of: {names}", names=", ".join(choices))
+        return str(self.get(row, name, place, expected, lambda value: value in choices))
+
+    def count(self, row: Mapping[str, Any], name: str, place: str) -> int:
+        """Return a whole number from 0."""
+        return int(self.get(row, name, place, fill("a whole number, 0 or above"),
+                            lambda value: _is_number(value) and isinstance(value, int) and value < 10**9))  # fmt: skip
+
+    def number(self, row: Mapping[str, Any], name: str, place: str) -> float:
+        """Return a number from 0."""
+        return float(self.get(row, name, place, fill("a number, 0 or above"), _is_number))
+
+    def share(self, row: Mapping[str, Any], name: str, place: str) -> float:
+        """Return a number from 0 to 1."""
+        return float(self.get(row, name, place, fill("a number from 0 to 1"),
+                              lambda value: _is_number(value) and value <= 1))  # fmt: skip
+
+    def plainly(self, record: Mapping[str, Any]) -> dict[str, Any]:
+        """Return an object of values that are shown as they are; a list becomes a tuple of texts."""
+        return {
+            plain_line(name): tuple(plain_line(str(one)) for one in value) if isinstance(value, list) else _plain(value)
+            for name, value in record.items()
+        }
+
+
+def _plain(value: Any) -> Any:
+    """Return a value that is shown as it is: a text on one line, a flag, a number; None of anything else."""
+    if isinstance(value, str):
+        return plain_line(value)
+    is_shown = isinstance(value, bool) or (isinstance(value, int | float) and -_MOST < value < _MOST)
+    return value if is_shown else None
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a value is a finite number from 0 whose size a float can hold."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1e300 and math.isfinite(value)
