@@ -12,7 +12,17 @@ from enum import StrEnum
 from functools import cached_property
 from typing import TypeVar
 
-from assess.compare.past_run import ANCHORED, APART, CLASSES, NOT_KNOWN, PastChance, PastPiece, PastRoom, PastRoute, PastRun
+from assess.compare.past_run import (
+    ANCHORED,
+    APART,
+    CLASSES,
+    NOT_KNOWN,
+    PastChance,
+    PastPiece,
+    PastRoom,
+    PastRoute,
+    PastRun,
+)
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.natural import natural_key
@@ -21,11 +31,19 @@ from assess.workbook.names import key
 SAME = 1e-6
 """Difference of chances [-] up to which they are equal: rounding of other machines."""
 SEVERITY: Mapping[str, int] = {
-    "open": 0, "below the limit": 0, "reduced": 1, "doubtful": 1, "blocked": 2, "at risk": 2,
-}  # fmt: skip
+    "open": 0,
+    "below the limit": 0,
+    "reduced": 1,
+    "doubtful": 1,
+    "blocked": 2,
+    "at risk": 2,
+}
 """States of routes and rooms in rising order; from and to any other state no direction is told."""
 ABSENT = ""
 """The standing of a piece in a run that does not have it."""
+
+
+_Row = TypeVar("_Row")
 
 
 class Direction(StrEnum):
@@ -57,8 +75,8 @@ class PieceChange:
     """One row of furniture in both runs, or in one.
 
     `standing_before` and `standing_after` are a class in words or one of `past_run.APART`; `ABSENT` where the run
-    lacks it. `is_within` is whether the difference of the chances lies within the sampling interval, None where a chance
-    has none or the bases differ. `inputs` are the fields that differ, with their values before and after.
+    lacks it. `is_within` is whether the difference of the chances lies within the sampling interval, None where a
+    chance has none or the bases differ. `inputs` are the fields that differ, with their values before and after.
     """
 
     before: PastPiece | None
@@ -72,9 +90,7 @@ class PieceChange:
     @property
     def piece(self) -> PastPiece:
         """The row as it is after, or was before."""
-        found = self.after or self.before
-        assert found is not None
-        return found
+        return _either(self.after, self.before)
 
     @property
     def pieces(self) -> int:
@@ -103,7 +119,7 @@ class StateChange:
 
 @dataclass(frozen=True, slots=True)
 class Total:
-    """A sum before and after; `is_within` as in `PieceChange`, `is_comparable` is whether a difference means anything."""
+    """A sum before and after; `is_within` as in `PieceChange`, `is_comparable`: whether a difference means anything."""
 
     before: float
     after: float
@@ -186,9 +202,10 @@ class Comparison:
     def falls_of_both(self) -> Total | None:
         """The same of the pieces that have a class in both runs; None where these are all, or none."""
         both = [
-            (one.before, one.after) for one in self.pieces
+            (one.before, one.after)
+            for one in self.pieces
             if one.before and one.after and self.before.is_counted(one.before) and self.after.is_counted(one.after)
-        ]  # fmt: skip
+        ]
         if not (self.has_same_basis and both) or all(self._is_whole(one) for one in self.pieces):
             return None
         return _add_up([one for one, _ in both], [one for _, one in both], True)
@@ -211,9 +228,12 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
     pieces = _match(before.pieces, after.pieces, lambda one: key(one.item))
     if (before.pieces or after.pieces) and not any(one and other for one, other in pieces):
         raise InputError(
-            fill("{before} and {after} have no item in common: they cannot be compared. Name two runs of one building.",
-                 before=before.path, after=after.path)
-        )  # fmt: skip
+            fill(
+                "{before} and {after} have no item in common: they cannot be compared. Name two runs of one building.",
+                before=before.path,
+                after=after.path,
+            )
+        )
     routes = _match(before.routes, after.routes, lambda one: key(one.route))
     rooms = _match(before.rooms, after.rooms, lambda one: (key(one.floor), key(one.room)))
     is_comparable = before.main_basis == after.main_basis
@@ -229,9 +249,6 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
         ),
         _arrange((_compare_states(*pair, is_comparable) for pair in rooms), lambda one: (one.direction, 0.0, one.name)),
     )
-
-
-_Row = TypeVar("_Row")
 
 
 def _match(
@@ -317,8 +334,7 @@ def _compare_states(
     before: PastRoute | PastRoom | None, after: PastRoute | PastRoom | None, is_comparable: bool
 ) -> StateChange:
     """Compare a route or a room; chances only where both runs rest on the same basis."""
-    one = after or before
-    assert one is not None
+    one: PastRoute | PastRoom = _either(after, before)
     direction, is_within = _direct_state(before, after, is_comparable)
     return StateChange(
         name=one.room if isinstance(one, PastRoom) else one.route,
@@ -336,19 +352,27 @@ def _direct_state(
     """Return where a route or room goes, and whether the difference lies within the intervals of its chances."""
     if before is None or after is None:
         return (Direction.ADDED if before is None else Direction.REMOVED), None
-    chances = (before.chance, after.chance)
+    was, now = (one.chance if one.state in SEVERITY else None for one in (before, after))
     if not is_comparable:
-        is_nothing = chances == (None, None) and before.state == after.state
+        is_nothing = was is None and now is None and before.state == after.state
         return (Direction.SAME if is_nothing else Direction.UNCLEAR), None
-    is_within = lies_within(*chances) if chances[0] and chances[1] else None
+    is_within = lies_within(was, now) if was and now else None
     if before.state != after.state:
         ranks = [SEVERITY.get(one.state) for one in (before, after)]
         if ranks[0] is None or ranks[1] is None or ranks[0] == ranks[1]:
             return Direction.UNCLEAR, is_within
         return (Direction.WORSE if ranks[1] > ranks[0] else Direction.BETTER), is_within
-    if chances[0] is None or chances[1] is None:
-        return (Direction.SAME if chances[0] is chances[1] else Direction.UNCLEAR), None
-    return _direct_chance(chances[0], chances[1], is_within), is_within
+    if was is None or now is None:
+        return (Direction.SAME if was is now else Direction.UNCLEAR), None
+    return _direct_chance(was, now, is_within), is_within
+
+
+def _either(one: _Row | None, other: _Row | None) -> _Row:
+    """Return the first of two rows that is there; one is."""
+    found = other if one is None else one
+    if found is None:
+        raise ValueError("a change has neither side")
+    return found
 
 
 # ---------------------------------------------------------------- sampling

@@ -26,9 +26,20 @@ COMPARISON = "comparison"
 MOST_BYTES = 1 << 30
 """Size [bytes] above which a file is not read: 20,000 items take a tenth of it."""
 INPUTS = (
-    "floor", "room", "type", "quantity", "breadth_cm", "width_cm", "height_cm", "centre_of_gravity", "weight_kg",
-    "anchored", "against_wall", "pfa_g", "pfv_cm_s",
-)  # fmt: skip
+    "floor",
+    "room",
+    "type",
+    "quantity",
+    "breadth_cm",
+    "width_cm",
+    "height_cm",
+    "centre_of_gravity",
+    "weight_kg",
+    "anchored",
+    "against_wall",
+    "pfa_g",
+    "pfv_cm_s",
+)
 """Fields of a piece whose change explains that of its chance."""
 _CLASSES = {risk.word: risk for risk in RiskClass}
 _TOP = ("building", "floors", "items", "routes")
@@ -65,15 +76,23 @@ def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
         if not file.is_file():
             if path.is_dir():
                 raise InputError(
-                    fill("{folder} holds no {name}: name the folder of a report, or its {name}.", folder=path,
-                         name=DATA)
-                )  # fmt: skip
-            raise InputError(fill("{path} is not there: name a {name}, or the folder that holds it.", path=path,
-                                  name=DATA))  # fmt: skip
+                    fill(
+                        "{folder} holds no {name}: name the folder of a report, or its {name}.", folder=path, name=DATA
+                    )
+                )
+            raise InputError(
+                fill("{path} is not there: name a {name}, or the folder that holds it.", path=path, name=DATA)
+            )
         status = file.stat()
         if status.st_size > MOST_BYTES:
-            raise InputError(fill("{path} has {size:,} MB, more than the {most:,} MB that are read.", path=file,
-                                  size=status.st_size >> 20, most=MOST_BYTES >> 20))  # fmt: skip
+            raise InputError(
+                fill(
+                    "{path} has {size:,} MB, more than the {most:,} MB that are read.",
+                    path=file,
+                    size=status.st_size >> 20,
+                    most=MOST_BYTES >> 20,
+                )
+            )
         return file.read_bytes(), datetime.datetime.fromtimestamp(status.st_mtime, datetime.UTC)
     except OSError as error:
         why = error.strerror or str(error)
@@ -133,18 +152,29 @@ def _check_origin(file: Path, record: Mapping[str, Any]) -> None:
         raise InputError(_describe_foreign(file))
     if int(major) < int(ours):
         raise InputError(
-            fill("{path} was written by an earlier version of assess: its schema is {schema}, this version reads "
-                 "{ours}.x. Run its workbook again.", path=file, schema=schema[:20], ours=ours)
-        )  # fmt: skip
+            fill(
+                "{path} was written by an earlier version of assess: its schema is {schema}, this version reads "
+                "{ours}.x. Run its workbook again.",
+                path=file,
+                schema=schema[:20],
+                ours=ours,
+            )
+        )
     if int(major) > int(ours):
         raise InputError(
-            fill("{path} was written by a later version of assess: its schema is {schema}, this version reads "
-                 "{ours}.x. Update assess.", path=file, schema=schema[:20], ours=ours)
-        )  # fmt: skip
+            fill(
+                "{path} was written by a later version of assess: its schema is {schema}, this version reads "
+                "{ours}.x. Update assess.",
+                path=file,
+                schema=schema[:20],
+                ours=ours,
+            )
+        )
     missing = [name for name in _TOP if name not in record]
     if missing:
-        raise InputError(fill("{path} lacks {name}: it is no whole {data}. Run assess again.", path=file,
-                              name=missing[0], data=DATA))  # fmt: skip
+        raise InputError(
+            fill("{path} lacks {name}: it is no whole {data}. Run assess again.", path=file, name=missing[0], data=DATA)
+        )
 
 
 class _Reader:
@@ -180,15 +210,17 @@ class _Reader:
                 self.rows(routes, "routes", "routes"), "routes.routes", self.route, lambda one: key(one.route)
             ),
             rooms=self.unique(
-                self.rows(routes, "rooms", "routes"), "routes.rooms",
-                lambda row, place: self.room(row, place, risk), lambda one: (key(one.floor), key(one.room)),
+                self.rows(routes, "rooms", "routes"),
+                "routes.rooms",
+                lambda row, place: self.room(row, place, risk),
+                lambda one: (key(one.floor), key(one.room)),
             ),
             route_risk=risk,
             blocked_routes=self.number(routes, "blocked_routes_expected", "routes"),
             cut_off_rooms=self.number(routes, "cut_off_rooms_expected", "routes"),
             unknown_routes=self.count(routes, "unknown_routes", "routes"),
             unknown_rooms=self.count(routes, "unknown_rooms", "routes"),
-        )  # fmt: skip
+        )
 
     def is_simulated(self, record: Mapping[str, Any], items: Sequence[Mapping[str, Any]]) -> bool:
         """Whether the run simulated any piece."""
@@ -255,29 +287,44 @@ class _Reader:
     # ------------------------------------------------------------ values
 
     def unique(
-        self, rows: Sequence[Mapping[str, Any]], place: str, read: Callable[[Any, str], _Row],
+        self,
+        rows: Sequence[Mapping[str, Any]],
+        place: str,
+        read: Callable[[Any, str], _Row],
         name: Callable[[_Row], Any],
-    ) -> tuple[_Row, ...]:  # fmt: skip
+    ) -> tuple[_Row, ...]:
         """Return the rows that `read` makes; raises InputError where two have one name."""
         found: dict[Any, _Row] = {}
         for at, row in enumerate(rows):
             one = read(row, f"{place}[{at}]")
             if name(one) in found:
-                raise InputError(fill("{path}: {place}: the same name is there before. Run assess again.",
-                                      path=self.file, place=f"{place}[{at}]"))  # fmt: skip
+                raise InputError(
+                    fill(
+                        "{path}: {place}: the same name is there before. Run assess again.",
+                        path=self.file,
+                        place=f"{place}[{at}]",
+                    )
+                )
             found[name(one)] = one
         return tuple(found.values())
 
-    def get(self, row: Mapping[str, Any], name: str, place: str, expected: Text, is_right: Callable[[Any], bool]) -> Any:
+    def get(
+        self, row: Mapping[str, Any], name: str, place: str, expected: Text, is_right: Callable[[Any], bool]
+    ) -> Any:
         """Return a value; raises InputError where it is missing or not what it may be."""
         value = row.get(name, _MISSING)
         if value is _MISSING or not is_right(value):
             where = f"{place}.{name}" if place else name
             shown = fill("missing") if value is _MISSING else repr(value)[:40]
             raise InputError(
-                fill("{path}: {place} is {value}, expected {expected}. Run assess again.", path=self.file, place=where,
-                     value=shown, expected=expected)
-            )  # fmt: skip
+                fill(
+                    "{path}: {place} is {value}, expected {expected}. Run assess again.",
+                    path=self.file,
+                    place=where,
+                    value=shown,
+                    expected=expected,
+                )
+            )
         return value
 
     def part(self, row: Mapping[str, Any], name: str, place: str) -> dict[str, Any]:
@@ -287,9 +334,14 @@ class _Reader:
     def rows(self, row: Mapping[str, Any], name: str, place: str) -> list[Mapping[str, Any]]:
         """Return a list of objects."""
         return list(
-            self.get(row, name, place, fill("a list of objects"),
-                     lambda value: isinstance(value, list) and all(isinstance(one, dict) for one in value))
-        )  # fmt: skip
+            self.get(
+                row,
+                name,
+                place,
+                fill("a list of objects"),
+                lambda value: isinstance(value, list) and all(isinstance(one, dict) for one in value),
+            )
+        )
 
     def text(self, row: Mapping[str, Any], name: str, place: str) -> str:
         """Return a text on one line, safe to show."""
@@ -307,8 +359,15 @@ class _Reader:
 
     def count(self, row: Mapping[str, Any], name: str, place: str) -> int:
         """Return a whole number from 0."""
-        return int(self.get(row, name, place, fill("a whole number, 0 or above"),
-                            lambda value: _is_number(value) and isinstance(value, int) and value < 10**9))  # fmt: skip
+        return int(
+            self.get(
+                row,
+                name,
+                place,
+                fill("a whole number, 0 or above"),
+                lambda value: _is_number(value) and isinstance(value, int) and value < 10**9,
+            )
+        )
 
     def number(self, row: Mapping[str, Any], name: str, place: str) -> float:
         """Return a number from 0."""
@@ -316,8 +375,9 @@ class _Reader:
 
     def share(self, row: Mapping[str, Any], name: str, place: str) -> float:
         """Return a number from 0 to 1."""
-        return float(self.get(row, name, place, fill("a number from 0 to 1"),
-                              lambda value: _is_number(value) and value <= 1))  # fmt: skip
+        return float(
+            self.get(row, name, place, fill("a number from 0 to 1"), lambda value: _is_number(value) and value <= 1)
+        )
 
     def plainly(self, record: Mapping[str, Any]) -> dict[str, Any]:
         """Return an object of values that are shown as they are; a list becomes a tuple of texts."""
@@ -337,4 +397,6 @@ def _plain(value: Any) -> Any:
 
 def _is_number(value: Any) -> bool:
     """Whether a value is a finite number from 0 whose size a float can hold."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1e300 and math.isfinite(value)
+    return (
+        isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1e300 and math.isfinite(value)
+    )

@@ -84,7 +84,8 @@ def _check(path: Path, is_wanted: bool, listed: Mapping[str, str | None], data: 
 def read_list(path: Path) -> Mapping[str, str | None]:
     """Return the reports that a results.json lists, itself among them, with their SHA-256 where it is known.
 
-    Another file that begins alike may take its place. Empty if the file is missing or not of this program. Only its head is read: it may be large.
+    A file of another name that begins alike serves as well. Empty if the file is missing or not of this program. Only
+    its head is read: it may be large.
     """
     if path.is_symlink() or not path.is_file():
         return {}

@@ -24,7 +24,7 @@ RUN = ("run", "--verify", "none")
 ROOT = Path(__file__).parents[2]
 
 
-COMMANDS = ["new", "check", "run", "fragility", "routes", "rock", "record", "study", "methods", "doctor"]
+COMMANDS = ["new", "check", "run", "compare", "fragility", "routes", "rock", "record", "study", "methods", "doctor"]
 
 
 def test_every_file_of_a_command_is_one_and_is_in_the_help_in_order():

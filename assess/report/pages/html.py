@@ -64,12 +64,20 @@ def render(
     return render_page("report.html.j2", context, options, progress)
 
 
-def render_page(name: str, context: Mapping[str, Any], options: ReportOptions, progress: Progress = SILENT) -> str:
-    """Return a template with its names filled in; raises what `render` does."""
+def render_page(
+    name: str,
+    context: Mapping[str, Any],
+    options: ReportOptions,
+    progress: Progress = SILENT,
+    *,
+    filters: Mapping[str, Any] | None = None,
+) -> str:
+    """Return a template with its names filled in, and `filters` besides those of reports; raises what `render` does."""
     TemplateError, SecurityError = progress.wait_for(_import_errors)
     parts, letters = list[str](), dict[str, str]()
     try:
-        environment = progress.wait_for(lambda: _environment(options, None if context["for_print"] else letters))
+        filled = {"equation": partial(write_equation, letters=None if context["for_print"] else letters)}
+        environment = progress.wait_for(lambda: _environment(options, filled | (filters or {})))
         template = progress.wait_for(lambda: environment.get_template(name))
         for part in template.generate(**context):
             progress.check()
@@ -114,11 +122,8 @@ def _place(path: Path, options: ReportOptions) -> str:
     return next(path.relative_to(folder).as_posix() for folder in options.folders if path.is_relative_to(folder))
 
 
-def _environment(options: ReportOptions, letters: dict[str, str] | None = None) -> Any:
-    """Return where templates are rendered: a sandbox that escapes every text and is strict about names.
-
-    `letters` gets what the page has to hold of its equations (`write_equation`).
-    """
+def _environment(options: ReportOptions, filters: Mapping[str, Any] | None = None) -> Any:
+    """Return where templates are rendered: a sandbox that escapes every text and is strict about names."""
     from jinja2 import FileSystemLoader, StrictUndefined
     from jinja2.sandbox import ImmutableSandboxedEnvironment
 
@@ -129,11 +134,7 @@ def _environment(options: ReportOptions, letters: dict[str, str] | None = None) 
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {
-        **FILTERS,
-        "equation": partial(write_equation, letters=letters),
-        "breakable": write_breakable,
-    }
+    environment.filters |= {**FILTERS, "equation": write_equation, "breakable": write_breakable, **(filters or {})}
     environment.globals |= GLOBALS
     return environment
 

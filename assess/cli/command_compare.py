@@ -1,0 +1,110 @@
+"""``assess compare``: two runs of a building, and what changed between them."""
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from assess.cli.completion import list_of, one_of
+from assess.cli.console import show_progress
+from assess.cli.options import AsJson
+from assess.errors import InputError
+from assess.i18n import LANGUAGES, find_language
+
+if TYPE_CHECKING:
+    from assess.compare.changes import Comparison
+    from assess.compare.past_run import PastRun
+
+ORDER = 4
+EXAMPLES = (
+    "assess compare building-report anchored-report",
+    "assess compare before/results.json after/results.json --out change --formats html,xlsx --language it",
+    "assess compare building-report stronger-report --json > change.json",
+)
+FORMATS = ("html", "pdf", "xlsx")
+"""Those of `assess.compare.comparison_files`, which takes long to import."""
+FOLDER = Path("compare")
+
+Run = Annotated[
+    Path, typer.Argument(help="A results.json of assess run, or the folder that holds it.", show_default=False)
+]
+
+
+def command(
+    before: Run,
+    after: Run,
+    out: Annotated[Path, typer.Option(help="Folder of the files, by default in the current folder.")] = FOLDER,
+    formats: Annotated[
+        str, typer.Option(help="Files to write, separated by commas.", autocompletion=list_of(FORMATS))
+    ] = ",".join(FORMATS),
+    language: Annotated[
+        str | None,
+        typer.Option(
+            help="Language of the files: en, it.", show_default="AFTER's workbook's", autocompletion=one_of(LANGUAGES)
+        ),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Compare two runs of a building, and show first what gets worse.
+
+    Pieces are matched by the names of their items, routes by theirs. Written are compare.html, compare.pdf and
+    compare.xlsx, and always compare.json, which lists them: a later comparison into the folder replaces these alone.
+    Nothing is assessed again. Chances that were simulated are not set against chances by formula.
+    """
+    wanted = _read_formats(formats)
+    code = find_language(language) if language else ""
+    if out.exists() and not out.is_dir():
+        raise InputError(f"--out: {out} is a file; name a folder")
+    from assess.compare.changes import compare
+    from assess.compare.comparison_data import describe, dump
+    from assess.compare.comparison_files import check_out, write_comparison
+    from assess.compare.read_results import read_run
+    from assess.report.report_options import ReportOptions
+
+    check_out(out, wanted)
+    with show_progress() as progress:
+        found = compare(*(progress.wait_for(partial(read_run, path)) for path in (before, after)))
+        options = ReportOptions(language=code or _find_own_language(found.after))
+        written = write_comparison(found, out, wanted, options, progress=progress)
+    if as_json:
+        typer.echo(dump(describe(found)), nl=False)
+    else:
+        for line in describe_comparison(found):
+            typer.echo(line)
+    for file in written.values():
+        typer.echo(f"wrote {file}", err=True)
+
+
+def _read_formats(formats: str) -> list[str]:
+    wanted = [name.strip().lower() for name in formats.split(",") if name.strip()]
+    unknown = [name for name in wanted if name not in FORMATS]
+    if unknown or not wanted:
+        named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
+        raise InputError(f"--formats: {named}; expected some of: {', '.join(FORMATS)}.")
+    return wanted
+
+
+def _find_own_language(run: "PastRun") -> str:
+    """Return the language of the workbook of a run, English where that names none that is known."""
+    try:
+        return find_language(str(run.building.get("language") or LANGUAGES[0]))
+    except InputError:
+        return LANGUAGES[0]
+
+
+def describe_comparison(found: "Comparison") -> Iterator[str]:
+    """Yield what stands in the way of a comparison, what gets worse, and the counts before and after."""
+    from assess.compare.comparison_view import View
+
+    view = View(found)
+    yield from view.list_warnings()
+    yield view.headline
+    yield from (f"  {text}" for text in (*view.list_worse(), *view.list_others()))
+    for line in (*view.list_counts(), *view.list_route_counts()):
+        before, after, change = line.texts
+        yield f"{line.label}: {before} -> {after}  {change}"
+    if view.conditions:
+        yield f"{view.conditions}."
+    yield view.footer
