@@ -7,7 +7,7 @@ basis: a simulated chance and one by formula are never set against each other, n
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from typing import TypeVar
@@ -19,9 +19,8 @@ from assess.compare.past_run import (
     NOT_KNOWN,
     PastChance,
     PastPiece,
-    PastRoom,
-    PastRoute,
     PastRun,
+    PastState,
 )
 from assess.errors import InputError
 from assess.i18n import fill
@@ -93,6 +92,11 @@ class PieceChange:
         return _either(self.after, self.before)
 
     @property
+    def more(self) -> int:
+        """Pieces that the row has more after than before; below 0 fewer."""
+        return (self.after.quantity if self.after else 0) - (self.before.quantity if self.before else 0)
+
+    @property
     def pieces(self) -> int:
         """Pieces that a change concerns: those of both runs, or of the one that has the row."""
         if self.before is None or self.after is None:
@@ -106,8 +110,8 @@ class StateChange:
 
     name: str
     floor: str
-    before: PastRoute | PastRoom | None
-    after: PastRoute | PastRoom | None
+    before: PastState | None
+    after: PastState | None
     direction: Direction
     is_within: bool | None
 
@@ -163,7 +167,15 @@ class Comparison:
 
     def count(self, *directions: Direction) -> int:
         """Count pieces, not rows, of some directions."""
-        return sum(change.pieces for one in directions for change in self.by_direction[one])
+        return sum(count for one in directions for _change, count in self.list_counted(one))
+
+    def list_counted(self, direction: Direction) -> list[tuple[PieceChange, int]]:
+        """Return the rows of a direction with their pieces: a row that grows adds pieces, one that shrinks loses some."""
+        if direction not in ONE_SIDED:
+            return [(one, one.pieces) for one in self.by_direction[direction]]
+        sign = 1 if direction == Direction.ADDED else -1
+        more = [(one, sign * one.more) for one in self.pieces]
+        return [(one, count) for one, count in more if count > 0]
 
     @cached_property
     def moves(self) -> Mapping[tuple[str, str], int]:
@@ -202,19 +214,19 @@ class Comparison:
     def falls_of_both(self) -> Total | None:
         """The same of the pieces that have a class in both runs; None where these are all, or none."""
         both = [
-            (one.before, one.after)
+            (replace(one.before, quantity=one.pieces), replace(one.after, quantity=one.pieces))
             for one in self.pieces
             if one.before and one.after and self.before.is_counted(one.before) and self.after.is_counted(one.after)
         ]
         if not (self.has_same_basis and both) or all(self._is_whole(one) for one in self.pieces):
             return None
-        return _add_up([one for one, _ in both], [one for _, one in both], True)
+        return _add_up([one for one, _ in both], [one for _, one in both], is_comparable=True)
 
     def _is_whole(self, one: PieceChange) -> bool:
         """Whether a row is in the sums of both runs, or of neither."""
         counted = [one.before is not None and self.before.is_counted(one.before)]
         counted.append(one.after is not None and self.after.is_counted(one.after))
-        return counted[0] == counted[1]
+        return counted[0] == counted[1] and (not counted[0] or not one.more)
 
 
 def compare(before: PastRun, after: PastRun) -> Comparison:
@@ -234,8 +246,8 @@ def compare(before: PastRun, after: PastRun) -> Comparison:
                 after=after.path,
             )
         )
-    routes = _match(before.routes, after.routes, lambda one: key(one.route))
-    rooms = _match(before.rooms, after.rooms, lambda one: (key(one.floor), key(one.room)))
+    routes = _match(before.routes, after.routes, lambda one: key(one.name))
+    rooms = _match(before.rooms, after.rooms, lambda one: (key(one.floor), key(one.name)))
     is_comparable = before.main_basis == after.main_basis
     return Comparison(
         before,
@@ -330,15 +342,13 @@ def _difference(change: PieceChange) -> float:
     return change.after.chance.probability - change.before.chance.probability
 
 
-def _compare_states(
-    before: PastRoute | PastRoom | None, after: PastRoute | PastRoom | None, is_comparable: bool
-) -> StateChange:
+def _compare_states(before: PastState | None, after: PastState | None, is_comparable: bool) -> StateChange:
     """Compare a route or a room; chances only where both runs rest on the same basis."""
-    one: PastRoute | PastRoom = _either(after, before)
+    one = _either(after, before)
     direction, is_within = _direct_state(before, after, is_comparable)
     return StateChange(
-        name=one.room if isinstance(one, PastRoom) else one.route,
-        floor=one.floor if isinstance(one, PastRoom) else "",
+        name=one.name,
+        floor=one.floor,
         before=before,
         after=after,
         direction=direction,
@@ -347,7 +357,7 @@ def _compare_states(
 
 
 def _direct_state(
-    before: PastRoute | PastRoom | None, after: PastRoute | PastRoom | None, is_comparable: bool
+    before: PastState | None, after: PastState | None, is_comparable: bool
 ) -> tuple[Direction, bool | None]:
     """Return where a route or room goes, and whether the difference lies within the intervals of its chances."""
     if before is None or after is None:
@@ -415,7 +425,7 @@ def _sum(pieces: Sequence[PastPiece]) -> PastChance:
     return PastChance(expected, total(lambda one: one.low), total(lambda one: one.high))
 
 
-def count_states(rows: Iterable[PastRoute | PastRoom]) -> Counter[str]:
+def count_states(rows: Iterable[PastState]) -> Counter[str]:
     """Count routes or rooms by their states."""
     return Counter(one.state for one in rows)
 

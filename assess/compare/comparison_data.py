@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.compare.changes import Comparison, PieceChange, StateChange, Total, count_states, list_states
-from assess.compare.past_run import AT_RISK, PastChance, PastPiece, PastRoom, PastRoute, PastRun
+from assess.compare.past_run import AT_RISK, PastChance, PastPiece, PastRun, PastState
 from assess.compare.read_results import COMPARISON
 from assess.version import __version__
 
@@ -132,5 +132,5 @@ def _state(one: StateChange, kind: str) -> dict[str, Any]:
     }
 
 
-def _state_of(row: PastRoute | PastRoom | None) -> dict[str, Any] | None:
+def _state_of(row: PastState | None) -> dict[str, Any] | None:
     return None if row is None else {"state": row.state, "chance": row.chance and _chance(row.chance)}

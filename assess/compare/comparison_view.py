@@ -1,8 +1,7 @@
 """What a comparison says, once, in the language in use: HTML, PDF, Excel and terminal show it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from assess.compare import comparison_words as say
 from assess.compare.changes import (
@@ -19,13 +18,15 @@ from assess.compare.changes import (
     count_states,
     list_states,
 )
-from assess.compare.past_run import AT_RISK, CLASSES
+from assess.compare.past_run import ANCHORED, AT_RISK, CLASSES
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.report import words
 
 NAMED = 6
 """Items, routes and rooms that a sentence names."""
+Sentence = Callable[[int, str], str]
+"""Makes a sentence of a number and of names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,10 +185,9 @@ class View:
 
     def list_worse(self) -> list[str]:
         """Return what gets worse, a sentence each."""
-        found = self.found.by_direction
         texts = [
-            self._name_pieces(found[Direction.WORSE], _say_higher),
-            self._name_pieces(found[Direction.RISES], _say_rises),
+            self._name_pieces(Direction.WORSE, _say_higher),
+            self._name_pieces(Direction.RISES, _say_rises),
             self._name_states([one for one in self.found.routes if one.direction in WORSE], _say_routes),
             self._name_states([one for one in self.found.rooms if one.direction in WORSE], _say_rooms),
         ]
@@ -195,11 +195,10 @@ class View:
 
     def list_others(self) -> list[str]:
         """Return what else is to be known at once: pieces in one run alone, and those that cannot be compared."""
-        found = self.found.by_direction
         texts = [
-            self._name_pieces(found[Direction.ADDED], _say_added),
-            self._name_pieces(found[Direction.REMOVED], _say_removed),
-            self._name_pieces(found[Direction.UNCLEAR], _say_unclear) if self.found.has_same_basis else "",
+            self._name_pieces(Direction.ADDED, _say_added),
+            self._name_pieces(Direction.REMOVED, _say_removed),
+            self._name_pieces(Direction.UNCLEAR, _say_unclear) if self.found.has_same_basis else "",
             self._name_states(
                 [one for one in self.found.routes if one.direction == Direction.UNCLEAR], _say_unclear_routes
             )
@@ -208,19 +207,20 @@ class View:
         ]
         return [text for text in texts if text]
 
-    def _name_pieces(self, changes: Sequence[PieceChange], sentence: Any) -> str:
+    def _name_pieces(self, direction: Direction, sentence: Sentence) -> str:
+        changes = self.found.list_counted(direction)
         if not changes:
             return ""
-        names = words.name_first([_name_row(one) for one in changes], NAMED)
-        text: str = sentence(sum(one.pieces for one in changes), names)
-        within = sum(one.pieces for one in changes if one.is_within)
+        names = words.name_first([_name_row(one, count) for one, count in changes], NAMED)
+        text = sentence(sum(count for _, count in changes), names)
+        within = 0 if direction in ONE_SIDED else sum(count for one, count in changes if one.is_within)
         return f"{text} {_say_within(within)}" if within else text
 
-    def _name_states(self, changes: Sequence[StateChange], sentence: Any) -> str:
+    def _name_states(self, changes: Sequence[StateChange], sentence: Sentence) -> str:
         if not changes:
             return ""
         names = words.name_first([_name_move(one) for one in changes], NAMED, "; ")
-        return str(sentence(len(changes), names))
+        return sentence(len(changes), names)
 
     def list_tiles(self) -> list[Tile]:
         """Return the pieces by where they go."""
@@ -231,9 +231,9 @@ class View:
             Tile(_("better"), found.count(Direction.BETTER), _("lower class, or anchored"), "better"),
             Tile(_("lower chance"), found.count(Direction.FALLS), _("in the same class"), "better"),
             Tile(_("unchanged"), found.count(Direction.SAME), _("or within the sampling interval"), ""),
-            Tile(_("not comparable"), found.count(Direction.UNCLEAR), _("simulated in one run only"), "unclear"),
-            Tile(_("only in AFTER"), found.count(Direction.ADDED), _("by name"), "unclear"),
-            Tile(_("only in BEFORE"), found.count(Direction.REMOVED), _("by name"), "unclear"),
+            Tile(_("not comparable"), found.count(Direction.UNCLEAR), _("chance on another basis"), "unclear"),
+            Tile(_("only in AFTER"), found.count(Direction.ADDED), _("new items, or more of a row"), "unclear"),
+            Tile(_("only in BEFORE"), found.count(Direction.REMOVED), _("items gone, or fewer of a row"), "unclear"),
         ]
         return [one for one in tiles if one.count or one.tone in ("worse", "better")]
 
@@ -314,6 +314,8 @@ class View:
     def _tone_of(self, was: str, now: str) -> str:
         if was == now:
             return "same"
+        if {was, now} <= {*CLASSES, ANCHORED} and ANCHORED in (was, now):
+            return "worse" if was == ANCHORED else "better"
         if not self.found.has_same_basis or not {was, now} <= {*CLASSES}:
             return ""
         return "worse" if CLASSES.index(now) < CLASSES.index(was) else "better"
@@ -402,10 +404,10 @@ def _say_within(n: int) -> str:
     )
 
 
-def _name_row(one: PieceChange) -> str:
-    """Return a row by its name, with the number of its pieces where it has several."""
+def _name_row(one: PieceChange, count: int) -> str:
+    """Return a row by its name, with the number of its pieces where that is not one."""
     name = words.cut(one.piece.item, 30)
-    return f"{name} (×{words.NO_BREAK}{number(one.pieces, ',d')})" if one.pieces > 1 else name
+    return f"{name} (×{words.NO_BREAK}{number(count, ',d')})" if count > 1 else name
 
 
 def _name_move(one: StateChange) -> str:

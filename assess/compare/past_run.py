@@ -61,19 +61,20 @@ class PastPiece:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PastRoute:
-    """One evacuation route: its state in the words of its run, and the chance of being blocked, None if not known."""
+class PastState:
+    """A route or a room.
 
-    route: str
-    state: str
-    chance: PastChance | None
+    Parameters
+    ----------
+    name, floor : str
+        Of a route the floor is "".
+    state : str
+        Of a route in the words of its run; of a room one of `AT_RISK`, `BELOW` and `NOT_KNOWN`.
+    chance : PastChance, optional
+        Of being blocked, or of losing every exit; None where that was not evaluated.
+    """
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PastRoom:
-    """One room: one of `AT_RISK`, `BELOW` and `NOT_KNOWN`, and its chance of losing every exit."""
-
-    room: str
+    name: str
     floor: str
     state: str
     chance: PastChance | None
@@ -134,8 +135,8 @@ class PastRun:
     motions: Mapping[str, str]
     is_simulated: bool
     pieces: tuple[PastPiece, ...]
-    routes: tuple[PastRoute, ...]
-    rooms: tuple[PastRoom, ...]
+    routes: tuple[PastState, ...]
+    rooms: tuple[PastState, ...]
     route_risk: float
     blocked_routes: float
     cut_off_rooms: float

@@ -207,13 +207,13 @@ class _Reader:
             is_simulated=self.is_simulated(record, items),
             pieces=self.unique(items, "items", self.piece, lambda one: key(one.item)),
             routes=self.unique(
-                self.rows(routes, "routes", "routes"), "routes.routes", self.route, lambda one: key(one.route)
+                self.rows(routes, "routes", "routes"), "routes.routes", self.route, lambda one: key(one.name)
             ),
             rooms=self.unique(
                 self.rows(routes, "rooms", "routes"),
                 "routes.rooms",
                 lambda row, place: self.room(row, place, risk),
-                lambda one: (key(one.floor), key(one.room)),
+                lambda one: (key(one.floor), key(one.name)),
             ),
             route_risk=risk,
             blocked_routes=self.number(routes, "blocked_routes_expected", "routes"),
@@ -249,21 +249,22 @@ class _Reader:
             inputs={name: _plain(row.get(name)) for name in INPUTS},
         )
 
-    def route(self, row: Mapping[str, Any], place: str) -> past.PastRoute:
+    def route(self, row: Mapping[str, Any], place: str) -> past.PastState:
         """Return a route."""
-        return past.PastRoute(
-            route=self.text(row, "route", place),
+        return past.PastState(
+            name=self.text(row, "route", place),
+            floor="",
             state=self.text(row, "state", place),
             chance=self.chance_or_none(row, "blocked", place),
         )
 
-    def room(self, row: Mapping[str, Any], place: str, risk: float) -> past.PastRoom:
+    def room(self, row: Mapping[str, Any], place: str, risk: float) -> past.PastState:
         """Return a room; `risk` is the limit [-] by which it is at risk."""
         chance = self.chance_or_none(row, "loses_every_exit", place)
         is_known = chance is not None and row.get("is_known") is not False
         state = past.AT_RISK if chance is not None and chance.probability >= risk else past.BELOW
-        return past.PastRoom(
-            room=self.text(row, "room", place),
+        return past.PastState(
+            name=self.text(row, "room", place),
             floor=self.text(row, "floor", place),
             state=state if is_known else past.NOT_KNOWN,
             chance=chance,
