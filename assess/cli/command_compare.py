@@ -23,7 +23,7 @@ EXAMPLES = (
     "assess compare before/results.json after/results.json --out change --formats html,xlsx --language it",
     "assess compare building-report stronger-report --json > change.json",
 )
-FORMATS = ("html", "pdf", "xlsx")
+FORMATS = ("html", "pdf", "xlsx", "json")
 """Those of `assess.compare.comparison_files`, which takes long to import."""
 FOLDER = Path("compare")
 
@@ -38,7 +38,7 @@ def command(
     out: Annotated[Path, typer.Option(help="Folder of the files, by default in the current folder.")] = FOLDER,
     formats: Annotated[
         str, typer.Option(help="Files to write, separated by commas.", autocompletion=list_of(FORMATS))
-    ] = ",".join(FORMATS),
+    ] = ",".join(FORMATS[:-1]),
     language: Annotated[
         str | None,
         typer.Option(

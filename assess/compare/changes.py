@@ -170,7 +170,7 @@ class Comparison:
         return sum(count for one in directions for _change, count in self.list_counted(one))
 
     def list_counted(self, direction: Direction) -> list[tuple[PieceChange, int]]:
-        """Return the rows of a direction with their pieces: a row that grows adds pieces, one that shrinks loses some."""
+        """Return the rows of a direction with their pieces: a row that grows adds some, one that shrinks loses some."""
         if direction not in ONE_SIDED:
             return [(one, one.pieces) for one in self.by_direction[direction]]
         sign = 1 if direction == Direction.ADDED else -1

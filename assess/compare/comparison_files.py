@@ -116,7 +116,7 @@ def _arrange(formats: Sequence[str]) -> list[str]:
     """Return formats in the order in which they are written."""
     unknown = [name for name in formats if name not in FILES]
     if unknown:
-        known = ", ".join(FORMATS)
+        known = ", ".join(sorted(FILES))
         raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0], known=known))
     return [name for name in FILES if name in {*formats, "json"}]
 

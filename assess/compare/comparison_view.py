@@ -314,7 +314,7 @@ class View:
     def _tone_of(self, was: str, now: str) -> str:
         if was == now:
             return "same"
-        if {was, now} <= {*CLASSES, ANCHORED} and ANCHORED in (was, now):
+        if ANCHORED in (was, now) and ABSENT not in (was, now):
             return "worse" if was == ANCHORED else "better"
         if not self.found.has_same_basis or not {was, now} <= {*CLASSES}:
             return ""

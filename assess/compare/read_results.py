@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, Never, TypeVar
 
@@ -150,31 +151,32 @@ def _check_origin(file: Path, record: Mapping[str, Any]) -> None:
     major, ours = (text.partition(".")[0] for text in (schema, VERSION))
     if not (major.isascii() and major.isdigit() and len(major) < 6):
         raise InputError(_describe_foreign(file))
-    if int(major) < int(ours):
-        raise InputError(
-            fill(
-                "{path} was written by an earlier version of assess: its schema is {schema}, this version reads "
-                "{ours}.x. Run its workbook again.",
-                path=file,
-                schema=schema[:20],
-                ours=ours,
-            )
-        )
-    if int(major) > int(ours):
-        raise InputError(
-            fill(
-                "{path} was written by a later version of assess: its schema is {schema}, this version reads "
-                "{ours}.x. Update assess.",
-                path=file,
-                schema=schema[:20],
-                ours=ours,
-            )
-        )
+    if major.lstrip("0") != ours:
+        raise InputError(_describe_version(file, schema, is_earlier=int(major) < int(ours)))
     missing = [name for name in _TOP if name not in record]
     if missing:
         raise InputError(
             fill("{path} lacks {name}: it is no whole {data}. Run assess again.", path=file, name=missing[0], data=DATA)
         )
+
+
+def _describe_version(file: Path, schema: str, *, is_earlier: bool) -> Text:
+    ours = VERSION.partition(".")[0]
+    if is_earlier:
+        return fill(
+            "{path} was written by an earlier version of assess: its schema is {schema}, this version reads {ours}.x. "
+            "Run its workbook again.",
+            path=file,
+            schema=schema[:20],
+            ours=ours,
+        )
+    return fill(
+        "{path} was written by a later version of assess: its schema is {schema}, this version reads {ours}.x. Update "
+        "assess.",
+        path=file,
+        schema=schema[:20],
+        ours=ours,
+    )
 
 
 class _Reader:
@@ -185,42 +187,48 @@ class _Reader:
 
     def run(self, record: Mapping[str, Any], sha256: str, written: datetime.datetime) -> past.PastRun:
         """Return the run."""
-        origin = self.part(record, "assess", "")
-        inputs = self.part(origin, "inputs", "assess")
-        routes = self.part(record, "routes", "")
-        risk = self.share(routes, "risk", "routes")
         items = self.rows(record, "items", "")
         return past.PastRun(
             path=self.file,
             sha256=sha256,
             written=written,
             schema=plain_line(record["schema"])[:20],
-            version=self.text(origin, "version", "assess"),
-            platform=self.texts(origin, "platform", "assess"),
-            settings=self.plainly(self.part(origin, "settings", "assess")),
             building=self.plainly(self.part(record, "building", "")),
-            uncertainty=self.plainly(self.part(origin, "uncertainty", "assess")),
-            shaking=self.shaking(origin),
-            workbook=self.text(inputs, "workbook", "assess.inputs"),
-            workbook_sha256=self.text(inputs, "sha256", "assess.inputs"),
-            motions=self.texts(inputs, "records", "assess.inputs") | self.texts(inputs, "motions", "assess.inputs"),
             is_simulated=self.is_simulated(record, items),
             pieces=self.unique(items, "items", self.piece, lambda one: key(one.item)),
-            routes=self.unique(
-                self.rows(routes, "routes", "routes"), "routes.routes", self.route, lambda one: key(one.name)
-            ),
-            rooms=self.unique(
-                self.rows(routes, "rooms", "routes"),
-                "routes.rooms",
-                lambda row, place: self.room(row, place, risk),
-                lambda one: (key(one.floor), key(one.name)),
-            ),
-            route_risk=risk,
-            blocked_routes=self.number(routes, "blocked_routes_expected", "routes"),
-            cut_off_rooms=self.number(routes, "cut_off_rooms_expected", "routes"),
-            unknown_routes=self.count(routes, "unknown_routes", "routes"),
-            unknown_rooms=self.count(routes, "unknown_rooms", "routes"),
+            **self.origin(self.part(record, "assess", "")),
+            **self.routes(self.part(record, "routes", "")),
         )
+
+    def origin(self, origin: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what a run says of itself, by the fields of `PastRun`."""
+        inputs, place = self.part(origin, "inputs", "assess"), "assess.inputs"
+        return {
+            "version": self.text(origin, "version", "assess"),
+            "platform": self.texts(origin, "platform", "assess"),
+            "settings": self.plainly(self.part(origin, "settings", "assess")),
+            "uncertainty": self.plainly(self.part(origin, "uncertainty", "assess")),
+            "shaking": self.shaking(origin),
+            "workbook": self.text(inputs, "workbook", place),
+            "workbook_sha256": self.text(inputs, "sha256", place),
+            "motions": self.texts(inputs, "records", place) | self.texts(inputs, "motions", place),
+        }
+
+    def routes(self, routes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the routes and rooms, by the fields of `PastRun`."""
+        risk = self.share(routes, "risk", "routes")
+        own, rooms = self.rows(routes, "routes", "routes"), self.rows(routes, "rooms", "routes")
+        return {
+            "routes": self.unique(own, "routes.routes", self.route, lambda one: key(one.name)),
+            "rooms": self.unique(
+                rooms, "routes.rooms", partial(self.room, risk=risk), lambda one: (key(one.floor), key(one.name))
+            ),
+            "route_risk": risk,
+            "blocked_routes": self.number(routes, "blocked_routes_expected", "routes"),
+            "cut_off_rooms": self.number(routes, "cut_off_rooms_expected", "routes"),
+            "unknown_routes": self.count(routes, "unknown_routes", "routes"),
+            "unknown_rooms": self.count(routes, "unknown_rooms", "routes"),
+        }
 
     def is_simulated(self, record: Mapping[str, Any], items: Sequence[Mapping[str, Any]]) -> bool:
         """Whether the run simulated any piece."""

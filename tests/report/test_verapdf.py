@@ -15,9 +15,14 @@ import pytest
 import weasyprint
 
 import assess
+from assess.compare.changes import compare
+from assess.compare.comparison_files import write_comparison
+from assess.compare.read_results import read_run
 from assess.report.content import build_content
 from assess.report.pages.pdf import write_pdf
 from assess.report.report_options import ReportOptions
+from assess.settings import Settings
+from tests.compare.past import write_routed_run
 from tests.workbooks import UNVERIFIED, assessed
 
 HERE = Path(__file__).parents[1] / "verapdf"
@@ -100,3 +105,13 @@ def test_the_example_is_valid(tmp_path, jars):
     example = assess.run(assess.read_inventory(ROOT / "inventories" / "market-street.xlsx"), UNVERIFIED)
     archival, accessible = _write(example, tmp_path / "a.pdf"), _write(example, tmp_path / "u.pdf", accessible=True)
     assert _validate(jars, (archival, "3u"), (accessible, "ua1")) == ["", ""]
+
+
+def test_a_comparison_is_valid(tmp_path, jars):
+    before = write_routed_run(tmp_path / "weak", Settings(verify="none", scale=0.4))
+    found = compare(read_run(before), read_run(write_routed_run(tmp_path / "b", UNVERIFIED)))
+    pairs = []
+    for language, accessible, kind in (("en", False, "3u"), ("it", False, "3u"), ("en", True, "ua1")):
+        options = ReportOptions(language=language, accessible=accessible)
+        pairs.append((write_comparison(found, tmp_path / f"{language}-{kind}", ("pdf",), options)["pdf"], kind))
+    assert _validate(jars, *pairs) == ["", "", ""]

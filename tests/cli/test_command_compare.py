@@ -1,0 +1,116 @@
+"""`assess compare`: two runs of a small workbook through the real commands, and every bad input."""
+
+import json
+import re
+
+import pytest
+
+from tests.cli.calling import error, run
+from tests.workbooks import write
+
+QUICK = ("--runs", "60", "--formats", "json")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The workbook assessed as it is, at 1.5 times the motion, with two items anchored, and by the formulas alone."""
+    folder = tmp_path_factory.mktemp("runs")
+    book = write(folder / "hall.xlsx", building="Town hall", period=0.8)
+    for name, options in {
+        "base": QUICK,
+        "strong": (*QUICK, "--scale", "1.5"),
+        "held": (*QUICK, "--anchor", "A1,A3"),
+        "formula": ("--verify", "none", "--formats", "json"),
+    }.items():
+        done = run("run", book, "--out", folder / name, *options)
+        assert done.exit_code == 0, done.output
+    return folder
+
+
+def _compare(folder, before, after, *options):
+    done = run("compare", folder / before, folder / after, *options)
+    assert done.exit_code == 0, done.output
+    return done
+
+
+def test_stronger_shaking_gets_worse_at_once(folder, tmp_path):
+    done = _compare(folder, "base", "strong", "--out", tmp_path / "out", "--formats", "html,xlsx")
+    lines = done.stdout.splitlines()
+    assert re.match(r"Worse: \d of 7 pieces\. Better: nothing\.", lines[0])
+    assert "AFTER: motion × 1.5." in lines
+    assert re.findall(r"wrote .*?(\w+\.\w+)\n", done.stderr) == ["compare.xlsx", "compare.html", "compare.json"]
+    page = (tmp_path / "out" / "compare.html").read_text(encoding="utf-8")
+    assert page.index(lines[0]) < page.index("Counts before and after")
+
+
+def test_anchored_pieces_get_better_and_the_option_is_named(folder, tmp_path):
+    done = _compare(folder, "base", "held", "--out", tmp_path, "--formats", "html", "--json")
+    record = json.loads(done.stdout)
+    changes = {one["item"]: one["change"] for one in record["items"]}
+    assert changes == {"A1": "better", "A3": "better", "A2": "same", "A4": "same", "A5": "same"}
+    assert record["after"]["settings"]["anchor"] == ["A1", "A3"]
+    assert record["counts"]["pieces"]["anchored"] == {
+        "before": 1, "after": 5, "comparable": True, "within_sampling_interval": None,
+    }  # fmt: skip
+    assert "AFTER: taken as anchored: A1, A3" in (tmp_path / "compare.html").read_text(encoding="utf-8")
+
+
+def test_before_and_after_equal_what_each_run_says(folder, tmp_path):
+    record = json.loads(_compare(folder, "base", "strong", "--out", tmp_path, "--formats", "json", "--json").stdout)
+    for side, name in (("before", "base"), ("after", "strong")):
+        own = json.loads((folder / name / "results.json").read_text(encoding="utf-8"))
+        adopted = {one["item"]: one["adopted"] for one in own["items"]}
+        for one in record["items"]:
+            assert one[side]["probability"] == adopted[one["item"]]["probability"]
+            assert one[side]["class"] == adopted[one["item"]]["class"]
+
+
+def test_a_run_against_itself_is_unchanged(folder, tmp_path):
+    done = _compare(folder, "base", "base", "--out", tmp_path, "--formats", "html")
+    assert done.stdout.splitlines()[0] == "Nothing changed: BEFORE and AFTER are the same results."
+    assert "No piece changed." in (tmp_path / "compare.html").read_text(encoding="utf-8")
+
+
+def test_other_bases_are_said_and_not_compared(folder, tmp_path):
+    done = _compare(folder, "base", "formula", "--out", tmp_path, "--formats", "html")
+    assert done.stdout.startswith("The two runs rest on different bases: BEFORE is simulated, AFTER is by formula.")
+    assert "expected falls" in done.stdout
+    assert "Worse" not in done.stdout
+    assert re.search(r"expected falls: [\d.]+ -> [\d.]+  not comparable", done.stdout)
+
+
+def test_files_go_to_the_current_folder_by_default(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    _compare(folder, "base", "strong")
+    names = {path.name for path in (tmp_path / "compare").iterdir()}
+    assert names == {"compare.html", "compare.pdf", "compare.xlsx", "compare.json"}
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("none", "base"), r"error +\S*none is not there: name a results\.json, or the folder that holds it"),
+        (("hall.xlsx", "base"), r"hall\.xlsx is no JSON: name a results\.json that assess has written"),
+        (("base", "."), r"holds no results\.json"),
+        (("base", "base", "--formats", "pdf,docx"), r"--formats: 'docx' is an unknown format; expected some of: html"),
+        (("base", "base", "--formats", ""), r"--formats: no format is named"),
+        (("base", "base", "--language", "xx"), r"--language 'xx' is unknown"),
+        (("base", "base", "--out", "hall.xlsx"), r"--out: \S*hall\.xlsx is a file; name a folder"),
+    ],
+)
+def test_bad_input_ends_with_an_error_and_nothing_is_written(folder, tmp_path, monkeypatch, words, message):
+    monkeypatch.chdir(tmp_path)
+    given = [folder / word if at < 2 or word == "hall.xlsx" else word for at, word in enumerate(words)]
+    assert re.search(message, error(run("compare", *given)))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_comparison_is_no_run(folder, tmp_path):
+    _compare(folder, "base", "strong", "--out", tmp_path, "--formats", "json")
+    assert "is a comparison, not a run" in error(run("compare", folder / "base", tmp_path / "compare.json"))
+
+
+def test_the_files_speak_the_language_of_the_workbook_or_the_one_asked_for(folder, tmp_path):
+    for options, code in (((), "en"), (("--language", "italiano"), "it")):
+        _compare(folder, "base", "base", "--out", tmp_path, "--formats", "html", *options)
+        assert f'<html lang="{code}">' in (tmp_path / "compare.html").read_text(encoding="utf-8")

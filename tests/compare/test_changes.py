@@ -1,0 +1,258 @@
+"""What counts as worse, better or not comparable, and what lies within the sampling interval."""
+
+import math
+
+import pytest
+
+from assess.compare.changes import Direction, compare, lies_within
+from assess.compare.comparison_data import describe, dump
+from assess.compare.comparison_view import View
+from assess.compare.past_run import PastChance
+from assess.compare.read_results import read_run
+from assess.errors import InputError
+from assess.risk import wilson_interval
+from assess.settings import Settings
+from tests.compare.past import item, read_changed, write_routed_run, write_run
+from tests.workbooks import UNVERIFIED
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("changes")
+
+
+@pytest.fixture(scope="module")
+def source(folder):
+    return write_run(folder / "a", UNVERIFIED)
+
+
+@pytest.fixture(scope="module")
+def routed(folder):
+    return write_routed_run(folder / "r", UNVERIFIED)
+
+
+def _adopt(record, name, **adopted):
+    item(record, name)["adopted"].update(adopted)
+
+
+def _directions(found):
+    return {one.piece.item: one.direction.value for one in found.pieces}
+
+
+def test_a_run_against_itself_is_unchanged(source, routed):
+    for path in (source, routed):
+        run = read_run(path)
+        found = compare(run, run)
+        assert {one.direction for one in (*found.pieces, *found.routes, *found.rooms)} <= {Direction.SAME}
+        assert View(found).headline == "Nothing changed: BEFORE and AFTER are the same results."
+        assert View(found).list_worse() == View(found).list_changed() == View(found).list_changed_routes() == []
+        assert all(was == now for was, now in found.moves)
+
+
+def test_pieces_go_worse_and_better_by_class_chance_and_anchor(source, tmp_path):
+    def edit(record):
+        _adopt(record, "A1", **{"class": "low", "probability": 0.01})
+        _adopt(record, "A2", probability=0.31)
+        _adopt(record, "A5", **{"class": "high", "probability": 0.5})
+        item(record, "A4")["anchor"]["counts_as_anchored"] = False
+
+    before, after = read_changed(source, tmp_path, edit), read_run(source)
+    forth, back = compare(before, after), compare(after, before)
+    assert _directions(forth) == {"A1": "worse", "A5": "worse", "A4": "better", "A2": "rises", "A3": "same"}
+    assert _directions(back) == {"A4": "worse", "A2": "falls", "A1": "better", "A5": "better", "A3": "same"}
+    assert {one.piece.item for one in forth.pieces[:2]} == {"A1", "A5"}
+    assert forth.count(Direction.WORSE) == 2
+    assert View(forth).tone == View(back).tone == "worse"
+    assert "2 pieces go to a higher class or are no longer anchored: A1, A5." in View(forth).list_worse()
+
+
+def test_rows_and_columns_of_the_matrix_add_up_to_the_counts(source, tmp_path):
+    def edit(record):
+        item(record, "A3")["quantity"] = 5
+        item(record, "A2")["item"] = "new"
+        _adopt(record, "A1", **{"class": "medium"})
+
+    before, after = read_run(source), read_changed(source, tmp_path, edit)
+    found = compare(before, after)
+    matrix = View(found).build_matrix()
+    for run, sums in ((before, [row.total for row in matrix.rows]), (after, list(matrix.totals))):
+        for standing, total in zip(matrix.columns, sums, strict=True):
+            quantity = sum(one.quantity for one in run.pieces if run.standing(one) == standing)
+            assert total == (quantity if standing else total)
+    assert found.moves[("", "very high")] == 2
+    assert (found.count(Direction.ADDED), found.count(Direction.REMOVED)) == (3, 1)
+    assert _directions(found)["new"] == "added"
+    assert _directions(found)["A2"] == "removed"
+    texts = View(found).list_others()
+    assert texts == ["3 pieces are only in AFTER: new, A3 (×\N{NO-BREAK SPACE}2).", "1 piece is only in BEFORE: A2."]
+    both = found.falls_of_both
+    assert both is not None
+    counted = [one for one in before.pieces if one.item in ("A1", "A3", "A5")]
+    assert both.before == pytest.approx(sum(one.quantity * one.chance.probability for one in counted))
+
+
+def test_bases_are_never_set_against_each_other(source, tmp_path):
+    def edit(record):
+        for name in ("A1", "A2", "A3", "A5"):
+            _adopt(record, name, basis="simulated", probability=0.0, low=0.0, high=0.02, **{"class": "low"})
+        item(record, "A1")["verification"] = {"runs": 200}
+
+    found = compare(read_changed(source, tmp_path, edit), read_run(source))
+    view = View(found)
+    assert not found.has_same_basis
+    assert set(_directions(found).values()) == {"unclear", "same"}
+    assert view.tone == "unclear"
+    assert view.headline == "Nothing gets worse as far as it can be compared."
+    assert "rest on different bases: BEFORE is simulated, AFTER is by formula" in view.list_warnings()[0]
+    lines = {line.label: line for line in view.list_counts()}
+    assert lines["expected falls"].texts[2] == lines["■ very high"].texts[2] == "not comparable"
+    assert lines["⚓ anchored"].texts[2] == "0"
+    assert {line.tone for line in lines.values()} == {""}
+    assert found.falls_of_both is None
+    assert {tone for row in view.build_matrix().rows for tone in row.tones} <= {"", "same", "worse", "better"}
+    assert "worse" not in {row.tones[at] for row in view.build_matrix().rows for at, n in enumerate(row.counts) if n}
+
+
+def test_unconfirmed_pieces_are_counted_apart_and_not_compared_with_simulated_ones(source, tmp_path):
+    def simulated(record):
+        item(record, "A1")["verification"] = {"runs": 200}
+        for name in ("A1", "A2", "A3", "A5"):
+            _adopt(record, name, basis="simulated", low=0.0, high=1.0)
+
+    def unconfirmed(record):
+        simulated(record)
+        _adopt(record, "A1", basis="unconfirmed", low=None, high=None)
+
+    found = compare(read_changed(source, tmp_path / "a", simulated), read_changed(source, tmp_path / "b", unconfirmed))
+    assert found.has_same_basis
+    assert _directions(found) == {"A1": "unclear", "A2": "same", "A3": "same", "A5": "same", "A4": "same"}
+    assert found.moves[("very high", "unconfirmed")] == 1
+    assert View(found).list_others() == ["1 piece cannot be compared, as its chance rests on another basis: A1."]
+    falls = next(line for line in View(found).list_counts() if line.label == "expected falls")
+    assert falls.total.after < falls.total.before
+    assert falls.tone == ""
+
+
+def _chance(overturned, runs):
+    low, high = wilson_interval(overturned, runs)
+    return PastChance(overturned / runs, float(low), float(high))
+
+
+def test_the_interval_of_a_difference_is_newcombes():
+    """Newcombe (1998), Table II, method 10: 56/70 against 48/80 gives 0.0524 to 0.3339, 9/10 against 3/10 0.1705 to
+    0.8090."""
+    for one, other, low, high in (((56, 70), (48, 80), 0.0524, 0.3339), ((9, 10), (3, 10), 0.1705, 0.8090)):
+        after, before = _chance(*one), _chance(*other)
+        difference = after.probability - before.probability
+        down = math.hypot(after.probability - after.low, before.high - before.probability)
+        up = math.hypot(after.high - after.probability, before.probability - before.low)
+        assert (difference - down, difference + up) == pytest.approx((low, high), abs=5e-5)
+        assert lies_within(before, after) is lies_within(after, before) is False
+    assert lies_within(_chance(10, 200), _chance(14, 200)) is True
+    assert lies_within(_chance(10, 200), PastChance(0.9)) is None
+
+
+def test_a_change_within_the_sampling_interval_is_said(source, tmp_path):
+    def run(name, overturned, risk):
+        def edit(record):
+            chance = _chance(overturned, 200)
+            for each in ("A1", "A2", "A3", "A5"):
+                _adopt(record, each, basis="simulated", probability=chance.probability, low=chance.low,
+                       high=chance.high, **{"class": risk})  # fmt: skip
+            item(record, "A1")["verification"] = {"runs": 200}
+
+        return read_changed(source, tmp_path / name, edit)
+
+    low, medium, more, high = run("a", 5, "low"), run("b", 7, "medium"), run("c", 12, "medium"), run("d", 90, "high")
+    found = compare(low, medium)
+    assert found.count(Direction.WORSE) == 6
+    assert View(found).list_worse()[0].endswith("For 6 of them the difference lies within the sampling interval.")
+    falls = next(line for line in View(found).list_counts() if line.label == "expected falls")
+    assert falls.texts[2] == "+0.06 (within the sampling interval)"
+    assert falls.tone == ""
+    assert set(_directions(compare(medium, more)).values()) == {"same"}
+    assert View(compare(medium, more)).headline == "Nothing changed beyond the sampling interval."
+    assert compare(more, high).count(Direction.WORSE) == 6
+    assert not any(one.is_within for one in compare(more, high).pieces)
+
+
+def test_states_of_routes_have_an_order_and_unknown_ones_have_none(routed, tmp_path):
+    def block(record):
+        for one in record["routes"]["routes"]:
+            one["state"] = "blocked"
+
+    before = read_changed(routed, tmp_path / "a", block)
+
+    def edit(record):
+        states = {"West": "open", "Back": "doubtful", "Yard": "not known"}
+        for one in record["routes"]["routes"]:
+            one["state"] = states[one["route"]]
+
+    after = read_changed(routed, tmp_path / "b", edit)
+    found = {one.name: one.direction.value for one in compare(before, after).routes}
+    back = {one.name: one.direction.value for one in compare(after, before).routes}
+    assert found == {"West": "better", "Back": "better", "Yard": "unclear"}
+    assert back == {"West": "worse", "Back": "worse", "Yard": "unclear"}
+    labels = [line.label for line in View(compare(before, after)).list_route_counts()]
+    assert labels[:4] == ["routes: blocked", "routes: doubtful", "routes: not known", "routes: open"]
+
+
+def test_rooms_that_lose_every_exit_are_named(routed, tmp_path):
+    def edit(record):
+        record["routes"]["cut_off_rooms_expected"] = 0.0
+        for one in record["routes"]["rooms"]:
+            one["loses_every_exit"].update(probability=0.0, low=0.0, high=0.0)
+
+    found = compare(read_changed(routed, tmp_path, edit), read_run(routed))
+    assert {one.direction for one in found.rooms} == {Direction.WORSE}
+    text = View(found).list_worse()[-1]
+    assert text.startswith("2 rooms are more likely to lose every exit: Archive (below the limit → at risk)")
+    lines = {line.label: line.texts for line in View(found).list_route_counts()}
+    assert lines["rooms at risk of losing every exit"] == ("0", "2", "+2")
+
+
+def test_two_buildings_are_a_warning_and_without_a_common_item_an_error(source, routed, tmp_path):
+    def rename(record):
+        record["building"]["building"] = "Library"
+
+    found = compare(read_run(source), read_changed(source, tmp_path, rename))
+    assert View(found).list_warnings() == [
+        "The two runs name different buildings: Town hall and Library. Pieces are matched by their names alone."
+    ]
+    with pytest.raises(InputError, match=r"have no item in common: they cannot be compared"):
+        compare(read_run(source), read_run(routed))
+
+
+def test_two_runs_without_pieces_are_the_same(source, tmp_path):
+    run = read_changed(source, tmp_path, lambda record: record["items"].clear())
+    found = compare(run, run)
+    assert found.pieces == ()
+    assert View(found).build_matrix().totals == (0, 0, 0, 0)
+    with pytest.raises(InputError, match="no item in common"):
+        compare(run, read_run(source))
+
+
+def test_other_limits_and_settings_are_warned_of(routed, source, tmp_path):
+    def edit(record):
+        record["routes"]["risk"] = 0.1
+        record["assess"]["settings"]["ideal"] = True
+
+    texts = View(compare(read_run(routed), read_changed(routed, tmp_path, edit))).list_warnings()
+    assert [text.split(":")[0] for text in texts] == [
+        "One run gives the chance if exactly its motion recurred, the other run includes the uncertainty of the "
+        "earthquake and of the pieces",
+        "The limit on the chance that a route is blocked differs",
+    ]
+
+
+def test_the_document_says_the_same(source, tmp_path):
+    stronger = read_run(write_run(tmp_path / "s", Settings(verify="none", scale=1.5)))
+    found = compare(read_run(source), stronger)
+    record = describe(found)
+    assert record["after"]["settings"]["scale"] == 1.5
+    assert {one["item"]: one["change"] for one in record["items"]} == _directions(found)
+    assert sum(one["pieces"] for one in record["moves"]) == 7
+    assert record["counts"]["expected_falls"]["after"] == pytest.approx(
+        sum(one.quantity * one.chance.probability for one in stronger.pieces if not one.is_held)
+    )
+    assert dump(record).endswith("}\n")

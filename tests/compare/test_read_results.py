@@ -1,0 +1,139 @@
+"""results.json of unknown origin: what is read, and the error that each fault gives."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from assess.compare.read_results import read_run
+from assess.errors import InputError
+from assess.report.results_schema import VERSION
+from tests.compare.past import change, item, write_run
+from tests.workbooks import ITEMS, UNVERIFIED
+
+MAJOR = int(VERSION.partition(".")[0])
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    return write_run(tmp_path_factory.mktemp("read") / "a", UNVERIFIED)
+
+
+def test_a_run_is_read_back(source):
+    run = read_run(source)
+    assert run == read_run(source / "results.json")
+    assert [one.item for one in run.pieces] == [one["item"] for one in ITEMS]
+    assert [run.standing(one) for one in run.pieces] == ["very high", "high", "very high", "anchored", "very high"]
+    assert (run.name, run.main_basis, run.settings["scale"], run.settings["anchor"]) == (
+        "Town hall",
+        "formula",
+        1.0,
+        (),
+    )
+    record = json.loads((source / "results.json").read_text(encoding="utf-8"))
+    assert [one.chance.probability for one in run.pieces] == [one["adopted"]["probability"] for one in record["items"]]
+
+
+def test_a_later_minor_version_is_read_whatever_is_new_in_it(source, tmp_path):
+    def edit(record):
+        record.update(schema=f"{MAJOR}.99", schedule=[{"new": 1}])
+        record["routes"]["routes"] = [{"route": "West", "state": "doubtful", "blocked": {"probability": 0.1}}]
+        record["assess"]["settings"]["later"] = {"a": 1}
+
+    run = read_run(change(source, tmp_path, edit))
+    assert [(one.name, one.state, one.chance.probability, one.chance.low) for one in run.routes] == [
+        ("West", "doubtful", 0.1, None)
+    ]
+
+
+def test_texts_are_made_safe(source, tmp_path):
+    def edit(record):
+        item(record, "A1").update(description="a\u202e\x1b[31mb\nc", room="\ud800")
+
+    piece = read_run(change(source, tmp_path, edit)).pieces[0]
+    assert (piece.description, piece.room) == ("a\ufffd[31mb c", "\ufffd")
+
+
+BAD = {
+    "no_file": (None, r"is not there: name a results\.json, or the folder"),
+    "empty": ("", r"is empty"),
+    "workbook": ("PK\x03\x04", r"is no JSON"),
+    "binary": (b"\xff\xfe\x00", r"is no JSON"),
+    "list": ("[1, 2]", r"is JSON of another program"),
+    "foreign": ('{"name": "x", "version": 3}', r"is JSON of another program"),
+    "half_foreign": ('{"schema": "draft", "assess": {}}', r"is JSON of another program"),
+    "nan": ('{"schema": NaN}', r"is damaged"),
+    "deep": ("[" * 200_000 + "]" * 200_000, r"is damaged"),
+    "long_number": ('{"schema": ' + "9" * 5000 + "}", r"is damaged"),
+    "broken_line": ('{"schema": "4.2",\n"assess" {}}', r"is damaged: line 2"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_is_no_results_is_named(tmp_path, name):
+    content, message = BAD[name]
+    path = tmp_path / "results.json"
+    if content is not None:
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    with pytest.raises(InputError, match=message) as found:
+        read_run(path)
+    assert str(path) in str(found.value)
+
+
+def test_a_folder_without_results_is_named(tmp_path):
+    with pytest.raises(InputError, match=rf"{tmp_path.name} holds no results\.json"):
+        read_run(tmp_path)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.999])
+def test_a_file_that_is_cut_off_is_named(source, tmp_path, share):
+    whole = (source / "results.json").read_bytes().rstrip()
+    (tmp_path / "results.json").write_bytes(whole[: int(share * len(whole))])
+    with pytest.raises(InputError, match="is cut off"):
+        read_run(tmp_path)
+
+
+def _set(*path):
+    *inside, name, value = path
+
+    def edit(record):
+        for one in inside:
+            record = record[one]
+        record[name] = value
+
+    return edit
+
+
+EDITS = {
+    "earlier": (_set("schema", f"{MAJOR - 1}.7"), rf"earlier version of assess: its schema is {MAJOR - 1}\.7"),
+    "later": (_set("schema", f"{MAJOR + 1}.0"), r"later version of assess.*Update assess"),
+    "comparison": (_set("comparison", {}), r"is a comparison, not a run"),
+    "no_items": (lambda record: record.pop("items"), r"lacks items"),
+    "items": (_set("items", {"a": 1}), r"items is \{'a': 1\}, expected a list of objects"),
+    "class": (_set("items", 0, "adopted", "class", "grim"), r"items\[0\]\.adopted\.class is 'grim', expected one of"),
+    "basis": (_set("items", 1, "adopted", "basis", ["x"]), r"items\[1\]\.adopted\.basis is \['x'\]"),
+    "chance": (_set("items", 0, "adopted", "probability", 1.5), r"probability is 1\.5, expected a number from 0 to 1"),
+    "endless": (_set("items", 0, "adopted", "probability", 10**400), r"probability is 1000"),
+    "null": (_set("items", 0, "adopted", "probability", None), r"probability is None"),
+    "flag": (_set("items", 0, "quantity", True), r"items\[0\]\.quantity is True, expected a whole number"),
+    "part": (_set("items", 0, "quantity", 1.5), r"quantity is 1\.5"),
+    "name": (lambda record: record["items"][2].pop("item"), r"items\[2\]\.item is missing, expected a text"),
+    "twice": (_set("items", 1, "item", " a1"), r"items\[1\]: the same name is there before"),
+    "settings": (_set("assess", "settings", None), r"assess\.settings is None, expected an object"),
+    "hash": (_set("assess", "inputs", "sha256", 7), r"assess\.inputs\.sha256 is 7, expected a text"),
+    "route": (_set("routes", "routes", [{"route": "W"}]), r"routes\.routes\[0\]\.state is missing"),
+    "risk": (_set("routes", "risk", -1), r"routes\.risk is -1"),
+}
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_a_value_that_cannot_be_is_named_by_its_place(source, tmp_path, name):
+    edit, message = EDITS[name]
+    with pytest.raises(InputError, match=message):
+        read_run(change(source, tmp_path, edit))
+
+
+def test_a_file_too_large_is_not_read(source, monkeypatch):
+    monkeypatch.setattr("assess.compare.read_results.MOST_BYTES", 1000)
+    with pytest.raises(InputError, match=r"more than the 0 MB that are read"):
+        read_run(Path(source))
