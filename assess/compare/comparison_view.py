@@ -231,9 +231,14 @@ class View:
             Tile(_("better"), found.count(Direction.BETTER), _("lower class, or anchored"), "better"),
             Tile(_("lower chance"), found.count(Direction.FALLS), _("in the same class"), "better"),
             Tile(_("unchanged"), found.count(Direction.SAME), _("or within the sampling interval"), ""),
-            Tile(_("not comparable"), found.count(Direction.UNCLEAR), _("chance on another basis"), "unclear"),
-            Tile(_("only in AFTER"), found.count(Direction.ADDED), _("new items, or more of a row"), "unclear"),
-            Tile(_("only in BEFORE"), found.count(Direction.REMOVED), _("items gone, or fewer of a row"), "unclear"),
+            Tile(_("not comparable"), found.count(Direction.UNCLEAR), _("chances on different bases"), "unclear"),
+            Tile(_("only in AFTER"), found.count(Direction.ADDED), _("new items, or a larger quantity"), "unclear"),
+            Tile(
+                _("only in BEFORE"),
+                found.count(Direction.REMOVED),
+                _("items removed, or a smaller quantity"),
+                "unclear",
+            ),
         ]
         return [one for one in tiles if one.count or one.tone in ("worse", "better")]
 
@@ -370,8 +375,8 @@ def _say_removed(n: int, names: str) -> str:
 
 def _say_unclear(n: int, names: str) -> str:
     return ngettext(
-        "{n:,} piece cannot be compared, as its chance rests on another basis: {names}.",
-        "{n:,} pieces cannot be compared, as their chances rest on another basis: {names}.",
+        "{n:,} piece cannot be compared, as its chances rest on different bases: {names}.",
+        "{n:,} pieces cannot be compared, as their chances rest on different bases: {names}.",
         n,
         names=names,
     )

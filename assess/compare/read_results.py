@@ -78,17 +78,19 @@ def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
             if path.is_dir():
                 raise InputError(
                     fill(
-                        "{folder} holds no {name}: name the folder of a report, or its {name}.", folder=path, name=DATA
+                        "{folder} contains no {name}: name the folder of a report, or its {name}.",
+                        folder=path,
+                        name=DATA,
                     )
                 )
             raise InputError(
-                fill("{path} is not there: name a {name}, or the folder that holds it.", path=path, name=DATA)
+                fill("{path} does not exist: name a {name}, or the folder that holds it.", path=path, name=DATA)
             )
         status = file.stat()
         if status.st_size > MOST_BYTES:
             raise InputError(
                 fill(
-                    "{path} has {size:,} MB, more than the {most:,} MB that are read.",
+                    "{path} is too large: {size:,} MB, at most {most:,} MB are read.",
                     path=file,
                     size=status.st_size >> 20,
                     most=MOST_BYTES >> 20,
@@ -106,7 +108,7 @@ def _parse(file: Path, data: bytes) -> Mapping[str, Any]:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(
-            fill("{path} is no JSON: name a {name} that assess has written, or its folder.", path=file, name=DATA)
+            fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
         ) from None
     try:
         found = json.loads(text, parse_constant=_refuse)
@@ -125,20 +127,20 @@ def _describe_fault(file: Path, text: str, error: Exception) -> Text:
     """Return what is wrong with a text that is no JSON: it is cut off, or something else than a results.json."""
     whole = text.strip()
     if not whole:
-        return fill("{path} is empty: run assess again, or take another copy of the file.", path=file)
+        return fill("{path} is empty: run assess again, or use another copy of the file.", path=file)
     at_end = isinstance(error, json.JSONDecodeError) and error.pos >= len(text.rstrip())
     if whole.startswith("{") and (at_end or not whole.endswith("}")):
-        return fill("{path} is cut off: run assess again, or take another copy of the file.", path=file)
+        return fill("{path} is truncated: run assess again, or use another copy of the file.", path=file)
     if not whole.startswith(("{", "[")):
-        return fill("{path} is no JSON: name a {name} that assess has written, or its folder.", path=file, name=DATA)
+        return fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
     where = f"{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
     if where:
-        return fill("{path} is damaged: line {line} is no JSON. Run assess again.", path=file, line=where)
-    return fill("{path} is damaged: it is no JSON that can be read. Run assess again.", path=file)
+        return fill("{path} is damaged: line {line} is not valid JSON. Run assess again.", path=file, line=where)
+    return fill("{path} is damaged: it is not valid JSON. Run assess again.", path=file)
 
 
 def _describe_foreign(file: Path) -> Text:
-    return fill("{path} is JSON of another program: name a {name} that assess has written.", path=file, name=DATA)
+    return fill("{path} was not written by assess: name a {name} written by assess.", path=file, name=DATA)
 
 
 def _check_origin(file: Path, record: Mapping[str, Any]) -> None:
@@ -155,9 +157,7 @@ def _check_origin(file: Path, record: Mapping[str, Any]) -> None:
         raise InputError(_describe_version(file, schema, is_earlier=int(major) < int(ours)))
     missing = [name for name in _TOP if name not in record]
     if missing:
-        raise InputError(
-            fill("{path} lacks {name}: it is no whole {data}. Run assess again.", path=file, name=missing[0], data=DATA)
-        )
+        raise InputError(fill("{path} is incomplete: {name} is missing. Run assess again.", path=file, name=missing[0]))
 
 
 def _describe_version(file: Path, schema: str, *, is_earlier: bool) -> Text:
@@ -309,7 +309,7 @@ class _Reader:
             if name(one) in found:
                 raise InputError(
                     fill(
-                        "{path}: {place}: the same name is there before. Run assess again.",
+                        "{path}: {place}: duplicate name. Run assess again.",
                         path=self.file,
                         place=f"{place}[{at}]",
                     )

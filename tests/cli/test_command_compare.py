@@ -89,9 +89,9 @@ def test_files_go_to_the_current_folder_by_default(folder, tmp_path, monkeypatch
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("none", "base"), r"error +\S*none is not there: name a results\.json, or the folder that holds it"),
-        (("hall.xlsx", "base"), r"hall\.xlsx is no JSON: name a results\.json that assess has written"),
-        (("base", "."), r"holds no results\.json"),
+        (("none", "base"), r"error +\S*none does not exist: name a results\.json, or the folder that holds it"),
+        (("hall.xlsx", "base"), r"hall\.xlsx is not a JSON file: name a results\.json written by assess"),
+        (("base", "."), r"contains no results\.json"),
         (("base", "base", "--formats", "pdf,docx"), r"--formats: 'docx' is an unknown format; expected some of: html"),
         (("base", "base", "--formats", ""), r"--formats: no format is named"),
         (("base", "base", "--language", "xx"), r"--language 'xx' is unknown"),

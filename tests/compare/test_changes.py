@@ -127,7 +127,7 @@ def test_unconfirmed_pieces_are_counted_apart_and_not_compared_with_simulated_on
     assert found.has_same_basis
     assert _directions(found) == {"A1": "unclear", "A2": "same", "A3": "same", "A5": "same", "A4": "same"}
     assert found.moves[("very high", "unconfirmed")] == 1
-    assert View(found).list_others() == ["1 piece cannot be compared, as its chance rests on another basis: A1."]
+    assert View(found).list_others() == ["1 piece cannot be compared, as its chances rest on different bases: A1."]
     falls = next(line for line in View(found).list_counts() if line.label == "expected falls")
     assert falls.total.after < falls.total.before
     assert falls.tone == ""

@@ -55,13 +55,13 @@ def test_texts_are_made_safe(source, tmp_path):
 
 
 BAD = {
-    "no_file": (None, r"is not there: name a results\.json, or the folder"),
+    "no_file": (None, r"does not exist: name a results\.json, or the folder"),
     "empty": ("", r"is empty"),
-    "workbook": ("PK\x03\x04", r"is no JSON"),
-    "binary": (b"\xff\xfe\x00", r"is no JSON"),
-    "list": ("[1, 2]", r"is JSON of another program"),
-    "foreign": ('{"name": "x", "version": 3}', r"is JSON of another program"),
-    "half_foreign": ('{"schema": "draft", "assess": {}}', r"is JSON of another program"),
+    "workbook": ("PK\x03\x04", r"is not a JSON file"),
+    "binary": (b"\xff\xfe\x00", r"is not a JSON file"),
+    "list": ("[1, 2]", r"was not written by assess"),
+    "foreign": ('{"name": "x", "version": 3}', r"was not written by assess"),
+    "half_foreign": ('{"schema": "draft", "assess": {}}', r"was not written by assess"),
     "nan": ('{"schema": NaN}', r"is damaged"),
     "deep": ("[" * 200_000 + "]" * 200_000, r"is damaged"),
     "long_number": ('{"schema": ' + "9" * 5000 + "}", r"is damaged"),
@@ -81,7 +81,7 @@ def test_what_is_no_results_is_named(tmp_path, name):
 
 
 def test_a_folder_without_results_is_named(tmp_path):
-    with pytest.raises(InputError, match=rf"{tmp_path.name} holds no results\.json"):
+    with pytest.raises(InputError, match=rf"{tmp_path.name} contains no results\.json"):
         read_run(tmp_path)
 
 
@@ -89,7 +89,7 @@ def test_a_folder_without_results_is_named(tmp_path):
 def test_a_file_that_is_cut_off_is_named(source, tmp_path, share):
     whole = (source / "results.json").read_bytes().rstrip()
     (tmp_path / "results.json").write_bytes(whole[: int(share * len(whole))])
-    with pytest.raises(InputError, match="is cut off"):
+    with pytest.raises(InputError, match="is truncated"):
         read_run(tmp_path)
 
 
@@ -108,7 +108,7 @@ EDITS = {
     "earlier": (_set("schema", f"{MAJOR - 1}.7"), rf"earlier version of assess: its schema is {MAJOR - 1}\.7"),
     "later": (_set("schema", f"{MAJOR + 1}.0"), r"later version of assess.*Update assess"),
     "comparison": (_set("comparison", {}), r"is a comparison, not a run"),
-    "no_items": (lambda record: record.pop("items"), r"lacks items"),
+    "no_items": (lambda record: record.pop("items"), r"is incomplete: items is missing"),
     "items": (_set("items", {"a": 1}), r"items is \{'a': 1\}, expected a list of objects"),
     "class": (_set("items", 0, "adopted", "class", "grim"), r"items\[0\]\.adopted\.class is 'grim', expected one of"),
     "basis": (_set("items", 1, "adopted", "basis", ["x"]), r"items\[1\]\.adopted\.basis is \['x'\]"),
@@ -118,7 +118,7 @@ EDITS = {
     "flag": (_set("items", 0, "quantity", True), r"items\[0\]\.quantity is True, expected a whole number"),
     "part": (_set("items", 0, "quantity", 1.5), r"quantity is 1\.5"),
     "name": (lambda record: record["items"][2].pop("item"), r"items\[2\]\.item is missing, expected a text"),
-    "twice": (_set("items", 1, "item", " a1"), r"items\[1\]: the same name is there before"),
+    "twice": (_set("items", 1, "item", " a1"), r"items\[1\]: duplicate name"),
     "settings": (_set("assess", "settings", None), r"assess\.settings is None, expected an object"),
     "hash": (_set("assess", "inputs", "sha256", 7), r"assess\.inputs\.sha256 is 7, expected a text"),
     "route": (_set("routes", "routes", [{"route": "W"}]), r"routes\.routes\[0\]\.state is missing"),
@@ -135,5 +135,5 @@ def test_a_value_that_cannot_be_is_named_by_its_place(source, tmp_path, name):
 
 def test_a_file_too_large_is_not_read(source, monkeypatch):
     monkeypatch.setattr("assess.compare.read_results.MOST_BYTES", 1000)
-    with pytest.raises(InputError, match=r"more than the 0 MB that are read"):
+    with pytest.raises(InputError, match=r"too large: 0 MB, at most 0 MB"):
         read_run(Path(source))
