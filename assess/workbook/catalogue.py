@@ -12,7 +12,7 @@ from importlib.resources import files
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
-from assess.i18n import gettext, load_catalogue
+from assess.i18n import LANGUAGES, gettext, load_catalogue
 from assess.units import QUANTITIES
 from assess.workbook.names import key
 from assess.workbook.schema import CATALOGUE
