@@ -33,7 +33,7 @@ EXAMPLES = (
     "assess run building.xlsx --method own.toml --template my-templates",
 )
 
-FORMATS = ("pdf", "xlsx", "html", "json", "csv", "npz")
+FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "npz")
 """Those of `assess.report`, which takes long to import; the last is written only where it is named."""
 MOST_METHODS = 4
 """Fitted models that a report shows next to the published methods: a column each."""
@@ -97,7 +97,8 @@ def command(
     formats: Annotated[
         str,
         typer.Option(
-            help="Files to write, separated by commas; also npz, the result of every motion.",
+            help="Files to write, separated by commas: pdf is the report for the client, annex its details; also npz, the "
+            "result of every motion.",
             autocompletion=list_of(FORMATS),
         ),
     ] = ",".join(FORMATS[:-1]),
@@ -172,7 +173,7 @@ def _write(
     from assess.report import write_reports
 
     print_warnings(results.problem_rows)
-    if "pdf" in formats:
+    if {"pdf", "annex"} & set(formats):
         from assess.report.pages.pdf import list_problems
 
         print_warnings(list_problems(results))

@@ -61,13 +61,16 @@ class Job:
 # What writes each format is imported only when it is wanted.
 
 
-def _write_pdf(job: Job, path: Path) -> None:
+def _write_client(job: Job, path: Path) -> None:
     from assess.report.pages.pdf import write_pdf
-    from assess.report.pages.pdf_seal import seal
 
-    write_pdf(job.content, path, job.options, job.progress, data=job.stage / FILES["json"])
-    if not seal(path, job.stage / FILES["json"]):
-        job.listed[path.name] = find_digest(path)
+    write_pdf(job.content, path, job.options, job.progress, edition="client", data=job.stage / FILES["json"])
+
+
+def _write_annex(job: Job, path: Path) -> None:
+    from assess.report.pages.pdf import write_pdf
+
+    write_pdf(job.content, path, job.options, job.progress, edition="annex", data=job.stage / FILES["json"])
 
 
 def _write_xlsx(job: Job, path: Path) -> None:
@@ -99,7 +102,8 @@ def _write_npz(job: Job, path: Path) -> None:
 
 
 _WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
-    "pdf": ("report.pdf", _write_pdf),
+    "pdf": ("report.pdf", _write_client),
+    "annex": ("annex.pdf", _write_annex),
     "xlsx": ("report.xlsx", _write_xlsx),
     "html": ("report.html", _write_html),
     "json": ("results.json", _write_json),
@@ -108,8 +112,9 @@ _WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
 }
 FILES: Mapping[str, str] = {name: file for name, (file, _) in _WRITERS.items()}
 """The formats, and the file that each is written to."""
-_LAST = ("json", "pdf")
-"""What is written last: results.json, which lists the files before it, and the PDF, which carries it."""
+_PDFS = ("pdf", "annex")
+_LAST = ("json", *_PDFS)
+"""What is written last: results.json, which lists the files before it, and the PDFs, which carry it."""
 FORMATS = tuple(name for name in FILES if name != "npz")
 """The formats that are written where none are asked for; the outcomes of every motion are for other programs."""
 
@@ -132,7 +137,7 @@ def write_reports(
         Where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever their
         format; other files are left alone.
     formats : str or sequence of str
-        Of "pdf", "xlsx", "html", "json", "csv", "npz"; all but the last by default. results.json is always written.
+        Of "pdf", "annex", "xlsx", "html", "json", "csv", "npz"; all but the last by default. results.json is always written.
     options : ReportOptions, optional
         Language, templates and kind of PDF; by default in the workbook's language, with the standard templates.
     progress : Progress, optional
@@ -149,7 +154,7 @@ def write_reports(
         If a format is unknown, a template of the firm's own cannot be used, or a file of the user's stands at the name
         of a report.
     PdfUnavailableError
-        If the native libraries of the PDF are missing; all other formats have been written.
+        If the native libraries of the PDFs are missing; all other formats have been written.
     OutputError
         If a file cannot be written; what was there before is left as it was.
     CancelledError
@@ -176,7 +181,7 @@ def write_reports(
 
 
 def _arrange(formats: Sequence[str]) -> list[str]:
-    """Return formats in the order in which they are written: results.json lists the others, and the PDF carries it."""
+    """Return formats in the order in which they are written: results.json lists the others, and the PDFs carry it."""
     wanted = {*formats, "json"}
     return [name for name in FILES if name in wanted - set(_LAST)] + [name for name in _LAST if name in wanted]
 
@@ -243,8 +248,23 @@ def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailable
                     "{file} could not be written: {why}. {folder} is left as it was.", file=file, why=why, folder=folder
                 )
                 raise OutputError(text) from None
+        _seal([job.stage / FILES[name] for name in _PDFS if FILES[name] in job.listed], job)
         reports.check()
     return missing
+
+
+def _seal(paths: Sequence[Path], job: Job) -> None:
+    """Write the identifiers into the PDFs; list those that have no place for them, as results.json can, by a hash."""
+    from assess.report.pages.pdf_seal import seal
+
+    data = job.stage / FILES["json"]
+    sealed = [path for path in paths if seal(path, data)]
+    if len(sealed) == len(paths):
+        return
+    job.listed.update((path.name, find_digest(path)) for path in paths if path not in sealed)
+    job.write_data()
+    for path in sealed:
+        seal(path, data)
 
 
 def _write_one(job: Job, name: str) -> None:
@@ -254,5 +274,3 @@ def _write_one(job: Job, name: str) -> None:
     flush_file(job.stage / file)
     if name not in _LAST:
         job.listed[file] = find_digest(job.stage / file)
-    elif job.listed.get(file):
-        job.write_data()  # a PDF without identifiers

@@ -17,6 +17,7 @@ from assess.report.findings.annual_chances import AnnualChances, build_annual
 from assess.report.findings.apart import list_apart, list_parts
 from assess.report.findings.assumed_intensity import say_shaking
 from assess.report.findings.disagreements import Disagreements, find_disagreements
+from assess.report.findings.ground import PEAKS, say_ground
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
 from assess.report.provenance import report_time, say_date, say_reference
@@ -254,6 +255,7 @@ def _describe_building(results: Results) -> dict[str, tuple[str, str]]:
             shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
             shown = (YES if value else NO) if column.kind == "flag" else shown
             shown += f" {column.unit}" if column.quantity else ""
+            shown = say_ground(results, column.name, shown) if column.name in PEAKS else shown
             lines[column.name] = (_(column.label), words.clip(_(shown) if column.kind in ("choice", "flag") else shown))
     return lines
 

@@ -1,7 +1,7 @@
 """Which files of a folder are reports of an earlier run, and may be replaced or removed: those that results.json lists.
 
 results.json names the reports of its run with their SHA-256, so that a file that was changed since, or put there by
-hand, is known to be the user's. It lists neither itself nor, by a hash, report.pdf, which carries it: see
+hand, is known to be the user's. It lists neither itself nor, by a hash, the PDFs, which carry it: see
 `assess.report.pages.pdf_seal`. Versions before the list wrote the files of `BEFORE`, which count as reports next to a
 results.json without it.
 """

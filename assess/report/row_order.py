@@ -32,15 +32,15 @@ def order_rows(rows: Sequence[ItemResult], floors: Sequence[str]) -> list[ItemRe
     rank = {floor: at for at, floor in enumerate(floors)}
     groups: dict[tuple[object, ...], list[ItemResult]] = {}
     for one in rows:
-        groups.setdefault(_kind(one), []).append(one)
+        groups.setdefault(find_kind(one), []).append(one)
     for own in groups.values():
         own.sort(key=_by_name)
     ordered = sorted(groups.values(), key=lambda own: (rank[own[0].item.floor], _by_name(own[0])))
     return [one for own in ordered for one in own]
 
 
-def _kind(one: ItemResult) -> tuple[object, ...]:
-    """Return what identical rows share."""
+def find_kind(one: ItemResult) -> tuple[object, ...]:
+    """Return what identical rows share: floor, description, type, sizes, anchoring and class."""
     item, adopted = one.item, one.adopted
     sizes = (item.breadth_cm, item.width_cm, item.height_cm)
     return item.floor, item.description, item.type, sizes, one.is_anchored, one.apart, adopted.risk, adopted.upper

@@ -28,13 +28,14 @@ LEAST = 12
 class Summary:
     """A paragraph in plain words, the worst pieces, what to fix first, and the routes at risk.
 
-    `apart` are sentences on the pieces that are counted apart, with what settles them; `assumed` are an assumed
-    shaking, what was assumed uncertain, and what other assumptions would change; `of_routes` are sentences on the
+    `apart` are sentences on the pieces that are counted apart, with what settles them; `shaking` is an
+    assumed shaking; `assumed` are this, what was assumed uncertain, and what other assumptions would change; `of_routes` are sentences on the
     routes, none where the workbook names none.
     """
 
     plainly: Sequence[str]
     apart: Sequence[str]
+    shaking: Sequence[str]
     assumed: Sequence[str]
     worst: Sequence[ItemResult]
     fixes: Sequence[Fix]
@@ -49,6 +50,7 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
     return Summary(
         plainly=say_plainly(total, could_be, worst, fixes),
         apart=say_apart(rows),
+        shaking=[text for text in (say_shaking_shortly(results),) if text],
         assumed=[text for text in _list_assumed(results, rows) if text],
         worst=worst,
         fixes=fixes,

@@ -48,6 +48,24 @@ def say_assumed(results: Results) -> str:
     return f"{_say_motion(results)} {_say_piece(results)}"
 
 
+def say_condition(results: Results) -> str:
+    """Return for which earthquake and pieces a chance holds, as a part of a sentence: ``for an earthquake like ...``."""
+    if not results.has_simulated:
+        return _("by a published formula, as no rocking has been simulated")
+    if results.settings.ideal:
+        return _("if exactly this motion recurs and every piece is exactly as given")
+    dispersion = results.provenance.uncertainty.motion
+    motion = _("if exactly this motion recurs")
+    if dispersion:
+        motion = _(
+            "for an earthquake like this one (dispersion {dispersion}, {source})",
+            dispersion=number(dispersion, "g"), source=say_source(results),
+        )  # fmt: skip
+    if not results.provenance.uncertainty.piece:
+        return _("{motion} and pieces exactly as given", motion=motion)
+    return _("{motion} and pieces that vary in size, centre of gravity and restitution", motion=motion)
+
+
 def _say_motion(results: Results) -> str:
     dispersion = results.provenance.uncertainty.motion
     if not dispersion:

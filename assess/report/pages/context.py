@@ -1,7 +1,7 @@
 """What the templates of a report see: its content, figures, lists, and the words for numbers."""
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
 from assess.errors import Problem
@@ -17,7 +17,12 @@ from assess.report.figures.plan import build_plan
 from assess.report.figures.risk_contours import build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
 from assess.report.findings import annual_chances, motions, route_rows, route_words, trials
+from assess.report.findings.approach import list_approach, list_sources
+from assess.report.findings.floor_lines import say_counts, say_motions
+from assess.report.findings.uncertain import say_condition
+from assess.report.groups import choose_groups, group_rows
 from assess.report.pages import compact
+from assess.report.pages.editions import MOST_ASSUMPTIONS, Edition, list_parts
 from assess.report.pages.page_columns import (
     PageColumn,
     list_columns,
@@ -45,24 +50,42 @@ MOST_RECORDS = 16
 
 
 def build_context(
-    content: Content, options: ReportOptions, *, for_print: bool, progress: Progress = SILENT
+    content: Content,
+    options: ReportOptions,
+    *,
+    for_print: bool,
+    edition: Edition = "all",
+    progress: Progress = SILENT,
 ) -> dict[str, Any]:
-    """Return the names that the templates use; figures are cancelled while they are drawn."""
-    aside = progress.wait_for(lambda: _of_content(content, options, for_print=for_print, progress=progress))
-    return {**aside, **_of_figures(content, progress)}
+    """Return the names that the templates use; figures are cancelled while they are drawn.
+
+    Of another edition than all, figures are drawn as far as its sections show them.
+    """
+    aside = progress.wait_for(
+        lambda: _of_content(content, options, for_print=for_print, edition=edition, progress=progress)
+    )
+    return {**aside, **_of_figures(content, frozenset(name for name, _heading in aside["parts"]), progress)}
 
 
-def _of_content(content: Content, options: ReportOptions, *, for_print: bool, progress: Progress) -> dict[str, Any]:
+def _of_content(
+    content: Content, options: ReportOptions, *, for_print: bool, edition: Edition, progress: Progress
+) -> dict[str, Any]:
     is_long = len(content.results) > FULL_ROWS
     is_compact = is_long and for_print and not options.accessible
+    parts = list_parts(edition, content, options, is_compact=is_compact)
+    names = frozenset(name for name, _heading in parts)
+    annex = list_parts("annex", content, options, is_compact=is_compact) if edition == "client" else []
     return {
+        "edition": edition,
+        "parts": parts,
+        "annex_parts": annex,
+        "shown_parts": names,
         **LIMITS,
         "content": content,
         "language": options.language,
         "for_print": for_print,
         "is_long": is_long,
         "is_compact": is_compact,
-        "parts": _list_parts(content, is_compact),
         "tables": _list_tables(content),
         "listings": _listings(content) if is_compact else {},
         "logo": _logo(content),
@@ -71,37 +94,12 @@ def _of_content(content: Content, options: ReportOptions, *, for_print: bool, pr
         "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
         "apart_legend": words.apart_legend(),
         "has_apart": bool(content.total.unconfirmed or content.total.by_formula),
-        **_of_floors(content, progress),
+        **_of_floors(content, progress if "floors" in names else None),
+        **_of_client(content),
+        "shown_assumptions": content.assumptions[: MOST_ASSUMPTIONS if edition == "client" else None],
         **_of_routes(content, for_print=for_print),
         **_of_methods(content),
     }
-
-
-def _list_parts(content: Content, is_compact: bool) -> list[tuple[str, str]]:
-    """Return the parts of a report in their order: file of the template, which is the anchor as well, and heading."""
-    parts = {
-        "summary": _("Summary"),
-        "floors": _("Floors"),
-        "routes": _("Evacuation routes"),
-        "annual": _("Chances a year"),
-        "items": _("All pieces"),
-        "comparison": _("Comparison of the methods"),
-        "verification": _("Verification"),
-        "contours": _("Risk over breadth and acceleration"),
-        "methods": _("Methods"),
-        "limits": _("Limits of the methods"),
-        "assumptions": _("Assumptions and defaults"),
-        "quality": _("Data-quality log"),
-        "references": _("References"),
-        "appendix": _("Appendix"),
-        "lists": _("Appendix: all pieces"),
-    }
-    left_out = {
-        "annual": content.annual is None,
-        "contours": "contours/items" not in content.run.series,
-        "lists": not is_compact,
-    }
-    return [(name, heading) for name, heading in parts.items() if not left_out.get(name)]
 
 
 def _list_tables(content: Content) -> dict[str, Sequence[PageColumn]]:
@@ -125,10 +123,26 @@ def _listings(content: Content) -> dict[str, Sequence[compact.Block]]:
     return {name: compact.list_lines(content.listed, list_columns(content.run, name)) for name in ("pieces", "methods")}
 
 
-def _of_floors(content: Content, progress: Progress) -> dict[str, Any]:
+def _of_client(content: Content) -> dict[str, Any]:
+    """Return what the client's edition says in short: groups of pieces, the approach and its sources."""
+    groups = group_rows(content.listed)
+    return {
+        "all_groups": groups,
+        "groups": choose_groups(groups),
+        "approach": list_approach(content),
+        "approach_sources": list_sources(content),
+        "floor_titles": {page.floor.floor: page.title for page in content.floors},
+        "condition": say_condition(content.run),
+        "say_motions": say_motions,
+        "say_counts": say_counts,
+    }
+
+
+def _of_floors(content: Content, progress: Progress | None) -> dict[str, Any]:
+    """Return the plans of the floors, none without `progress`: of an edition that has no floors."""
     stretches = build_stretches(content.run.route_tables)
     plans = {}
-    for page in content.shown_floors:
+    for page in content.shown_floors if progress is not None else ():
         progress.check()
         plans[page.floor.floor] = build_plan(page, content.run, stretches.get(page.floor.floor, ()))
     return {"plans": plans, "source": motions.describe_source, "origin": motions.describe_origin}
@@ -185,15 +199,15 @@ def _of_methods(content: Content) -> dict[str, Any]:
 # ---------------------------------------------------------------- figures
 
 
-def _of_figures(content: Content, progress: Progress) -> dict[str, Any]:
-    """Draw the figures: the map of risk, the motions of the simulation, and the records."""
-    contours = progress.wait_for(lambda: build_contours(content.run))
+def _of_figures(content: Content, names: Set[str], progress: Progress) -> dict[str, Any]:
+    """Draw the figures of these sections: the map of risk, the motions of the simulation, and the records."""
+    contours = progress.wait_for(lambda: build_contours(content.run)) if "contours" in names else None
     figures = {"contours": _svg(draw_contours(contours, progress))} if contours else {}
     traced = [
         {"image": _svg(one.drawing), "caption": one.caption, "alternative": one.alternative}
-        for one in draw_traced(content, choose_traced(content), progress)
+        for one in (draw_traced(content, choose_traced(content), progress) if "verification" in names else ())
     ]
-    recorded = _recorded(content, progress)
+    recorded = _recorded(content, progress) if "appendix" in names else []
     return {"contours": contours, "figures": figures, "traced_figures": traced, "recorded": recorded}
 
 

@@ -18,6 +18,7 @@ from assess.report.equations import Part, split_line
 from assess.report.figures.math_figures import draw_math, write_letters
 from assess.report.fonts import font_faces, web_font_faces
 from assess.report.pages.context import FILTERS, GLOBALS, build_context, list_missing_figures
+from assess.report.pages.editions import Edition
 from assess.report.report_options import ReportOptions
 from assess.report.words import class_name, list_breaks
 from assess.risk import RiskClass
@@ -44,11 +45,13 @@ def render(
     options: ReportOptions | None = None,
     *,
     for_print: bool = False,
+    edition: Edition = "all",
     progress: Progress = SILENT,
 ) -> str:
     """Return the report as HTML in the language in use (see `ReportOptions.spoken`).
 
-    `for_print` takes the style of the page and the embedded fonts of the PDF, and leaves the script out.
+    `for_print` takes the style of the page and the embedded fonts of the PDF, and leaves the script out; `edition`
+    takes the sections of one of `assess.report.pages.editions`.
 
     Raises
     ------
@@ -59,8 +62,9 @@ def render(
     """
     options = options or ReportOptions()
     script = "" if for_print else options.read(SCRIPT)
-    context = build_context(content, options, for_print=for_print, progress=progress)
-    context |= {"script": script, "script_hash": hash_script(script), "style": build_style(options, for_print)}
+    more = ("edition.css",) if for_print else ()
+    context = build_context(content, options, for_print=for_print, edition=edition, progress=progress)
+    context |= {"script": script, "script_hash": hash_script(script), "style": build_style(options, for_print, *more)}
     return render_page("report.html.j2", context, options, progress)
 
 

@@ -1,4 +1,4 @@
-"""The PDF report: the HTML with print.css, laid out by WeasyPrint; the workbook and results.json are attached to it."""
+"""The PDF reports: the HTML with print.css, laid out by WeasyPrint; the workbook and results.json are attached."""
 
 import base64
 import contextlib
@@ -19,6 +19,7 @@ from assess.report.content import Content
 from assess.report.fonts import find_missing, find_nowhere, replace_signs
 from assess.report.pages import glyphs
 from assess.report.pages.context import list_missing_figures
+from assess.report.pages.editions import Edition
 from assess.report.pages.html import render, with_problems
 from assess.report.pages.pdf_layout import MISSING, UNWRITTEN
 from assess.report.provenance import report_time
@@ -49,14 +50,22 @@ class Attached:
 
 
 def write_pdf(
-    content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT, *, data: Path | None = None
+    content: Content,
+    path: Path,
+    options: ReportOptions,
+    progress: Progress = SILENT,
+    *,
+    edition: Edition = "client",
+    data: Path | None = None,
 ) -> None:
-    """Write report.pdf: PDF/A-3u, or PDF/UA-1 where it is to be accessible.
+    """Write report.pdf or annex.pdf: PDF/A-3u, or PDF/UA-1 where it is to be accessible.
 
     Parameters
     ----------
     content, path, options, progress
         What to write, where to, and how.
+    edition : {"client", "annex", "all"}
+        The sections that it shows, of `assess.report.pages.editions`.
     data : Path, optional
         results.json where it has been written already.
 
@@ -70,7 +79,7 @@ def write_pdf(
         If the work was cancelled; what is written of the file is of no use.
     """
     problems = progress.wait_for(lambda: [*list_problems(content.run), *list_missing_figures(content)])
-    html = render(with_problems(content, problems), options, for_print=True, progress=progress)
+    html = render(with_problems(content, problems), options, for_print=True, edition=edition, progress=progress)
     _lay_out(progress.wait_for(lambda: _build_job(html, content, path, options, data)), progress)
 
 

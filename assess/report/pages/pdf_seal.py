@@ -1,6 +1,6 @@
-"""The identifiers of report.pdf, by which a file that was changed since is known.
+"""The identifiers of report.pdf and annex.pdf, by which a file that was changed since is known.
 
-report.pdf carries results.json, which therefore cannot list its hash. So the file identifier of the PDF (ISO 32000-1,
+Both carry results.json, which therefore cannot list its hash. So the file identifier of the PDF (ISO 32000-1,
 14.4: two strings in the trailer, the first one permanent, the second one anew with each change) tells it: the first is
 made of results.json, the second of all other bytes of the file. Both keep their length, so that no offset changes.
 """

@@ -1,0 +1,53 @@
+"""The ground's peaks as the workbook has them, next to those that are used: one number, and where it comes from."""
+
+from assess.i18n import gettext as _
+from assess.report import words
+from assess.report.findings.motions import describe_source, list_floors
+from assess.results import MotionRow, Results
+
+PEAKS = ("ground_pga", "sds")
+"""Fields of the building that serve floors on a code's profile alone, and chances a year."""
+
+
+def say_ground(results: Results, name: str, given: str) -> str:
+    """Return a peak of the ground in words: as given, or what is used in its place, and why.
+
+    Parameters
+    ----------
+    results : Results
+        Of the run.
+    name : str
+        Field of the building, one of `PEAKS`.
+    given : str
+        Its value in the workbook, with its unit.
+    """
+    reason = _find_reason(results, name)
+    if not reason:
+        return given
+    used = _find_used(results)
+    if used is None:
+        return _("{given} in the workbook, not used: {reason}", given=given, reason=reason)
+    return _(
+        "{used} g on floor {floor}, {source}; {given} of the workbook is not used: {reason}",
+        used=words.in_g(used.pfa_g), floor=words.cut(used.floor, 20), source=describe_source(used), given=given,
+        reason=reason,
+    )  # fmt: skip
+
+
+def _find_reason(results: Results, name: str) -> str:
+    """Return why a peak is not used, "" where it is."""
+    building = results.building
+    if name == "ground_pga" and building.hazard:
+        return ""
+    if not list_floors(results.motions, "profile"):
+        return _("no floor follows a code's profile")
+    if name == "sds" and building.ground_pga is not None:
+        return _("Ground PGA is given")
+    return ""
+
+
+def _find_used(results: Results) -> MotionRow | None:
+    """Return the strongest motion on the ground; of the same ones, that of the axis which it is known along."""
+    levels = {one.floor: one.elevation_m for one in results.floor_rows}
+    ground = [one for one in results.motions if levels.get(one.floor) == 0]
+    return max(ground, key=lambda one: (one.pfa_g, not one.is_borrowed), default=None)
