@@ -259,12 +259,13 @@ def _seal(paths: Sequence[Path], job: Job) -> None:
 
     data = job.stage / FILES["json"]
     sealed = [path for path in paths if seal(path, data)]
-    if len(sealed) == len(paths):
-        return
-    job.listed.update((path.name, find_digest(path)) for path in paths if path not in sealed)
-    job.write_data()
-    for path in sealed:
-        seal(path, data)
+    if len(sealed) < len(paths):
+        job.listed.update((path.name, find_digest(path)) for path in paths if path not in sealed)
+        job.write_data()
+        for path in sealed:
+            seal(path, data)
+    for path in (data, *paths):
+        flush_file(path)
 
 
 def _write_one(job: Job, name: str) -> None:

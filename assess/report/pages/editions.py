@@ -15,8 +15,8 @@ Edition = Literal["client", "annex", "all"]
 SECTIONS: Mapping[Edition, Sequence[str]] = {
     "client": ("summary", "schedule", "routes", "floors", "pieces", "approach", "limits", "assumptions"),
     "annex": (
-        "motions", "items", "comparison", "lists", "routes_detail", "verification", "contours", "annual", "methods",
-        "assumptions", "quality", "references", "appendix",
+        "motions", "annual", "verification", "contours", "methods", "assumptions", "quality", "references", "appendix",
+        "items", "comparison", "lists", "routes_detail",
     ),
     "all": (
         "summary", "schedule", "routes", "floors", "items", "motions", "annual", "approach", "comparison",
@@ -24,7 +24,8 @@ SECTIONS: Mapping[Edition, Sequence[str]] = {
         "appendix", "lists", "about",
     ),
 }  # fmt: skip
-"""Every section of each edition. The pieces of the client's edition are grouped; elsewhere each has a row."""
+"""Every section of each edition. The pieces of the client's edition are grouped; elsewhere each has a row. The annex
+ends with the wide tables, so that its pages turn once."""
 MOST_ASSUMPTIONS = 36
 """Assumptions that the client's edition has room for on a page; where there are more, the annex has all."""
 
@@ -71,7 +72,7 @@ def _has_template(name: str, options: ReportOptions) -> bool:
 def _headings() -> Mapping[str, str]:
     return {
         "summary": _("Summary"),
-        "schedule": _("What to fix and how"),
+        "schedule": _("What to fix"),
         "routes": _("Evacuation routes"),
         "floors": _("Floors"),
         "pieces": _("Pieces"),

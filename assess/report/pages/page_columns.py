@@ -128,7 +128,7 @@ def list_columns(results: Results, where: Where) -> tuple[PageColumn, ...]:
 def short_columns(results: Results, *keys: str) -> tuple[PageColumn, ...]:
     """Return columns of pieces by key for a table with little room."""
     known = {one.key: one for one in list_columns(results, "risky")}
-    longest = 28 if "place" in keys else 24
+    longest = 28 if "place" in keys else 40
     known["piece"] = PageColumn(
         "piece", _("Piece"), lambda one: f"{words.cut(one.item.item, 14)}: {describe(one, longest)}"
     )
