@@ -10,7 +10,7 @@ from enum import StrEnum
 from typing import Any
 
 from assess.annual_results import AnnualRow
-from assess.risk import RiskClass, classify
+from assess.risk import LIMITS, RiskClass, classify
 
 FLAGS: Mapping[str, str] = {
     "segment_assumed": "the workbook names no segment: it counts beside every segment of its route on its floor",
@@ -40,31 +40,68 @@ DOUBTS: Mapping[str, str] = {"unknown_period": "unconfirmed_period", "weak_motio
 
 
 class RouteState(StrEnum):
-    """The state of a segment or of a route.
+    """The state of a segment, of a route, or of a room's way to the street.
 
-    Not evaluated: nothing tells what can reach it. Not known: it depends on pieces whose class is not confirmed.
+    Blocked: the chance of a blockage is at least `BLOCKED_FROM`, or it is blocked under the recorded motion itself, or
+    with nothing fallen; this wins over not known. Not known: something is missing that could change the state. Open: the
+    upper end of the interval of the chance is below the chosen risk. Doubtful: all others.
     """
 
-    NOT_EVALUATED = "not evaluated"
     OPEN = "open"
-    REDUCED = "reduced"
-    NOT_KNOWN = "not known"
+    DOUBTFUL = "doubtful"
     BLOCKED = "blocked"
+    NOT_KNOWN = "not known"
 
     @property
     def severity(self) -> int:
-        """Its place in rising order: 0 for open and for what is not evaluated, 1 reduced, 2 not known, 3 blocked."""
-        return {RouteState.REDUCED: 1, RouteState.NOT_KNOWN: 2, RouteState.BLOCKED: 3}.get(self, 0)
+        """Its place in rising order of urgency: 0 open, 1 doubtful, 2 not known, 3 blocked."""
+        return {RouteState.DOUBTFUL: 1, RouteState.NOT_KNOWN: 2, RouteState.BLOCKED: 3}.get(self, 0)
 
     @property
     def symbol(self) -> str:
         """A sign that shows the state without colour."""
-        return ("✓", "≈", "?", "✕")[self.severity] if self != RouteState.NOT_EVALUATED else "–"
+        return ("✓", "≈", "?", "✕")[self.severity]
 
     @property
     def fill(self) -> str:
-        """Colour on the plan: from light to dark, distinct without red and green."""
-        return ("#bfe3f2", "#f2b84b", "#858585", "#8c1d3f")[self.severity]
+        """Colour on the plan: green, amber, grey and dark red, from light to dark so that they differ in grey."""
+        return ("#c5e8d5", "#f0b93a", "#8a8f94", "#8c1d3f")[self.severity]
+
+
+BLOCKED_FROM = LIMITS[1]
+"""Chance of a blockage from which something counts as blocked [-]: that of the class high."""
+
+MISSING: Mapping[str, str] = {
+    "clear_width": "Clear width of a stair (Routes)",
+    "stair_pieces": "pieces that name a stair without a Clear width (Items)",
+    "stair_floor": "a segment between floors that names a Floor: blank for a stair (Routes)",
+    "ends": "From and To of a segment, or its Floor (Routes)",
+    "places": "X and Y of places (Places)",
+    "positions": "X and Y, or Route, of pieces that may reach it (Items)",
+    "beyond_stairs": "segments from stairs to an exit (Routes)",
+    "unconfirmed_period": "Period T1 or Height (Building)",
+    "unconfirmed_motions": "motions of your own that reach the PFA and PFV of the floor",
+}
+"""What may be missing, by the keys of `MissingRow.what`, and the sheet to fill it in."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MissingRow:
+    """What is missing and could change a state.
+
+    Parameters
+    ----------
+    what : str
+        Key of `MISSING`.
+    names : tuple of str
+        Of what: segments, places or pieces; empty for what concerns the building.
+    cells : tuple of str
+        Where it is to be filled in, as Sheet!Cell; empty where that is no cell.
+    """
+
+    what: str
+    names: tuple[str, ...] = ()
+    cells: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,7 +209,8 @@ class SegmentRow:
     workbook_row : int
         Its row in the sheet Routes.
     evaluated : bool
-        Whether it is known which pieces can reach it: by the plan, or because a piece names it.
+        Whether it is known which pieces can reach it: by the plan, because a piece names it, because it is a stair of
+        known width, or because no piece of its floor that could matter is left out.
     clear_width_used_m, required_width_used_m : float
         With what was assumed where the workbook says nothing [m].
     standing_width_m, least_width_m : float
@@ -185,20 +223,18 @@ class SegmentRow:
         The ends of its centre line on the plan of its floor [m].
     extends_start_m, extends_end_m : float
         How far it goes on beyond them, round a bend [m].
-    state, state_upper : RouteState
-        Blocked or reduced where that chance is at least the chosen risk; not known where that differs between
-        unconfirmed pieces standing and fallen, unless it is blocked either way. The second: the worst state that is not
-        excluded, by the upper end of the interval and with unconfirmed pieces fallen.
+    state : RouteState
+        Open, doubtful, blocked or not known.
+    missing : tuple of MissingRow
+        What is to be filled in where it is not known; empty where it is.
     blocked, blocked_or_reduced : Chance, optional
         If all anchors hold, and with unconfirmed pieces standing; None if not evaluated.
     blocked_if_unconfirmed_fall : Chance, optional
         The first with unconfirmed pieces fallen; None where there are none.
     blocked_if_anchors_fail : Chance, optional
         With anchored pieces taken as free-standing and unconfirmed ones fallen; None where none is anchored.
-    doubts : tuple of str
-        Keys of `FLAGS`: why its state is not known; empty where it is.
     under_record : RouteState, optional
-        Its state under the recorded motion itself; None where no piece has one.
+        Whether it is open or blocked under the recorded motion itself; None where no piece has one.
     most_likely_piece : PieceRef, optional
         The free-standing piece most likely to fall while it is blocked.
     is_blocked_standing : bool
@@ -241,12 +277,11 @@ class SegmentRow:
     extends_start_m: float
     extends_end_m: float
     state: RouteState
-    state_upper: RouteState
+    missing: tuple[MissingRow, ...]
     blocked: Chance | None
     blocked_or_reduced: Chance | None
     blocked_if_unconfirmed_fall: Chance | None
     blocked_if_anchors_fail: Chance | None
-    doubts: tuple[str, ...]
     under_record: RouteState | None
     most_likely_piece: PieceRef | None
     is_blocked_standing: bool
@@ -259,7 +294,7 @@ class SegmentRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RouteFixRow:
-    """One step of what to fix for a route: the piece, its gain, 0 where others must follow, and the chance left [-].
+    """One step of what to fix for a route or a room: the piece, its gain, 0 where others must follow, and the chance left [-].
 
     Unconfirmed pieces count as fallen in both until they are fixed.
     """
@@ -275,27 +310,52 @@ class RouteFixRow:
 class RouteRow:
     """One route.
 
-    `state` to `most_likely_piece` are as in `SegmentRow`. `unevaluated_segments` names those of its segments that are
-    not evaluated; `evaluated` is whether any is. `fixes` is the smallest set found that brings the route under the
-    chosen risk with unconfirmed pieces fallen, and `is_fixed` whether one exists: not where it is blocked with nothing
-    fallen. `annual` is how often a year it is blocked if all anchors hold, `annual_if_anchors_fail` the same with
-    anchored pieces taken as free-standing, None where there are none; both are None where no hazard file is given.
+    Parameters
+    ----------
+    route : str
+        Its name.
+    floors : tuple of str
+        Floors of its segments.
+    from_places, to_places : tuple of str
+        The places that it serves, and those that it leads to; empty where its segments join no places.
+    segment_indices : tuple of int
+        Its segments.
+    evaluated : bool
+        Whether any of them is evaluated.
+    unevaluated_segments : tuple of str
+        Names of those that are not.
+    state, missing, blocked, blocked_or_reduced, blocked_if_unconfirmed_fall, blocked_if_anchors_fail, under_record
+        As in `SegmentRow`.
+    most_likely_piece : PieceRef, optional
+        As in `SegmentRow`.
+    decisive_segment : int, optional
+        Index of the segment that decides its state: of a route that is not known one that is not, else the one that is
+        most likely blocked; None where none is.
+    fixes : tuple of RouteFixRow
+        The smallest set found that opens the route, with unconfirmed pieces fallen.
+    is_fixed : bool
+        Whether one exists: not where it is blocked with nothing fallen.
+    annual, annual_if_anchors_fail : AnnualRow, optional
+        How often a year it is blocked if all anchors hold, and with anchored pieces taken as free-standing; the second
+        is None where there are none, both where no hazard file is given.
     """
 
     route: str
     floors: tuple[str, ...]
+    from_places: tuple[str, ...]
+    to_places: tuple[str, ...]
     segment_indices: tuple[int, ...]
     evaluated: bool
     unevaluated_segments: tuple[str, ...]
     state: RouteState
-    state_upper: RouteState
+    missing: tuple[MissingRow, ...]
     blocked: Chance | None
     blocked_or_reduced: Chance | None
     blocked_if_unconfirmed_fall: Chance | None
     blocked_if_anchors_fail: Chance | None
-    doubts: tuple[str, ...]
     under_record: RouteState | None
     most_likely_piece: PieceRef | None
+    decisive_segment: int | None
     fixes: tuple[RouteFixRow, ...]
     is_fixed: bool
     annual: AnnualRow | None = None
@@ -306,15 +366,14 @@ class RouteRow:
 class WayRow:
     """A way out: its segments in order, its end, the chance of a blockage, and the segments shared with the safest.
 
-    `blocked` and `blocked_if_unconfirmed_fall` are as in `SegmentRow`. It is known where both are on one side of the
-    chosen risk.
+    `state`, `blocked` and `blocked_if_unconfirmed_fall` are as in `SegmentRow`.
     """
 
     segment_indices: tuple[int, ...]
     end: str
+    state: RouteState
     blocked: Chance
     blocked_if_unconfirmed_fall: Chance | None
-    is_known: bool
     shared: tuple[str, ...] = ()
 
 
@@ -334,12 +393,16 @@ class RoomRow:
         The same with unconfirmed pieces fallen; None where there are none.
     loses_if_anchors_fail : Chance, optional
         With anchored pieces taken as free-standing and unconfirmed ones fallen; None where none is anchored.
-    is_known : bool
-        Whether the chance is on the same side of the chosen risk with unconfirmed pieces standing and fallen.
-    doubts : tuple of str
-        Keys of `FLAGS`: why it is not known; empty where it is.
+    state : RouteState
+        That of the best way from the room to the street: by the chance of losing every exit.
+    missing : tuple of MissingRow
+        What is to be filled in where it is not known; empty where it is.
     most_likely_piece : PieceRef, optional
         The free-standing piece most likely to fall while the room loses every exit.
+    decisive_segment : int, optional
+        Index of the segment on its safest way that decides the state, as in `RouteRow`.
+    fixes, is_fixed
+        As in `RouteRow`: what opens the best way; fixes are sought where it is doubtful or blocked.
     unevaluated_segments : tuple of str
         Segments on any of its ways out that are not evaluated.
     unevaluated_indices : tuple of int
@@ -357,13 +420,21 @@ class RoomRow:
     loses_every_exit: Chance
     loses_if_unconfirmed_fall: Chance | None
     loses_if_anchors_fail: Chance | None
-    is_known: bool
-    doubts: tuple[str, ...]
+    state: RouteState
+    missing: tuple[MissingRow, ...]
     most_likely_piece: PieceRef | None
+    decisive_segment: int | None
+    fixes: tuple[RouteFixRow, ...]
+    is_fixed: bool
     unevaluated_segments: tuple[str, ...]
     unevaluated_indices: tuple[int, ...]
     ways: tuple[WayRow, ...]
     annual: AnnualRow | None = None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether nothing is missing that could change its state."""
+        return self.state != RouteState.NOT_KNOWN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -371,8 +442,8 @@ class FloorRoutesRow:
     """One floor: its segments, its routes (by those segments alone), its rooms, and the expected losses among them.
 
     Expected losses are of those that are known; `unknown_segments`, `unknown_routes` and `unknown_rooms` count the
-    others, which depend on unconfirmed pieces. `any_room_cut_off` is the chance that at least one of its rooms loses
-    every exit; None without rooms, or where it depends on unconfirmed pieces. `uncounted_pieces` have neither a usable
+    others. `any_room_cut_off` is the chance that at least one of its rooms loses every exit; None without rooms, or
+    where something is missing that decides whether it is below the chosen risk. `uncounted_pieces` have neither a usable
     position nor a Route: whether they fall onto a segment is not known.
     """
 
@@ -397,11 +468,11 @@ class RouteTables:
     Parameters
     ----------
     risk : float
-        The chosen risk [-]: states go by it, and fixes are sought down to it.
+        The chosen risk [-]: open is what is below it, and fixes are sought down to it.
     blocked_routes_expected, cut_off_rooms_expected : float
         Expected number of routes that are blocked, and of rooms that lose every exit, among those that are known.
     unknown_routes, unknown_rooms : int
-        The others: what becomes of them depends on pieces whose chance is not confirmed.
+        The others: something is missing that could change their state.
     draws : int
         Draws that are made where all combinations of falling pieces are too many.
     uncounted_pieces : int

@@ -167,6 +167,7 @@ def build_falls(
     fell |= either_axis
     return Falls(
         probability=adoption.probability[governing],
+        high=np.fmax(adoption.probability, adoption.high)[governing],
         fell=fell,
         unconfirmed={
             at: tuple(name for flag, name in DOUBTS.items() if found.flags[flag][case])

@@ -46,6 +46,8 @@ class Falls:
     ----------
     probability : (n,) array
         Adopted chance of overturning [-].
+    high : (n,) array
+        The upper end of its interval; the chance itself where there is none [-].
     fell : mapping of int to (k,) boolean array
         For a simulated piece (by its index) whether it overturned, draw by draw.
     unconfirmed : mapping of int to tuple of str
@@ -60,6 +62,7 @@ class Falls:
     """
 
     probability: FloatArray
+    high: FloatArray
     fell: Mapping[int, BoolArray]
     unconfirmed: Mapping[int, tuple[str, ...]]
     in_record: FloatArray
@@ -132,7 +135,7 @@ class Couplings:
 
     The draws may be of more pieces than `keys`: what depends on another piece must not be asked of them. `ends` are the
     draws `NONE` and `EVERY`. `runs` is the least number of draws of a simulated piece, 0 without one; `is_joint` holds
-    where all were simulated, in the same draws; `is_drawn` tells whether any of the three was drawn rather than
+    where all were simulated, in the same draws; `sizes` is the number of draws of each of those; `is_drawn` tells whether any of the three was drawn rather than
     evaluated in full. `pieces`, `unverified` and `unconfirmed` count pieces, not rows; the first leaves out the last.
     """
 
@@ -144,6 +147,7 @@ class Couplings:
     is_joint: bool
     runs: int
     is_drawn: bool
+    sizes: Mapping[int, int]
     pieces: int
     unverified: int
     unconfirmed: int
@@ -183,8 +187,8 @@ def build_couplings(
 
     independent = whole.independent if whole and _is_drawn(lone) else combine(lone)
     joint = whole.joint if whole and _is_drawn(mixed) else combine(mixed) if simulated else independent
-    sizes = {falls.fell[item].size for item in simulated}
-    is_joint = not alone and len(sizes) <= 1
+    sizes = {item: int(falls.fell[item].size) for item in simulated}
+    is_joint = not alone and len(set(sizes.values())) <= 1
     return Couplings(
         keys=keys,
         joint=joint,
@@ -192,8 +196,9 @@ def build_couplings(
         correlated=whole.correlated if whole else _correlate(falls, keys, fallen),
         ends=whole.ends if whole else _find_ends(falls, keys, fallen),
         is_joint=is_joint,
-        runs=min(sizes, default=0),
+        runs=min(sizes.values(), default=0),
         is_drawn=not is_joint and (_is_drawn(mixed) or _is_drawn(lone)),
+        sizes=sizes,
         pieces=int(falls.quantity[known].sum()),
         unverified=int(falls.quantity[alone].sum()),
         unconfirmed=int(falls.quantity[[item for item in columns if item in falls.unconfirmed]].sum()),
@@ -329,14 +334,25 @@ def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chanc
     ]  # fmt: skip
 
 
+def find_upper(couplings: Couplings, chance: float, left: Collection[int], z: float) -> float:
+    """Return the upper end of the interval of a chance [-] that rests on some of the pieces, by their index."""
+    counts = [couplings.sizes[item] for item in left if item in couplings.sizes]
+    counts += [DRAWS] if couplings.is_drawn else []
+    return max(chance, _widen(chance, min(counts), z)[1]) if counts else chance
+
+
+def _widen(chance: float, runs: int, z: float) -> tuple[float, float]:
+    low, high = wilson_interval(chance * runs, runs, z)
+    return float(low), float(high)
+
+
 def _chance(couplings: Couplings, shares: Sequence[float], z: float, *, is_certain: bool) -> Chance:
     joint, independent, correlated = shares
     values = (joint,) if couplings.is_joint else (joint, independent, correlated)
     low, high = min(values), max(values)
     counts = [*([couplings.runs] if couplings.runs else []), *([DRAWS] if couplings.is_drawn else [])]
     if counts and not is_certain:
-        low = float(wilson_interval(low * min(counts), min(counts), z)[0])
-        high = float(wilson_interval(high * min(counts), min(counts), z)[1])
+        low, high = _widen(low, min(counts), z)[0], _widen(high, min(counts), z)[1]
     return Chance(
         probability=max(values), low=min(low, max(values)), high=max(high, *values), joint=joint,
         independent=independent, correlated=correlated, runs=couplings.runs, is_joint=couplings.is_joint,

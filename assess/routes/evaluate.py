@@ -15,17 +15,15 @@ from assess.route_results import (
     Chance,
     FloorRoutesRow,
     RoomRow,
-    RouteFixRow,
     RouteRow,
     RouteState,
     RouteTables,
     SegmentRow,
 )
 from assess.routes.chances import DRAWS, Falls
-from assess.routes.fixes import find_fixes
-from assess.routes.network import build_course
+from assess.routes.network import build_course, find_ends
 from assess.routes.obstructions import Obstructions
-from assess.routes.rooms import evaluate_floor, evaluate_room, list_rooms, name_unevaluated
+from assess.routes.rooms import evaluate_floor, evaluate_room, list_fixes, list_rooms, name_unevaluated
 from assess.routes.scene import Scene
 from assess.routes.widths import NARROWER, kinds_of, needed_width
 from assess.settings import Settings
@@ -81,10 +79,8 @@ def evaluate_routes(
             return row
 
         segments = tuple(step(_segment(scene, at)) for at in range(len(obstructions)))
-        routes = tuple(step(_route(scene, name)) for name in names)
-        known = {at: one.blocked for at, one in enumerate(segments) if one.state != RouteState.NOT_KNOWN}
-        chance = {at: one.probability for at, one in known.items() if one}
-        rooms = tuple(step(evaluate_room(scene, place, part, chance)) for place, part in parts)
+        routes = tuple(step(_route(scene, name, segments)) for name in names)
+        rooms = tuple(step(evaluate_room(scene, place, part, segments)) for place, part in parts)
         by_floor = [step(evaluate_floor(scene, floor, parts, segments, rooms)) for floor in floors]
     return _join(settings.route_risk, segments, routes, rooms, by_floor)
 
@@ -119,7 +115,7 @@ def _join(
 
 def _segment(scene: Scene, at: int) -> SegmentRow:
     one = scene.obstructions[at]
-    is_evaluated, standing = one.is_evaluated, one.standing
+    is_evaluated, standing = scene.is_evaluated(at), one.standing
     needed = needed_width(one.segment, kinds_of(scene.inventory.places))
     is_short = needed is not None and standing < needed - NARROWER
     return SegmentRow(
@@ -217,25 +213,25 @@ def _beside(scene: Scene, at: int) -> list[BesideRow]:
 # ---------------------------------------------------------------- routes
 
 
-def _route(scene: Scene, name: str) -> RouteRow:
+def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
     segments = scene.segments_of(name)
     course = build_course(segments, kinds_of(scene.inventory.places))
-    lanes = {at: scene.obstructions[at] for at in segments}
+    served, led = find_ends(segments, kinds_of(scene.inventory.places))
     unevaluated = name_unevaluated(scene, segments)
     is_evaluated = len(unevaluated) < len(segments)
-    couplings = scene.couplings(segments, unconfirmed_fall=True)
-    steps, is_fixed = find_fixes(couplings, lanes, course.is_blocked, scene.risk, scene.progress)
-    pieces = [scene.piece(item) for item, _, _ in steps]
+    outlook = scene.outlook(segments, course.is_blocked, is_evaluated=is_evaluated)
+    fixes, is_fixed = list_fixes(scene, segments, course.is_blocked)
+    chances = {at: (rows[at].state, rows[at].blocked) for at in segments}
     return RouteRow(
         route=name,
         floors=tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor)),
+        from_places=served,
+        to_places=led,
         segment_indices=tuple(segments),
         evaluated=is_evaluated,
         unevaluated_segments=unevaluated,
-        **scene.outlook(segments, course.is_blocked, is_evaluated=is_evaluated),
-        fixes=tuple(
-            RouteFixRow(item=one.item, row=one.row, item_index=one.item_index, gain=gain, left=left)
-            for one, (_, gain, left) in zip(pieces, steps, strict=True)
-        ),
+        **outlook,
+        decisive_segment=scene.find_decisive(chances, is_known=outlook["state"] != RouteState.NOT_KNOWN),
+        fixes=fixes,
         is_fixed=is_fixed,
     )

@@ -1,4 +1,4 @@
-"""The smallest set of pieces to anchor or move that brings a route under the chosen risk.
+"""The smallest set of pieces to anchor or move that brings a route under the chosen risk, its interval included.
 
 Pieces whose chance is not confirmed are taken as fallen in it, which is on the safe side.
 """
@@ -6,7 +6,7 @@ Pieces whose chance is not confirmed are taken as fallen in it, which is on the 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from assess.progress import SILENT, Progress
-from assess.routes.chances import Couplings, Draws, Key
+from assess.routes.chances import EVERY, NONE, Couplings, Draws, Key, find_upper
 from assess.routes.network import Blocked
 from assess.routes.obstructions import Obstructions
 
@@ -21,13 +21,15 @@ def find_fixes(
     lanes: Mapping[int, Obstructions],
     is_blocked: IsBlocked,
     risk: float,
+    z: float = 0.0,
     progress: Progress = SILENT,
 ) -> tuple[list[tuple[int, float, float]], bool]:
-    """Return the pieces to fix, in order of their gain, and whether they bring a route under `risk` [-].
+    """Return the pieces to fix, in order of their gain, and whether a route can be brought under `risk` [-].
 
     Each comes with its gain and the chance left [-]. At every step the piece is taken that lowers the chance most;
-    where pieces fall together and no single one lowers it, the one that would most if they fell independently. What
-    turns out not to be needed is left out again.
+    where pieces fall together and no single one lowers it, the one that would most if they fell independently. The
+    upper end of the chance is to be under `risk`, or no draw left in which the route is blocked. What turns out not to
+    be needed is left out again.
 
     Parameters
     ----------
@@ -39,19 +41,22 @@ def find_fixes(
         See `IsBlocked`.
     risk : float
         The chosen risk [-].
+    z : float
+        Half width of intervals [-].
     progress : Progress, optional
         Checked for a cancel.
     """
-    trial = _Trial(couplings, lanes, is_blocked, progress)
-    start = Fixed()
-    if trial.chance(start) < risk or trial.chance(Fixed(trial.involved(start))) >= risk:
-        return [], trial.chance(start) < risk
+    trial = _Trial(couplings, lanes, is_blocked, z, progress)
+    if trial.chance(Fixed(trial.involved(Fixed()))) >= risk:
+        return [], False
     fixed: list[int] = []
-    while trial.chance(Fixed(fixed)) >= risk:
+    while trial.upper(Fixed(fixed)) >= risk and trial.involved(Fixed(fixed)):
         fixed.append(trial.best(Fixed(fixed)))
+    goal = trial.upper(Fixed(fixed))  # at the risk or above where there are too few draws to show less
     for item in tuple(fixed):
         rest = [other for other in fixed if other != item]
-        if trial.chance(Fixed(rest)) < risk:
+        upper = trial.upper(Fixed(rest))
+        if upper < risk or upper <= goal:
             fixed = rest
     return list(_steps(trial, fixed)), True
 
@@ -67,16 +72,24 @@ def _steps(trial: "_Trial", fixed: Sequence[int]) -> Iterator[tuple[int, float, 
 class _Trial:
     """A route with some of its pieces fixed: its chances by each way of falling together that counts.
 
-    `decisive` are those whose largest chance is reported; `independent` shows every gain.
+    `decisive` are those whose largest chance is reported; `independent` shows every gain, `ends` what is certain.
     """
 
     def __init__(
-        self, couplings: Couplings, lanes: Mapping[int, Obstructions], is_blocked: IsBlocked, progress: Progress
+        self,
+        couplings: Couplings,
+        lanes: Mapping[int, Obstructions],
+        is_blocked: IsBlocked,
+        z: float,
+        progress: Progress,
     ) -> None:
         samples = {
             id(draws): _Sample(draws, couplings.keys, lanes, is_blocked, progress)
             for draws in (*couplings.decisive, couplings.independent)
         }
+        self.couplings, self.z = couplings, z
+        self.items = frozenset(item for item, _ in couplings.keys)
+        self.ends = _Sample(couplings.ends, couplings.keys, lanes, is_blocked, progress)
         self.every = list(samples.values())
         self.decisive = [samples[key] for key in dict.fromkeys(id(draws) for draws in couplings.decisive)]
         self.independent = samples[id(couplings.independent)]
@@ -84,6 +97,13 @@ class _Trial:
     def chance(self, fixed: Fixed) -> float:
         """Return the chance that the route is blocked [-]."""
         return max(one.chance(fixed) for one in self.decisive)
+
+    def upper(self, fixed: Fixed) -> float:
+        """Return the upper end of its interval [-]; what is certain has none."""
+        chance, end = self.chance(fixed), self.ends.happened(fixed)
+        if end & NONE or not end & EVERY:
+            return chance
+        return find_upper(self.couplings, chance, self.items - fixed, self.z)
 
     def involved(self, fixed: Fixed) -> list[int]:
         """Return the pieces that fall in any of the draws in which the route is blocked."""

@@ -8,6 +8,7 @@ from itertools import chain, pairwise
 import networkx as nx
 
 from assess.model import Place, Segment
+from assess.natural import natural_key
 from assess.routes.chances import union
 
 MOST_WAYS = 3
@@ -116,6 +117,18 @@ def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> C
         else:  # without any that it serves, it is all ways out
             loose += part.segments
     return Course(tuple(parts), tuple(loose))
+
+
+def find_ends(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the places that a route serves, and those that it leads to, as in `build_course`."""
+    graph = build_graph(segments)
+    served, led = dict[str, None](), dict[str, None]()
+    for part in find_parts(graph, kinds):
+        targets = part.targets or frozenset({_last_end(part, segments)})
+        places = {place for edge in part.edges for place in edge[:2]}
+        served |= dict.fromkeys(sorted(_served(graph.subgraph(places), kinds, targets), key=natural_key))
+        led |= dict.fromkeys(sorted(targets, key=natural_key))
+    return tuple(served), tuple(led)
 
 
 def _last_end(part: Part, segments: Mapping[int, Segment]) -> str:

@@ -71,9 +71,15 @@ class Obstructions:
         return self.standing < self.required - NARROWER
 
     @property
+    def is_stair(self) -> bool:
+        """Whether it joins two places and lies on no floor: no piece can fall there but those that name it."""
+        return not self.segment.floor and bool(self.segment.start and self.segment.end)
+
+    @property
     def is_evaluated(self) -> bool:
         """Whether it is known which pieces can reach it; where it is too narrow as it stands, none need."""
-        return bool(self.pieces) or self.band is not None or self.is_blocked_standing
+        is_wide = self.is_stair and self.segment.clear_width is not None
+        return bool(self.pieces) or self.band is not None or self.is_blocked_standing or is_wide
 
     @property
     def keys(self) -> tuple[Key, ...]:
@@ -108,7 +114,7 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
         band, covered, others = bands.get(at), dict[int, Coverage](), []
         for index in near.get(at, ()):
             if one := cover_by_plan(index, shapes[index], bands[at]):
-                if _is_walled_off(inventory.items[index], segment):
+                if is_walled_off(inventory.items[index], segment):
                     others.append(index)
                 else:
                     covered[index] = one
@@ -119,7 +125,7 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
     return tuple(found)
 
 
-def _is_walled_off(item: Item, segment: Segment) -> bool:
+def is_walled_off(item: Item, segment: Segment) -> bool:
     """Return whether a wall stands between: the rooms are known and not the same, and the piece does not name it."""
     is_named = item.route == segment.route and item.segment in ("", segment.segment)
     rooms = {key(room) for room in segment.rooms}

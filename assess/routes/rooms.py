@@ -1,14 +1,26 @@
 """Rooms and floors: which rooms lose every exit, the ways that are left, and what is expected floor by floor."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 from assess.model import Place
 from assess.natural import natural_key
-from assess.route_results import Chance, FloorRoutesRow, RoomRow, RouteState, SegmentRow, WayRow
+from assess.route_results import (
+    BLOCKED_FROM,
+    Chance,
+    FloorRoutesRow,
+    MissingRow,
+    RoomRow,
+    RouteFixRow,
+    RouteState,
+    SegmentRow,
+    WayRow,
+)
 from assess.routes.chances import Draws, union
-from assess.routes.network import Part, build_course, build_graph, find_parts, find_rooms, find_ways
+from assess.routes.fixes import IsBlocked, find_fixes
+from assess.routes.network import Blocked, Part, build_course, build_graph, find_parts, find_rooms, find_ways
 from assess.routes.scene import Scene
+from assess.routes.states import Bounds, Verdict, settle
 from assess.routes.widths import kinds_of
 
 UNKNOWN = 0.5
@@ -17,8 +29,20 @@ UNKNOWN = 0.5
 
 def name_unevaluated(scene: Scene, segments: Iterable[int]) -> tuple[str, ...]:
     """Return the names of those of some segments that are not evaluated."""
-    every = (scene.obstructions[at] for at in segments)
-    return tuple(one.segment.segment for one in every if not one.is_evaluated)
+    return tuple(scene.obstructions[at].segment.segment for at in segments if not scene.is_evaluated(at))
+
+
+def list_fixes(scene: Scene, segments: Collection[int], is_blocked: IsBlocked) -> tuple[tuple[RouteFixRow, ...], bool]:
+    """Return what to fix so that some segments are open together, and whether anything opens them."""
+    lanes = {at: scene.obstructions[at] for at in segments}
+    couplings, risk = scene.couplings(segments, unconfirmed_fall=True), min(scene.risk, BLOCKED_FROM)
+    steps, is_fixed = find_fixes(couplings, lanes, is_blocked, risk, scene.z, scene.progress)
+    pieces = [scene.piece(item) for item, _, _ in steps]
+    found = (
+        RouteFixRow(item=one.item, row=one.row, item_index=one.item_index, gain=gain, left=left)
+        for one, (_, gain, left) in zip(pieces, steps, strict=True)
+    )
+    return tuple(found), is_fixed
 
 
 # ---------------------------------------------------------------- rooms
@@ -37,32 +61,67 @@ def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
     return found
 
 
-def evaluate_room(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> RoomRow:
-    """Return one room; `chance` is that of a blockage by segment, as far as it is known."""
+def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> RoomRow:
+    """Return one room; `rows` are all segments."""
 
-    def happens(draws: Draws) -> Sequence[int]:
-        return part.cut_off(scene.blocked(draws, part.segments), [place.place], draws.every)
+    def is_cut_off(blocked: Blocked, every: int) -> int:
+        return part.cut_off(blocked, [place.place], every)[0]
+
+    def happens(draws: Draws) -> tuple[int, int]:
+        lost, at_most = scene.at_best_and_worst(draws, part.segments, is_cut_off)
+        return lost, draws.every if part.by_stairs else at_most
 
     found = scene.judge(part.segments, happens)
-    is_known = scene.is_known(found.chances[0], found.at_most[0])
+    (lost, at_most), (fallen, worst) = found.chances, found.at_most
+    verdict = settle(Bounds(lost, at_most, fallen, worst), scene.risk)
+    ways = _ways(scene, place, part, rows)
+    is_known = verdict.state != RouteState.NOT_KNOWN
+    first = {at: (rows[at].state, rows[at].blocked) for at in _list_decisive(ways, rows, is_known=is_known)}
+    seeks_fixes = verdict.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)
+    fixes, is_fixed = list_fixes(scene, part.segments, is_cut_off) if seeks_fixes else ((), True)
+    exits = tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key))
     return RoomRow(
         room=place.place,
         floor=place.floor,
-        exits=tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key)),
+        exits=exits,
         by_stairs=part.by_stairs,
-        loses_every_exit=found.chances[0],
-        loses_if_unconfirmed_fall=found.at_most[0] if found.chances[0].unconfirmed else None,
+        loses_every_exit=lost,
+        loses_if_unconfirmed_fall=fallen if lost.unconfirmed else None,
         loses_if_anchors_fail=found.if_anchors_fail,
-        is_known=is_known,
-        doubts=() if is_known else scene.find_doubts(part.segments),
+        state=verdict.state,
+        missing=_list_missing(scene, verdict, part, ways, exits),
         most_likely_piece=found.most_likely_piece,
+        decisive_segment=scene.find_decisive(first, is_known=is_known),
+        fixes=fixes,
+        is_fixed=is_fixed,
         unevaluated_segments=name_unevaluated(scene, part.segments),
-        unevaluated_indices=tuple(at for at in part.segments if not scene.obstructions[at].is_evaluated),
-        ways=tuple(_ways(scene, place, part, {at: chance.get(at, UNKNOWN) for at in part.segments})),
+        unevaluated_indices=tuple(at for at in part.segments if not scene.is_evaluated(at)),
+        ways=tuple(ways),
     )
 
 
-def _ways(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -> list[WayRow]:
+def _list_decisive(ways: Sequence[WayRow], rows: Sequence[SegmentRow], *, is_known: bool) -> tuple[int, ...]:
+    """Return the segments of the safest way out; where that does not tell, of the first that is not known."""
+    for way in ways:
+        if is_known or any(rows[at].state == RouteState.NOT_KNOWN for at in way.segment_indices):
+            return way.segment_indices
+    return ()
+
+
+def _list_missing(
+    scene: Scene, verdict: Verdict, part: Part, ways: Sequence[WayRow], exits: tuple[str, ...]
+) -> tuple[MissingRow, ...]:
+    """Return what is to be filled in for a room: of the safest way that needs any, as one known way may be enough."""
+    if verdict.state != RouteState.NOT_KNOWN:
+        return ()
+    of_ways = (scene.list_missing(verdict, way.segment_indices) for way in ways)
+    found = next(filter(None, of_ways), ()) or scene.list_missing(verdict, part.segments)
+    return (*found, MissingRow(what="beyond_stairs", names=exits)) if part.by_stairs else found
+
+
+def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> list[WayRow]:
+    known = {at: rows[at].blocked for at in part.segments if rows[at].state != RouteState.NOT_KNOWN}
+    chance = {at: UNKNOWN if (one := known.get(at)) is None else one.probability for at in part.segments}
     ways = [_way(scene, segments, end) for segments, end in find_ways(part, place.place, chance)]
     ways.sort(key=lambda way: (way.blocked_if_unconfirmed_fall or way.blocked).probability)
     for number, way in enumerate(ways[1:], start=1):
@@ -72,14 +131,20 @@ def _ways(scene: Scene, place: Place, part: Part, chance: Mapping[int, float]) -
 
 
 def _way(scene: Scene, segments: tuple[int, ...], end: str) -> WayRow:
-    (standing,), (fallen,) = scene.bounds(segments, lambda draws: [union(scene.blocked(draws, segments).values())])
+    (lost, at_most), (fallen, worst) = scene.bounds(
+        segments, lambda draws: scene.at_best_and_worst(draws, segments, _is_any_blocked)
+    )
     return WayRow(
         segment_indices=segments,
         end=end,
-        blocked=standing,
-        blocked_if_unconfirmed_fall=fallen if standing.unconfirmed else None,
-        is_known=scene.is_known(standing, fallen),
+        state=settle(Bounds(lost, at_most, fallen, worst), scene.risk).state,
+        blocked=lost,
+        blocked_if_unconfirmed_fall=fallen if lost.unconfirmed else None,
     )
+
+
+def _is_any_blocked(blocked: Blocked, _every: int) -> int:
+    return union(blocked.values())
 
 
 # ---------------------------------------------------------------- floors
@@ -126,21 +191,18 @@ def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float | 
     """Return the chance that a route is blocked by its segments on one floor; None where its state is not known."""
     own = {at: one for at, one in scene.segments_of(route).items() if at in segments}
     course = build_course(own, kinds_of(scene.inventory.places))
-
-    def happens(draws: Draws) -> Sequence[int]:
-        blocked = course.is_blocked(scene.blocked(draws, own), draws.every)
-        return blocked, blocked | scene.narrowed(draws, own)
-
-    standing, fallen = scene.bounds(own, happens)
-    return None if scene.settle(standing, fallen) == RouteState.NOT_KNOWN else standing[0].probability
+    (lost, at_most), (fallen, worst) = scene.bounds(
+        own, lambda draws: scene.at_best_and_worst(draws, own, course.is_blocked)
+    )
+    state = settle(Bounds(lost, at_most, fallen, worst), scene.risk).state
+    return None if state == RouteState.NOT_KNOWN else lost.probability
 
 
 def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance | None:
     segments = sorted({at for _, part in rooms for at in part.segments})
 
-    def happens(draws: Draws) -> Sequence[int]:
-        blocked = scene.blocked(draws, segments)
-        return [union(part.cut_off(blocked, [place.place], draws.every)[0] for place, part in rooms)]
+    def is_any_lost(blocked: Blocked, every: int) -> int:
+        return union(part.cut_off(blocked, [place.place], every)[0] for place, part in rooms)
 
-    (standing,), (fallen,) = scene.bounds(segments, happens)
-    return standing if scene.is_known(standing, fallen) else None
+    (lost, _), (_, worst) = scene.bounds(segments, lambda draws: scene.at_best_and_worst(draws, segments, is_any_lost))
+    return lost if scene.is_known(lost, worst) else None

@@ -1,6 +1,6 @@
 """What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypedDict
 
@@ -8,22 +8,23 @@ import numpy as np
 
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
-from assess.route_results import DOUBTS, Chance, PieceRef, RouteState
+from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
 from assess.routes.network import Blocked
+from assess.routes.missing import find_missing, join_missing
 from assess.routes.obstructions import Obstructions
+from assess.routes.states import Bounds, Verdict, settle
 
 
 class Outlook(TypedDict):
     """The fields that the rows of segments and routes have in common."""
 
     state: RouteState
-    state_upper: RouteState
+    missing: tuple[MissingRow, ...]
     blocked: Chance | None
     blocked_or_reduced: Chance | None
     blocked_if_unconfirmed_fall: Chance | None
     blocked_if_anchors_fail: Chance | None
-    doubts: tuple[str, ...]
     under_record: RouteState | None
     most_likely_piece: PieceRef | None
 
@@ -59,10 +60,22 @@ class Scene:
     _couplings: dict[tuple[tuple[Key, ...], bool], Couplings] = field(default_factory=dict)
     _of_all: dict[tuple[bool, bool], Couplings] = field(default_factory=dict)
     """Of all pieces, by whether anchors fail and unconfirmed pieces fall: those of fewer pieces share its draws."""
+    _missing: dict[int, tuple[MissingRow, ...]] = field(default_factory=dict)
 
     def segments_of(self, route: str) -> dict[int, Segment]:
         """Return the segments of a route by their number."""
         return {at: one.segment for at, one in enumerate(self.obstructions) if one.segment.route == route}
+
+    def missing(self, segment: int) -> tuple[MissingRow, ...]:
+        """Return what is missing of a segment."""
+        if segment not in self._missing:
+            one = self.obstructions[segment]
+            self._missing[segment] = find_missing(one, self.inventory, self.falls, self.risk)
+        return self._missing[segment]
+
+    def is_evaluated(self, segment: int) -> bool:
+        """Tell whether it is known which pieces can reach a segment, or that none that could matter does."""
+        return self.obstructions[segment].is_evaluated or not self.missing(segment)
 
     def piece(self, item: int) -> PieceRef:
         """Return the reference to a piece by its index."""
@@ -178,42 +191,56 @@ class Scene:
         are blocked, and the set of all draws.
         """
 
-        def happens(draws: Draws) -> tuple[int, int]:
-            blocked = is_blocked(self.blocked(draws, segments), draws.every)
-            return blocked, blocked | self.narrowed(draws, segments)
+        def happens(draws: Draws) -> tuple[int, int, int]:
+            blocked, at_most = self.at_best_and_worst(draws, segments, is_blocked)
+            return blocked, at_most, blocked | self.narrowed(draws, segments)
 
         found = self.judge(segments, happens)
-        (blocked, either), record = found.chances, self._under_record(segments, happens)
-        state, upper = RouteState.NOT_EVALUATED, RouteState.NOT_EVALUATED
-        if is_evaluated:
-            state = self.settle(found.chances, found.at_most, record)
-            upper = self._state(*(one.high for one in found.at_most), at_least=record)
+        record = self._under_record(segments, happens)
+        (blocked, at_most, either), (fallen, worst, _) = found.chances, found.at_most
+        verdict = settle(Bounds(blocked, at_most, fallen, worst), self.risk, record)
         return Outlook(
-            state=state,
-            state_upper=upper,
+            state=verdict.state,
+            missing=self.list_missing(verdict, segments),
             blocked=blocked if is_evaluated else None,
             blocked_or_reduced=either if is_evaluated else None,
-            blocked_if_unconfirmed_fall=found.at_most[0] if is_evaluated and blocked.unconfirmed else None,
+            blocked_if_unconfirmed_fall=fallen if is_evaluated and blocked.unconfirmed else None,
             blocked_if_anchors_fail=found.if_anchors_fail,
-            doubts=self.find_doubts(segments) if state == RouteState.NOT_KNOWN else (),
             under_record=record,
             most_likely_piece=found.most_likely_piece,
         )
 
-    def settle(
-        self, standing: Sequence[Chance], fallen: Sequence[Chance], at_least: RouteState | None = None
-    ) -> RouteState:
-        """Return the state by the chances of being blocked, and of being blocked or reduced, not better than another.
+    def at_best_and_worst(
+        self, draws: Draws, segments: Collection[int], is_blocked: Callable[[Blocked, int], int]
+    ) -> tuple[int, int]:
+        """Return the sets of the draws in which segments are blocked together; what is missing leaves open, or blocks.
 
-        Not known where it differs between unconfirmed pieces standing and fallen; what is blocked if they stand is
-        blocked.
+        `is_blocked` is as in `outlook`.
         """
-        one, other = (self._state(*(each.probability for each in way), at_least=at_least) for way in (standing, fallen))
-        return one if one in (other, RouteState.BLOCKED) else RouteState.NOT_KNOWN
+        own = self.blocked(draws, segments)
+        unknown = [at for at in segments if self.missing(at)]
+        best = is_blocked(own, draws.every)
+        return best, is_blocked({**own, **dict.fromkeys(unknown, draws.every)}, draws.every) if unknown else best
 
-    def _state(self, blocked: float, either: float, *, at_least: RouteState | None) -> RouteState:
-        found = _worst(blocked >= self.risk, either >= self.risk)
-        return max(found, at_least or RouteState.OPEN, key=lambda state: state.severity)
+    def list_missing(self, verdict: Verdict, segments: Collection[int]) -> tuple[MissingRow, ...]:
+        """Return what is to be filled in so that the state of some segments is known; nothing where it is."""
+        of_segments = [row for at in segments for row in self.missing(at)] if verdict.by_missing else []
+        doubts = self.find_doubts(segments) if verdict.by_unconfirmed else ()
+        return join_missing([*of_segments, *(self._of_doubt(segments, flag) for flag in doubts)])
+
+    def _of_doubt(self, segments: Collection[int], flag: str) -> MissingRow:
+        items = sorted({item for item, _ in self.keys(segments) if flag in self.falls.unconfirmed.get(item, ())})
+        return MissingRow(what=flag, names=tuple(self.inventory.items[item].item for item in items))
+
+    def find_decisive(self, rows: Mapping[int, tuple[RouteState, Chance | None]], *, is_known: bool) -> int | None:
+        """Return which segment decides the state of several, by the state and chance of each; None where none does.
+
+        Where it is not known the first that is not, else the one that is most likely blocked.
+        """
+        if not is_known:
+            return next((at for at, (state, _) in rows.items() if state == RouteState.NOT_KNOWN), None)
+        chances = {at: chance.probability for at, (_, chance) in rows.items() if chance and chance.high > 0}
+        return max(chances, key=lambda at: chances[at], default=None)
 
     def _under_record(self, segments: Collection[int], happens: Happens) -> RouteState | None:
         """Return the state under the recorded motion itself; pieces of which that is not known count as standing."""
@@ -221,9 +248,5 @@ class Scene:
         known = self.falls.in_record[np.array([item for item, _ in keys], dtype=np.intp)]
         if not keys or np.isnan(known).all():
             return None
-        blocked, either = happens(Draws.of(keys, known[np.newaxis] == 1, np.ones(1)))
-        return _worst(bool(blocked), bool(either))
-
-
-def _worst(is_blocked: bool, is_reduced: bool) -> RouteState:
-    return RouteState.BLOCKED if is_blocked else RouteState.REDUCED if is_reduced else RouteState.OPEN
+        blocked, *_ = happens(Draws.of(keys, known[np.newaxis] == 1, np.ones(1)))
+        return RouteState.BLOCKED if blocked else RouteState.OPEN

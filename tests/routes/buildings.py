@@ -21,6 +21,7 @@ RISK = 0.03
 def make_falls(
     probability: Sequence[float],
     *,
+    high: Sequence[float] | None = None,
     fell: Mapping[int, Sequence[bool] | BoolArray] | None = None,
     unconfirmed: Sequence[int] = (),
     in_record: Sequence[float] | None = None,
@@ -34,6 +35,7 @@ def make_falls(
     n, known = len(probability), {at: np.array(one, dtype=np.bool_) for at, one in (fell or {}).items()}
     return Falls(
         probability=np.array(probability, dtype=np.float64),
+        high=np.array(high or probability, dtype=np.float64),
         fell=known,
         unconfirmed=dict.fromkeys(unconfirmed, ("unconfirmed_period",)),
         in_record=np.array(in_record or [np.nan] * n, dtype=np.float64),
