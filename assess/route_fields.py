@@ -48,9 +48,13 @@ _LABELS: Mapping[str, tuple[str, str]] = {
     "blocked_unverified": (fill("By the formula alone"), ""),
     "blocked_unconfirmed": (fill("Unconfirmed pieces"), ""),
     "blocked_if_unconfirmed_fall_probability": (fill("Blocked if unconfirmed pieces fall"), ""),
-    "doubts": (fill("To settle what is not known"), ""),
+    "missing": (fill("To fill in"), ""),
+    "decisive_segment": (fill("Decisive segment"), ""),
+    "from_places": (fill("From"), ""),
+    "to_places": (fill("To"), ""),
+    "fixes": (fill("Pieces to anchor or move"), ""),
     "blocked_is_joint": (fill("Basis"), fill("Bounds; rests on")),
-    "blocked_or_reduced_probability": (fill("Chance blocked or reduced"), fill("Reduced or blocked")),
+    "blocked_or_reduced_probability": (fill("Chance narrowed or blocked"), fill("Narrowed or blocked")),
     "blocked_if_anchors_fail_probability": (fill("Blocked if anchors fail"), ""),
     "under_record": (fill("Under the record"), ""),
     "most_likely_piece": (fill("Most likely piece"), fill("Likeliest piece")),
@@ -135,4 +139,4 @@ def _read_path(names: Sequence[str], row: Any) -> Any:
 
 
 def _name_each(values: Sequence[Any]) -> list[Any]:
-    return [getattr(one, "item", getattr(one, "end", one)) for one in values]
+    return [getattr(one, "item", getattr(one, "end", getattr(one, "what", one))) for one in values]

@@ -4,7 +4,7 @@ Rows name what they refer to. Where another table is joined they also hold a 0-b
 `segment_indices` into the segments. Nothing refers to an inventory.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from enum import StrEnum
 from typing import Any
@@ -102,6 +102,16 @@ class MissingRow:
     what: str
     names: tuple[str, ...] = ()
     cells: tuple[str, ...] = ()
+
+
+def join_missing(rows: Iterable[MissingRow]) -> tuple[MissingRow, ...]:
+    """Return rows with those of the same kind as one, each name and cell once."""
+    names: dict[str, dict[str, None]] = {}
+    cells: dict[str, dict[str, None]] = {}
+    for one in rows:
+        names.setdefault(one.what, {}).update(dict.fromkeys(one.names))
+        cells.setdefault(one.what, {}).update(dict.fromkeys(one.cells))
+    return tuple(MissingRow(what=what, names=tuple(own), cells=tuple(cells[what])) for what, own in names.items())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

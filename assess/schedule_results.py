@@ -73,7 +73,7 @@ class State:
     blocked_routes, cut_off_rooms : float
         Expected number of routes that are blocked, and of rooms that lose every exit.
     rooms_at_risk : tuple of str
-        Rooms whose chance of losing every exit is at least the chosen risk, or not known.
+        Rooms whose best way to the street is not open.
     """
 
     falls: float

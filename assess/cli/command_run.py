@@ -275,25 +275,19 @@ def describe_result(results: "Results") -> Iterator[str]:
 
 
 def _describe_routes(routes: "RouteTables") -> str:
-    from assess.report.findings.route_words import is_held, say_to_settle
-    from assess.route_results import DOUBTS, RouteState
+    from assess.report.findings.route_rows import count_rooms, count_routes, say_not_counted, say_to_fill_in
+    from assess.report.findings.route_words import is_held
 
-    evaluated = [one for one in routes.routes if one.evaluated]
-    known = [one for one in evaluated if one.state != RouteState.NOT_KNOWN]
-    states = [one.state for one in known]
-    doubtful = sum(one.state.severity == 0 < one.state_upper.severity for one in known)
-    held = sum(is_held(one, routes.risk) for one in known)
-    unknown, not_known = len(routes.routes) - len(evaluated), routes.unknown_routes
-    fix = say_to_settle([flag for flag in DOUBTS.values() if any(flag in one.doubts for one in routes.routes)])
-    return (
-        f"Evacuation routes: of {len(states):,}, {states.count(RouteState.BLOCKED):,} could be blocked and "
-        f"{states.count(RouteState.REDUCED):,} reduced at a risk limit of {100 * routes.risk:g} %"
-        + (f"; {doubtful:,} more cannot be excluded" if doubtful else "")
-        + (f"; {held:,} could be blocked if anchors fail" if held else "")
-        + (f"; {unknown:,} more could not be evaluated" if unknown else "")
-        + f". On average {routes.blocked_routes_expected:.2f} would be blocked"
-        + (f", not counting {not_known:,} that depend on unconfirmed pieces: {fix}." if not_known else ".")
-    )
+    held = sum(is_held(one, routes.risk) for one in routes.routes)
+    texts = [
+        count_routes(routes),
+        *count_rooms(routes),
+        f"On average {routes.blocked_routes_expected:.2f} routes would be blocked.",
+        *say_not_counted(routes),
+        *([f"If anchors fail, {held:,} would be worse."] if held else []),
+        *say_to_fill_in(routes),
+    ]
+    return " ".join(texts)
 
 
 def _open(written: Mapping[str, Path]) -> None:

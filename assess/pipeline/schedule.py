@@ -214,7 +214,7 @@ def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[in
 
 def _list_rooms_at_risk(routes: RouteTables) -> Iterator[str]:
     for room in routes.rooms:
-        if not room.is_known or room.loses_every_exit.probability >= routes.risk:
+        if room.state != RouteState.OPEN:
             yield room.room
 
 

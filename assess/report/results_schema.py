@@ -24,7 +24,7 @@ from assess.risk import RiskClass
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
-VERSION = "4.2"
+VERSION = "5.0"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
@@ -198,7 +198,7 @@ def _assess() -> Schema:
 _ROWS: Mapping[type, str] = {
     rows.Chance: "chance", rows.PieceRef: "piece", rows.BesideRow: "beside", rows.SegmentRow: "segment",
     rows.RouteRow: "route", rows.RouteFixRow: "route_fix", rows.WayRow: "way", rows.RoomRow: "room",
-    rows.FloorRoutesRow: "route_floor", AnnualRow: "annual",
+    rows.FloorRoutesRow: "route_floor", rows.MissingRow: "missing", AnnualRow: "annual",
 }  # fmt: skip
 """The rows that are defined once, by their names in the schema."""
 
@@ -259,22 +259,14 @@ def _of_type(hint: Any, number: Schema) -> Schema:
 
 
 def _conditions(row: type) -> Schema:
-    """Return what also holds of a segment or route: it has a state and chances if and only if it is evaluated."""
+    """Return what also holds of a segment or route: it has chances if and only if it is evaluated."""
     if row not in (rows.SegmentRow, rows.RouteRow):
         return {}
-    none, states, chances = (
-        rows.RouteState.NOT_EVALUATED.value,
-        ("state", "state_upper"),
-        ("blocked", "blocked_or_reduced"),
-    )
-
-    def either(state: Schema, chance: Schema) -> Schema:
-        return {"properties": dict.fromkeys(states, state) | dict.fromkeys(chances, chance)}
-
+    chances = ("blocked", "blocked_or_reduced")
     return {
         "if": {"properties": {"evaluated": {"const": True}}},
-        "then": either({"not": {"const": none}}, _ref("chance")),
-        "else": either({"const": none}, {"type": "null"}),
+        "then": {"properties": dict.fromkeys(chances, _ref("chance"))},
+        "else": {"properties": dict.fromkeys(chances, {"type": "null"})},
     }
 
 

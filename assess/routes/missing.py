@@ -5,9 +5,9 @@ count where they could change the state: free-standing ones that may fall at the
 the segment, and not in another room than those that it runs through.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
-from assess.model import Inventory, Item, Segment
+from assess.model import Inventory, Segment
 from assess.route_results import MissingRow
 from assess.routes.chances import Falls
 from assess.routes.obstructions import Obstructions, is_walled_off
@@ -34,9 +34,9 @@ def find_missing(one: Obstructions, inventory: Inventory, falls: Falls, risk: fl
     left_out = [inventory.items[at] for at in list_left_out(one, inventory) if could_fall(falls, at, risk)]
     unplaced = [item for item in left_out if item.x is None or item.y is None]
     is_blank = not one.is_evaluated and not any(item.floor == one.segment.floor for item in inventory.items)
-    found = []
-    if one.band is None and (len(unplaced) < len(left_out) or is_blank):
-        found.append(_of_plan(one.segment, inventory))
+    plan = _of_plan(one.segment, inventory) if one.band is None and (left_out or is_blank) else None
+    is_needed = len(unplaced) < len(left_out) or is_blank
+    found = [plan] if plan and (is_needed or plan.what == "stair_floor") else []
     if unplaced:
         cells = tuple(_cell(inventory, "Items", item.row, "x") for item in unplaced)
         found.append(MissingRow(what="positions", names=tuple(item.item for item in unplaced), cells=cells))
@@ -96,13 +96,3 @@ def _name(segment: Segment) -> str:
 
 def _cell(inventory: Inventory, sheet: str, row: int, field: str) -> str:
     return f"{sheet}!{inventory.letters.get(sheet, {}).get(field, 'A')}{row}"
-
-
-def join_missing(rows: Iterable[MissingRow]) -> tuple[MissingRow, ...]:
-    """Return rows with those of the same kind as one, each name and cell once."""
-    names: dict[str, dict[str, None]] = {}
-    cells: dict[str, dict[str, None]] = {}
-    for one in rows:
-        names.setdefault(one.what, {}).update(dict.fromkeys(one.names))
-        cells.setdefault(one.what, {}).update(dict.fromkeys(one.cells))
-    return tuple(MissingRow(what=what, names=tuple(own), cells=tuple(cells[what])) for what, own in names.items())

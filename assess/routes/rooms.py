@@ -123,7 +123,7 @@ def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) ->
     known = {at: rows[at].blocked for at in part.segments if rows[at].state != RouteState.NOT_KNOWN}
     chance = {at: UNKNOWN if (one := known.get(at)) is None else one.probability for at in part.segments}
     ways = [_way(scene, segments, end) for segments, end in find_ways(part, place.place, chance)]
-    ways.sort(key=lambda way: (way.blocked_if_unconfirmed_fall or way.blocked).probability)
+    ways.sort(key=lambda way: (way.state.severity, (way.blocked_if_unconfirmed_fall or way.blocked).probability))
     for number, way in enumerate(ways[1:], start=1):
         shared = (at for at in way.segment_indices if at in ways[0].segment_indices)
         ways[number] = replace(way, shared=tuple(scene.obstructions[at].segment.segment for at in shared))

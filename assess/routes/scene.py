@@ -1,6 +1,6 @@
 """What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TypedDict
 
@@ -8,10 +8,10 @@ import numpy as np
 
 from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
-from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState
+from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
+from assess.routes.missing import find_missing
 from assess.routes.network import Blocked
-from assess.routes.missing import find_missing, join_missing
 from assess.routes.obstructions import Obstructions
 from assess.routes.states import Bounds, Verdict, settle
 

@@ -9,10 +9,13 @@ STAIRS = (place("Up", "stair", (0, 0), floor="2"), place("Down", "stair", (0, 0)
 
 
 def test_a_segment_that_neither_plan_nor_piece_tells_of_is_not_evaluated():
-    segments = [stretch("a"), stretch("b"), stretch("flight", "Up", "Down", floor="", route="Stair")]
-    found = evaluated(make_falls([0.2]), [piece(1.5, 0.0)], segments, STAIRS)
+    flight = stretch("flight", "Up", "Down", floor="", route="Stair", clear_width=None)
+    segments, items = [stretch("a"), stretch("b"), flight], [piece(1.5, 0.0), piece(1.5, x=5.0, y=5.0)]
+    found = evaluated(make_falls([0.2, 0.2]), items, segments, STAIRS)
     assert [one.evaluated for one in found.segments] == [True, False, False]
-    assert [one.flags for one in found.segments] == [("no_plan",), ("no_plan",), ("between_floors",)]
+    assert [one.flags for one in found.segments] == [
+        ("no_plan",), ("no_plan",), ("clear_assumed", "between_floors"),
+    ]  # fmt: skip
     assert [(one.evaluated, one.unevaluated_segments) for one in found.routes] == [(True, ("b",)), (False, ("flight",))]
 
 
@@ -30,8 +33,8 @@ def test_one_that_is_too_narrow_as_it_stands_needs_no_plan():
 
 def test_a_room_tells_which_segments_of_its_ways_are_not():
     places = [*STAIRS, place("Office", "room", floor="2"), place("Street", "exit")]
-    segments = [stretch("office", "Office", "Up", floor="2"), stretch("flight", "Up", "Down", floor=""),
-                stretch("hall", "Down", "Street")]  # fmt: skip
+    flight = stretch("flight", "Up", "Down", floor="", clear_width=None)
+    segments = [stretch("office", "Office", "Up", floor="2"), flight, stretch("hall", "Down", "Street")]
     found = evaluated(make_falls([0.2]), [piece(1.5, 0.0, segment="hall", route="Way")], segments, places)
     assert [room.unevaluated_segments for room in found.rooms] == [("office", "flight")]
 

@@ -13,9 +13,14 @@ HALF, WHOLE = piece(0.5, 0.0), piece(1.5, 0.0)
 PERIOD = ("unconfirmed_period",)
 
 
+def whats(one):
+    """Return what is missing, by its keys."""
+    return tuple(row.what for row in one.missing)
+
+
 def test_a_segment_that_it_would_block_is_not_known():
     found = one_segment(make_falls([0.9], unconfirmed=[0]), [WHOLE])
-    assert (found.state, found.state_upper, found.doubts) == (RouteState.NOT_KNOWN, RouteState.BLOCKED, PERIOD)
+    assert (found.state, whats(found), found.missing[0].names) == (RouteState.NOT_KNOWN, PERIOD, ("P0",))
     standing, fallen = found.blocked, found.blocked_if_unconfirmed_fall
     assert (standing.probability, standing.high, standing.pieces, standing.unconfirmed) == (0, 0, 0, 1)
     assert (fallen.probability, fallen.low, fallen.high) == (1, 1, 1)
@@ -25,34 +30,40 @@ def test_a_segment_that_it_would_block_is_not_known():
 
 
 def test_one_that_does_not_matter_leaves_the_state_known():
-    """Its 0.5 m leaves enough of the wide segment, whose other piece blocks in 1 of 4 draws; alone it would reduce it.
+    """Its 0.5 m leaves enough of the wide segment, whose other piece blocks in 1 of 4 draws.
 
     Standing 1 of 4, and fallen the same: the chance is that of the other piece alone.
     """
     found = one_segment(told("1000", "1111", unconfirmed=[1]), [WHOLE, HALF])
-    assert (found.state, found.doubts) == (RouteState.BLOCKED, ())
+    assert (found.state, found.missing) == (RouteState.DOUBTFUL, ())
     assert found.blocked.probability == found.blocked_if_unconfirmed_fall.probability == pytest.approx(1 / 4)
     assert (found.blocked.pieces, found.blocked.runs, found.blocked.is_joint) == (1, 4, True)
     held = one_segment(make_falls([0.9], unconfirmed=[0], anchored=[True]), [WHOLE])
-    assert (held.state, held.doubts, held.blocked_if_unconfirmed_fall) == (RouteState.OPEN, (), None)
+    assert (held.state, held.missing, held.blocked_if_unconfirmed_fall) == (RouteState.OPEN, (), None)
     assert held.blocked_if_anchors_fail.probability == 1, "on the safe side"
 
 
 def test_blocked_wins_over_not_known():
-    """It is blocked in 1 of 4 draws with the other piece standing; with it fallen, always."""
+    """It is blocked in 2 of 4 draws with the other piece standing; with it fallen, always."""
+    found = one_segment(told("1100", "0000", unconfirmed=[1]), [WHOLE, WHOLE])
+    assert (found.state, found.missing) == (RouteState.BLOCKED, ())
+    assert [found.blocked.probability, found.blocked_if_unconfirmed_fall.probability] == pytest.approx([1 / 2, 1])
+
+
+def test_doubtful_or_blocked_is_not_known():
+    """In 1 of 4 draws with the other piece standing, which is below 0.3; with it fallen, always."""
     found = one_segment(told("1000", "0000", unconfirmed=[1]), [WHOLE, WHOLE])
-    assert (found.state, found.doubts) == (RouteState.BLOCKED, ())
-    assert [found.blocked.probability, found.blocked_if_unconfirmed_fall.probability] == pytest.approx([1 / 4, 1])
+    assert (found.state, whats(found)) == (RouteState.NOT_KNOWN, PERIOD)
 
 
-def test_open_or_reduced_is_not_known_either():
+def test_one_that_only_narrows_it_leaves_it_open():
     found = one_segment(make_falls([0.9], unconfirmed=[0]), [HALF])
-    assert (found.state, found.state_upper) == (RouteState.NOT_KNOWN, RouteState.REDUCED)
+    assert (found.state, found.missing) == (RouteState.OPEN, ())
     assert found.blocked.probability == found.blocked_if_unconfirmed_fall.probability == 0
 
 
 def test_it_faces_one_that_falls():
-    """1100 alone only reduces the narrow segment; with an unconfirmed piece fallen opposite it blocks, in 2 of 4."""
+    """1100 alone only narrows the narrow segment; with an unconfirmed piece fallen opposite it blocks, in 2 of 4."""
     found = one_segment(told("1100", "0000", unconfirmed=[1]), [HALF, HALF], NARROW)
     assert found.state is RouteState.NOT_KNOWN
     assert [found.blocked.probability, found.blocked_if_unconfirmed_fall.probability] == pytest.approx([0, 1 / 2])
@@ -61,7 +72,7 @@ def test_it_faces_one_that_falls():
 def test_under_the_record_it_does_as_it_did():
     """What happened under the record itself is known, whatever its chance is: blocked, so blocked wins."""
     found = one_segment(make_falls([0.9], unconfirmed=[0], in_record=[1]), [WHOLE])
-    assert (found.under_record, found.state, found.doubts) == (RouteState.BLOCKED, RouteState.BLOCKED, ())
+    assert (found.under_record, found.state, found.missing) == (RouteState.BLOCKED, RouteState.BLOCKED, ())
 
 
 PLACES = [place("Room", "room"), place("Hall"), place("West", "exit"), place("East", "exit")]
@@ -76,14 +87,15 @@ def test_a_route_with_another_way_is_known():
     """West may be blocked by an unconfirmed piece; East stays open, so that nothing is cut off either way."""
     found = evaluated(make_falls([0.9], unconfirmed=[0]), [beside("west")], SEGMENTS, PLACES)
     assert [one.state for one in found.segments] == [
-        RouteState.NOT_EVALUATED, RouteState.NOT_KNOWN, RouteState.NOT_EVALUATED,
+        RouteState.OPEN, RouteState.NOT_KNOWN, RouteState.OPEN,
     ]  # fmt: skip
     (room,), (floor,) = found.rooms, found.floors
-    assert (room.is_known, room.doubts, room.loses_every_exit.probability) == (True, (), 0)
+    assert (room.state, room.missing, room.loses_every_exit.probability) == (RouteState.OPEN, (), 0)
     assert room.loses_if_unconfirmed_fall.probability == 0
     first, second = room.ways
-    assert (first.end, first.is_known, first.blocked_if_unconfirmed_fall) == ("East", True, None)
-    assert (second.end, second.is_known, second.blocked_if_unconfirmed_fall.probability) == ("West", False, 1)
+    assert (first.end, first.state, first.blocked_if_unconfirmed_fall) == ("East", RouteState.OPEN, None)
+    assert (second.end, second.state) == ("West", RouteState.NOT_KNOWN)
+    assert second.blocked_if_unconfirmed_fall.probability == 1
     assert (floor.unknown_segments, floor.unknown_rooms, found.unknown_rooms) == (1, 0, 0)
 
 
@@ -95,9 +107,9 @@ def test_sums_are_of_what_is_known():
     falls = make_falls([0.25, 0.9, 0.2], fell={0: falls.fell[0]}, unconfirmed=[1])
     found = evaluated(falls, items, [*SEGMENTS, other], PLACES)
     (room,), (floor,), (way, gap) = found.rooms, found.floors, found.routes
-    assert (room.is_known, room.doubts) == (False, PERIOD)
+    assert (room.is_known, whats(room)) == (False, PERIOD)
     assert [room.loses_every_exit.probability, room.loses_if_unconfirmed_fall.probability] == pytest.approx([0, 1 / 4])
-    assert (way.state, gap.state) == (RouteState.NOT_KNOWN, RouteState.BLOCKED)
+    assert (way.state, gap.state) == (RouteState.NOT_KNOWN, RouteState.DOUBTFUL)
     assert [found.blocked_routes_expected, found.cut_off_rooms_expected] == pytest.approx([0.2, 0])
     assert (found.unknown_routes, found.unknown_rooms) == (1, 1)
     assert [floor.blocked_segments_expected, floor.blocked_routes_expected] == pytest.approx([0.25 + 0.2, 0.2])
@@ -136,6 +148,5 @@ def test_standing_and_fallen_enclose_every_chance_that_the_piece_could_have(rows
         low, high = getattr(found.blocked, name), getattr(at_most, name)
         assert low - 1e-9 <= getattr(settled.blocked, name) <= high + 1e-9, name
     assert (found.blocked_if_unconfirmed_fall is None) == (not doubted)
-    assert settled.state_upper.severity <= found.state_upper.severity or not doubted
-    if found.state in (RouteState.OPEN, RouteState.BLOCKED) and not fell:
+    if found.state != RouteState.NOT_KNOWN and not fell:
         assert settled.state is found.state

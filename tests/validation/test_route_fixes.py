@@ -45,7 +45,7 @@ def test_of_a_pair_one_is_enough():
 
 
 def test_a_first_choice_that_is_not_needed_in_the_end():
-    """Any two pieces block. Of 20 motions X falls with Y in three, X with Z in three, Y with P in two, Z with Q in two.
+    """Any two pieces block. Of each 20 of 400 motions X falls with Y in 3, X with Z in 3, Y with P in 2, Z with Q in 2.
 
     That is 0.5. X gains most (6 motions; Y and Z 5 each), then Y or P, and Z or Q. With Y and Z fixed X is not needed
     any more: Y takes 3 + 2 motions, 0.25, and Z the others.
@@ -54,7 +54,7 @@ def test_a_first_choice_that_is_not_needed_in_the_end():
         "111" "000" "11" "00", "000" "111" "00" "11", "111" "111" "00" "00", "000" "000" "11" "00",
         "000" "000" "00" "11",
     )  # fmt: skip
-    falls = told(*(row + "0" * 10 for row in (y, z, x, p, q)))
+    falls = told(*((row + "0" * 10) * 20 for row in (y, z, x, p, q)))
     assert fixes(falls, [HALF] * 5, [NARROW]) == ([0, 1], steps((0.25, 0.25), (0.25, 0)), True)
 
 

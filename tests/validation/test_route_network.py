@@ -174,8 +174,8 @@ def test_a_piece_of_a_whole_route():
     """A blank Segment: every segment of that route on the piece's floor. It falls on all of them at once, so 0.2."""
     segments = [stretch("a"), stretch("b"), stretch("c", floor="2"), stretch("a", route="Other")]
     found = evaluated(make_falls([0.2]), [piece(1.5, 0.0, route="Way", segment="")], segments)
-    assert [one.blocked and one.blocked.probability for one in found.segments] == [0.2, 0.2, None, None]
-    assert [one.blocked and one.blocked.probability for one in found.routes] == [0.2, None]
+    assert [one.blocked and one.blocked.probability for one in found.segments] == [0.2, 0.2, None, 0.0]
+    assert [one.blocked and one.blocked.probability for one in found.routes] == [0.2, 0.0]
     assert "segment_assumed" in found.segments[0].pieces[0].flags
 
 

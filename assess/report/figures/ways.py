@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.figures.labels import LINE, Bounds, Corners, Label, Point, overlap, place_labels
-from assess.report.findings.route_words import is_held, say_blocked, say_segment, say_segment_state
+from assess.report.findings.route_words import (
+    is_held,
+    say_blocked,
+    say_missing,
+    say_segment,
+    say_segment_state,
+)
 from assess.route_results import RouteState, RouteTables, SegmentRow
 
 NAMED = 20
@@ -37,8 +43,8 @@ class Style:
 class Stretch:
     """A segment as it is drawn; `number` is that of its row among all segments, from 1.
 
-    `sign` is where its sign stands: None where there is no room and nothing to warn of. `may_be` tells that a worse
-    state is not excluded, `is_held` that anchors alone keep it from being blocked.
+    `sign` is where its sign stands: None where there is no room and nothing to warn of. `is_held` tells that anchors
+    alone keep its state from being worse.
     """
 
     number: int
@@ -48,7 +54,6 @@ class Stretch:
     start: Point
     end: Point
     corners: Corners
-    may_be: bool
     is_held: bool = False
     sign: Point | None = None
 
@@ -60,7 +65,7 @@ class Stretch:
     @property
     def marks(self) -> str:
         """What stands beside its sign."""
-        return ("?" if self.may_be else "") + ("⚓" if self.is_held else "")
+        return "⚓" if self.is_held else ""
 
 
 def list_styles() -> dict[str, Style]:
@@ -69,9 +74,9 @@ def list_styles() -> dict[str, Style]:
     fills = {state: state.fill for state in RouteState}
     drawn = (
         ("open", _("open"), RouteState.OPEN, white, dark, "", 0.8),
-        ("reduced", _("may be reduced"), RouteState.REDUCED, white, dark, "8 3", 1.2),
+        ("doubtful", _("doubtful"), RouteState.DOUBTFUL, white, dark, "8 3", 1.2),
         ("unknown", _("not known"), RouteState.NOT_KNOWN, white, dark, "8 3 2 3", 1.6),
-        ("blocked", _("may be blocked"), RouteState.BLOCKED, white, dark, "2 2.5", 2.0),
+        ("blocked", _("blocked"), RouteState.BLOCKED, white, dark, "2 2.5", 2.0),
         ("standing", _("blocked as it stands"), RouteState.BLOCKED, dark, white, "", 2.6),
     )
     return {
@@ -94,19 +99,28 @@ def _stretch(number: int, one: SegmentRow, risk: float, styles: Mapping[str, Sty
     return Stretch(
         number=number,
         name=words.cut(one.segment, NAMED),
-        title=_(
-            "{segment}: {state}; chance of blockage {chance}",
-            segment=say_segment(one),
-            state=say_segment_state(one, risk),
-            chance=say_blocked(one),
-        ),
+        title=_title(one, risk),
         style=styles[_style_name(one)],
         start=(one.start_x_m or 0.0, one.start_y_m or 0.0),
         end=(one.end_x_m or 0.0, one.end_y_m or 0.0),
         corners=_outline(one),
-        may_be=one.state != RouteState.NOT_KNOWN and one.state_upper.severity > one.state.severity,
         is_held=is_held(one, risk),
     )
+
+
+def _title(one: SegmentRow, risk: float) -> str:
+    """Return the state and the chance of a segment, and which piece to fix or what to fill in where it is not open."""
+    said = _(
+        "{segment}: {state}; chance of blockage {chance}",
+        segment=say_segment(one),
+        state=say_segment_state(one, risk),
+        chance=say_blocked(one),
+    )
+    if one.missing:
+        return f"{said}; {say_missing(one.missing)}"
+    if one.state == RouteState.OPEN or one.most_likely_piece is None or one.is_blocked_standing:
+        return said
+    return _("{segment}; most likely by {item}", segment=said, item=words.cut(one.most_likely_piece.item, 40))
 
 
 def _style_name(one: SegmentRow) -> str:
@@ -114,7 +128,7 @@ def _style_name(one: SegmentRow) -> str:
         return "standing"
     if one.state == RouteState.NOT_KNOWN:
         return "unknown"
-    return str(one.state) if one.evaluated else "open"
+    return str(one.state)
 
 
 def _outline(one: SegmentRow) -> Corners:

@@ -6,7 +6,13 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.natural import natural_key
 from assess.report import words
-from assess.report.findings.route_rows import say_not_counted, say_uncounted, say_unknown
+from assess.report.findings.route_rows import (
+    count_rooms,
+    count_routes,
+    say_not_counted,
+    say_to_fill_in,
+    say_uncounted,
+)
 from assess.report.findings.route_words import (
     find_chance,
     is_blocked_standing,
@@ -14,7 +20,7 @@ from assess.report.findings.route_words import (
     name_few,
     say_blocked,
     say_chance,
-    say_risk,
+    say_missing,
     say_route_state,
 )
 from assess.results import ItemResult, Results
@@ -23,7 +29,7 @@ from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables
 
 @dataclass(frozen=True, slots=True)
 class RouteAtRisk:
-    """A route that may be blocked or reduced, the piece that most likely blocks it, and what to fix: "" where none.
+    """A route that is not open, the piece that most likely blocks it, and what to fix or fill in: "" where none.
 
     `risk` is the chosen one [-].
     """
@@ -55,16 +61,16 @@ class RouteAtRisk:
 
 
 def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
-    """Return the routes that may be blocked or reduced, or of which that is not excluded or known, the worst first."""
+    """Return the routes that are not open, the worst first."""
     routes = results.route_tables
-    found = [one for one in routes.routes if max(one.state.severity, one.state_upper.severity)]
+    found = [one for one in routes.routes if one.state != RouteState.OPEN]
     found.sort(key=lambda one: (-one.state.severity, -find_chance(one), natural_key(one.route)))
     return [
         RouteAtRisk(
             one,
             routes.risk,
             _blocker(one),
-            ", ".join(say_row(results.result(fix.item_index)) for fix in one.fixes),
+            ", ".join(say_row(results.result(fix.item_index)) for fix in one.fixes) or say_missing(one.missing),
         )
         for one in found
     ]
@@ -93,8 +99,8 @@ def describe_at_risk(one: RouteAtRisk) -> str:
 
 
 def list_rooms_at_risk(routes: RouteTables) -> list[RoomRow]:
-    """Return the rooms that may lose every exit, or of which that is not excluded, the worst first."""
-    found = [one for one in routes.rooms if one.is_known and one.loses_every_exit.high >= routes.risk]
+    """Return the rooms whose best way to the street is doubtful or blocked, the worst first."""
+    found = [one for one in routes.rooms if one.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)]
     return sorted(
         found, key=lambda one: (-one.loses_every_exit.probability, -one.loses_every_exit.high, natural_key(one.room))
     )
@@ -108,37 +114,15 @@ def say_routes(results: Results) -> list[str]:
     routes = results.route_tables
     if not results.has_routes:
         return []
-    at_risk = [one for one in list_routes_at_risk(results) if one.result.state != RouteState.NOT_KNOWN]
     return [
-        *_say_at_risk(routes, len(at_risk)),
-        *say_unknown(routes),
+        count_routes(routes),
+        *count_rooms(routes),
         _say_expected(routes),
         *say_not_counted(routes),
+        *say_to_fill_in(routes),
         *_say_rooms(routes),
         *_say_beside(routes),
     ]
-
-
-def _say_at_risk(routes: RouteTables, at_risk: int) -> list[str]:
-    known = [one for one in routes.routes if one.state != RouteState.NOT_KNOWN]
-    risk, found = say_risk(routes.risk), [one for one in known if one.evaluated]
-    if not found:
-        return []
-    if not at_risk:
-        safe = ngettext(
-            "The {n:,} route is not at risk: its chance of being blocked or reduced is below the chosen {risk}, also "
-            "at the upper end of its interval.",
-            "None of the {n:,} routes is at risk: the chance of each of being blocked or reduced is below the chosen "
-            "{risk}, also at the upper end of its interval.",
-            len(found), risk=risk,
-        )  # fmt: skip
-        return [safe]
-    sure = sum(one.state.severity > 0 for one in found)
-    counted = _("Routes that may be blocked or reduced: {n:,} of {all:,}, at the chosen risk of {risk}.",
-             n=sure, all=len(found), risk=risk)  # fmt: skip
-    if sure == at_risk:
-        return [counted]
-    return [counted, ngettext("{n:,} more cannot be excluded.", "{n:,} more cannot be excluded.", at_risk - sure)]
 
 
 def _say_expected(routes: RouteTables) -> str:
@@ -155,13 +139,9 @@ def _say_rooms(routes: RouteTables) -> list[str]:
         return [_("No room has a way out in the workbook, so none is evaluated.")]
     found = list_rooms_at_risk(routes)
     if not found:
-        if routes.unknown_rooms:
-            return [_("No room of which it is known reaches that risk of losing all exits.")]
-        return [_("No room reaches that risk of losing all exits.")]
-    worst, chance = found[0].room, found[0].loses_every_exit
-    return [_("Rooms that may lose all exits: {n:,} of {all:,}, the worst {room} with {chance}.",
-              n=len(found), all=len(routes.rooms), room=words.cut(worst, 30),
-              chance=say_chance(chance))]  # fmt: skip
+        return []
+    return [_("The room most likely to lose all exits is {room} with {chance}.",
+              room=words.cut(found[0].room, 30), chance=say_chance(found[0].loses_every_exit))]  # fmt: skip
 
 
 def _say_beside(routes: RouteTables) -> list[str]:
@@ -169,8 +149,8 @@ def _say_beside(routes: RouteTables) -> list[str]:
     texts = []
     held = [one.route for one in routes.routes if is_held(one, routes.risk)]
     if held:
-        texts.append(ngettext("If anchors fail, {n:,} more may be blocked: {names}.",
-                              "If anchors fail, {n:,} more may be blocked: {names}.",
+        texts.append(ngettext("If anchors fail, {n:,} route is worse: {names}.",
+                              "If anchors fail, {n:,} routes are worse: {names}.",
                               len(held), names=name_few(held)))  # fmt: skip
     short = sum(one.insufficient_for_occupants for one in routes.segments)
     if short:

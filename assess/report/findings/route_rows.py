@@ -4,19 +4,18 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from assess.i18n import gettext as _
-from assess.i18n import ngettext
+from assess.i18n import ngettext, number
 from assess.report import words
-from assess.report.findings.route_words import find_chance, name_few, say_risk, say_to_settle
+from assess.report.findings.route_words import find_chance, name_state, say_missing, say_risk
 from assess.route_results import (
-    DOUBTS,
     FLAGS,
     BesideRow,
-    RoomRow,
     RouteFixRow,
     RouteRow,
     RouteState,
     RouteTables,
     SegmentRow,
+    join_missing,
 )
 
 Row = TypeVar("Row")
@@ -30,7 +29,8 @@ QUIET = ("own_rooms", "walls_unknown", "required_assumed")
 def describe_routes(routes: RouteTables) -> list[str]:
     """Return the routes of a building in plain words, as sentences."""
     return [
-        *_count_states(routes),
+        count_routes(routes),
+        *count_rooms(routes),
         _("On average {count} routes would be blocked.", count=words.fixed(routes.blocked_routes_expected, 2)),
         ngettext(
             "Of {n:,} room, on average {count} would lose all exits.",
@@ -42,63 +42,33 @@ def describe_routes(routes: RouteTables) -> list[str]:
         else _("No room has a way out in the workbook, so none is evaluated."),
         *say_not_counted(routes),
         _("These are chances in this scenario, not per year."),
-        _("Routes count as blocked or reduced from a chance of {risk}.", risk=say_risk(routes.risk)),
     ]
 
 
-def _count_states(routes: RouteTables) -> list[str]:
-    states = [one.state for one in routes.routes if one.evaluated and one.state != RouteState.NOT_KNOWN]
-    blocked, reduced = states.count(RouteState.BLOCKED), states.count(RouteState.REDUCED)
-    texts = []
-    if states:
-        counted = ngettext(
-            "{n:,} evacuation route: {blocked:,} may be blocked, {reduced:,} may be reduced, {open:,} below the chosen "
-            "risk.",
-            "{n:,} evacuation routes: {blocked:,} may be blocked, {reduced:,} may be reduced, {open:,} below the "
-            "chosen risk.",
-            len(states), blocked=blocked, reduced=reduced, open=len(states) - blocked - reduced,
-        )  # fmt: skip
-        texts.append(counted)
-    return texts + say_unknown(routes)
+def count_routes(routes: RouteTables) -> str:
+    """Return how many routes are in which state, as a sentence."""
+    return ngettext("{n:,} evacuation route: {states}.", "{n:,} evacuation routes: {states}.", len(routes.routes),
+                    states=_count_states([one.state for one in routes.routes]))  # fmt: skip
 
 
-def say_unknown(routes: RouteTables) -> list[str]:
-    """Return how many routes and rooms are not known, and could not be evaluated; nothing where all are."""
-    texts = _say_not_known(routes)
-    if whole := sum(not one.evaluated for one in routes.routes):
-        texts.append(ngettext("{n:,} route could not be evaluated: the workbook places no furniture there.",
-                              "{n:,} routes could not be evaluated: the workbook places no furniture there.",
-                              whole))  # fmt: skip
-    if parts := sum(len(one.unevaluated_segments) for one in routes.routes if one.evaluated):
-        texts.append(ngettext("{n:,} segment of the other routes could not be evaluated.",
-                              "{n:,} segments of the other routes could not be evaluated.",
-                              parts))  # fmt: skip
-    return texts
+def count_rooms(routes: RouteTables) -> list[str]:
+    """Return how many rooms have a best way to the street in which state; nothing without rooms."""
+    if not routes.rooms:
+        return []
+    return [ngettext("Best way from {n:,} room to the street: {states}.",
+                     "Best way from each of {n:,} rooms to the street: {states}.",
+                     len(routes.rooms), states=_count_states([one.state for one in routes.rooms]))]  # fmt: skip
 
 
-def _say_not_known(routes: RouteTables) -> list[str]:
-    """Return which routes and rooms depend on unconfirmed pieces, and what to fill in to settle it."""
-    texts = []
-    if routes.unknown_routes:
-        texts.append(ngettext("{n:,} route is not known: it depends on pieces whose class is not confirmed ({pieces}).",
-                              "{n:,} routes are not known: they depend on pieces whose class is not confirmed "
-                              "({pieces}).", routes.unknown_routes,
-                              pieces=name_few(_list_deciding(routes))))  # fmt: skip
-    if routes.unknown_rooms:
-        texts.append(ngettext("For {n:,} room it is not known whether it could lose all exits.",
-                              "For {n:,} rooms it is not known whether they could lose all exits.",
-                              routes.unknown_rooms))  # fmt: skip
-    raised = {flag for row in (routes.routes, routes.rooms) for one in row for flag in one.doubts}
-    if fix := say_to_settle([flag for flag in DOUBTS.values() if flag in raised]):
-        texts.append(_("To settle this: {fix}.", fix=fix))
-    return texts
+def _count_states(states: Sequence[RouteState]) -> str:
+    counts = [(state, states.count(state)) for state in sorted(RouteState, key=lambda one: -one.severity)]
+    return ", ".join(f"{number(count, ',d')} {name_state(state)}" for state, count in counts if count)
 
 
-def _list_deciding(routes: RouteTables) -> list[str]:
-    """Return the names of the unconfirmed pieces that reach a route that is not known, each once."""
-    unknown = [at for one in routes.routes if one.state == RouteState.NOT_KNOWN for at in one.segment_indices]
-    near = [piece for at in unknown for piece in routes.segments[at].pieces]
-    return list(dict.fromkeys(one.item for one in near if set(one.flags) & set(DOUBTS.values())))
+def say_to_fill_in(routes: RouteTables) -> list[str]:
+    """Return what to fill in so that routes and rooms are known; nothing where all are."""
+    missing = join_missing(row for one in (*routes.routes, *routes.rooms) for row in one.missing)
+    return [_("To settle what is not known: {fix}.", fix=say_missing(missing))] if missing else []
 
 
 def say_not_counted(routes: RouteTables) -> list[str]:
@@ -121,11 +91,16 @@ def say_uncounted(routes: RouteTables) -> str:
     count = routes.uncounted_pieces
     if not count:
         return ""
-    return ngettext(
+    left_out = ngettext(
         "{n:,} piece has no usable position or route and is left out.",
         "{n:,} pieces have no usable position or route and are left out.",
         count,
     )
+    if any(row.what in ("positions", "places", "ends") for one in routes.segments for row in one.missing):
+        return left_out
+    none = _("None of them could change a state: their chance of overturning is below {risk}, or they stand elsewhere.",
+             risk=say_risk(routes.risk))  # fmt: skip
+    return f"{left_out} {none}"
 
 
 # ---------------------------------------------------------------- rows
@@ -168,15 +143,10 @@ def list_steps(routes: RouteTables) -> list[tuple[RouteRow, int, RouteFixRow]]:
 
 
 def name_untouched(routes: RouteTables) -> tuple[int, str]:
-    """Return how many routes are under the chosen risk as they are, as far as they are evaluated, and their names."""
-    found = [one for one in routes.routes if one.is_fixed and one.evaluated and not one.fixes]
+    """Return how many routes are open as they are, and their names."""
+    found = [one for one in routes.routes if one.state == RouteState.OPEN]
     names = [words.cut(one.route, 40) for one in found]
     return len(names), words.name_first(names, 12)
-
-
-def has_evaluated_way(one: RoomRow, routes: RouteTables) -> bool:
-    """Tell whether any segment of its ways out is evaluated: else its chance rests on nothing."""
-    return not one.ways or any(routes.segments[at].evaluated for way in one.ways for at in way.segment_indices)
 
 
 def list_flags(routes: RouteTables) -> dict[str, str]:

@@ -1,6 +1,5 @@
 """The words for evacuation routes: their states, how likely these are, and what that rests on."""
 
-import math
 from collections.abc import Sequence
 
 from assess.i18n import gettext as _
@@ -8,7 +7,19 @@ from assess.i18n import ngettext, number
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.results import ItemResult
-from assess.route_results import DOUBTS, Chance, RoomRow, RouteRow, RouteState, RouteTables, SegmentRow, WayRow
+from assess.route_results import (
+    BLOCKED_FROM,
+    DOUBTS,
+    Chance,
+    MissingRow,
+    RoomRow,
+    RouteRow,
+    RouteState,
+    RouteTables,
+    SegmentRow,
+    WayRow,
+)
+from assess.routes.states import find_state
 from assess.routes.widths import LEVEL, RULES, STAIR
 from assess.units import LENGTH
 from assess.workbook.schema import DEFAULT_WIDTH
@@ -18,50 +29,49 @@ MOST_NAMED = 3
 
 
 def say_state(state: RouteState) -> str:
-    """Return a state with its sign, as a chance: ``✕ may be blocked``."""
-    said = {
-        RouteState.NOT_EVALUATED: _("not evaluated"),
+    """Return a state with its sign: ``✕ blocked``."""
+    return f"{state.symbol} {name_state(state)}"
+
+
+def name_state(state: RouteState) -> str:
+    """Return a state in words."""
+    return {
         RouteState.OPEN: _("open"),
-        RouteState.REDUCED: _("may be reduced"),
+        RouteState.DOUBTFUL: _("doubtful"),
+        RouteState.BLOCKED: _("blocked"),
         RouteState.NOT_KNOWN: _("not known"),
-        RouteState.BLOCKED: _("may be blocked"),
-    }
-    return f"{state.symbol} {said[state]}"
+    }[state]
 
 
-def say_outlook(one: SegmentRow | RouteRow, risk: float = math.inf) -> str:
-    """Return the state, and the worse one that the upper end of the interval does not exclude.
-
-    With the chosen risk it says where the state depends on anchors.
-    """
-    if one.blocked is not None and one.blocked.low >= 1:
-        blocked = _("blocked")
-        return f"{RouteState.BLOCKED.symbol} {blocked}"
-    said = _say_held(one.state) if is_held(one, risk) else say_state(one.state)
-    if one.state_upper == one.state:
-        return said
-    upper = say_state(one.state_upper)
-    return _("{state}, not excluded: {upper}", state=said, upper=upper)
+def list_rules(risk: float) -> list[tuple[RouteState, str]]:
+    """Return the states, the worst first, and when each holds at the chosen risk [-]."""
+    limit, blocked = say_risk(risk), say_risk(BLOCKED_FROM)
+    return [
+        (RouteState.BLOCKED, _("chance of a blockage {limit} or more", limit=blocked)),
+        (RouteState.NOT_KNOWN, _("the workbook leaves out something that could change the state")),
+        (RouteState.DOUBTFUL, _("below {blocked}, but the range is not wholly below {limit}",
+                                blocked=blocked, limit=limit)),
+        (RouteState.OPEN, _("the whole range is below {limit}", limit=limit)),
+    ]  # fmt: skip
 
 
-def _say_held(state: RouteState) -> str:
-    if state == RouteState.OPEN:
+def _say_outlook(one: SegmentRow | RouteRow, risk: float) -> str:
+    """Return the state; with what anchors alone keep from being worse."""
+    if not is_held(one, risk):
+        return say_state(one.state)
+    if one.state == RouteState.OPEN:
         said = _("open if the anchors hold")
     else:
-        said = _("may be reduced, and blocked if the anchors fail")
-    return f"{state.symbol} {said} ⚓"
+        said = _("doubtful, and blocked if the anchors fail")
+    return f"{one.state.symbol} {said} ⚓"
 
 
 def is_held(one: SegmentRow | RouteRow, risk: float) -> bool:
-    """Tell whether anchors alone keep something from being blocked, by the chosen risk."""
-    fails, others = one.blocked_if_anchors_fail, (RouteState.BLOCKED, RouteState.NOT_KNOWN)
-    return one.state not in others and fails is not None and fails.probability >= risk
-
-
-def say_unevaluated() -> str:
-    """Return the state of a segment or route that could not be evaluated."""
-    said = _("not evaluated")
-    return f"{words.DASH} {said}"
+    """Tell whether anchors alone keep the state of something from being worse, by the chosen risk."""
+    fails = one.blocked_if_anchors_fail
+    if fails is None or one.state not in (RouteState.OPEN, RouteState.DOUBTFUL):
+        return False
+    return find_state(fails, risk).severity > one.state.severity
 
 
 def say_standing() -> str:
@@ -70,22 +80,23 @@ def say_standing() -> str:
     return f"{RouteState.BLOCKED.symbol} {standing}"
 
 
-def say_segment_state(one: SegmentRow, risk: float = math.inf) -> str:
-    """Return the state of a segment, as distinct from one blocked with nothing fallen and from one not evaluated."""
-    if one.is_blocked_standing:
-        return say_standing()
-    return say_outlook(one, risk) if one.evaluated else say_unevaluated()
+def say_segment_state(one: SegmentRow, risk: float) -> str:
+    """Return the state of a segment, as distinct from one blocked with nothing fallen."""
+    return say_standing() if one.is_blocked_standing else _say_outlook(one, risk)
 
 
-def say_route_state(one: RouteRow, risk: float = math.inf) -> str:
-    """Return the state of a route, as distinct from one blocked with nothing fallen and from one not evaluated."""
-    if is_blocked_standing(one):
-        return say_standing()
-    return say_outlook(one, risk) if one.evaluated else say_unevaluated()
+def say_route_state(one: RouteRow, risk: float) -> str:
+    """Return the state of a route, as distinct from one blocked with nothing fallen."""
+    return say_standing() if is_blocked_standing(one) else _say_outlook(one, risk)
 
 
-def is_blocked_standing(one: RouteRow) -> bool:
-    """Tell whether a route is blocked with nothing fallen: no anchor helps it then."""
+def say_room_state(one: RoomRow) -> str:
+    """Return the state of the best way from a room to the street."""
+    return say_standing() if is_blocked_standing(one) else say_state(one.state)
+
+
+def is_blocked_standing(one: RouteRow | RoomRow) -> bool:
+    """Tell whether a route or a room's way out is blocked with nothing fallen: no anchor helps it then."""
     return not one.is_fixed
 
 
@@ -106,10 +117,10 @@ def say_blocked(one: SegmentRow | RouteRow) -> str:
 
 
 def say_taken(one: SegmentRow | RouteRow) -> str:
-    """Return the chance of a blockage or a reduction, as far as it is known."""
-    if one.blocked_or_reduced is None:
+    """Return the chance that it is narrowed or blocked; a dash where that is not known."""
+    if one.blocked_or_reduced is None or one.state == RouteState.NOT_KNOWN:
         return words.DASH
-    return _("not known") if one.state == RouteState.NOT_KNOWN else say_chance(one.blocked_or_reduced)
+    return say_chance(one.blocked_or_reduced)
 
 
 def say_lost(one: RoomRow) -> str:
@@ -118,10 +129,14 @@ def say_lost(one: RoomRow) -> str:
 
 
 def say_between(standing: Chance, fallen: Chance | None, *, is_known: bool) -> str:
-    """Return a chance; where it is not known, those with unconfirmed pieces standing and fallen."""
+    """Return a chance; where it is not known, those with unconfirmed pieces standing and fallen, or at least that."""
     low, high = (words.in_percent(one.probability) for one in (standing, fallen or standing))
-    if is_known or low == high:
+    if is_known:
         return say_chance(standing)
+    if low == high:
+        return (
+            _("not known (at least {low} %)", low=low).replace(" ", words.NO_BREAK) if standing.high else _("not known")
+        )
     return _("not known ({low} to {high} %)", low=low, high=high).replace(" ", words.NO_BREAK)
 
 
@@ -152,8 +167,7 @@ def _say_known_basis(chance: Chance) -> str:
 def say_recorded(one: SegmentRow | RouteRow) -> str:
     """Return the state under the recorded motion itself."""
     state = one.under_record
-    said = {RouteState.OPEN: _("open"), RouteState.REDUCED: _("reduced"), RouteState.BLOCKED: _("blocked")}
-    return words.DASH if state is None else f"{state.symbol} {said[state]}"
+    return words.DASH if state is None else say_state(state)
 
 
 def find_chance(one: SegmentRow | RouteRow) -> float:
@@ -213,12 +227,17 @@ def _of_pieces() -> tuple[str, ...]:
 def _of_states() -> tuple[str, ...]:
     return (
         _(
-            "A segment is blocked if the width left is below the required one, and reduced if narrowed but still wide "
-            "enough; a route is blocked if a room or an open end that it serves is cut off from its way out."
+            "A segment is blocked if the width left is below the required one; a route is blocked if a room or an open "
+            "end that it serves is cut off from its way out, and a room if all its ways to the street are."
         ),
         _(
-            "Segments and routes that are blocked or reduced under the recorded motion itself count as such whatever "
-            "their chance."
+            "Segments and routes that are blocked under the recorded motion itself count as blocked whatever their chance."
+        ),
+        _(
+            "Not known: a piece without a position or Route may stand in the way, a stair has no Clear width, or the "
+            "class of a piece is not confirmed. Pieces whose chance is below the chosen risk, that are anchored, or "
+            "that stand on another floor or in another room do not matter. Nothing falls on a stair but pieces that "
+            "name it."
         ),
         _("Not counted: pieces that slide or roll on castors, spilt contents, doors that jam or are shut, and people."),
     )
@@ -277,13 +296,25 @@ def list_doubts(routes: RouteTables) -> list[str]:
     return [flag for flag in DOUBTS.values() if flag in raised]
 
 
-def say_to_settle(doubts: Sequence[str]) -> str:
-    """Return what is to be filled in to settle what is not known; nothing where nothing is."""
-    settles = {
+def say_missing(missing: Sequence[MissingRow]) -> str:
+    """Return what is to be filled in, and in which cells; nothing where nothing is missing."""
+    return "; ".join(_say_one_missing(one) for one in missing)
+
+
+def _say_one_missing(one: MissingRow) -> str:
+    names, cells = name_few(one.names), words.name_first(one.cells, MOST_NAMED)
+    said = {
+        "clear_width": _("fill in the Clear width of {names}", names=names),
+        "stair_pieces": _("check the Route of {names}: it names that stair", names=names),
+        "stair_floor": _("fill in the Clear width of {names} and, as it is a stair, no Floor", names=names),
+        "ends": _("fill in From, To and Floor of {names}", names=names),
+        "places": _("fill in X and Y of {names}", names=names),
+        "positions": _("fill in X and Y, or the Route, of {names}", names=names),
+        "beyond_stairs": _("add the way from {names} to an exit in Routes", names=names),
         "unconfirmed_period": _("enter the Period T1 or the Height in the sheet Building"),
         "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
-    }
-    return "; ".join(settles[flag] for flag in doubts)
+    }[one.what]
+    return f"{said} ({cells})" if cells else said
 
 
 # ---------------------------------------------------------------- lists
@@ -310,7 +341,7 @@ def say_way(way: WayRow, routes: RouteTables) -> str:
         "{end} by {segments}: {chance}",
         end=words.cut(way.end, 40),
         segments=_name_segments([one.segment for one in segments]),
-        chance=_say_way_blocked(way) if any(one.evaluated for one in segments) else _("not evaluated"),
+        chance=_say_way_blocked(way),
     )
     if not way.shared:
         return said
@@ -319,7 +350,8 @@ def say_way(way: WayRow, routes: RouteTables) -> str:
 
 
 def _say_way_blocked(way: WayRow) -> str:
-    return say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=way.is_known)
+    is_known = way.state != RouteState.NOT_KNOWN
+    return say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=is_known)
 
 
 def _name_segments(names: Sequence[str]) -> str:

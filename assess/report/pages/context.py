@@ -16,7 +16,7 @@ from assess.report.figures.motion_figures import choose_traced, draw_motion, dra
 from assess.report.figures.plan import build_plan
 from assess.report.figures.risk_contours import build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
-from assess.report.findings import annual_chances, motions, route_rows, route_words, trials
+from assess.report.findings import annual_chances, motions, route_page, route_rows, route_words, trials
 from assess.report.findings.approach import list_approach, list_sources
 from assess.report.findings.floor_lines import say_counts, say_motions
 from assess.report.findings.uncertain import say_condition
@@ -172,6 +172,10 @@ def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
         "fixes_bound": route_rows.say_fixes_bound(found),
         "unfixable": route_words.list_unfixable(found),
         "untouched": route_rows.name_untouched(found),
+        "way_lines": route_page.list_route_lines(found),
+        "room_lines": route_page.list_room_lines(found),
+        "most_way_lines": route_page.MOST_LINES,
+        "state_rules": route_words.list_rules(found.risk),
         "route_lines": route_rows.describe_routes(found),
         "uncounted": route_rows.say_uncounted(found),
         "route_cautions": route_words.list_cautions(found),
@@ -279,7 +283,6 @@ FILTERS: Mapping[str, Any] = {
     "fixed": words.fixed,
     "flag_name": lambda flag: _(flag.replace("_", " ")),
     "name_rooms": route_words.name_rooms,
-    "has_evaluated_way": route_rows.has_evaluated_way,
     "in_cm_s": words.in_cm_s,
     "in_g": words.in_g,
     "in_m": words.in_m,
@@ -300,6 +303,9 @@ FILTERS: Mapping[str, Any] = {
     "say_chance": route_words.say_chance,
     "say_left_out": route_words.say_left_out,
     "say_lost": route_words.say_lost,
+    "say_missing": route_words.say_missing,
+    "say_room_state": route_words.say_room_state,
+    "say_state": route_words.say_state,
     "say_other_rooms": route_words.say_other_rooms,
     "say_risk": route_words.say_risk,
     "say_occupants": route_words.say_occupants,

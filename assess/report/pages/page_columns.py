@@ -248,7 +248,7 @@ ROUTE_TABLES: Mapping[str, tuple[type, tuple[str, ...]]] = {
         "blocked_if_anchors_fail_probability", "most_likely_piece",
     )),
     "rooms": (RoomRow, (
-        "room", "floor", "exits", "loses_every_exit_probability", "loses_if_anchors_fail_probability",
+        "room", "floor", "exits", "state", "loses_every_exit_probability", "loses_if_anchors_fail_probability",
         "most_likely_piece", "ways",
     )),
     "floors": (FloorRoutesRow, (

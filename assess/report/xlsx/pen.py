@@ -44,7 +44,7 @@ LOOKS: Mapping[str, Mapping[str, Any]] = {
 }  # fmt: skip
 """The looks of cells."""
 _INKS = {
-    RouteState.OPEN: "#1a1a1a", RouteState.REDUCED: "#1a1a1a", RouteState.NOT_KNOWN: "#000000",
+    RouteState.OPEN: "#1a1a1a", RouteState.DOUBTFUL: "#1a1a1a", RouteState.NOT_KNOWN: "#000000",
     RouteState.BLOCKED: "#ffffff",
 }  # fmt: skip
 

@@ -132,7 +132,7 @@ def _outlook(row: type) -> list[Column]:
     return [
         *(_known(row, name, 11, lambda one: one.state != RouteState.NOT_KNOWN) for name in names),
         *_of(row, "blocked_if_unconfirmed_fall_probability", width=13),
-        _said(row, "doubts", 30, lambda one: say.say_to_settle(one.doubts)),
+        _said(row, "missing", 30, lambda one: say.say_missing(one.missing)),
         *_of(row, "blocked_if_anchors_fail_probability", width=11),
         _said(row, "under_record", 13, of(lambda one: say.say_recorded(one) if one.under_record is not None else "")),
         _said(row, "most_likely_piece", 14, of(_name_piece)),
@@ -145,13 +145,16 @@ def _outlook(row: type) -> list[Column]:
 def _route_columns(routes: RouteTables) -> list[Column]:
     return [
         *_of(RouteRow, "route"),
+        _said(RouteRow, "fixes", 0, _name_fixes),
         _said(RouteRow, "floors", 0, lambda one: ", ".join(one.floors)),
-        of_field(route_fields(RouteRow)["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
-        Column(_("Pieces to anchor or move"), 0, lambda one: ", ".join(fix.item for fix in one.fixes)),
-        _said(RouteRow, "unevaluated_segments", 0, lambda one: ", ".join(one.unevaluated_segments)),
+        _said(RouteRow, "from_places", 0, lambda one: ", ".join(one.from_places)),
+        _said(RouteRow, "to_places", 0, lambda one: ", ".join(one.to_places)),
         _said(RouteRow, "state", 0, lambda one: say.say_route_state(one, routes.risk)),
         *_outlook(RouteRow),
         Column(_("Chance left then"), 0, lambda one: one.fixes[-1].left if one.fixes else None, CHANCE),
+        of_field(route_fields(RouteRow)["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
+        _said(RouteRow, "decisive_segment", 0, lambda one: _name_segment(routes, one.decisive_segment)),
+        _said(RouteRow, "unevaluated_segments", 0, lambda one: ", ".join(one.unevaluated_segments)),
     ]
 
 
@@ -289,7 +292,7 @@ def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
     """Write every room with its safest way out, and the next, which shares as few segments with it as possible."""
     rooms = content.run.route_tables.rooms
     below = pen.listing(page, _room_columns(content.run.route_tables), rooms)
-    pen.bar(page, f"D2:D{below}")
+    pen.bar(page, f"H2:H{below}")
     page.freeze_panes(1, 1)
     page.repeat_columns(0)
 
@@ -299,12 +302,15 @@ def _room_columns(routes: RouteTables) -> list[Column]:
         *_of(RoomRow, "room", width=22),
         *_of(RoomRow, "floor", width=8),
         _said(RoomRow, "exits", 26, _say_exits),
+        _said(RoomRow, "state", 18, lambda one: say.say_room_state(one)),
+        _said(RoomRow, "decisive_segment", 24, lambda one: _name_segment(routes, one.decisive_segment)),
+        _said(RoomRow, "fixes", 30, _name_fixes),
+        _said(RoomRow, "missing", 30, lambda one: say.say_missing(one.missing)),
         *(
             _known(RoomRow, f"loses_every_exit_{part}", width, lambda one: one.is_known)
             for part, width in (("probability", 11), ("low", 9), ("high", 9), ("independent", 12), ("correlated", 10))
         ),
         *_of(RoomRow, "loses_if_unconfirmed_fall_probability", width=12),
-        _said(RoomRow, "doubts", 30, lambda one: say.say_to_settle(one.doubts)),
         *_of(RoomRow, "loses_if_anchors_fail_probability", width=9),
         _said(RoomRow, "most_likely_piece", 14, _name_piece),
         _said(RoomRow, "loses_every_exit_is_joint", 30, lambda one: say.say_basis(one.loses_every_exit)),
@@ -321,14 +327,21 @@ def _way_columns(routes: RouteTables, place: int, labels: tuple[str, str, str]) 
         return lambda one: read(one.ways[place]) if len(one.ways) > place else None
 
     def chance(way: WayRow) -> float | None:
-        is_known = any(routes.segments[at].evaluated for at in way.segment_indices)
-        return way.blocked.probability if is_known and way.is_known else None
+        return way.blocked.probability if way.state != RouteState.NOT_KNOWN else None
 
     return [
         Column(labels[0], 16, of(lambda way: way.end)),
         Column(labels[1], 60, of(lambda way: _name(routes, way.segment_indices))),
         Column(labels[2], 11, of(chance), CHANCE),
     ]
+
+
+def _name_fixes(one: RouteRow | RoomRow) -> str:
+    return ", ".join(fix.item for fix in one.fixes)
+
+
+def _name_segment(routes: RouteTables, at: int | None) -> str:
+    return "" if at is None else _name(routes, [at])
 
 
 def _shared(one: RoomRow) -> list[int]:

@@ -1,0 +1,232 @@
+"""The four states: what makes a segment, route or room open, doubtful, blocked or not known, and what is missing."""
+
+import pytest
+
+from assess.route_results import RouteState
+from assess.routes.scene import Scene
+from tests.routes.buildings import CORRIDOR, corridor, evaluated, make_falls, one_segment, piece, place, stretch
+
+OPEN, DOUBTFUL, BLOCKED, NOT_KNOWN = RouteState.OPEN, RouteState.DOUBTFUL, RouteState.BLOCKED, RouteState.NOT_KNOWN
+WHOLE, LOOSE = piece(1.5, 0.0), {"x": None, "y": None}
+"""1.5 m high at the edge it blocks the 1.8 m of a segment; a loose piece has neither a position nor a Route."""
+
+
+def falls_in(count: int, runs: int):
+    """Return how one piece falls in `count` of `runs` draws."""
+    return make_falls([count / runs], fell={0: [at < count for at in range(runs)]})
+
+
+@pytest.mark.parametrize(("count", "runs", "state"), [
+    (0, 100, DOUBTFUL), (0, 200, OPEN), (1, 300, OPEN), (3, 200, DOUBTFUL), (59, 200, DOUBTFUL), (60, 200, BLOCKED),
+    (200, 200, BLOCKED),
+])  # fmt: skip
+def test_by_the_chance_and_the_upper_end_of_its_interval(count, runs, state):
+    """Wilson, 95 %: 0 of 100 is at most 3.7 %, 0 of 200 1.9 %, 1 of 300 1.9 %, 3 of 200 4.3 %; 60 of 200 is 0.3."""
+    found = evaluated(falls_in(count, runs), [WHOLE])
+    assert found.segments[0].state is found.routes[0].state is state
+    assert found.segments[0].missing == found.routes[0].missing == ()
+
+
+def test_of_formulas_the_chance_itself_is_the_upper_end():
+    states = [one_segment(make_falls([chance]), [WHOLE]).state for chance in (0.0299, 0.03, 0.2999, 0.3)]
+    assert states == [OPEN, DOUBTFUL, DOUBTFUL, BLOCKED]
+
+
+def test_the_chosen_risk_moves_open_and_not_blocked():
+    states = [one_segment(make_falls([0.1]), [WHOLE], risk=risk).state for risk in (0.05, 0.1, 0.2)]
+    assert states == [DOUBTFUL, DOUBTFUL, OPEN]
+    assert one_segment(make_falls([0.35]), [WHOLE], risk=0.5).state is BLOCKED
+
+
+# ---------------------------------------------------------------- pieces that are not counted
+
+
+def lone(chance: float, *, high: float | None = None, **more):
+    """Evaluate a corridor of which everything is known but one piece of its floor, without a position or Route."""
+    given = {key: more.pop(key) for key in ("anchored", "in_record", "unconfirmed") if key in more}
+    falls = make_falls([chance], high=[chance if high is None else high], **given)
+    return one_segment(falls, [piece(2.0, **{**LOOSE, **more})], corridor(room="Corridor"))
+
+
+def test_a_piece_that_may_stand_anywhere_leaves_it_not_known():
+    found = lone(0.2)
+    assert (found.state, found.blocked.probability) == (NOT_KNOWN, 0)
+    (row,) = found.missing
+    assert (row.what, row.names, row.cells) == ("positions", ("P0",), ("Items!A2",))
+
+
+@pytest.mark.parametrize("given", [
+    {"chance": 0.029}, {"chance": 0.2, "anchored": [True]}, {"chance": 0.2, "room": "Office"},
+    {"chance": 0.2, "floor": "2"}, {"chance": 0.2, "route": "Elsewhere"},
+], ids=["unlikely", "anchored", "another room", "another floor", "another route"])  # fmt: skip
+def test_one_that_cannot_matter_does_not(given):
+    assert (lone(**given).state, lone(**given).missing) == (OPEN, ())
+
+
+@pytest.mark.parametrize("given", [
+    {"chance": 0.01, "high": 0.03}, {"chance": 0.0, "in_record": [1]}, {"chance": 0.2, "room": "corridor"},
+    {"chance": 0.4, "unconfirmed": [0]},
+], ids=["upper end", "fell in the record", "own room", "unconfirmed"])  # fmt: skip
+def test_one_that_could_matter_does(given):
+    assert (lone(**given).state, [row.what for row in lone(**given).missing]) == (NOT_KNOWN, ["positions"])
+
+
+def test_blocked_wins_over_what_is_missing():
+    items = [piece(2.0, x=5.0, y=1.1, width=0.8, axis="Y"), piece(2.0, **LOOSE)]
+    found = [one_segment(make_falls([chance, 0.9]), items, corridor()) for chance in (0.29, 0.3)]
+    assert [one.state for one in found] == [NOT_KNOWN, BLOCKED]
+    assert [len(one.missing) for one in found] == [1, 0]
+
+
+def test_a_segment_without_a_plan_needs_its_places():
+    """The piece has a position, which tells nothing as long as the segment has none."""
+    items, ends = [piece(2.0, x=5.0, y=1.1)], [place("West", "room"), place("East", "exit")]
+    (found,) = evaluated(make_falls([0.2]), items, [corridor()], ends).segments
+    (row,) = found.missing
+    assert (found.state, found.blocked, row.what, row.names) == (NOT_KNOWN, None, "places", ("West", "East"))
+    (unjoined,) = evaluated(make_falls([0.2]), items, [stretch()]).segments[0].missing
+    assert (unjoined.what, unjoined.names) == ("ends", ("Way: a",))
+    low = evaluated(make_falls([0.02]), items, [corridor()], ends).segments[0]
+    assert (low.state, low.evaluated, low.blocked.probability) == (OPEN, True, 0)
+
+
+def test_a_floor_of_which_no_furniture_is_listed_is_not_known_without_a_plan():
+    (found,) = evaluated(make_falls([]), [], [stretch()]).segments
+    assert (found.state, found.evaluated) == (NOT_KNOWN, False)
+
+
+# ---------------------------------------------------------------- stairs
+
+STAIR_ENDS = (place("Up", "stair", (0, 0), floor="2"), place("Down", "stair", (0, 0)))
+FLIGHT = {"route": "Stair", "floor": ""}
+
+
+def flight(clear_width, *items, chance=0.2):
+    """Evaluate a flight of stairs with pieces."""
+    one = stretch("flight", "Up", "Down", **FLIGHT, clear_width=clear_width)
+    return evaluated(make_falls([chance] * len(items)), items, [one], STAIR_ENDS).routes[0]
+
+
+def test_a_stair_of_known_width_is_open():
+    found = flight(1.2, piece(2.0, **LOOSE))
+    assert (found.state, found.blocked.probability, found.from_places, found.to_places) == (
+        OPEN, 0, ("Up",), ("Down",),
+    )  # fmt: skip
+
+
+def test_one_without_a_clear_width_is_not_known():
+    found = flight(None)
+    assert (found.state, [(row.what, row.names, row.cells) for row in found.missing]) == (
+        NOT_KNOWN, [("clear_width", ("Stair: flight",), ("Routes!A2",))],
+    )  # fmt: skip
+
+
+def test_pieces_that_name_a_stair_are_evaluated_by_their_edge_distance():
+    """1.2 m clear: 1.5 m high at the edge it blocks the stair, in 0.2; a width is needed first."""
+    own = piece(1.5, 0.0, route="Stair", segment="flight")
+    found, blank = flight(1.2, own), flight(None, own)
+    assert (found.state, found.blocked.probability) == (DOUBTFUL, 0.2)
+    assert (blank.state, [row.what for row in blank.missing]) == (NOT_KNOWN, ["clear_width", "stair_pieces"])
+    assert blank.missing[1].names == ("P0",)
+    assert flight(None, own, chance=0.5).state is BLOCKED, "blocked wins"
+
+
+def test_a_segment_on_no_floor_that_joins_nothing_is_no_stair():
+    found = evaluated(make_falls([]), [], [stretch(floor="", clear_width=1.2)]).segments[0]
+    assert (found.state, found.missing[0].what) == (NOT_KNOWN, "ends")
+
+
+def test_one_between_floors_that_names_a_floor_says_so():
+    one = stretch("flight", "Up", "Down", route="Stair", floor="1")
+    found = evaluated(make_falls([0.2]), [piece(2.0, **LOOSE)], [one], STAIR_ENDS).segments[0]
+    assert [row.what for row in found.missing] == ["stair_floor", "positions"]
+
+
+# ---------------------------------------------------------------- rooms
+
+UP = place("Office", "room", (-5, 0), floor="2")
+HALL, STREET = place("Hall", "", (5, 0)), place("Street", "exit", (9, 0))
+WAY = [stretch("corridor", "Office", "Up", floor="2", route="Upper"),
+       stretch("flight", "Up", "Down", **FLIGHT, clear_width=1.2),
+       stretch("hall", "Down", "Street", route="Lower")]  # fmt: skip
+BESIDE_HALL = piece(1.5, 0.0, route="Lower", segment="hall")
+
+
+def test_a_room_goes_by_its_way_to_the_street_stairs_included():
+    """The routes are three; the room's way takes all of them, so that the hall below decides."""
+    found = evaluated(make_falls([0.2]), [BESIDE_HALL], WAY, [UP, *STAIR_ENDS, STREET])
+    (room,) = found.rooms
+    assert [one.state for one in found.routes] == [OPEN, OPEN, DOUBTFUL]
+    assert (room.state, room.decisive_segment, [fix.item for fix in room.fixes]) == (DOUBTFUL, 2, ["P0"])
+    narrow = evaluated(make_falls([]), [], [WAY[0], stretch("flight", "Up", "Down", **FLIGHT, clear_width=None),
+                                            WAY[2]], [UP, *STAIR_ENDS, STREET])  # fmt: skip
+    assert (narrow.rooms[0].state, [row.what for row in narrow.rooms[0].missing]) == (NOT_KNOWN, ["clear_width"])
+    assert (narrow.unknown_rooms, narrow.cut_off_rooms_expected) == (1, 0)
+
+
+def test_beyond_a_stair_nothing_is_known():
+    found = evaluated(make_falls([0.2]), [BESIDE_HALL], WAY[:1], [UP, *STAIR_ENDS]).rooms[0]
+    assert (found.state, found.by_stairs) == (NOT_KNOWN, True)
+    assert [(row.what, row.names) for row in found.missing] == [("beyond_stairs", ("Up",))]
+
+
+def test_one_known_way_is_enough():
+    """East is open for sure; of the way west nothing is known, which cannot cut the room off."""
+    places = [place("Room", "room", (0, 0)), place("East", "exit", (5, 0)), place("West", "exit")]
+    segments = [stretch("east", "Room", "East", room="Hall"), stretch("west", "Room", "West", room="Gallery")]
+    items = [piece(2.0, **LOOSE, room="Gallery")]
+    found = evaluated(make_falls([0.5]), items, segments, places)
+    assert [one.state for one in found.segments] == [OPEN, NOT_KNOWN]
+    assert (found.rooms[0].state, found.rooms[0].missing) == (OPEN, ())
+    assert [way.end for way in found.rooms[0].ways] == ["East", "West"]
+
+
+def test_what_is_missing_matters_only_with_what_is_unconfirmed():
+    """Each of the two ways may be blocked by something that is not known: only both cut the room off."""
+    places = [place("Room", "room", (0, 0)), place("East", "exit", (5, 0)), place("West", "exit")]
+    segments = [stretch("east", "Room", "East", room="Hall"), stretch("west", "Room", "West", room="Gallery")]
+    items = [piece(1.5, 0.0, route="Way", segment="east"), piece(2.0, **LOOSE, room="Gallery")]
+    (room,) = evaluated(make_falls([0.9, 0.5], unconfirmed=[0]), items, segments, places).rooms
+    assert room.state is NOT_KNOWN
+    assert {row.what for row in room.missing} <= {"unconfirmed_period", "positions"}
+    assert room.missing
+
+
+# ---------------------------------------------------------------- what to fix
+
+
+def test_fixes_bring_the_upper_end_below_the_risk():
+    """3 of 200 draws are 1.5 %, below 3 %, but the interval goes to 4.3 %: doubtful, and there is something to fix."""
+    found = evaluated(falls_in(3, 200), [WHOLE]).routes[0]
+    assert (found.state, [fix.item for fix in found.fixes], found.is_fixed) == (DOUBTFUL, ["P0"], True)
+    assert found.decisive_segment == 0
+    open_one = evaluated(falls_in(1, 300), [WHOLE]).routes[0]
+    assert (open_one.state, open_one.fixes) == (OPEN, ())
+
+
+def test_with_its_fixes_held_a_route_is_open():
+    """A second evaluation with those pieces anchored says so."""
+    fell = {0: [at < 40 for at in range(400)], 1: [40 <= at < 70 for at in range(400)], 2: [False] * 400}
+    items = [WHOLE, WHOLE, WHOLE]
+    before = evaluated(make_falls([0.1, 0.075, 0.0], fell=fell), items).routes[0]
+    held = [at in {fix.item_index for fix in before.fixes} for at in range(3)]
+    after = evaluated(make_falls([0.1, 0.075, 0.0], fell=fell, anchored=held), items).routes[0]
+    assert (before.state, held, after.state) == (DOUBTFUL, [True, True, False], OPEN)
+
+
+def test_a_scene_evaluates_what_is_missing_once(monkeypatch):
+    """What is missing of a segment is found once, however many routes and rooms take it."""
+    from assess.routes import scene
+
+    asked = []
+    real = scene.find_missing
+    monkeypatch.setattr(scene, "find_missing", lambda one, *rest: asked.append(one.segment.segment) or real(one, *rest))
+    evaluated(make_falls([0.2]), [BESIDE_HALL], WAY, [UP, *STAIR_ENDS, STREET])
+    assert sorted(asked) == ["corridor", "flight", "hall"]
+    assert Scene.missing.__doc__
+
+
+def test_along_a_corridor_the_plan_tells():
+    """A placed piece is counted by its position: it leaves nothing open."""
+    found = evaluated(make_falls([0.2]), [piece(2.0, x=5.0, y=8.0)], [corridor()], CORRIDOR)
+    assert (found.segments[0].state, found.rooms[0].state) == (OPEN, OPEN)
