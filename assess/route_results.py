@@ -43,8 +43,8 @@ class RouteState(StrEnum):
     """The state of a segment, of a route, or of a room's way to the street.
 
     Blocked: the chance of a blockage is at least `BLOCKED_FROM`, or it is blocked under the recorded motion itself, or
-    with nothing fallen; this wins over not known. Not known: something is missing that could change the state. Open: the
-    upper end of the interval of the chance is below the chosen risk. Doubtful: all others.
+    with nothing fallen; this wins over not known. Not known: something is missing that could change the state. Open:
+    the upper end of the interval of the chance is below the chosen risk. Doubtful: all others.
     """
 
     OPEN = "open"
@@ -304,7 +304,7 @@ class SegmentRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RouteFixRow:
-    """One step of what to fix for a route or a room: the piece, its gain, 0 where others must follow, and the chance left [-].
+    """One step of what to fix for a route or a room: the piece, its gain, 0 where others must follow, the chance left.
 
     Unconfirmed pieces count as fallen in both until they are fixed.
     """
@@ -453,8 +453,8 @@ class FloorRoutesRow:
 
     Expected losses are of those that are known; `unknown_segments`, `unknown_routes` and `unknown_rooms` count the
     others. `any_room_cut_off` is the chance that at least one of its rooms loses every exit; None without rooms, or
-    where something is missing that decides whether it is below the chosen risk. `uncounted_pieces` have neither a usable
-    position nor a Route: whether they fall onto a segment is not known.
+    where something is missing that decides whether it is below the chosen risk. `uncounted_pieces` have neither a
+    usable position nor a Route: whether they fall onto a segment is not known.
     """
 
     floor: str

@@ -266,7 +266,7 @@ def _conditions(row: type) -> Schema:
     return {
         "if": {"properties": {"evaluated": {"const": True}}},
         "then": {"properties": dict.fromkeys(chances, _ref("chance"))},
-        "else": {"properties": dict.fromkeys(chances, {"type": "null"})},
+        "else": {"properties": {name: {"type": "null"} for name in chances}},
     }
 
 

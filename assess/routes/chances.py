@@ -135,8 +135,9 @@ class Couplings:
 
     The draws may be of more pieces than `keys`: what depends on another piece must not be asked of them. `ends` are the
     draws `NONE` and `EVERY`. `runs` is the least number of draws of a simulated piece, 0 without one; `is_joint` holds
-    where all were simulated, in the same draws; `sizes` is the number of draws of each of those; `is_drawn` tells whether any of the three was drawn rather than
-    evaluated in full. `pieces`, `unverified` and `unconfirmed` count pieces, not rows; the first leaves out the last.
+    where all were simulated, in the same draws; `sizes` is the number of draws of each of those; `is_drawn` tells
+    whether any of the three was drawn rather than evaluated in full. `pieces`, `unverified` and `unconfirmed` count
+    pieces, not rows; the first leaves out the last.
     """
 
     keys: tuple[Key, ...]

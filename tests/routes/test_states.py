@@ -3,7 +3,6 @@
 import pytest
 
 from assess.route_results import RouteState
-from assess.routes.scene import Scene
 from tests.routes.buildings import CORRIDOR, corridor, evaluated, make_falls, one_segment, piece, place, stretch
 
 OPEN, DOUBTFUL, BLOCKED, NOT_KNOWN = RouteState.OPEN, RouteState.DOUBTFUL, RouteState.BLOCKED, RouteState.NOT_KNOWN
@@ -212,18 +211,6 @@ def test_with_its_fixes_held_a_route_is_open():
     held = [at in {fix.item_index for fix in before.fixes} for at in range(3)]
     after = evaluated(make_falls([0.1, 0.075, 0.0], fell=fell, anchored=held), items).routes[0]
     assert (before.state, held, after.state) == (DOUBTFUL, [True, True, False], OPEN)
-
-
-def test_a_scene_evaluates_what_is_missing_once(monkeypatch):
-    """What is missing of a segment is found once, however many routes and rooms take it."""
-    from assess.routes import scene
-
-    asked = []
-    real = scene.find_missing
-    monkeypatch.setattr(scene, "find_missing", lambda one, *rest: asked.append(one.segment.segment) or real(one, *rest))
-    evaluated(make_falls([0.2]), [BESIDE_HALL], WAY, [UP, *STAIR_ENDS, STREET])
-    assert sorted(asked) == ["corridor", "flight", "hall"]
-    assert Scene.missing.__doc__
 
 
 def test_along_a_corridor_the_plan_tells():

@@ -67,7 +67,8 @@ def _count_states(states: Sequence[RouteState]) -> str:
 
 def say_to_fill_in(routes: RouteTables) -> list[str]:
     """Return what to fill in so that routes and rooms are known; nothing where all are."""
-    missing = join_missing(row for one in (*routes.routes, *routes.rooms) for row in one.missing)
+    of_rooms = [row for one in routes.rooms for row in one.missing]
+    missing = join_missing([row for one in routes.routes for row in one.missing] + of_rooms)
     return [_("To settle what is not known: {fix}.", fix=say_missing(missing))] if missing else []
 
 

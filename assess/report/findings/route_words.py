@@ -134,9 +134,8 @@ def say_between(standing: Chance, fallen: Chance | None, *, is_known: bool) -> s
     if is_known:
         return say_chance(standing)
     if low == high:
-        return (
-            _("not known (at least {low} %)", low=low).replace(" ", words.NO_BREAK) if standing.high else _("not known")
-        )
+        said = _("not known (at least {low} %)", low=low) if standing.high else _("not known")
+        return said.replace(" ", words.NO_BREAK)
     return _("not known ({low} to {high} %)", low=low, high=high).replace(" ", words.NO_BREAK)
 
 
@@ -231,7 +230,8 @@ def _of_states() -> tuple[str, ...]:
             "end that it serves is cut off from its way out, and a room if all its ways to the street are."
         ),
         _(
-            "Segments and routes that are blocked under the recorded motion itself count as blocked whatever their chance."
+            "Segments and routes that are blocked under the recorded motion itself count as blocked whatever their "
+            "chance."
         ),
         _(
             "Not known: a piece without a position or Route may stand in the way, a stair has no Clear width, or the "

@@ -302,7 +302,7 @@ def _room_columns(routes: RouteTables) -> list[Column]:
         *_of(RoomRow, "room", width=22),
         *_of(RoomRow, "floor", width=8),
         _said(RoomRow, "exits", 26, _say_exits),
-        _said(RoomRow, "state", 18, lambda one: say.say_room_state(one)),
+        _said(RoomRow, "state", 18, say.say_room_state),
         _said(RoomRow, "decisive_segment", 24, lambda one: _name_segment(routes, one.decisive_segment)),
         _said(RoomRow, "fixes", 30, _name_fixes),
         _said(RoomRow, "missing", 30, lambda one: say.say_missing(one.missing)),
