@@ -22,7 +22,7 @@ from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables
 Row = TypeVar("Row")
 MOST_LINES = 12
 """Lines of either table that a page has room for."""
-MOST_FIXES = 8
+MOST_FIXES = 10
 """Pieces that a line names."""
 MOST_NAMES = 16
 """Names that a line holds."""
@@ -156,7 +156,7 @@ def say_advice(one: RouteRow | RoomRow) -> str:
 
 
 def _name(places: Sequence[str]) -> str:
-    return words.name_first([words.cut(one, 30) for one in places], 3)
+    return words.name_first([words.cut(one, 30) for one in places], 2)
 
 
 def _name_exits(one: RoomRow) -> str:
