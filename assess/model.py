@@ -1,6 +1,7 @@
 """The inventory: what a workbook holds, checked, in SI units."""
 
 import hashlib
+import math
 import posixpath
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -201,6 +202,40 @@ def _parse_checked(data: bytes, file: str, sha256: str) -> tuple[Record, ...]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FloorPlan:
+    """A plan as it lies under the pieces of a floor.
+
+    Parameters
+    ----------
+    path : Path
+        The user's file.
+    content : bytes
+        What is drawn of it: a grey JPEG; or, if `is_lines`, what `assess.plans.linework.unpack` reads.
+    left, bottom : float
+        Where its lower left corner lies [m].
+    width, height : float
+        Its sides [m].
+    turn_deg : float
+        By how much it is turned about that corner, anticlockwise.
+    """
+
+    path: Path
+    content: bytes = field(repr=False)
+    is_lines: bool
+    left: float
+    bottom: float
+    width: float
+    height: float
+    turn_deg: float = 0.0
+
+    def holds(self, at: tuple[float, float]) -> bool:
+        """Tell whether a point of the floor [m] lies on the plan."""
+        cos, sin = math.cos(math.radians(self.turn_deg)), math.sin(math.radians(self.turn_deg))
+        x, y = at[0] - self.left, at[1] - self.bottom
+        return 0 <= x * cos + y * sin <= self.width and 0 <= y * cos - x * sin <= self.height
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Floor:
     """One floor. `elevation` [m], `pfa` [m/s2] and `pfv` [m/s] by axis where given, `records` by axis.
 
@@ -214,7 +249,7 @@ class Floor:
     pfa: Mapping[Axis, float] = field(default_factory=dict)
     pfv: Mapping[Axis, float] = field(default_factory=dict)
     records: Mapping[Axis, tuple[FloorRecord, ...]] = field(default_factory=dict)
-    plan: Path | None = None
+    plan: FloorPlan | None = None
     cells: Mapping[str, str] = field(default_factory=dict)
 
     def cell(self, name: str) -> str:
@@ -347,6 +382,8 @@ class Inventory:
         Headers of the columns of Items that `assess` does not know.
     hazard : HazardCurve, optional
         How often a year the ground shakes; compared by the hash of its file.
+    photos : mapping of str to bytes
+        Photos of pieces as small JPEGs, by what the field `photo` in `Item.more` names.
     files : mapping of str to str
         Hashes (SHA-256) of the recorded motions and of the hazard curve, by name.
     language : str
@@ -374,6 +411,7 @@ class Inventory:
     extra_columns: tuple[str, ...] = ()
     hazard: HazardCurve | None = field(default=None, compare=False)
     files: Mapping[str, str] = field(default_factory=dict)
+    photos: Mapping[str, bytes] = field(default_factory=dict)
     language: str = "en"
     sheets: Mapping[str, str] = field(default_factory=dict)
     letters: Mapping[str, Mapping[str, str]] = field(default_factory=dict)

@@ -21,15 +21,20 @@ MOST_PIXELS = 50_000_000
 """Pixels of a picture [-]: they take up to 200 MB while it is decoded."""
 SHOWN = 1600
 """Pixels [-] of the longer side that a report shows: 300 to the inch of a logo of 13 cm."""
+PHOTO = 600
+"""Pixels of the longer side of a photo."""
 STRIP = 64
 """Rows of pixels of the smaller picture that are made at once."""
 
-_PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+PNG, JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+"""The first bytes of each."""
 _FORMATS = ("PNG", "JPEG")
 _FRAMES = frozenset({*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC})
 """Markers of JPEG's frame headers; the three are of tables."""
 _ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
 """Markers without a length."""
+_ORIENTATION = 0x0112
+"""Tag of Exif: how a camera was held."""
 
 
 class PictureError(InputError):
@@ -75,15 +80,65 @@ def prepare_picture(data: bytes) -> tuple[bytes, str]:
         As `check_picture`.
     """
     picture = _decode(data)
-    kind = "PNG" if data.startswith(_PNG) else "JPEG"
+    kind = "PNG" if data.startswith(PNG) else "JPEG"
     if max(_read_size(data)) > SHOWN or picture.mode.startswith("I"):  # 16 bits of grey, which the PDF does not show
         target = io.BytesIO()
-        _reduce(picture).save(target, kind, quality=90)
+        _reduce(picture, math.ceil(max(picture.size) / SHOWN)).save(target, kind, quality=90)
         data = target.getvalue()
     return data, f"image/{kind.lower()}"
 
 
-def _decode(data: bytes) -> "Image":
+def prepare_photo(data: bytes) -> bytes:
+    """Return a photo as a small JPEG, upright, and without what the camera wrote into it (place, date).
+
+    Raises
+    ------
+    PictureError
+        As `check_picture`.
+    """
+    return _write_jpeg(_shrink(data, PHOTO), 75)
+
+
+def prepare_plan(data: bytes, most: int) -> tuple[bytes, float]:
+    """Return a plan as a grey JPEG of at most `most` pixels on its longer side, and its height over its width [-].
+
+    Raises
+    ------
+    PictureError
+        As `check_picture`.
+    """
+    picture = _shrink(data, most).convert("L")
+    return _write_jpeg(picture, 70), picture.height / picture.width
+
+
+def _shrink(data: bytes, most: int) -> "Image":
+    """Return a picture upright, on white, of at most `most` pixels on its longer side."""
+    from PIL import Image, ImageOps
+
+    picture = _decode(data, most)
+    try:
+        orientation = picture.getexif().get(_ORIENTATION)
+    except Exception:  # damaged Exif data, which change nothing else
+        orientation = None
+    small = _reduce(picture, max(1, max(picture.size) // most))
+    if small.mode == "RGBA":
+        ground = Image.new("RGB", small.size, "white")
+        ground.paste(small, mask=small.getchannel("A"))
+        small = ground
+    small.thumbnail((most, most))
+    if orientation in range(2, 9):
+        small.getexif()[_ORIENTATION] = orientation
+        ImageOps.exif_transpose(small, in_place=True)
+    return small
+
+
+def _write_jpeg(picture: "Image", quality: int) -> bytes:
+    target = io.BytesIO()
+    picture.save(target, "JPEG", quality=quality, exif=b"")
+    return target.getvalue()
+
+
+def _decode(data: bytes, shown: int = SHOWN) -> "Image":
     """Return the decoded picture, a JPEG at the size nearest above what is shown."""
     from PIL import Image
 
@@ -93,20 +148,20 @@ def _decode(data: bytes) -> "Image":
         picture = Image.open(io.BytesIO(data), formats=_FORMATS)
         if picture.size != _read_size(data):
             raise ValueError("two sizes")
-        picture.draft(None, (SHOWN, SHOWN))
+        picture.draft(None, (shown, shown))
         picture.load()
         if picture.mode == "P" and picture.palette is None:  # browsers show nothing of it
             raise ValueError("no palette")
     except Exception:  # what Pillow raises of damaged pictures is any of ten kinds
-        raise _damaged() from None
+        raise damaged() from None
     return picture
 
 
-def _reduce(picture: "Image") -> "Image":
-    """Return the picture no larger than is shown, made strip by strip: whole, a copy of it would be held next to it."""
+def _reduce(picture: "Image", factor: int) -> "Image":
+    """Return the picture smaller by a factor, made strip by strip: whole, a copy of it would be held next to it."""
     from PIL import Image
 
-    (width, height), factor = picture.size, math.ceil(max(picture.size) / SHOWN)
+    width, height = picture.size
     mode = "RGBA" if picture.has_transparency_data else "RGB"
     small = Image.new(mode, (math.ceil(width / factor), math.ceil(height / factor)))
     for top in range(0, height, STRIP * factor):
@@ -117,7 +172,8 @@ def _reduce(picture: "Image") -> "Image":
     return small
 
 
-def _damaged() -> PictureError:
+def damaged() -> PictureError:
+    """Build the error for a damaged file."""
     return PictureError(fill("it is damaged. Open it in a graphics program and save it again"))
 
 
@@ -125,14 +181,14 @@ def _read_size(data: bytes) -> tuple[int, int]:
     """Return width and height [pixels] as the header has them."""
     if len(data) > MOST_BYTES:
         raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20))
-    if data.startswith(_PNG):
+    if data.startswith(PNG):
         size = struct.unpack_from(">II", data, 16) if data[12:16] == b"IHDR" and len(data) >= 24 else (0, 0)
-    elif data.startswith(_JPEG):
+    elif data.startswith(JPEG):
         size = _read_frame(data)
     else:
         raise PictureError(fill("it is no PNG or JPEG picture. Save it as PNG or JPEG"))
     if not (size[0] and size[1]):
-        raise _damaged()
+        raise damaged()
     return size
 
 

@@ -12,7 +12,11 @@ MOST_RECORD_SAMPLES = 20_000_000
 MOST_ARCHIVES = 50
 """Zip archives among them."""
 MOST_PICTURE_PIXELS = 500_000_000
-"""Pixels of all pictures."""
+"""Pixels of the logo and of all plans."""
+MOST_PHOTOS = 400
+"""Photos of pieces: each takes a tenth of a second to read, and about 40 kB in a report."""
+MOST_PHOTO_BYTES = 30_000_000
+"""Bytes of all photos as reports hold them."""
 
 
 @dataclass(slots=True)
@@ -23,6 +27,8 @@ class Allowance:
     samples: int = 0
     archives: int = 0
     pixels: int = 0
+    photos: int = 0
+    photo_bytes: int = 0
 
     def take_record(self, size: int, *, is_archive: bool) -> None:
         """Count a file of `size` bytes before it is read; CellError where that is more than a workbook may name."""
@@ -52,6 +58,19 @@ class Allowance:
                 most=MOST_PICTURE_PIXELS / 1e6,
             )
             raise CellError(message, fill("Save them smaller, or name fewer."))
+
+
+    def take_photo(self, size: int = 0) -> None:
+        """Count a photo before it is read, and its `size` in bytes after; CellError where they are too many."""
+        self.photos += not size
+        self.photo_bytes += size
+        if self.photos > MOST_PHOTOS or self.photo_bytes > MOST_PHOTO_BYTES:
+            message = fill(
+                "this workbook names more than {most} photos, or photos of more than {size:.0f} MB as reports hold them.",
+                most=MOST_PHOTOS,
+                size=MOST_PHOTO_BYTES / 1e6,
+            )
+            raise CellError(message, fill("Name fewer: those of the pieces to fix."))
 
 
 def _fewer_records(message: Text) -> CellError:

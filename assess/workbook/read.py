@@ -15,6 +15,7 @@ from assess.workbook.check import Check
 from assess.workbook.names import ENGLISH, find_near, find_sheet, key, plain, translate, versions
 from assess.workbook.open import Book, read_file
 from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
+from assess.workbook.picture_files import PictureReader
 from assess.workbook.records import FileReader, Files
 from assess.workbook.resolve import (
     build_building,
@@ -86,14 +87,15 @@ def _read(source: str | Path | bytes | Rows, path: Path, files: Files, stage: St
     if files is None and isinstance(source, str | Path):
         files = path.resolve().parent
     reader = FileReader(files, stage.progress)
-    tables, problems = _check(tables, problems, reader, strict=strict)
+    pictures = PictureReader(reader.folder, stage.progress)
+    tables, problems = _check(tables, problems, _checks(reader, pictures), strict=strict)
     return Inventory(
         source=path,
         sha256=hashlib.sha256(hashed).hexdigest(),
         data=data,
         problems=tuple(problems),
         corrections=tuple(one for table in tables.values() for one in table.corrections),
-        **_build(tables, reader),
+        **_build(tables, reader, pictures),
     )
 
 
@@ -213,17 +215,17 @@ def _tables_in_code(rows: Rows) -> tuple[Tables, list[Problem]]:
 # ---------------------------------------------------------------- tables to the inventory
 
 
-def _checks(files: FileReader) -> tuple[Check, ...]:
+def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
     """Return all checks in the order in which their problems are listed."""
     return (
-        files.check_logo,
+        pictures.check_logo,
         files.check_hazard,
         check.check_catalogue,
         check.check_costs,
         check.check_floors,
         files.check_records,
         check.check_velocities,
-        files.check_plans,
+        pictures.check_plans,
         check_routes.check_places,
         check_routes.check_segment_names,
         check_routes.check_segments,
@@ -234,10 +236,13 @@ def _checks(files: FileReader) -> tuple[Check, ...]:
         check_routes.check_positions,
         check_routes.check_item_rooms,
         check.check_items,
+        pictures.check_photos,
     )
 
 
-def _check(tables: Tables, found: list[Problem], files: FileReader, *, strict: bool) -> tuple[Tables, list[Problem]]:
+def _check(
+    tables: Tables, found: list[Problem], checks: Sequence[Check], *, strict: bool
+) -> tuple[Tables, list[Problem]]:
     """Return the tables with names resolved, and without what is faulty, and all problems.
 
     Raises
@@ -246,7 +251,7 @@ def _check(tables: Tables, found: list[Problem], files: FileReader, *, strict: b
         If `strict` and there is an error.
     """
     tables, notes = correct_names(tables)
-    tables, more = check.run_checks(resolve(tables), _checks(files))
+    tables, more = check.run_checks(resolve(tables), checks)
     problems = [*found, *notes, *more]
     if not any(one.severity == "error" for one in problems):
         return tables, problems
@@ -262,18 +267,19 @@ def _language(tables: Tables) -> str:
     return find_language([table.language for table in tables.values() if table.found])
 
 
-def _build(tables: Tables, files: FileReader) -> dict[str, Any]:
+def _build(tables: Tables, files: FileReader, pictures: PictureReader) -> dict[str, Any]:
     """Return the parts of the inventory."""
     catalogue = build_catalogue(tables["Catalogue"])
     return {
-        "building": build_building(tables["Building"], files.logo),
-        "floors": build_floors(tables["Floors"], files.records, files.plans),
+        "building": build_building(tables["Building"], pictures.logo),
+        "floors": build_floors(tables["Floors"], files.records, pictures.plans),
         "items": build_items(tables["Items"], {key(one.type): one for one in catalogue}),
         "places": build_rows(Place, tables["Places"], "place", "floor"),
         "routes": build_rows(Segment, tables["Routes"], "route", "segment"),
         "catalogue": catalogue,
         "costs": build_rows(Cost, tables["Costs"], "detail", "unit_cost"),
         "hazard": files.hazard,
+        "photos": pictures.photos,
         "extra_columns": tables["Items"].extra,
         "files": files.hashes,
         "language": _language(tables),

@@ -1,4 +1,4 @@
-"""Files that the workbook names: recorded motions, a hazard curve, the logo, plans.
+"""Files that the workbook names: recorded motions, a hazard curve.
 
 Only files inside one folder are touched.
 
@@ -9,7 +9,7 @@ network path would already talk to another machine.
 import hashlib
 import posixpath
 import unicodedata
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from assess.errors import InputError, Problem, RecordError
@@ -19,7 +19,6 @@ from assess.i18n import fill
 from assess.model import AXES, NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
 from assess.motion.formats import is_archive, parse_records, read_bytes, select
 from assess.motion.record import Record
-from assess.pictures import MOST_BYTES, PictureError, check_picture, count_pixels
 from assess.progress import Progress
 from assess.workbook.allowance import Allowance
 from assess.workbook.habits import CellError
@@ -52,10 +51,6 @@ class FileReader:
         The hazard curve of the site.
     records : dict
         The recorded motions of the floors, by the number of their row and axis.
-    plans : dict of int to Path
-        The plans of the floors, by the number of their row.
-    logo : Path, optional
-        The building's logo.
     """
 
     def __init__(self, files: Files, progress: Progress) -> None:
@@ -65,17 +60,9 @@ class FileReader:
         self.progress = progress
         self.hashes: dict[str, str] = {}
         self.records: dict[tuple[int, Axis], tuple[FloorRecord, ...]] = {}
-        self.plans: dict[int, Path] = {}
-        self.logo: Path | None = None
         self.hazard: HazardCurve | None = None
         self._read: dict[str, tuple[tuple[Record, ...] | CellError, str]] = {}
-        self._pictures: dict[str, Path | CellError] = {}
         self._allowance = Allowance()
-
-    def check_logo(self, tables: Tables) -> Iterator[Problem]:
-        """Find the logo, or report what is wrong with it."""
-        for row in tables["Building"].with_all("logo"):
-            self.logo = yield from self._find_picture(tables["Building"], "logo", row)
 
     def check_hazard(self, tables: Tables) -> Iterator[Problem]:
         """Read the hazard curve, or report what is wrong with it, or with the building's latitude and longitude."""
@@ -111,29 +98,6 @@ class FileReader:
             raise CellError(fill("the hazard curve cannot be used: {why}.", why=error.message), fix) from None
         self.hashes[file] = hashlib.sha256(data).hexdigest()
         return curve
-
-    def check_plans(self, tables: Tables) -> Iterator[Problem]:
-        """Find the plans of the floors, or report what is wrong with them."""
-        table = tables["Floors"]
-        for row in table.with_all("floor", "plan"):
-            message = fill("{label} is kept, not drawn by this version.", label=fill(table.label("plan")))
-            yield table.problem("plan", row, message, severity="note")
-            path = yield from self._find_picture(table, "plan", row)
-            self.plans |= {} if path is None else {row.number: path}
-
-    def _find_picture(self, table: Table, name: str, row: Row) -> Generator[Problem, None, Path | None]:
-        """Return the picture that a cell names in the folder; None, having reported why, if none can be used."""
-        text = row.get(name)
-        if text not in self._pictures:  # a picture of every floor is decoded once
-            try:
-                self._pictures[text] = find_picture(text, self.folder, self._allowance)
-            except CellError as error:
-                self._pictures[text] = error
-        found = self._pictures[text]
-        if isinstance(found, Path):
-            return found
-        yield table.problem(name, row, found.message, found.fix)
-        return None
 
     def check_records(self, tables: Tables) -> Iterator[Problem]:
         """Read the recorded motions of the floors, or report what is wrong with them or with their direction."""
@@ -261,33 +225,6 @@ def find_file(text: str, folder: Path) -> Path:
     if not is_file:
         message = fill("the file {name} was not found next to the workbook.", name=name)
         raise CellError(message, fill("Check the name, or copy the file there."))
-    return path
-
-
-def find_picture(text: str, folder: Path | None, allowance: Allowance) -> Path:
-    """Return the picture that `text` names inside `folder`; None where the workbook was read without one.
-
-    Raises
-    ------
-    CellError
-        As `find_file`; or if it is no PNG or JPEG, is too large, or is damaged.
-    """
-    name = shorten(text)
-    if folder is None:
-        message = fill("the picture {name} cannot be used: the workbook was read without a folder.", name=name)
-        raise CellError(message, fill("Pass the folder in `records`."))
-    path = find_file(text, folder)
-    try:
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
-    except OSError as error:
-        message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
-        raise CellError(message, fill("Check its access rights.")) from None
-    try:
-        allowance.take_pixels(count_pixels(data))
-        check_picture(data)
-    except PictureError as error:
-        raise CellError(fill("the picture {name} cannot be used: {why}.", name=name, why=error.message)) from None
     return path
 
 

@@ -11,7 +11,20 @@ from typing import Any, TypeVar
 
 from assess.errors import Problem
 from assess.i18n import fill
-from assess.model import AXES, Axis, Building, CatalogueType, Cost, Floor, FloorRecord, Item, Place, Segment, axis_of
+from assess.model import (
+    AXES,
+    Axis,
+    Building,
+    CatalogueType,
+    Cost,
+    Floor,
+    FloorPlan,
+    FloorRecord,
+    Item,
+    Place,
+    Segment,
+    axis_of,
+)
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.schema import SHEETS
@@ -124,7 +137,7 @@ def build_catalogue(table: Table) -> tuple[CatalogueType, ...]:
 
 
 def build_floors(
-    table: Table, records: Mapping[tuple[int, Axis], tuple[FloorRecord, ...]], plans: Mapping[int, Path]
+    table: Table, records: Mapping[tuple[int, Axis], tuple[FloorRecord, ...]], plans: Mapping[int, FloorPlan]
 ) -> tuple[Floor, ...]:
     """Return the floors; `records` and `plans` are found by the number of their row."""
     return tuple(

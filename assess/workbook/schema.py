@@ -208,7 +208,15 @@ FLOORS = Sheet(
         Column("record_x", "Record X", "records", "Recorded motion along X: file, or file#channel, beside the "
                "workbook; parallel ones split by ;", width=24),
         Column("record_y", "Record Y", "records", "Recorded motion along Y, likewise.", width=24),
-        Column("plan", "Plan", "file", "Picture of the floor plan; kept.", width=16, aliases=("Plan image",)),
+        Column("plan", "Plan", "file", "Floor plan beside the workbook, drawn under the pieces: PNG, JPEG, SVG or DXF. "
+               "It is placed by the next columns.", width=16, aliases=("Plan image",)),
+        Column("plan_left", "Plan left X", "number", "X of the lower left corner of the plan: of the picture, of an "
+               "SVG's viewBox, of the box round all lines of a DXF.", **_METRES),
+        Column("plan_bottom", "Plan bottom Y", "number", "Y of that corner.", **_METRES),
+        Column("plan_width", "Plan width", "number", "Width of the whole plan in the building: its scale.", **_LENGTH,
+               low=0.5, high=5000, default="a DXF file's own, where it names its units"),
+        Column("plan_turn", "Plan turn", "number", "Angle by which the plan is turned about its lower left corner, "
+               "anticlockwise.", **_DEGREES, default="0"),
     ),
 )  # fmt: skip
 
@@ -260,6 +268,8 @@ ITEMS = Sheet(
                default="0.9 of its Height, assumed", width=9),
         Column("bracket_capacity", "Bracket capacity", "number", "Tension that its brackets hold together: the reports say whether they do.",
                quantity="force", unit="kN", imperial="lbf", low=0.01, high=200, default="not known", width=9),
+        Column("photo", "Photo", "file", "Picture of the piece beside the workbook (PNG or JPEG), for the list of what "
+               "to fix.", width=16),
         Column("notes", "Notes", "text", "Anything else.", width=30),
     ),
 )  # fmt: skip

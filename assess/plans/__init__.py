@@ -1,0 +1,93 @@
+"""Plans of floors that users hand over: pictures, and drawings of which the lines alone are kept.
+
+Nothing of a user's file reaches a report as it is: a picture is decoded and written anew in grey, and of a drawing
+(SVG, DXF) the lines that are understood are kept as points.
+"""
+
+from dataclasses import dataclass
+
+from assess.i18n import Text, fill
+from assess.pictures import JPEG, PNG, PictureError, prepare_plan
+
+DOTS = 100.0
+"""Pixels to a metre of a plan that a report embeds."""
+LEAST, MOST = 600, 2400
+"""Pixels of its longer side: at least where the file has as many, and at most."""
+MOST_FILE = 20 * 2**20
+"""Bytes of a DXF drawing, the largest of all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """What is kept of a plan's file.
+
+    Parameters
+    ----------
+    content : bytes
+        A grey JPEG; or, if `is_lines`, points of lines as `assess.plans.linework.pack` keeps them.
+    aspect : float
+        Height over width [-].
+    width : float, optional
+        Width [m] where the file tells its units.
+    left_out : tuple of str
+        What of the file is not drawn, in words.
+    """
+
+    content: bytes
+    aspect: float
+    is_lines: bool = False
+    width: float | None = None
+    left_out: tuple[Text, ...] = ()
+
+
+def read_plan(data: bytes, width: float | None) -> Drawing:
+    """Return what is kept of a plan's file, by its content, whatever its name.
+
+    Parameters
+    ----------
+    data : bytes
+        The file: PNG, JPEG, SVG or DXF.
+    width : float, optional
+        Width of the whole plan [m], where it is known: a picture is kept with 100 pixels to the metre.
+
+    Raises
+    ------
+    PictureError
+        If it is none of these, is too large, is damaged, or cannot be read here; the message says how to fix it.
+    """
+    if is_picture(data):
+        most = MOST if width is None else round(min(max(DOTS * width, LEAST), MOST))
+        content, aspect = prepare_plan(data, most)
+        return Drawing(content, aspect)
+    if data.startswith(b"AC10"):
+        raise PictureError(fill("it is a DWG drawing, which cannot be read. Save it as DXF"))
+    if is_dxf(data):
+        if len(data) > MOST_FILE:
+            raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_FILE >> 20))
+        from assess.plans.dxf import read_dxf
+
+        return _of_lines(*read_dxf(data))
+    if b"<svg" in data[:65536] or "<svg".encode("utf-16-le") in data[:65536]:
+        from assess.plans.svg import read_svg
+
+        return _of_lines(*read_svg(data), None)
+    raise PictureError(fill("it is no PNG, JPEG, SVG or DXF file. Save it as one of them"))
+
+
+def _of_lines(content: bytes, aspect: float, left_out: tuple[Text, ...], width: float | None) -> Drawing:
+    return Drawing(content, aspect, is_lines=True, width=width, left_out=left_out)
+
+
+def is_picture(data: bytes) -> bool:
+    """Tell whether a file begins as PNG or JPEG does."""
+    return data.startswith((PNG, JPEG))
+
+
+def is_dxf(data: bytes) -> bool:
+    """Tell whether a file begins as a DXF drawing does: as text, after comments (999), or in binary form."""
+    if data.startswith(b"AutoCAD Binary DXF"):
+        return True
+    lines = [line.strip() for line in data[:4096].removeprefix(b"\xef\xbb\xbf").splitlines()]
+    while len(lines) > 1 and lines[0] == b"999":
+        lines = lines[2:]
+    return lines[:2] == [b"0", b"SECTION"]

@@ -1,0 +1,145 @@
+"""The lines of a DXF drawing, read with ezdxf (extra `plans`): what lies in its model space and is not switched off.
+
+Source: Autodesk (2012), DXF Reference, HEADER ($INSUNITS), ENTITIES.
+"""
+
+import io
+import logging
+import math
+from collections import Counter
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from assess.i18n import Text, fill
+from assess.pictures import PictureError, damaged
+from assess.plans.linework import FARTHEST, MOST_ELEMENTS, MOST_RAW, describe_left_out, find_box, pack, too_many
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+
+DEEPEST = 16
+"""Blocks inside each other."""
+CHORDS = 8
+"""Chords of each curve."""
+DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRACE", "3DFACE"})
+"""Entities whose lines are drawn."""
+SILENT = frozenset({"POINT", "VIEWPORT", "ATTDEF", "ATTRIB", "SEQEND"})
+XREF = 4 | 8
+"""Flags of a block that is another file: an external reference, and one laid over."""
+
+
+def read_dxf(data: bytes) -> tuple[bytes, float, tuple[Text, ...], float | None]:
+    """Return the lines of a DXF as `pack` keeps them, its aspect, what is left out, and its width [m] if known.
+
+    Its frame is the box round its lines. No other file is read: external references are left out, and named.
+
+    Raises
+    ------
+    PictureError
+        If ezdxf is missing, or the drawing is too large, damaged, or holds no lines.
+    """
+    document = _open(data)
+    reader = _Reader(document)
+    try:
+        for layout_entity in document.modelspace():
+            reader.take(layout_entity, 0)
+    except PictureError:
+        raise
+    except Exception:  # what ezdxf raises of damaged entities is of many kinds
+        raise damaged() from None
+    box = find_box(reader.lines)
+    content, aspect = pack(reader.lines, box, is_down=False)
+    factor = _metres(document)
+    return content, aspect, describe_left_out(reader.left_out), None if factor is None else factor * (box[2] - box[0])
+
+
+def _open(data: bytes) -> "Document":
+    try:
+        from ezdxf import recover
+    except ImportError:
+        message = fill(
+            'DXF is read with ezdxf, which is not installed. Install it with: pip install "assess[plans]"; or save it as '
+            "SVG or PNG"
+        )
+        raise PictureError(message) from None
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
+    try:
+        document, _auditor = recover.read(io.BytesIO(data))
+    except Exception:  # likewise
+        raise damaged() from None
+    if b"EOF" not in data[-64:] and not data.startswith(b"AutoCAD Binary"):
+        raise damaged()
+    return document
+
+
+def _metres(document: "Document") -> float | None:
+    """Return the length of a drawing unit [m]; None where the drawing does not tell."""
+    from ezdxf import units
+
+    code = document.header.get("$INSUNITS", 0)
+    try:
+        factor = float(units.conversion_factor(units.InsertUnits(code), units.InsertUnits.Meters)) if code else 0.0
+    except (ValueError, TypeError, KeyError, ZeroDivisionError):
+        return None
+    return factor if 0 < factor < math.inf else None
+
+
+class _Reader:
+    """Takes in entities; `lines` are in drawing units."""
+
+    def __init__(self, document: "Document") -> None:
+        self.blocks = document.blocks
+        self.hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()}
+        self.lines: list[list[tuple[float, float]]] = []
+        self.left_out: Counter[str] = Counter()
+        self._entities = self._points = 0
+
+    def take(self, entity: Any, depth: int) -> None:
+        """Take in an entity, or what a block holds that it inserts."""
+        self._entities += 1
+        if self._entities > MOST_ELEMENTS:
+            raise too_many()
+        if entity.dxf.get("layer", "0").lower() in self.hidden or entity.dxf.get("invisible", 0):
+            return
+        kind = entity.dxftype()
+        if kind == "INSERT":
+            self._insert(entity, depth)
+        elif kind in DRAWN:
+            for line in _outline(entity):
+                self._keep(line)
+        elif kind not in SILENT:
+            self.left_out[kind] += 1
+
+    def _insert(self, entity: Any, depth: int) -> None:
+        block = self.blocks.get(entity.dxf.name)
+        if block is None or depth >= DEEPEST:
+            self.left_out["INSERT"] += 1
+        elif block.block is not None and block.block.dxf.get("flags", 0) & XREF:
+            self.left_out[f"XREF {entity.dxf.name}"] += 1
+        elif entity.mcount > 1:
+            for one in entity.multi_insert():
+                self.take(one, depth)
+        else:
+            for one in entity.virtual_entities():
+                self.take(one, depth + 1)
+
+    def _keep(self, line: list[tuple[float, float]]) -> None:
+        self._points += len(line)
+        if self._points > MOST_RAW:
+            raise too_many()
+        if not all(abs(x) <= FARTHEST and abs(y) <= FARTHEST for x, y in line):
+            raise damaged()
+        if len(line) > 1:
+            self.lines.append(line)
+
+
+def _outline(entity: Any) -> Iterator[list[tuple[float, float]]]:
+    """Yield the lines of an entity, seen from above; nothing of one that is no curve (a mesh)."""
+    from ezdxf.path import make_path
+
+    try:
+        path = make_path(entity)
+    except TypeError:
+        return
+    for part in path.sub_paths():
+        yield [(point.x, point.y) for point in part.approximate(CHORDS)]

@@ -1,0 +1,223 @@
+"""Pictures that the workbook names: the logo, plans of floors, photos of pieces.
+
+Only files inside one folder are touched, by the rules of `assess.workbook.records`.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from assess.errors import Problem
+from assess.i18n import fill, join, nfill
+from assess.model import FloorPlan
+from assess.pictures import MOST_BYTES, PictureError, check_picture, count_pixels, prepare_photo
+from assess.plans import MOST_FILE, Drawing, is_picture, read_plan
+from assess.progress import Progress
+from assess.workbook.allowance import Allowance
+from assess.workbook.habits import CellError
+from assess.workbook.parse import Row, Table, Tables
+from assess.workbook.records import find_file
+from assess.workbook.values import shorten
+
+PLACED = ("plan_left", "plan_bottom", "plan_width")
+"""What a plan is placed by."""
+FAR_LARGER = 8.0
+"""A plan wider and higher than the pieces on it by this factor is likely in another unit."""
+LEAST_SPREAD = 2.0
+"""Spread of pieces [m] below which nothing follows from it."""
+MOST_NAMED = 3
+"""Pieces that a warning names."""
+
+Taken = TypeVar("Taken")
+
+
+class PictureReader:
+    """Reads the pictures that a workbook names, each once, and checks them as the functions of `check` do.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        Where they are; None where the workbook was read without one.
+    progress : Progress
+        Checked before every picture.
+
+    Attributes
+    ----------
+    logo : Path, optional
+        The building's logo.
+    plans : dict of int to FloorPlan
+        The plans of the floors that are drawn, by the number of their row.
+    photos : dict of str to bytes
+        The photos of the pieces as small JPEGs, by the text of their cell.
+    """
+
+    def __init__(self, folder: Path | None, progress: Progress) -> None:
+        self.folder, self.progress = folder, progress
+        self.logo: Path | None = None
+        self.plans: dict[int, FloorPlan] = {}
+        self.photos: dict[str, bytes] = {}
+        self._drawings: dict[tuple[str, float | None], tuple[Path, Drawing] | CellError] = {}
+        self._useless: dict[str, CellError] = {}
+        self._allowance = Allowance()
+
+    def check_logo(self, tables: Tables) -> Iterator[Problem]:
+        """Find the logo, or report what is wrong with it."""
+        table = tables["Building"]
+        for row in table.with_all("logo"):
+            try:
+                self.logo, _data = self._read(row.get("logo"), self._take_logo)
+            except CellError as error:
+                yield table.problem("logo", row, error.message, error.fix)
+
+    def _take_logo(self, data: bytes) -> None:
+        self._allowance.take_pixels(count_pixels(data))
+        check_picture(data)
+
+    # ------------------------------------------------------------ photos
+
+    def check_photos(self, tables: Tables) -> Iterator[Problem]:
+        """Read the photos of the pieces, or report what is wrong with them."""
+        table = tables["Items"]
+        for row in table.with_all("photo"):
+            text = row.get("photo")
+            if text not in self.photos and text not in self._useless:
+                self.progress.check()
+                try:
+                    _path, self.photos[text] = self._read(text, self._take_photo)
+                except CellError as error:
+                    self._useless[text] = error
+            if error := self._useless.get(text):
+                yield table.habit("photo", row, error.message, error.fix)
+
+    def _take_photo(self, data: bytes) -> bytes:
+        self._allowance.take_photo()
+        photo = prepare_photo(data)
+        self._allowance.take_photo(len(photo))
+        return photo
+
+    # ------------------------------------------------------------ plans
+
+    def check_plans(self, tables: Tables) -> Iterator[Problem]:
+        """Read the plans of the floors, or report what is wrong with them, their numbers or where they lie."""
+        table = tables["Floors"]
+        for row in table.with_all("floor"):
+            if table.lacks(row, "plan"):
+                yield from _check_numbers_alone(table, row)
+            elif row.get("plan") is not None:
+                yield from self._check_plan(table, row, tables["Items"])
+
+    def _check_plan(self, table: Table, row: Row, items: Table) -> Iterator[Problem]:
+        self.progress.check()
+        found = self._draw(row.get("plan"), row.get("plan_width"))
+        if isinstance(found, CellError):
+            yield table.problem("plan", row, found.message, found.fix)
+            return
+        path, drawing = found
+        if drawing.left_out:
+            message = fill("of the plan the lines alone are drawn; left out: {what}.", what=join(", ", drawing.left_out))
+            yield table.problem("plan", row, message, severity="note")
+        if any(table.spoilt(name, row) for name in (*PLACED, "plan_turn")):
+            return
+        width = row.get("plan_width") or drawing.width
+        given = {"plan_left": row.get("plan_left"), "plan_bottom": row.get("plan_bottom"), "plan_width": width}
+        blank = [table.label(name) for name, value in given.items() if value is None]
+        if blank or width is None:
+            message = nfill(
+                "the plan is not drawn: {labels} is blank.", "the plan is not drawn: {labels} are blank.",
+                len(blank), labels=join(", ", map(fill, blank)),
+            )  # fmt: skip
+            fix = fill("Fill in X and Y of its lower left corner, and its width in the building.")
+            yield table.problem("plan", row, message, fix, "warning")
+            return
+        plan = self.plans[row.number] = FloorPlan(
+            path=path,
+            content=drawing.content,
+            is_lines=drawing.is_lines,
+            left=row.get("plan_left"),
+            bottom=row.get("plan_bottom"),
+            width=width,
+            height=width * drawing.aspect,
+            turn_deg=row.get("plan_turn") or 0.0,
+        )
+        yield from _check_place(table, row, plan, items)
+
+    def _draw(self, text: str, width: float | None) -> tuple[Path, Drawing] | CellError:
+        """Return where a plan is and what is drawn of it, once for all floors that name it at one width."""
+        if (text, width) not in self._drawings:
+            try:
+                self._drawings[text, width] = self._read(text, lambda data: self._take_plan(data, width))
+            except CellError as error:
+                self._drawings[text, width] = error
+        return self._drawings[text, width]
+
+    def _take_plan(self, data: bytes, width: float | None) -> Drawing:
+        if is_picture(data):
+            self._allowance.take_pixels(count_pixels(data))
+        return read_plan(data, width)
+
+    # ------------------------------------------------------------ files
+
+    def _read(self, text: str, take: Callable[[bytes], Taken]) -> tuple[Path, Taken]:
+        """Return where a picture is, and what `take` makes of its bytes.
+
+        Raises
+        ------
+        CellError
+            As `find_file`; or if it cannot be opened, or `take` cannot use it.
+        """
+        name = shorten(text)
+        if self.folder is None:
+            message = fill("the picture {name} cannot be used: the workbook was read without a folder.", name=name)
+            raise CellError(message, fill("Pass the folder in `records`."))
+        path = find_file(text, self.folder)
+        try:
+            with path.open("rb") as file:
+                data = file.read(MOST_FILE + 1)
+        except OSError as error:
+            message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
+            raise CellError(message, fill("Check its access rights.")) from None
+        try:
+            return path, take(data)
+        except PictureError as error:
+            raise CellError(fill("the picture {name} cannot be used: {why}.", name=name, why=error.message)) from None
+
+
+def _check_numbers_alone(table: Table, row: Row) -> Iterator[Problem]:
+    """Warn of numbers that place a plan where there is none."""
+    given = [name for name in (*PLACED, "plan_turn") if row.get(name) is not None]
+    if given:
+        message = fill("{label} is filled in without {other}.", label=table.label(given[0]), other=table.label("plan"))
+        yield table.problem(given[0], row, message, fill("Name the file of the plan, or clear it."), "warning")
+
+
+# ---------------------------------------------------------------- where a plan lies
+
+
+def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table) -> Iterator[Problem]:
+    """Warn of a plan that pieces of its floor lie outside of, or that is far larger than all of them together."""
+    own = [one for one in items.with_all("floor", "x", "y") if one.get("floor") == row.get("floor")]
+    if not own:
+        return
+    outside = [one for one in own if not plan.holds((one.get("x"), one.get("y")))]
+    if outside:
+        message = nfill(
+            "{n:,} piece of {all:,} lies outside the plan: {names}.",
+            "{n:,} pieces of {all:,} lie outside the plan: {names}.",
+            len(outside), all=len(own), names=_name(outside),
+        )  # fmt: skip
+        fix = fill("Check Plan left X, Plan bottom Y, Plan width and Plan turn, and the positions of these pieces.")
+        yield table.problem("plan", row, message, fix, "warning")
+        return
+    spread = max(max(one.get(side) for one in own) - min(one.get(side) for one in own) for side in ("x", "y"))
+    if spread >= LEAST_SPREAD and min(plan.width, plan.height) > FAR_LARGER * spread:
+        message = fill(
+            "the plan is {width:.4g} x {height:.4g} m, while the pieces on it lie within {spread:.3g} m.",
+            width=plan.width, height=plan.height, spread=spread,
+        )  # fmt: skip
+        fix = fill("Check Plan width: it is that of the whole plan in the building, in the unit of its heading.")
+        yield table.problem("plan_width", row, message, fix, "warning")
+
+
+def _name(rows: Sequence[Row]) -> str:
+    names = [shorten(one.get("item") or "?") for one in rows[:MOST_NAMED]]
+    return ", ".join(names) + (", ..." if len(rows) > MOST_NAMED else "")
