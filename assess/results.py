@@ -95,6 +95,23 @@ MOST_KEPT = 2000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PlanRow:
+    """Where a floor's plan lies: its lower left corner, its sides, and its turn about that corner, anticlockwise.
+
+    What is drawn is in `Results.series` as ``plan/<place of the floor in floor_rows>``: bytes of a grey JPEG or, if
+    `is_lines`, what `assess.plans.linework.unpack` reads.
+    """
+
+    file: str
+    is_lines: bool
+    left_m: float
+    bottom_m: float
+    width_m: float
+    height_m: float
+    turn_deg: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FloorRow:
     """One floor of the workbook; `cells` tells in which cell of the sheet a field stands."""
 
@@ -103,6 +120,7 @@ class FloorRow:
     name: str
     elevation_m: float | None
     cells: Mapping[str, str]
+    plan: PlanRow | None = None
 
     def cell(self, name: str) -> str:
         """Address of a field; the first column where the sheet lacks it."""

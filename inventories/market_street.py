@@ -414,13 +414,23 @@ def item_rows() -> list[dict[str, Any]]:
 
 
 def _place_rows() -> list[dict[str, Any]]:
-    """Return the rows of Places: those that a segment begins or ends at."""
+    """Return the rows of Places: those that a segment begins or ends at, then rooms that only have an outline."""
     used = {one.row[end] for one in SEGMENTS for end in ("start", "end")}
-    return [
-        {"place": name, "floor": floor, "x": x, "y": y, "kind": kind}
+    outlines = {f"{floor} {name}": _outline(box) for floor, rooms in ROOMS.items() for name, box in rooms.items()}
+    rows: list[dict[str, Any]] = [
+        {"place": name, "floor": floor, "x": x, "y": y, "kind": kind, "outline": outlines.pop(name, None)}
         for name, (floor, x, y, kind) in _PLACES.items()
         if name in used
     ]
+    cores = {f"{floor} Core": _outline(CORE) for floor in ROOMS}
+    return rows + [
+        {"place": name, "floor": name.split()[0], "outline": outline} for name, outline in (outlines | cores).items()
+    ]
+
+
+def _outline(box: Box) -> str:
+    west, south, east, north = box
+    return "; ".join(f"{x:g} {y:g}" for x, y in ((west, south), (east, south), (east, north), (west, north)))
 
 
 def _route_rows() -> list[dict[str, Any]]:

@@ -4,6 +4,8 @@ Arrays by name; `m` is a place in `Results.motions`:
 
 =========================== ==========================================================================================
 ``workbook``, ``logo``      bytes of the workbook and of the logo (uint8), where there are any
+``plan/f``                  bytes of the plan of floor f of `Results.floor_rows`, where it is drawn: see `PlanRow`
+``photo/p``                 bytes of the p-th photo (JPEG); ``photo/of_item`` (n,) which one each item has, -1 for none
 ``motion/m/acceleration_g`` the recorded motion as treated (n,)
 ``motion/m/cases``          places in `Results.cases_table` of the c cases that were simulated under its ensemble
 ``motion/m/runs``           (c,) motions that each was simulated under, the first ones
@@ -113,6 +115,14 @@ def _files(assessment: Assessment) -> Iterator[tuple[str, NDArray[Any]]]:
     logo = inventory.building.logo
     if logo is not None and logo.is_file():
         yield "logo", np.frombuffer(logo.read_bytes(), dtype=np.uint8)
+    for at, floor in enumerate(inventory.floors):
+        if floor.plan is not None:
+            yield f"plan/{at}", np.frombuffer(floor.plan.content, dtype=np.uint8)
+    order = {name: at for at, name in enumerate(inventory.photos)}
+    if order:
+        yield "photo/of_item", np.array([order.get(item.more.get("photo", ""), -1) for item in inventory.items])
+    for name, at in order.items():
+        yield f"photo/{at}", np.frombuffer(inventory.photos[name], dtype=np.uint8)
 
 
 # ---------------------------------------------------------------- motions

@@ -10,7 +10,7 @@ import numpy as np
 from assess.annual_results import AnnualWays
 from assess.methods import LOOKS, interval_width, simulation
 from assess.methods._method import Joint
-from assess.model import AXES, Floor, Inventory, Item
+from assess.model import AXES, Floor, FloorPlan, Inventory, Item
 from assess.motion.record import Record, treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile, cap_pfv, estimate_pfv
 from assess.pipeline.anchors import Anchors
@@ -26,6 +26,7 @@ from assess.results import (
     FloorRow,
     ItemRow,
     MotionRow,
+    PlanRow,
     ProfileInfo,
     Provenance,
     SuiteInfo,
@@ -57,7 +58,20 @@ def _sure(value: float, unit: str) -> float:
 def build_floor(floor: Floor) -> FloorRow:
     """Return the row of a floor."""
     return FloorRow(
-        row=floor.row, floor=floor.floor, name=floor.name, elevation_m=floor.elevation, cells=dict(floor.cells)
+        row=floor.row, floor=floor.floor, name=floor.name, elevation_m=floor.elevation, cells=dict(floor.cells),
+        plan=None if floor.plan is None else _plan(floor.plan),
+    )  # fmt: skip
+
+
+def _plan(plan: FloorPlan) -> PlanRow:
+    return PlanRow(
+        file=plan.path.name,
+        is_lines=plan.is_lines,
+        left_m=plan.left,
+        bottom_m=plan.bottom,
+        width_m=plan.width,
+        height_m=plan.height,
+        turn_deg=plan.turn_deg,
     )
 
 

@@ -58,8 +58,8 @@ def _open(data: bytes) -> "Document":
         from ezdxf import recover
     except ImportError:
         message = fill(
-            'DXF is read with ezdxf, which is not installed. Install it with: pip install "assess[plans]"; or save it as '
-            "SVG or PNG"
+            "DXF is read with ezdxf, which is not installed. Install it with: pip install 'assess[plans]', or save the "
+            "drawing as SVG or PNG"
         )
         raise PictureError(message) from None
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL)

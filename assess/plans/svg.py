@@ -266,12 +266,12 @@ def _round(x: float, y: float, rx: float, ry: float) -> Lines:
 
 def _circle(attributes: Attributes) -> Lines:
     given = _lengths(attributes, "cx", "cy", "r")
-    return _round(*given, given[2]) if given else []
+    return _round(given[0], given[1], given[2], given[2]) if given else []
 
 
 def _ellipse(attributes: Attributes) -> Lines:
     given = _lengths(attributes, "cx", "cy", "rx", "ry")
-    return _round(*given) if given else []
+    return _round(given[0], given[1], given[2], given[3]) if given else []
 
 
 _SHAPES: Mapping[str, Callable[[Attributes], Lines]] = {

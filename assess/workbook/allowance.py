@@ -59,14 +59,13 @@ class Allowance:
             )
             raise CellError(message, fill("Save them smaller, or name fewer."))
 
-
     def take_photo(self, size: int = 0) -> None:
         """Count a photo before it is read, and its `size` in bytes after; CellError where they are too many."""
         self.photos += not size
         self.photo_bytes += size
         if self.photos > MOST_PHOTOS or self.photo_bytes > MOST_PHOTO_BYTES:
             message = fill(
-                "this workbook names more than {most} photos, or photos of more than {size:.0f} MB as reports hold them.",
+                "this workbook names more than {most} photos, or photos of more than {size:.0f} MB when prepared.",
                 most=MOST_PHOTOS,
                 size=MOST_PHOTO_BYTES / 1e6,
             )

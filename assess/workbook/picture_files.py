@@ -10,7 +10,7 @@ from typing import TypeVar
 from assess.errors import Problem
 from assess.i18n import fill, join, nfill
 from assess.model import FloorPlan
-from assess.pictures import MOST_BYTES, PictureError, check_picture, count_pixels, prepare_photo
+from assess.pictures import PictureError, check_picture, count_pixels, prepare_photo
 from assess.plans import MOST_FILE, Drawing, is_picture, read_plan
 from assess.progress import Progress
 from assess.workbook.allowance import Allowance
@@ -86,8 +86,8 @@ class PictureReader:
                     _path, self.photos[text] = self._read(text, self._take_photo)
                 except CellError as error:
                     self._useless[text] = error
-            if error := self._useless.get(text):
-                yield table.habit("photo", row, error.message, error.fix)
+            if useless := self._useless.get(text):
+                yield table.habit("photo", row, useless.message, useless.fix)
 
     def _take_photo(self, data: bytes) -> bytes:
         self._allowance.take_photo()
@@ -114,32 +114,18 @@ class PictureReader:
             return
         path, drawing = found
         if drawing.left_out:
-            message = fill("of the plan the lines alone are drawn; left out: {what}.", what=join(", ", drawing.left_out))
+            message = fill(
+                "of the plan the lines alone are drawn; left out: {what}.", what=join(", ", drawing.left_out)
+            )
             yield table.problem("plan", row, message, severity="note")
         if any(table.spoilt(name, row) for name in (*PLACED, "plan_turn")):
             return
-        width = row.get("plan_width") or drawing.width
-        given = {"plan_left": row.get("plan_left"), "plan_bottom": row.get("plan_bottom"), "plan_width": width}
-        blank = [table.label(name) for name, value in given.items() if value is None]
-        if blank or width is None:
-            message = nfill(
-                "the plan is not drawn: {labels} is blank.", "the plan is not drawn: {labels} are blank.",
-                len(blank), labels=join(", ", map(fill, blank)),
-            )  # fmt: skip
-            fix = fill("Fill in X and Y of its lower left corner, and its width in the building.")
-            yield table.problem("plan", row, message, fix, "warning")
-            return
-        plan = self.plans[row.number] = FloorPlan(
-            path=path,
-            content=drawing.content,
-            is_lines=drawing.is_lines,
-            left=row.get("plan_left"),
-            bottom=row.get("plan_bottom"),
-            width=width,
-            height=width * drawing.aspect,
-            turn_deg=row.get("plan_turn") or 0.0,
-        )
-        yield from _check_place(table, row, plan, items)
+        plan = _place_plan(row, path, drawing)
+        if plan is None:
+            yield _describe_unplaced(table, row, drawing)
+        else:
+            self.plans[row.number] = plan
+            yield from _check_place(table, row, plan, items)
 
     def _draw(self, text: str, width: float | None) -> tuple[Path, Drawing] | CellError:
         """Return where a plan is and what is drawn of it, once for all floors that name it at one width."""
@@ -180,6 +166,34 @@ class PictureReader:
             return path, take(data)
         except PictureError as error:
             raise CellError(fill("the picture {name} cannot be used: {why}.", name=name, why=error.message)) from None
+
+
+def _place_plan(row: Row, path: Path, drawing: Drawing) -> FloorPlan | None:
+    """Return the plan where its numbers put it; None where one of them is blank."""
+    left, bottom, width = row.get("plan_left"), row.get("plan_bottom"), row.get("plan_width") or drawing.width
+    if left is None or bottom is None or width is None:
+        return None
+    return FloorPlan(
+        path=path,
+        content=drawing.content,
+        is_lines=drawing.is_lines,
+        left=left,
+        bottom=bottom,
+        width=width,
+        height=width * drawing.aspect,
+        turn_deg=row.get("plan_turn") or 0.0,
+    )
+
+
+def _describe_unplaced(table: Table, row: Row, drawing: Drawing) -> Problem:
+    needed = PLACED if drawing.width is None else PLACED[:-1]
+    blank = [fill(table.label(name)) for name in needed if row.get(name) is None]
+    message = nfill(
+        "the plan is not drawn: {labels} is blank.", "the plan is not drawn: {labels} are blank.",
+        len(blank), labels=join(", ", blank),
+    )  # fmt: skip
+    fix = fill("Fill in X and Y of its lower left corner, and its width in the building.")
+    return table.problem("plan", row, message, fix, "warning")
 
 
 def _check_numbers_alone(table: Table, row: Row) -> Iterator[Problem]:

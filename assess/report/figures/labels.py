@@ -35,7 +35,18 @@ def text_width(text: str) -> float:
 def place_labels(
     named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds], frame: Bounds, unit: float
 ) -> Iterator[Label]:
-    """Place the name of each piece beside its box, or farther off with a line to it; left out where there is no room.
+    """Place the names of pieces as `place_each` does, the first 40; those without room are left out."""
+    return (one for one in place_each(named[:MOST], taken, frame, unit) if one is not None)
+
+
+def place_each(
+    named: Sequence[tuple[str, Bounds]],
+    taken: Sequence[Bounds],
+    frame: Bounds,
+    unit: float,
+    names: Sequence[Bounds] = (),
+) -> list[Label | None]:
+    """Place each name beside its box, or farther off with a line to it; None where there is no room for it.
 
     Parameters
     ----------
@@ -47,23 +58,33 @@ def place_labels(
         The drawing [m].
     unit : float
         One pixel [m].
+    names : sequence of (4,) floats
+        Names that are there already, which no other may overlap [m].
     """
-    held: list[Bounds] = []
-    for text, piece in named[:MOST]:
+    held = [*names]
+    placed: list[Label | None] = []
+    for text, piece in named:
         size = (1.1 * text_width(text) * unit, LINE * unit)  # bold
         tried = [box for box in _around(piece, size, unit) if _is_inside(box, frame)]
         tried = [box for box in tried if not any(overlap(box, other) for other in held)]
         if not tried:
+            placed.append(None)
             continue
         best = min(tried, key=lambda box: (_hidden(box, taken, size), round(_away(box, piece) / unit)))
         held.append(best)
-        yield Label(text, best, _lead(best, piece) if _away(best, piece) > _FAR * unit else None)
+        placed.append(Label(text, best, _lead(best, piece) if _away(best, piece) > _FAR * unit else None))
+    return placed
 
 
 def _around(piece: Bounds, size: Point, unit: float) -> Iterator[Bounds]:
-    """Yield boxes of that size round a piece: right, left, above, below and at the corners, ever farther off."""
+    """Yield boxes of that size round a piece: right, left, above, below and at the corners, ever farther off.
+
+    Round a point (of a piece without extent) the first is on it.
+    """
     (left, low, right, high), (wide, tall) = piece, size
     x, y = (left + right - wide) / 2, (low + high - tall) / 2
+    if left == right:
+        yield x, y, x + wide, y + tall
     for off in (2 * unit, 14 * unit, 28 * unit, 44 * unit):
         for x0 in (right + off, left - off - wide, x):
             for y0 in (y, high + off, low - off - tall):
@@ -110,7 +131,7 @@ def overlap(one: Bounds, other: Bounds) -> float:
     return wide * tall if wide > 0 and tall > 0 else 0.0
 
 
-def bounds(corners: Corners) -> Bounds:
+def bounds(corners: Sequence[Point]) -> Bounds:
     """Return the box around some corners."""
     xs, ys = zip(*corners, strict=True)
     return min(xs), min(ys), max(xs), max(ys)

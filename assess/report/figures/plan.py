@@ -5,14 +5,27 @@ letters would be smaller than some programs can draw.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 from assess.i18n import gettext as _
 from assess.model import Place
 from assess.report import words
 from assess.report.content import FloorPage
-from assess.report.figures.labels import LINE, Bounds, Corners, Label, Point, bounds, overlap, place_labels, text_width
+from assess.report.figures.labels import MOST, Bounds, Corners, Label, Point, bounds, overlap
+from assess.report.figures.plan_names import Key, Names, Spot
+from assess.report.figures.underlay import (
+    Ring,
+    Room,
+    Underlay,
+    build_underlay,
+    cut_falls,
+    cut_lines,
+    find_edge,
+    list_rooms,
+    widen,
+)
 from assess.report.figures.ways import Stretch, Style, name_ways, place_signs, sign_box
 from assess.results import ItemResult, ItemRow, Results
 from assess.risk import RiskClass
@@ -27,14 +40,10 @@ LARGEST = 90.0
 """Scale [px/m] that is not gone beyond for a few pieces close together."""
 BORDER = 0.4
 """Free space round everything that is drawn [m]."""
-NAMED = 24
-"""Characters of a place's name that are drawn."""
 SHORT = 12
 """Characters of a piece's name that are drawn."""
 KINDS = ("exit", "stair", "door", "room")
 """Kinds of places, each with a sign of its own."""
-LARGE = ("exit", "stair")
-"""Those whose sign is a large one."""
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 _TICKS = 12
 
@@ -56,20 +65,10 @@ class Piece:
     side: float
     at: Point
     corners: Corners
-    fallen: tuple[Corners, ...]
-    """What it would cover if it fell, one rectangle a way: only for a free-standing one of at least medium class."""
+    fallen: tuple[Ring, ...]
+    """What it would cover if it fell, one rectangle a way: only for a free-standing one of at least medium class.
 
-
-@dataclass(frozen=True, slots=True)
-class Spot:
-    """A place with its name, which begins or, `is_before`, ends at `label`; `box` is the room that it takes."""
-
-    name: str
-    kind: str
-    at: Point
-    label: Point
-    is_before: bool
-    box: Bounds
+    Where the building's edge is known, what of them lies inside."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +85,13 @@ class Plan:
     """Segments, those with most to warn of first."""
     names: tuple[Label, ...]
     """Names of segments."""
+    rooms: tuple[Room, ...]
+    room_names: tuple[Label, ...]
+    keys: tuple[Key, ...]
+    """Names that are not drawn, with the numbers in their place."""
+    underlay: Underlay | None
+    cut_at: str
+    """What falls are drawn as far as: the outlines of the floor, the frame of the user's drawing, or nothing."""
     low: Point
     high: Point
     unit: float
@@ -116,8 +122,17 @@ class Plan:
 
     @property
     def boxes(self) -> tuple[Bounds, ...]:
-        """What is taken by the names, of places, pieces and segments."""
-        return (*(spot.box for spot in self.places), *(label.box for label in (*self.labels, *self.names)))
+        """What is taken by the names, of places, rooms, pieces and segments."""
+        spots = (spot.box for spot in self.places if spot.name)
+        return (*spots, *(label.box for label in (*self.room_names, *self.labels, *self.names)))
+
+    @property
+    def linework(self) -> str:
+        """The lines of the user's drawing as one path."""
+        if self.underlay is None:
+            return ""
+        found = cut_lines(self.underlay.lines, (*self.low, *self.high))
+        return "".join("M" + "L".join(f"{self.x(x):.1f} {self.y(y):.1f}" for x, y in line.tolist()) for line in found)
 
     @property
     def styles(self) -> Sequence[Style]:
@@ -164,31 +179,54 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     )
     if not pieces and not ways:
         return None
-    places = [(place, at) for place in results.places if (at := _position(place, page.floor.floor))]
-    low, high = _frame(pieces, ways, [at for _place, at in places])
-    unit, frame = _unit(low, high), (*low, *high)
+    own = [place for place in results.places if place.floor == page.floor.floor]
+    rooms, underlay = list_rooms(own), build_underlay(results, page.floor.floor)
+    edge = find_edge(rooms, underlay.corners if underlay else (), [one.at for one in pieces])
+    if edge is not None:
+        pieces = tuple(replace(one, fallen=cut_falls(one.fallen, edge[0])) for one in pieces)
+    places = [(place, (place.x, place.y)) for place in own if place.x is not None and place.y is not None]
+    frame = _frame(pieces, ways, [at for _place, at in places], rooms, underlay)
+    unit = _unit(frame)
     signed = tuple(place_signs(ways, [bounds(one.corners) for one in pieces], unit))
-    signs = [sign_box(one.sign, unit) for one in signed if one.sign is not None]
-    spots = tuple(_spots(places, pieces, signs, high, unit))
-    labels = tuple(_labels(pieces, [*(spot.box for spot in spots), *signs], frame, unit))
-    taken = [*(bounds(one.corners) for one in pieces), *(spot.box for spot in spots), *(one.box for one in labels)]
+    named = _name(pieces, places, rooms, signed, Names(frame, unit))
     return Plan(
         key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}",
         title=page.title,
         pieces=pieces,
-        places=spots,
-        labels=labels,
         ways=signed,
-        names=tuple(name_ways(signed, taken, frame, unit)),
-        low=low,
-        high=high,
+        rooms=rooms,
+        underlay=underlay,
+        cut_at=edge[1] if edge else "",
+        low=frame[:2],
+        high=frame[2:],
         unit=unit,
         north=results.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
+        **named,
     )
 
 
-def _position(place: Place, floor: str) -> Point | None:
-    return None if place.floor != floor or place.x is None or place.y is None else (place.x, place.y)
+def _name(
+    pieces: Sequence[Piece],
+    places: Sequence[tuple[Place, Point]],
+    rooms: Sequence[Room],
+    ways: Sequence[Stretch],
+    names: Names,
+) -> dict[str, Any]:
+    """Return the names on a plan by the fields of `Plan`: places, rooms, pieces and segments, in that order."""
+    unit, shapes = names.unit, [bounds(one.corners) for one in pieces]
+    signs = [sign_box(one.sign, unit) for one in ways if one.sign is not None]
+    falls = [bounds(ring) for one in pieces for ring in one.fallen]
+    spots = names.place_spots(places, [*shapes, *falls, *signs])
+    middle = names.place_rooms(rooms, [*shapes, *signs])
+    labels = [one for one in names.place(_risky(pieces), [*shapes, *signs]) if one is not None]
+    segments = name_ways(ways, [*shapes, *names.boxes], names.frame, unit)
+    return {
+        "places": tuple(spots),
+        "room_names": tuple(middle),
+        "labels": tuple(labels),
+        "names": tuple(one for one in segments if not any(overlap(one.box, other) for other in names.boxes)),
+        "keys": tuple(names.keys),
+    }
 
 
 def _piece(one: ItemResult, at: Point) -> Piece:
@@ -254,45 +292,33 @@ def _title(one: ItemResult) -> str:
     return _("{item}: {risk}; chance {chance}", item=described, risk=words.risk_words(one), chance=words.chance(one))
 
 
-def _frame(pieces: Sequence[Piece], ways: Sequence[Stretch], places: Iterable[Point]) -> tuple[Point, Point]:
-    """Return the lower left and the upper right corner of what is drawn."""
-    drawn = [corners for one in pieces for corners in (one.corners, *one.fallen)] + [one.corners for one in ways]
-    xs, ys = zip(*(point for corners in drawn for point in corners), *places, strict=True)
-    return (min(xs) - BORDER, min(ys) - BORDER), (max(xs) + BORDER, max(ys) + BORDER)
+def _frame(
+    pieces: Sequence[Piece],
+    ways: Sequence[Stretch],
+    places: Sequence[Point],
+    rooms: Sequence[Room],
+    underlay: Underlay | None,
+) -> Bounds:
+    """Return the box round what is drawn."""
+    drawn: list[Sequence[Point]] = [ring for one in pieces for ring in (one.corners, *one.fallen)]
+    drawn += [*(one.corners for one in ways), *(room.outline for room in rooms), places]
+    xs, ys = zip(*(point for points in drawn for point in points), strict=True)
+    box = min(xs), min(ys), max(xs), max(ys)
+    if underlay is not None:
+        box = widen(box, underlay.corners)
+    return box[0] - BORDER, box[1] - BORDER, box[2] + BORDER, box[3] + BORDER
 
 
-def _unit(low: Point, high: Point) -> float:
-    return max((high[0] - low[0]) / (WIDE - BESIDE), (high[1] - low[1]) / (HIGH - BELOW), 1 / LARGEST)
+def _unit(frame: Bounds) -> float:
+    return max((frame[2] - frame[0]) / (WIDE - BESIDE), (frame[3] - frame[1]) / (HIGH - BELOW), 1 / LARGEST)
 
 
-def _spots(
-    places: Sequence[tuple[Place, Point]], pieces: Sequence[Piece], signs: Sequence[Bounds], high: Point, unit: float
-) -> Iterator[Spot]:
-    """Place the name of each place above or below it, right or left, where it covers least of what is drawn already."""
-    taken = [*(bounds(corners) for one in pieces for corners in (one.corners, *one.fallen)), *signs]
-    for place, (x, y) in places:
-        shown = words.cut(place.place, NAMED)
-        wide, tall, off = text_width(shown) * unit, LINE * unit, (8 if place.kind in LARGE else 4) * unit
-        tried = [(x0, y0, x0 + wide, y0 + tall) for y0 in (y + off, y - off - tall) for x0 in (x + off, x - off - wide)]
-        box = min(tried, key=lambda one: _cost(one, taken, high))
-        taken.append(box)
-        is_before = box[0] < x
-        yield Spot(shown, place.kind, (x, y), (box[2 if is_before else 0], box[1] + 0.2 * tall), is_before, box)
-
-
-def _labels(pieces: Sequence[Piece], others: Sequence[Bounds], frame: Bounds, unit: float) -> Iterator[Label]:
-    """Name the pieces that are or may be of high or very high class; without one, those of medium class."""
+def _risky(pieces: Sequence[Piece]) -> list[tuple[str, Bounds]]:
+    """Return name and box of the pieces that are or may be of high or very high class; without one, medium class."""
     risky = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
     least = RiskClass.HIGH if any(upper >= RiskClass.HIGH for upper, _one in risky) else RiskClass.MEDIUM
     named = sorted((pair for pair in risky if pair[0] >= least), key=lambda pair: -pair[0])
-    taken = [*(bounds(one.corners) for one in pieces), *others]
-    return place_labels([(one.name, bounds(one.corners)) for _upper, one in named], taken, frame, unit)
-
-
-def _cost(box: Bounds, taken: Sequence[Bounds], high: Point) -> float:
-    """Return how much [m2] of a name lies over other things; outside the drawing is worse than over anything."""
-    over = sum(overlap(box, other) for other in taken)
-    return over + (1e6 if box[2] > high[0] or box[3] > high[1] else 0)
+    return [(one.name, bounds(one.corners)) for _upper, one in named[:MOST]]
 
 
 def _step(least: float) -> float:

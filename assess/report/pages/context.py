@@ -1,17 +1,16 @@
 """What the templates of a report see: its content, figures, lists, and the words for numbers."""
 
-import base64
 from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
 from assess.errors import Problem
 from assess.i18n import fill, markup, nmarkup, number
 from assess.i18n import gettext as _
-from assess.pictures import PictureError, prepare_picture
 from assess.progress import SILENT, Progress
 from assess.report import summary, words
 from assess.report.content import Content
 from assess.report.counts import build_bars
+from assess.report.embedded import Photos, data_uri, embed_logo
 from assess.report.figures.motion_figures import choose_traced, draw_motion, draw_traced, get_acceleration
 from assess.report.figures.plan import build_plan
 from assess.report.figures.risk_contours import build_contours, draw_contours
@@ -88,7 +87,8 @@ def _of_content(
         "is_compact": is_compact,
         "tables": _list_tables(content),
         "listings": _listings(content) if is_compact else {},
-        "logo": _logo(content),
+        "logo": embed_logo(content.run),
+        "photo_of": Photos(content.run).photo_of,
         "floor_bars": build_bars(content.worst_floors),
         "marks": words.marks(),
         "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
@@ -240,6 +240,8 @@ def list_missing_figures(content: Content) -> list[Problem]:
         _("motions and rotations of simulated pieces"): bool(content.verified.done),
         _("recorded motions"): bool(_list_recorded(content)),
         _("the logo"): content.run.building.logo is not None,
+        _("plans under the pieces"): any(floor.plan for floor in content.run.floor_rows),
+        _("photos of pieces"): any("photo" in item.more for item in content.run.item_rows),
     }
     names = ", ".join(name for name, is_there in named.items() if is_there)
     if not names:
@@ -249,20 +251,7 @@ def list_missing_figures(content: Content) -> list[Problem]:
 
 
 def _svg(drawing: bytes) -> str:
-    return _data_uri(drawing, "image/svg+xml")
-
-
-def _data_uri(data: bytes, kind: str) -> str:
-    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
-
-
-def _logo(content: Content) -> str:
-    if "logo" not in content.run.series:
-        return ""
-    try:
-        return _data_uri(*prepare_picture(content.run.series["logo"].tobytes()))
-    except PictureError:  # of results whose series were not written by this version, which checks the picture
-        return ""
+    return data_uri(drawing, "image/svg+xml")
 
 
 def _share(value: float) -> str:

@@ -1,0 +1,150 @@
+"""What lies under the pieces of a plan: the user's drawing of the floor, outlines of rooms, and the building's edge."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from assess.model import Place
+from assess.plans.linework import FloatArray, clip, unpack
+from assess.report import words
+from assess.report.embedded import data_uri
+from assess.report.figures.labels import Bounds, Corners, Point
+from assess.results import PlanRow, Results
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
+
+Ring = tuple[Point, ...]
+"""Corners of a polygon [m]."""
+
+THICKEST = 0.4
+"""Thickness of a wall [m] up to which the outlines of two rooms count as joined: assumed."""
+GROWN = 1.0
+"""How far beyond its pieces a plan is drawn, over their extent."""
+LEAST_GROWN = 3.0
+"""That distance is at least this [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Underlay:
+    """The user's drawing of a floor; `image` is the address of a picture, `lines` [m] those of a drawing."""
+
+    file: str
+    row: PlanRow
+    image: str
+    lines: tuple[FloatArray, ...]
+
+    @property
+    def corners(self) -> Corners:
+        """Its frame [m], from its lower left corner anticlockwise."""
+        one, two, three, four = (
+            _turned(self.row, x, y)
+            for x, y in ((0, 0), (self.row.width_m, 0), (self.row.width_m, self.row.height_m), (0, self.row.height_m))
+        )
+        return one, two, three, four
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """An outline of a room; `name` is "" where a sign of the place shows it, `centre` a point inside."""
+
+    name: str
+    outline: Ring
+    centre: Point
+
+
+def build_underlay(results: Results, floor: str) -> Underlay | None:
+    """Return the drawing of a floor; None where there is none, or its series are gone."""
+    at = [one.floor for one in results.floor_rows].index(floor)
+    row = results.floor_rows[at].plan
+    if row is None or f"plan/{at}" not in results.series:
+        return None
+    content = results.series[f"plan/{at}"].tobytes()
+    file = words.cut(row.file, 60)
+    if not row.is_lines:
+        return Underlay(file, row, data_uri(content, "image/jpeg"), ())
+    lines = tuple(_turn_all(row, line * row.width_m) for line in unpack(content))
+    return Underlay(file, row, "", lines)
+
+
+def _turned(row: PlanRow, x: float, y: float) -> Point:
+    cos, sin = math.cos(math.radians(row.turn_deg)), math.sin(math.radians(row.turn_deg))
+    return row.left_m + x * cos - y * sin, row.bottom_m + x * sin + y * cos
+
+
+def _turn_all(row: PlanRow, points: FloatArray) -> FloatArray:
+    return np.column_stack(_turned(row, points[:, 0], points[:, 1]))  # type: ignore[arg-type]
+
+
+def cut_lines(lines: Iterable[FloatArray], box: Bounds) -> list[FloatArray]:
+    """Return the parts of lines inside a box [m]."""
+    return [part for line in lines for part in clip(line, box)]
+
+
+def widen(box: Bounds, frame: Sequence[Point]) -> Bounds:
+    """Return a box that shows the frame of a drawing as well, but not far beyond what was in the box."""
+    grown = max(GROWN * max(box[2] - box[0], box[3] - box[1]), LEAST_GROWN)
+    xs, ys = zip(*frame, strict=True)
+    return (
+        min(box[0], max(min(xs), box[0] - grown)),
+        min(box[1], max(min(ys), box[1] - grown)),
+        max(box[2], min(max(xs), box[2] + grown)),
+        max(box[3], min(max(ys), box[3] + grown)),
+    )
+
+
+# ---------------------------------------------------------------- rooms and the building's edge
+
+
+def list_rooms(places: Sequence[Place]) -> tuple[Room, ...]:
+    """Return the places of a floor that have an outline, the largest first."""
+    if not any(one.outline for one in places):
+        return ()
+    from shapely import Polygon
+
+    found = []
+    for one in places:
+        if one.outline:
+            shape = Polygon(one.outline)
+            centre = shape.centroid if shape.contains(shape.centroid) else shape.representative_point()
+            name = one.place if one.x is None or one.y is None else ""
+            found.append((-shape.area, Room(name, one.outline, (centre.x, centre.y))))
+    return tuple(room for _area, room in sorted(found, key=lambda pair: pair[0]))
+
+
+def find_edge(
+    rooms: Sequence[Room], frame: Sequence[Point], pieces: Sequence[Point]
+) -> "tuple[BaseGeometry, str] | None":
+    """Return what falls are drawn within, and what it is of; None where that is not known.
+
+    It is the union of the `outlines` of the floor, with the walls between them, if every piece stands in it: rooms
+    without an outline would lose their falls. Else it is the `frame` of the user's drawing, on the same condition.
+    """
+    if not rooms and not frame:
+        return None
+    from shapely import MultiPoint, Polygon, union_all
+
+    stand = MultiPoint(list(pieces))
+    half = THICKEST / 2
+    joined = union_all([Polygon(room.outline) for room in rooms]).buffer(half, join_style="mitre")
+    edges = {"outlines": joined.buffer(-half, join_style="mitre"), "frame": Polygon(frame)}
+    for name, edge in edges.items():
+        if not edge.is_empty and edge.covers(stand):
+            return edge, name
+    return None
+
+
+def cut_falls(falls: Sequence[Ring], edge: "BaseGeometry") -> tuple[Ring, ...]:
+    """Return the parts of convex polygons inside the building's edge: their rings, those of holes turned about."""
+    from shapely import Polygon, get_parts
+    from shapely.geometry.polygon import orient
+
+    found: list[Ring] = []
+    for fall in falls:
+        parts = get_parts(Polygon(fall).intersection(edge))
+        for part in (orient(one) for one in parts if isinstance(one, Polygon) and not one.is_empty):
+            found += [tuple(ring.coords[:-1]) for ring in (part.exterior, *part.interiors)]
+    return tuple(found)
