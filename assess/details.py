@@ -46,6 +46,8 @@ class Detail:
         One of its fixings, with its capacity where one is printed.
     capacity : float, optional
         Of one fixing [N]; None where no source prints one.
+    is_at_base : bool
+        Whether it holds the piece at its base, where the lever of its fixings is the piece's breadth.
     """
 
     key: str
@@ -55,6 +57,7 @@ class Detail:
     source: Text
     fixing: Text
     capacity: float | None = None
+    is_at_base: bool = False
 
 
 _SCREW = fill(
@@ -93,7 +96,7 @@ DETAILS: Mapping[str, Detail] = {
                 "in into concrete"
             ),
             fill("it holds at the base, where the lever is short: the tension there is larger than at the top"),
-            fill("Earthquake Country Alliance"), fill("no capacity is printed"),
+            fill("Earthquake Country Alliance"), fill("no capacity is printed"), is_at_base=True,
         ),
         Detail(
             "gang", fill("gang the row together"),

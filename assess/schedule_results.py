@@ -6,6 +6,63 @@ from assess.risk import RiskClass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class WorkRow:
+    """Alike pieces of one room that are fixed in the same way: an entry of the schedule is one of these, or several.
+
+    Parameters
+    ----------
+    floor, room : str
+        Where they stand.
+    items, item_indices : tuple of str, tuple of int
+        Their names, and their places in `Results.item_rows`, the most urgent first.
+    pieces : int
+        How many they are, quantities counted.
+    detail : str
+        How they may be fixed: key of `assess.details.DETAILS`.
+    tension_kn, tension_high_kn : float
+        What the fixings of each piece have to carry together at PFA and at its 84 %: at the bracket, or, where it is
+        fixed at its base, at the far edge of the base, on the lever of its breadth [kN].
+    tension_code_kn : float, optional
+        The same by the code; None where neither SDS nor Ground PGA is known [kN].
+    shear_kn : float
+        Horizontal force at the base of each piece at PFA [kN].
+    fixings : int
+        Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one fixing.
+    weights_assumed, heights_assumed : int
+        Pieces whose weight, and whose bracket height, is assumed.
+    is_per_metre : bool
+        Whether forces and fixings are those of one metre of a piece, as its width is not known.
+    unit_cost, cost : float, optional
+        Of one piece and of all, as the sheet Costs has it; None where it does not.
+    cost_source : str
+        Where that comes from, as the workbook says.
+    """
+
+    floor: str
+    room: str
+    items: tuple[str, ...]
+    item_indices: tuple[int, ...]
+    pieces: int
+    detail: str
+    tension_kn: float
+    tension_high_kn: float
+    tension_code_kn: float | None
+    shear_kn: float
+    fixings: int
+    weights_assumed: int
+    heights_assumed: int
+    is_per_metre: bool
+    unit_cost: float | None
+    cost: float | None
+    cost_source: str
+
+    @property
+    def demand_kn(self) -> float:
+        """The tension that the fixings are counted by [kN]."""
+        return max(self.tension_high_kn, self.tension_code_kn or 0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ScheduleRow:
     """One entry of the schedule: a piece, pieces that are alike, or pieces that only help together.
 
@@ -21,17 +78,8 @@ class ScheduleRow:
         How many they are, quantities counted.
     is_together : bool
         Whether they only help together: fixing some of them opens no route.
-    detail : str
-        How it may be fixed: key of `assess.details.DETAILS`.
-    tension_kn : float
-        What each piece's fixings have to carry together: the largest of the pieces, and of the demands of the scenario
-        at 84 % of PFA and of the code where that is known [kN].
-    fixings : int
-        Of one piece, at the printed capacity of one where there is one.
-    unit_cost, cost : float, optional
-        Of one piece and of all, as the sheet Costs has it; None where it does not.
-    cost_source : str
-        Where that comes from, as the workbook says.
+    works : tuple of WorkRow
+        What is to be done: alike pieces of a room are one.
     falls_avoided : float
         Expected number of falls that it avoids; 0 of pieces that stand apart.
     falls_left : float
@@ -44,14 +92,15 @@ class ScheduleRow:
     item_indices: tuple[int, ...]
     pieces: int
     is_together: bool
-    detail: str
-    tension_kn: float
-    fixings: int
-    unit_cost: float | None
-    cost: float | None
-    cost_source: str
+    works: tuple[WorkRow, ...]
     falls_avoided: float
     falls_left: float
+
+    @property
+    def cost(self) -> float | None:
+        """What it costs; None where that of any part is not known."""
+        known = [one.cost for one in self.works if one.cost is not None]
+        return sum(known) if len(known) == len(self.works) else None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,8 +150,13 @@ class Schedule:
     @property
     def cost(self) -> float | None:
         """The sum of the costs that are known; None where none is."""
-        known = [one.cost for one in self.rows if one.cost is not None]
+        known = [work.cost for one in self.rows for work in one.works if work.cost is not None]
         return sum(known) if known else None
+
+    @property
+    def uncosted(self) -> int:
+        """How many entries have a part whose cost is not known."""
+        return sum(one.cost is None for one in self.rows)
 
 
 _NONE = State(

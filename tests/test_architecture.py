@@ -24,7 +24,7 @@ LAYERS = {
     "methods": 4,
     "model": 5,
     "results": 6, "route_results": 6, "annual_results": 6, "schedule_results": 6,
-    "fields": 7, "route_fields": 7, "frames": 7,
+    "fields": 7, "route_fields": 7, "schedule_fields": 7, "frames": 7,
     "workbook": 8,
     "routes": 9,
     "pipeline": 10,

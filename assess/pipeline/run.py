@@ -163,10 +163,8 @@ def _compute(
     chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
     outcomes[simulation().key] = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
-    adopted = adopt(outcomes, cases, settings)
-    adoption, united = unite_axes(adopted, outcomes, inventory, case_item, case_demand, settings)
+    adoption, both = unite_axes(adopt(outcomes, cases, settings), outcomes, inventory, case_item, case_demand, settings)
     governing = find_governing(adoption.probability, case_item, cases.pfa)
-    remarks = [*remark(inventory, filled, scenario, settings.ductility_reduction), *remark_suite(suite, cases)]
     return Assessment(
         inventory=inventory,
         settings=settings,
@@ -180,12 +178,30 @@ def _compute(
         case_demand=case_demand,
         outcomes=outcomes,
         adoption=adoption,
-        either_axis=united,
+        either_axis=both,
         governing=governing,
         anchors=find_anchors(inventory, cases, governing, settings),
         obstructions=obstructions,
-        problems=(*inventory.problems, *map(inventory.place, (*remarks, *_route_problems(inventory, obstructions)))),
+        problems=_list_problems(inventory, filled, scenario, settings, suite, cases, obstructions),
     )
+
+
+def _list_problems(
+    inventory: Inventory,
+    filled: Demands,
+    scenario: str,
+    settings: Settings,
+    suite: "Suite | None",
+    cases: Cases,
+    obstructions: "Sequence[Obstructions]",
+) -> tuple[Problem, ...]:
+    """Return the problems of the workbook, and what is to be said of its motions, the user's own, and its routes."""
+    remarks = [
+        *remark(inventory, filled, scenario, settings.ductility_reduction),
+        *remark_suite(suite, cases),
+        *_route_problems(inventory, obstructions),
+    ]
+    return (*inventory.problems, *map(inventory.place, remarks))
 
 
 def build_results(

@@ -8,22 +8,23 @@ anchored would.
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.details import DETAILS, count_fixings, find_detail
+from assess.details import DETAILS, Detail, count_fixings, find_detail
 from assess.model import Cost, Inventory, Item
 from assess.natural import natural_key
-from assess.results import ItemResult, Results
+from assess.results import ItemResult, ItemRow, Results
 from assess.risk import RiskClass
 from assess.route_results import RouteRow, RouteState, RouteTables
-from assess.schedule_results import Schedule, ScheduleRow, State
+from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
 
 APART = ("", "unconfirmed", "formula")
 """The bases in the order of lists: that of the run, and what stands apart."""
-FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet")
-"""Words of a description or type by which a piece is fixed at its base."""
+FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "schedario", "classificatore")
+"""Words of a description or type, in every language of the workbook, by which a piece is fixed at its base."""
 
 
 def build_schedule(
@@ -149,24 +150,75 @@ def _describe(
     left: float,
 ) -> ScheduleRow:
     first, indices = entry[0].item, tuple(one.item.index for one in entry)
-    detail = DETAILS[choose_detail(inventory.items[first.index])]
-    pieces, tension = sum(one.item.quantity for one in entry), max(map(_find_demand, entry))
-    cost = costs.get(detail.key)
+    alike: dict[object, list[ItemResult]] = {}
+    for one in entry:
+        alike.setdefault(_kind(one), []).append(one)
     return ScheduleRow(
         place=place,
         floor=first.floor,
         room=first.room,
         item_indices=indices,
-        pieces=pieces,
+        pieces=sum(one.item.quantity for one in entry),
         is_together=any(len(one & set(indices)) > 1 for one in together),
+        works=tuple(_describe_work(own, inventory, costs) for own in alike.values()),
+        falls_avoided=avoided,
+        falls_left=left,
+    )
+
+
+def _describe_work(alike: Sequence[ItemResult], inventory: Inventory, costs: Mapping[str, Cost]) -> WorkRow:
+    first, rows = alike[0].item, [one.item for one in alike]
+    detail = DETAILS[choose_detail(inventory.items[first.index])]
+    pieces, cost = sum(one.quantity for one in rows), costs.get(detail.key)
+    forces = [find_forces(one, detail) for one in rows]
+    high, code = max(one.high for one in forces), _find_largest([one.code for one in forces])
+    return WorkRow(
+        floor=first.floor,
+        room=first.room,
+        items=tuple(one.item for one in rows),
+        item_indices=tuple(one.index for one in rows),
+        pieces=pieces,
         detail=detail.key,
-        tension_kn=tension,
-        fixings=count_fixings(detail, 1000 * tension),
+        tension_kn=max(one.tension for one in forces),
+        tension_high_kn=high,
+        tension_code_kn=code,
+        shear_kn=max(one.shear for one in forces),
+        fixings=count_fixings(detail, 1000 * max(high, code or 0.0)),
+        weights_assumed=sum(one.quantity for one in rows if one.anchor.weight_source == "estimate"),
+        heights_assumed=0 if detail.is_at_base else sum(one.quantity for one in rows if one.anchor.is_height_assumed),
+        is_per_metre=any(one.anchor.is_per_metre for one in rows),
         unit_cost=None if cost is None else cost.unit_cost,
         cost=None if cost is None else pieces * cost.unit_cost,
         cost_source="" if cost is None else cost.source,
-        falls_avoided=avoided,
-        falls_left=left,
+    )
+
+
+def _find_largest(forces: Sequence[float | None]) -> float | None:
+    return max((one for one in forces if one is not None), default=None)
+
+
+class Forces(NamedTuple):
+    """What the fixings of one piece have to carry [kN]: tension at PFA, its 84 % and by the code, shear at PFA."""
+
+    tension: float
+    high: float
+    code: float | None
+    shear: float
+
+
+def find_forces(item: ItemRow, detail: Detail) -> Forces:
+    """Return what the fixings of a piece have to carry in a way to fix it.
+
+    Moments about the toe give the tension at the bracket; at the base the same moment acts on the breadth, and the base
+    carries the whole horizontal force.
+    """
+    anchor = item.anchor
+    lever = anchor.bracket_height_cm / item.breadth_cm if detail.is_at_base else 1.0
+    return Forces(
+        anchor.tension_kn * lever,
+        anchor.tension_high_kn * lever,
+        None if anchor.tension_code_kn is None else anchor.tension_code_kn * lever,
+        anchor.shear_kn + (anchor.tension_kn if detail.is_at_base else 0.0),
     )
 
 
@@ -174,12 +226,6 @@ def _find_costs(costs: Sequence[Cost]) -> dict[str, Cost]:
     """Return costs by the key of the detail that each names, in whatever language."""
     found = ((find_detail(one.detail), one) for one in costs)
     return {detail.key: one for detail, one in found if detail}
-
-
-def _find_demand(one: ItemResult) -> float:
-    """Return the tension that the fixings of a piece are to carry [kN]."""
-    anchor = one.item.anchor
-    return max(anchor.tension_high_kn, anchor.tension_code_kn or 0.0)
 
 
 def choose_detail(item: Item) -> str:

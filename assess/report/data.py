@@ -20,6 +20,7 @@ from assess.fields import MOTION_FIELDS, Shape, item_fields
 from assess.progress import SILENT, Progress
 from assess.report.results_schema import FILE, VERSION, building_key
 from assess.results import Results
+from assess.schedule_fields import to_record
 from assess.units import to_edge
 from assess.workbook.schema import BUILDING
 
@@ -46,6 +47,7 @@ def write_json(
         _write_list(file, "items", map(shape.nest, progress.checked(results)))
         file.write(",\n")
         _write_routes(file, results.route_tables.to_record())
+        file.write(f',\n "schedule": {_dump(to_record(results.schedule))}')
         file.write(f',\n "annual": {_dump(results.annual and asdict(results.annual))}')
         file.write(",\n")
         _write_list(file, "problems", (asdict(one) for one in results.problem_rows))

@@ -1,4 +1,5 @@
-"""The JSON Schema of results.json, made from the fields of `assess.fields` and the rows of `assess.route_results`.
+"""The JSON Schema of results.json, made from the fields of `assess.fields` and `assess.schedule_fields` and from the
+rows of `assess.route_results`.
 
 ``python -m assess.report.results_schema`` writes it beside this file; descriptions are the fields' help and the rows'
 docstrings.
@@ -21,6 +22,7 @@ from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_
 from assess.model import AXES
 from assess.results import AssumedShaking, Provenance
 from assess.risk import RiskClass
+from assess.schedule_fields import ENTRY_FIELDS, STATE_FIELDS, WORK_FIELDS
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
@@ -50,6 +52,7 @@ def build_schema() -> Schema:
         })),
         "items": _list(_ref("item")),
         "routes": _of_row(rows.RouteTables),
+        "schedule": _schedule(),
         "annual": _or_null(_of_row(AnnualTables))
         | {"description": "What annual chances rest on, and those of the building; null: no Hazard file was given."},
         "problems": _list(_of_row(Problem) | {"description": "Warnings and notes about the input."}),
@@ -154,6 +157,21 @@ def _method() -> Schema:
         "additionalProperties": {"type": ["number", "string", "boolean", "null"]},
         "description": "Beside the value are the method's own details, units in their names.",
     }
+
+
+def _schedule() -> Schema:
+    """Return the schema of `assess.schedule_fields.to_record`."""
+    entry, state = _of_fields(ENTRY_FIELDS), _of_fields(STATE_FIELDS)
+    entry["properties"]["works"] |= _list(_of_fields(WORK_FIELDS))
+    state["properties"]["routes"] |= _map(COUNT)
+    made = _object({
+        "entries": _list(entry) | {"description": "The most urgent first."},
+        "before": state,
+        "after": state | {"description": "With every piece of the entries anchored, and its anchors holding."},
+        "cost": _or_null({"type": "number"}) | {"description": "Sum of the costs that are known."},
+        "entries_without_cost": COUNT,
+    })  # fmt: skip
+    return made | {"description": "What to fix, with what, and what it changes: screening, not design."}
 
 
 def _building(column: Column) -> Iterable[tuple[str, Schema]]:

@@ -7,9 +7,9 @@ from assess.details import DETAILS, SCREW, count_fixings
 from assess.settings import Settings
 from assess.workbook.template import Content, write_workbook
 
-FLOORS = [{"floor": "1", "pfa_x": 0.5, "pfa_y": 0.5}]
+FLOORS = [{"floor": "1", "pfa_x": 0.5, "pfa_y": 0.5}, {"floor": "G", "pfa_x": 0.2, "pfa_y": 0.2}]
 TALL = {"floor": "1", "breadth": 30, "width": 90, "height": 190, "weight": 120}
-SQUAT = {"floor": "1", "breadth": 80, "width": 90, "height": 70, "weight": 60}
+SQUAT = {"floor": "G", "breadth": 90, "width": 90, "height": 90, "weight": 60}
 
 
 def schedule_of(folder, items, costs=(), **more):
@@ -58,17 +58,18 @@ def test_costs_by_detail_in_any_language(tmp_path):
     ]
     costs = [{"detail": "L-bracket to studs", "unit_cost": 40, "source": "offer of 2026"}]
     _, schedule, names = schedule_of(tmp_path, items, costs)
-    found = {name: (one.detail, one.unit_cost, one.cost, one.cost_source) for (name,), one in
-             zip(names, schedule.rows, strict=True)}  # fmt: skip
+    works = [one for row in schedule.rows for one in row.works]
+    assert [one.items for one in works] == names
+    found = {one.items[0]: (one.detail, one.unit_cost, one.cost, one.cost_source) for one in works}
     assert found["wall"] == ("bracket", 40, 80, "offer of 2026")
     assert found["file"] == ("base_angle", None, None, "")
     assert found["free"] == ("base_angle", None, None, "")
-    assert schedule.cost == 80
+    assert (schedule.cost, schedule.uncosted) == (80, 2)
 
 
 def test_no_costs_no_sum(tmp_path):
     _, schedule, _ = schedule_of(tmp_path, [TALL | {"item": "a"}])
-    assert schedule.cost is None
+    assert (schedule.cost, schedule.uncosted) == (None, 1)
 
 
 def test_a_cost_for_nothing_that_is_done_is_a_warning(tmp_path):
@@ -84,7 +85,41 @@ def test_the_demand_is_the_larger_of_the_scenario_and_the_code(tmp_path):
     results, schedule, _ = schedule_of(tmp_path, [TALL | {"item": "a"}], Building=[{"sds": 3.0}])
     anchor = results["a"].item.anchor
     assert anchor.tension_code_kn > anchor.tension_high_kn
-    assert schedule.rows[0].tension_kn == anchor.tension_code_kn
+    (work,) = schedule.rows[0].works
+    assert work.demand_kn == work.tension_code_kn == anchor.tension_code_kn
+
+
+BY_HAND = {
+    # Bookcase, bracket at 0.9 of its height: W = 1.2 kN, B = 0.30 m, z = 0.95 m, h = 1.71 m.
+    # At PFA, k = 0.5: T = 1.2 (0.5 x 0.95 - 0.15) / 1.71 = 0.2281 kN; shear 0.5 x 1.2 - 0.2281 = 0.3719 kN.
+    # At 84 %, k = 0.5 exp(0.4) = 0.745912: T = 1.2 (0.708617 - 0.15) / 1.71 = 0.3920 kN.
+    # By the code, F_p/W = 0.4 x 1.0 x (3.5 / 1.3) (1 / 1.5) = 0.717949, k_v = 0.2:
+    # T = 1.2 (0.682051 - 0.8 x 0.15) / 1.71 = 0.3944 kN, more than at 84 %: 0.3944 / 0.854 is 1, so the least, 2.
+    "wall": ({"weight": 1200 / 9.80665}, ("bracket", 0.2281, 0.3920, 0.3944, 0.3719, 2)),
+    # The same of 9.6 kN with its bracket at 1.00 m: forces are 8 x 1.71 = 13.68 times as large, shear 9.6 x 0.5 - T.
+    # T = 9.6 (0.475 - 0.15) / 1.00 = 3.1200 kN; at 84 % 9.6 x 0.558617 = 5.3627 kN; by the code 9.6 x 0.562051 =
+    # 5.3957 kN; shear 4.8 - 3.12 = 1.6800 kN; 5.3957 / 0.8541 = 6.32, so 7 screws.
+    "heavy": ({"weight": 9600 / 9.80665, "bracket_height": 100}, ("bracket", 3.1200, 5.3627, 5.3957, 1.6800, 7)),
+    # A lateral file of 1.2 kN, fixed at its base: the moment acts on B = 0.30 m. T = 1.2 (0.475 - 0.15) / 0.30 =
+    # 1.3000 kN; at 84 % 1.2 x 0.558617 / 0.30 = 2.2345 kN; by the code 1.2 x 0.562051 / 0.30 = 2.2482 kN; the base
+    # carries the whole of 0.5 x 1.2 = 0.6000 kN.
+    "base": (
+        {"weight": 1200 / 9.80665, "description": "Lateral file"}, ("base_angle", 1.3000, 2.2345, 2.2482, 0.6000, 2),
+    ),
+}  # fmt: skip
+"""Three pieces by hand: what is given besides `TALL`; detail, T at PFA, at 84 %, by the code, shear, fixings."""
+
+
+def test_the_forces_of_three_pieces_by_hand(tmp_path):
+    items = [TALL | {"item": name, "room": name} | given for name, (given, _) in BY_HAND.items()]
+    building = {"sds": 1.0, "motion_uncertainty": 0.4}
+    _, schedule, _ = schedule_of(tmp_path, items, Building=[building])
+    works = {one.items[0]: one for row in schedule.rows for one in row.works}
+    for name, (_given, (detail, *forces, fixings)) in BY_HAND.items():
+        one = works[name]
+        found = (one.tension_kn, one.tension_high_kn, one.tension_code_kn, one.shear_kn)
+        assert (one.detail, one.fixings) == (detail, fixings), name
+        assert found == pytest.approx(forces, abs=6e-5), name
 
 
 def test_fixings_follow_from_the_printed_capacity():
