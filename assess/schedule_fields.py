@@ -4,6 +4,7 @@ results.json, its schema, the work list of the Excel report and the tables of th
 """
 
 from collections.abc import Mapping
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -16,12 +17,22 @@ from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
 
 def _of(name: str, kind: Kind = "text", label: str = "", **more: Any) -> Field:
     formats = {"number": "0.00", "count": "#,##0"}
-    given = {"key": name, "read": attrgetter(name), "format": formats.get(kind, ""), "kind": kind, "label": label}
+    given: dict[str, Any] = {
+        "key": name,
+        "read": attrgetter(name),
+        "format": formats.get(kind, ""),
+        "kind": kind,
+        "label": label,
+    }
     return Field(**given | more)
 
 
 def _force(name: str, label: str, short: str, **more: Any) -> Field:
     return _of(name, "number", label, short=short, unit="kN", width=9, **more)
+
+
+def _count(risk: RiskClass, state: State) -> int:
+    return state.count(risk)
 
 
 WORK_FIELDS = (
@@ -79,7 +90,7 @@ STATE_FIELDS = (
     *(
         Field(
             key=f"pieces_{risk.word.replace(' ', '_')}", path=("pieces", risk.word.replace(" ", "_")), kind="count",
-            read=lambda one, risk=risk: one.count(risk),
+            read=partial(_count, risk),
         )
         for risk in RiskClass
     ),

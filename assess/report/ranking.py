@@ -1,17 +1,11 @@
-"""What to fix first: pieces in the order in which they are to be fixed, with what each saves, and steps for routes."""
+"""The steps that bring each route below the chosen risk, in words."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from assess.i18n import gettext as _
-from assess.i18n import ngettext
-from assess.pipeline.schedule import fix_first
 from assess.report import words
-from assess.results import ItemResult, Results
 from assess.route_results import RouteTables
-
-NAMED = 2
-"""Routes that a reason names; the rest are counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,44 +63,15 @@ def _say_left(step: RouteStep, chance: float) -> str:
     return _("up to {chance}", chance=said) if step.is_bound and chance > 0 else said
 
 
-@dataclass(frozen=True, slots=True)
-class Fix:
-    """One line of what to fix first, with its place in the list.
-
-    `saved` is the expected number of falls of this row, avoided if its anchors hold; `together` the share of all
-    expected falls that this line and those above it avoid, None for a piece that stands apart. `steps` are the steps of
-    routes that it is.
-    """
-
-    place: int
-    result: ItemResult
-    saved: float
-    together: float | None
-    steps: Sequence[RouteStep] = ()
-
-    @property
-    def reason(self) -> str:
-        """Why it comes first, besides its chance: its importance, and its routes with the effect on them."""
-        item, named = self.result.item, {one.route for one in self.steps}
-        others = [words.cut(route, 30) for route in self.result.routes if route not in named]
-        beside = ngettext("route {routes}", "routes {routes}", len(others), routes=words.name_first(others, NAMED))
-        parts = [_(item.importance), *map(say_step, self.steps), beside if others and not named else ""]
-        return ", ".join(part for part in parts if part) or words.DASH
-
-
-def list_fixes(results: Results, rows: Sequence[ItemResult], expected: float) -> list[Fix]:
-    """Return the pieces of at least medium class and those that a route needs fixed, the most urgent first.
-
-    Pieces that stand apart (`ItemResult.apart`) come after all others, unconfirmed ones first. `expected` is the number
-    of free-standing pieces that are expected to fall, but for those.
-    """
-    steps: dict[int, list[RouteStep]] = {}
-    for step in list_steps(results.route_tables):
-        steps.setdefault(step.item_index, []).append(step)
-    fixes, sum_saved = [], 0.0
-    for place, one in enumerate(fix_first(rows, steps), 1):
-        saved = one.adopted.probability * one.item.quantity
-        sum_saved += 0.0 if one.apart else saved
-        together = sum_saved / expected if expected else 0.0
-        fixes.append(Fix(place, one, saved, None if one.apart else together, tuple(steps.get(one.item.index, ()))))
-    return fixes
+def say_effect(steps: Sequence[RouteStep]) -> str:
+    """Return the effect of steps of one route, in their order; of steps with others between, that of all."""
+    first, last = steps[0], steps[-1]
+    if len(steps) == 1:
+        return say_step(first)
+    route, before, after = words.cut(first.route, 30), _say_left(first, first.before), _say_left(last, last.after)
+    if before != after and last.place - first.place + 1 == len(steps):
+        return _("route {route}: {before} → {after} (steps {place:,} to {last:,} of {steps:,})",
+                 route=route, before=before, after=after, place=first.place, last=last.place,
+                 steps=first.steps)  # fmt: skip
+    return _("route {route}: {before} → {after} (with all {steps:,} steps)",
+             route=route, before=before, after=_say_left(first, first.at_last), steps=first.steps)  # fmt: skip

@@ -11,8 +11,8 @@ from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
 from assess.report.findings.assumed_intensity import say_shaking_shortly
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
+from assess.report.findings.schedule_words import Entry, list_entries
 from assess.report.findings.uncertain import say_assumed, say_sensitivity
-from assess.report.ranking import Fix, list_fixes
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 
@@ -38,14 +38,14 @@ class Summary:
     shaking: Sequence[str]
     assumed: Sequence[str]
     worst: Sequence[ItemResult]
-    fixes: Sequence[Fix]
+    fixes: Sequence[Entry]
     routes: Sequence[RouteAtRisk]
     of_routes: Sequence[str]
 
 
 def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -> Summary:
     """Gather the summary."""
-    worst, fixes = list_worst(rows), list_fixes(results, rows, total.expected)
+    worst, fixes = list_worst(rows), list_entries(results)
     could_be = sum(one.item.quantity for one in list_risky(rows) if one.adopted.risk < RiskClass.HIGH)
     return Summary(
         plainly=say_plainly(total, could_be, worst, fixes),
@@ -81,7 +81,7 @@ def _worst_first(one: ItemResult) -> tuple[object, ...]:
     return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
 
 
-def say_plainly(total: Counts, could_be: int, worst: Sequence[ItemResult], fixes: Sequence[Fix]) -> list[str]:
+def say_plainly(total: Counts, could_be: int, worst: Sequence[ItemResult], fixes: Sequence[Entry]) -> list[str]:
     """Return the first paragraph of the summary; `could_be` pieces reach high by the upper estimate only."""
     texts = [_say_counts(total)]
     if could_be and total.risky:
@@ -100,7 +100,7 @@ def say_plainly(total: Counts, could_be: int, worst: Sequence[ItemResult], fixes
     return [*texts, *_say_falls(total, fixes)]
 
 
-def _say_falls(total: Counts, fixes: Sequence[Fix]) -> list[str]:
+def _say_falls(total: Counts, fixes: Sequence[Entry]) -> list[str]:
     """Say how many pieces are expected to fall, how many may besides, and what the first fixes avoid."""
     texts = []
     if total.expected >= 0.05 or total.unconfirmed:
@@ -109,8 +109,8 @@ def _say_falls(total: Counts, fixes: Sequence[Fix]) -> list[str]:
     first = [one for one in fixes[:FIXES] if one.together is not None]
     if total.expected >= 0.05 and first:
         texts.append(ngettext(
-            "Fixing the first row of the list below avoids {share:.0f} % of the expected falls.",
-            "Fixing the first {n} rows of the list below avoids {share:.0f} % of the expected falls.",
+            "Fixing the first entry of the list below avoids {share:.0f} % of the expected falls.",
+            "Fixing the first {n} entries of the list below avoids {share:.0f} % of the expected falls.",
             len(first), share=100 * (first[-1].together or 0.0),
         ))  # fmt: skip
     return texts
@@ -167,9 +167,10 @@ def _say_simulated(total: Counts) -> str:
 
 
 def describe(one: ItemResult, longest: int = 80) -> str:
-    """Return the piece in the workbook's words, and that it is partly anchored, which its class leaves out."""
+    """Return the piece in the workbook's words, and that it is partly anchored or its bracket fails."""
     text = one.item.description or one.item.type or _("no description")
-    if one.item.anchored != "partly":
+    is_failing = one.item.anchored == "yes" and not one.is_anchored
+    if one.item.anchored != "partly" and not is_failing:
         return words.cut(text, longest)
-    note = _("partly anchored")
+    note = _("bracket fails") if is_failing else _("partly anchored")
     return f"{words.cut(text, max(LEAST, longest - len(note) - 2))}, {note}"

@@ -187,14 +187,28 @@ LEAST_SLIP = 1.0
 
 
 def list_beside(one: ItemResult) -> list[str]:
-    """Return what is said beside the class of a piece and does not change it: how far it slides, falls from a wall."""
+    """Return what is said beside the class of a piece: how far it slides, falls from a wall, what its bracket does."""
     sliding, one_sided, texts = one.governing.sliding, one.governing.one_sided, []
     if sliding is not None and sliding.slip_median_cm is not None and (sliding.slip_84_cm or 0.0) >= LEAST_SLIP:
         texts.append(_("slides up to {median} cm (median), {high} cm (84 %)",
                        median=fixed(sliding.slip_median_cm, 0), high=fixed(sliding.slip_84_cm, 0)))  # fmt: skip
     if one_sided is not None:
         texts.append(_("with the wall at its back {chance}", chance=percent(one_sided)))
-    return texts
+    return [*texts, *filter(None, (say_bracket(one),))]
+
+
+def say_bracket(one: ItemResult) -> str:
+    """Return what follows from a bracket whose capacity is known: whether the piece counts as anchored; "" else."""
+    anchored, holds, holds_high = one.item.anchored, one.item.anchor.holds, one.item.anchor.holds_high
+    if anchored == "yes" and holds is False:
+        return _("bracket fails at PFA: counts as free-standing")
+    if anchored == "partly" and holds_high is not None:
+        return (
+            _("bracket holds at 84 % of PFA: counts as anchored")
+            if holds_high
+            else _("bracket fails at 84 % of PFA: counts as free-standing")
+        )
+    return ""
 
 
 def risk_words(one: ItemResult) -> str:

@@ -6,7 +6,7 @@ from threading import Event
 import pytest
 
 import assess
-from assess.report.ranking import fix_first
+from assess.pipeline.schedule import fix_first
 from assess.risk import RiskClass
 from tests.workbooks import FLOORS, RECORDS, UNVERIFIED, assessed, write
 

@@ -7,10 +7,11 @@ import pytest
 
 import assess
 from assess.cli.command_run import describe_result
+from assess.pipeline.schedule import fix_first
 from assess.report import statements, words
 from assess.report.content import build_content
 from assess.report.findings import at_risk
-from assess.report.ranking import fix_first, list_steps, say_step
+from assess.report.ranking import list_steps, say_step
 from assess.report.report_options import ReportOptions
 from assess.report.summary import FIXES
 from assess.risk import RiskClass

@@ -15,7 +15,15 @@ from assess.report.figures.motion_figures import choose_traced, draw_motion, dra
 from assess.report.figures.plan import build_plan
 from assess.report.figures.risk_contours import build_contours, draw_contours
 from assess.report.figures.ways import build_stretches
-from assess.report.findings import annual_chances, motions, route_page, route_rows, route_words, trials
+from assess.report.findings import (
+    annual_chances,
+    motions,
+    route_page,
+    route_rows,
+    route_words,
+    schedule_words,
+    trials,
+)
 from assess.report.findings.approach import list_approach, list_sources
 from assess.report.findings.floor_lines import say_counts, say_motions
 from assess.report.findings.uncertain import say_condition
@@ -33,6 +41,8 @@ from assess.report.pages.page_columns import (
 from assess.report.provenance import say_reference
 from assess.report.report_options import ReportOptions
 from assess.results import MotionRow
+from assess.schedule_fields import schedule_fields
+from assess.schedule_results import WorkRow
 
 FULL_ROWS = 150
 """Rows up to which a PDF shows whole tables of all pieces; longer ones go to the appendix in a compact form."""
@@ -40,7 +50,7 @@ LIMITS: Mapping[str, int] = {
     "most_rows": 5000, "most_lines": compact.MOST_LINES, "most_routes": 100, "most_segments": 150,
     "most_rooms": 150, "most_beside": 300, "most_steps": 120, "most_problems": 120, "most_notes": 150,
     "most_motions": 60, "most_groups": 15, "most_risky": 60, "listed": trials.LISTED,
-    "most_annual": annual_chances.LISTED,
+    "most_annual": annual_chances.LISTED, "most_entries": 150,
     "most_fixes": summary.FIXES, "most_cautions": summary.CAUTIONS, "most_at_risk": summary.ROUTES,
 }  # fmt: skip
 """What the lists of HTML and PDF show at most; the Excel report holds all."""
@@ -94,6 +104,7 @@ def _of_content(
         "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
         "apart_legend": words.apart_legend(),
         "has_apart": bool(content.total.unconfirmed or content.total.by_formula),
+        "schedule": _of_schedule(content),
         **_of_floors(content, progress if "floors" in names else None),
         **_of_client(content),
         "shown_assumptions": content.assumptions[: MOST_ASSUMPTIONS if edition == "client" else None],
@@ -116,6 +127,34 @@ def _list_tables(content: Content) -> dict[str, Sequence[PageColumn]]:
         "short": short_columns(run, "piece", "room_short", "size", "quantity", "chance", "class"),
         "worst": short_columns(run, "piece", "place", "chance", "class"),
         "demand": motion_columns("axis", "source", "pfa_g", "pfv_cm_s", "origin"),
+    }
+
+
+def _of_schedule(content: Content) -> dict[str, Any]:
+    """Return the schedule by room as far as it is shown, the details that it uses, and what it changes."""
+    schedule, shown = content.run.schedule, content.summary.fixes[: LIMITS["most_entries"]]
+    titles = {page.floor.floor: page.title for page in content.floors}
+    works = schedule_words.list_work(shown, list(titles))
+    used, others = schedule_words.list_details(schedule)
+    return {
+        "rooms": schedule_words.list_rooms(works, titles),
+        "left_out": len(schedule.rows) - len(shown),
+        "has_code": any(one.row.tension_code_kn is not None for one in works),
+        "has_cost": schedule.cost is not None,
+        "has_held": any(one.is_held_by_weight for one in works),
+        "used": used,
+        "alternatives": others,
+        "lead": schedule_words.say_effect_of_all(schedule),
+        "marks": schedule_words.list_marks(schedule),
+        "changes": schedule_words.list_changes(schedule),
+        "rooms_at_risk": schedule_words.say_rooms_at_risk(schedule),
+        "screening": schedule_words.say_screening(),
+        "order": schedule_words.say_order(),
+        "checks": schedule_words.say_checks(),
+        "disagreement": schedule_words.say_disagreement(),
+        "held": schedule_words.say_held(),
+        "held_mark": schedule_words.HELD,
+        "heads": {key: field.short_heading() for key, field in schedule_fields(WorkRow).items()},
     }
 
 
@@ -289,6 +328,8 @@ FILTERS: Mapping[str, Any] = {
     "say_basis": route_words.say_basis,
     "say_blocked": route_words.say_blocked,
     "say_bounds": route_words.say_bounds,
+    "cost": schedule_words.say_cost,
+    "force": schedule_words.say_force,
     "say_chance": route_words.say_chance,
     "say_left_out": route_words.say_left_out,
     "say_lost": route_words.say_lost,

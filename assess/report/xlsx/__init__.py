@@ -17,7 +17,15 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report.content import Content, report_date
-from assess.report.xlsx import annual_sheet, floors_sheet, items_sheet, method_sheets, route_sheets, summary_sheet
+from assess.report.xlsx import (
+    annual_sheet,
+    floors_sheet,
+    items_sheet,
+    method_sheets,
+    route_sheets,
+    summary_sheet,
+    work_sheet,
+)
 from assess.report.xlsx.pen import Pen, name_sheets, set_print
 from assess.workbook.formulas import write_plainly
 from assess.workbook.writer import write_book
@@ -32,7 +40,7 @@ def _always(content: Content) -> bool:
 
 SHEETS: tuple[tuple[str, Write, IsThere], ...] = (
     (fill("Summary"), summary_sheet.write_summary, _always),
-    (fill("Fix first"), summary_sheet.write_fix_first, _always),
+    (fill("Work list"), work_sheet.write_work, _always),
     (fill("Floors"), floors_sheet.write_floors, _always),
     (fill("Items"), items_sheet.write_items, _always),
     (fill("Motions"), floors_sheet.write_motions, _always),

@@ -1,7 +1,7 @@
-"""The sheets Summary and Fix first: counts by class and floor, the pieces most likely to fall, what to fix first.
+"""The sheet Summary: counts by class and floor, and the pieces most likely to fall.
 
-All of the summary but the sentences on routes is live; the list of what to fix first is as run. What was simulated,
-what was not, and what is unconfirmed stand apart in every count, list and chart. `worst_pieces` writes the lists.
+All of it but the sentences on routes is live. What was simulated, what was not, and what is unconfirmed stand apart in
+every count, list and chart. `worst_pieces` writes the lists.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,9 +20,9 @@ from assess.report.findings.verified import INTERVAL, say_scenario
 from assess.report.summary import ROUTES
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import literal, sentence
-from assess.report.xlsx.item_values import list_bases, list_simulated, say_inputs_that_settle
-from assess.report.xlsx.items_sheet import HEAD, item_areas, name_found
-from assess.report.xlsx.pen import CHANCE, LINE, Column, Pen, count_lines, row_height, say_conditions
+from assess.report.xlsx.item_values import list_bases, say_inputs_that_settle
+from assess.report.xlsx.items_sheet import HEAD, item_areas
+from assess.report.xlsx.pen import LINE, Pen, count_lines, row_height, say_conditions
 from assess.report.xlsx.worst_pieces import CHANCES, LAST, WIDTHS, WorstList, find_worst
 from assess.results import ItemResult
 from assess.risk import RiskClass
@@ -301,59 +301,3 @@ def _count_others(plan: _Plan, on_floor: str, anchored: str, number: int, row: i
     sums = [f"{letter}{plan.tables[basis] + 2 + number}" for basis in plan.bases]
     own = [f"{xl_col_to_name(SUM + at)}{row}" for at in range(1, 1 + len(each))]
     return [*(f"=SUMPRODUCT({one},{areas['quantity']})" for one in each), f"={'+'.join(sums + own)}"]
-
-
-# ---------------------------------------------------------------- what to fix first
-
-
-def write_fix_first(pen: Pen, page: Any, content: Content) -> None:
-    """Write the pieces of at least medium class and those that a route needs fixed, what to fix first at the top.
-
-    What was simulated comes first; what was not, and what is unconfirmed, have tables of their own below.
-    """
-    columns = _fix_columns(pen, content)
-    order = _(
-        "Sorted by class (upper estimate): high and very high first; within that life safety and routes, then the "
-        "class, then chance times number. After a route: the chance that it is blocked, before and after."
-    )
-    page.write_comment(0, len(columns) - 1, order, {"x_scale": 3, "y_scale": 2})  # now, as the rows below follow
-    fixes = content.summary.fixes
-    there = {basis: own for basis in list_bases(content.run)
-             if (own := [fix for fix in fixes if fix.result.adopted.basis == basis])}  # fmt: skip
-    first, *others = there or {"": []}
-    below = pen.listing(page, columns, there.get(first, []))
-    for basis in others:
-        widths = [one.width for one in columns]
-        below = pen.below(page, below + 1, pen.terms.bases[basis], columns, widths, there[basis])
-    if fixes:
-        pen.bar(page, f"J2:J{below}")
-
-
-def _fix_columns(pen: Pen, content: Content) -> list[Column]:
-    is_ideal = content.run.settings.ideal
-    chance, *_interval, beside = name_found(is_ideal=is_ideal)
-    return [
-        Column(_("No."), 6, lambda fix: fix.place),
-        Column(_("Item"), 12, lambda fix: fix.result.item.item),
-        Column(_("Floor"), 9, lambda fix: fix.result.item.floor),
-        Column(_("Room"), 16, lambda fix: fix.result.item.room),
-        Column(_("Description"), 36, lambda fix: fix.result.item.description or fix.result.item.type),
-        Column(_("Importance"), 13, lambda fix: _(fix.result.item.importance) if fix.result.item.importance else ""),
-        Column(_("Route"), 12, lambda fix: ", ".join(fix.result.routes)),
-        Column(_("Basis"), 12, lambda fix: pen.terms.bases[fix.result.adopted.basis]),
-        Column(_("Class (as run)"), 36, lambda fix: class_as_run(fix.result)),
-        Column(
-            chance if content.run.has_simulated else _("Chance"), 12, lambda fix: fix.result.adopted.probability, CHANCE
-        ),
-        Column(_("Interval low"), 10, lambda fix: fix.result.adopted.low, CHANCE),
-        Column(_("Interval high"), 10, lambda fix: fix.result.adopted.high, CHANCE),
-        Column(beside, 12, lambda fix: list_simulated(fix.result, is_ideal=is_ideal)[3], CHANCE),
-        Column(_("Pieces"), 8, lambda fix: fix.result.item.quantity),
-        Column(_("Expected falls avoided if the anchors hold"), 16, lambda fix: fix.saved, "0.000"),
-        Column(_("Why first"), 60, lambda fix: fix.reason),
-    ]
-
-
-def class_as_run(one: ItemResult) -> str:
-    """Return the adopted class with its symbol and notes; an anchored one keeps its own words."""
-    return f"{one.adopted.risk.symbol} {words.risk_words(one)}"

@@ -1,0 +1,412 @@
+"""The schedule in words: its entries by urgency and its work by room, the details that it names, before and after."""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from assess.details import DETAILS, Detail
+from assess.i18n import gettext as _
+from assess.i18n import ngettext, number
+from assess.natural import natural_key
+from assess.report import words
+from assess.report.ranking import RouteStep, list_steps, say_effect
+from assess.results import ItemResult, Results
+from assess.risk import RiskClass
+from assess.schedule_fields import schedule_fields
+from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
+
+NAMED = 2
+"""Routes that a reason names; the rest are counted."""
+RUN = 4
+"""Names that follow each other from which only the first and the last are named."""
+MOST_NAMES = 8
+"""Names, or rows of them, that a page has room for; the Excel report holds all."""
+HELD = "¹"
+"""Mark of a tension of 0 at 84 % of PFA."""
+WEIGHT, HEIGHT, METRE = "w", "h", "m"
+"""Marks of forces that rest on an assumed weight or bracket height, and of those of one metre of a piece."""
+
+
+# ---------------------------------------------------------------- names
+
+
+def shorten_names(names: Iterable[str]) -> list[str]:
+    """Return names in natural order; of four or more that follow each other the first and the last: ``a1 to a9``."""
+    ordered = sorted(names, key=natural_key)
+    runs = groupby(enumerate(ordered), key=lambda pair: _find_run(*pair))
+    return [text for _run, own in runs for text in _shorten_run([name for _at, name in own])]
+
+
+def _find_run(at: int, name: str) -> object:
+    """Return what names that follow each other share, by their places in a list."""
+    found = re.fullmatch(r"(.*?)(\d+)", name)
+    return (found[1], len(found[2]), int(found[2]) - at) if found and len(found[2]) < 10 else at
+
+
+def _shorten_run(names: Sequence[str]) -> list[str]:
+    if len(names) < RUN:
+        return [words.cut(one, 20) for one in names]
+    return [_("{low} to {high}", low=words.cut(names[0], 20), high=words.cut(names[-1], 20))]
+
+
+def join_names(parts: Sequence[str]) -> str:
+    """Return parts with commas between them and "and" before the last; beyond `MOST_NAMES` they are counted."""
+    if len(parts) > MOST_NAMES:
+        return words.name_first(parts, MOST_NAMES)
+    if len(parts) < 2:
+        return "".join(parts)
+    return _("{names} and {last}", names=", ".join(parts[:-1]), last=parts[-1])
+
+
+# ---------------------------------------------------------------- entries
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One entry of the schedule: `results` are its pieces, the most urgent first, `steps` the steps of routes in it.
+
+    `together` is the share of all expected falls that it and the entries before it avoid; None where it stands apart.
+    """
+
+    row: ScheduleRow
+    results: Sequence[ItemResult]
+    steps: Sequence[RouteStep]
+    together: float | None
+
+    @property
+    def place(self) -> int:
+        """Its place in the order of urgency, from 1."""
+        return self.row.place
+
+    @property
+    def result(self) -> ItemResult:
+        """Its most urgent piece."""
+        return self.results[0]
+
+    @property
+    def pieces(self) -> int:
+        """How many pieces it has, quantities counted."""
+        return self.row.pieces
+
+    @property
+    def saved(self) -> float:
+        """Expected number of falls that it avoids if its anchors hold."""
+        return self.row.falls_avoided
+
+    @property
+    def names(self) -> str:
+        """Its pieces: ``25-07, 25-08 and 25-09 together`` where fixing some of them opens no route."""
+        named = join_names(shorten_names(one.item.item for one in self.results))
+        return _("{names} together", names=named) if self.row.is_together else named
+
+    @property
+    def reason(self) -> str:
+        """Why it comes where it does, besides its class: its importance, and its routes with the effect on them."""
+        importance = dict.fromkeys(one.item.importance for one in self.results if one.item.importance)
+        routes: dict[str, list[RouteStep]] = {}
+        for step in self.steps:
+            routes.setdefault(step.route, []).append(step)
+        names = dict.fromkeys(route for one in self.results for route in one.routes)
+        others = [words.cut(route, 30) for route in names if route not in routes]
+        beside = ngettext("route {routes}", "routes {routes}", len(others), routes=words.name_first(others, NAMED))
+        parts = [*map(_, importance), *map(say_effect, routes.values()), beside if others and not routes else ""]
+        return ", ".join(part for part in parts if part) or words.DASH
+
+
+def list_entries(results: Results) -> list[Entry]:
+    """Return the entries of the schedule, the most urgent first."""
+    steps: dict[int, list[RouteStep]] = {}
+    for step in list_steps(results.route_tables):
+        steps.setdefault(step.item_index, []).append(step)
+    return [_build_entry(results, row, steps) for row in results.schedule.rows]
+
+
+def _build_entry(results: Results, row: ScheduleRow, steps: Mapping[int, Sequence[RouteStep]]) -> Entry:
+    pieces = tuple(map(results.result, row.item_indices))
+    own = [step for index in row.item_indices for step in steps.get(index, ())]
+    total = results.schedule.before.falls
+    share = 1 - row.falls_left / total if total else 0.0
+    own.sort(key=lambda step: (step.route, step.place))
+    return Entry(row, pieces, own, None if pieces[0].apart else share)
+
+
+# ---------------------------------------------------------------- work, room by room
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What is to be done to alike pieces of a room, as a part of an entry; `results` are these pieces."""
+
+    entry: Entry
+    row: WorkRow
+    results: Sequence[ItemResult]
+
+    @property
+    def is_first(self) -> bool:
+        """Whether it is the most urgent part of its entry, with which the effect of the whole entry stands."""
+        return self.row is self.entry.row.works[0]
+
+    @property
+    def detail(self) -> Detail:
+        """How the pieces may be fixed."""
+        return DETAILS[self.row.detail]
+
+    @property
+    def names(self) -> str:
+        """Its pieces in short."""
+        named = join_names(shorten_names(self.row.items))
+        return _("{names} together", names=named) if self.entry.row.is_together and len(self.row.items) > 1 else named
+
+    @property
+    def all_names(self) -> str:
+        """Its pieces, each by its name."""
+        return ", ".join(sorted(self.row.items, key=natural_key))
+
+    @property
+    def described(self) -> str:
+        """What its pieces are."""
+        item = self.results[0].item
+        return item.description or item.type or _("no description")
+
+    @property
+    def chance(self) -> str:
+        """The chance of overturning of each piece, from the least to the largest."""
+        return _keep(words.percents([one.adopted.probability for one in self.results]))
+
+    @property
+    def risk(self) -> str:
+        """The class of the most urgent piece in words, with what it could be."""
+        return f"{words.class_symbol(self.results[0])} {words.risk_words(self.results[0])}"
+
+    @property
+    def reason(self) -> str:
+        """Why it is to be done: that of its entry, and with which other pieces it only helps together."""
+        others = [one for one in self.entry.row.works if one is not self.row]
+        texts = [self.entry.reason] if self.is_first else []
+        if others and self.entry.row.is_together:
+            named = join_names(shorten_names(name for one in others for name in one.items))
+            texts.append(_("only together with {names}", names=named))
+        texts += dict.fromkeys(filter(None, map(words.say_bracket, self.results)))
+        return _keep("; ".join(texts)) or words.DASH
+
+    @property
+    def remarks(self) -> list[str]:
+        """What is to be known of its forces: what a tension of 0 means, and the marks of what they rest on."""
+        texts = (say_held() if self.is_held_by_weight else "", self.marks)
+        return [one for one in texts if one]
+
+    @property
+    def is_held_by_weight(self) -> bool:
+        """Whether nothing is left for the fixings to carry at 84 % of PFA."""
+        return self.row.tension_high_kn == 0
+
+    @property
+    def marks(self) -> str:
+        """The marks of what its forces rest on."""
+        marks = {WEIGHT: self.row.weights_assumed, HEIGHT: self.row.heights_assumed, METRE: self.row.is_per_metre}
+        return ", ".join(mark for mark, is_there in marks.items() if is_there)
+
+
+def _keep(text: str) -> str:
+    """Return a text in which no line breaks before a percent sign."""
+    return text.replace(" %", f"{words.NO_BREAK}%")
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """The work in a room; `heading` names it with its floor."""
+
+    heading: str
+    works: Sequence[Work]
+
+
+def list_work(entries: Sequence[Entry], floors: Sequence[str]) -> list[Work]:
+    """Return the work floor by floor, room by room, and there by urgency.
+
+    Parameters
+    ----------
+    entries : sequence of Entry
+        In order of urgency.
+    floors : sequence of str
+        Names of the floors in their order.
+    """
+    rank = {floor: at for at, floor in enumerate(floors)}
+    by_index = {one.item.index: one for entry in entries for one in entry.results}
+    works = [
+        Work(entry, row, [by_index[at] for at in row.item_indices]) for entry in entries for row in entry.row.works
+    ]
+    works.sort(key=lambda one: (rank[one.row.floor], not one.row.room, natural_key(one.row.room), one.entry.place))
+    return works
+
+
+def list_rooms(works: Sequence[Work], floors: Mapping[str, str]) -> list[Room]:
+    """Return work under the headings of its rooms; `floors` are the titles of the floors by their names."""
+
+    def head(floor: str, room: str) -> str:
+        return f"{floors[floor]}: {words.cut(room, 60) if room else _('no room given')}"
+
+    rooms = groupby(works, key=lambda one: (one.row.floor, one.row.room))
+    return [Room(head(*place), list(own)) for place, own in rooms]
+
+
+def say_force(force: float | None) -> str:
+    """Return a force [kN] with two decimals, a dash for what is not known."""
+    if force is not None and 0 < force < 0.005:
+        least = number(0.01, ".2f")
+        return f"< {least}"
+    return words.fixed(force, 2)
+
+
+def say_cost(cost: float | None) -> str:
+    """Return a cost, in the workbook's currency."""
+    return words.DASH if cost is None else number(cost, ",.0f" if cost == round(cost) else ",.2f")
+
+
+# ---------------------------------------------------------------- sentences
+
+
+def say_screening() -> str:
+    """Return the caveat beside every force."""
+    return _("screening, not design")
+
+
+def say_checks() -> str:
+    """Return what is left to an engineer."""
+    return _(
+        "Forces are for screening, not design: a structural engineer checks wall, fixings and the body of each piece."
+    )
+
+
+def say_order() -> str:
+    """Return what the numbers of the entries stand for."""
+    return _(
+        "The numbers give the order of urgency: class (upper estimate), then life safety and routes, then expected "
+        "falls."
+    )
+
+
+def say_held() -> str:
+    """Return what a tension of 0 at 84 % of PFA means."""
+    return _("its own weight holds it at 84 % of PFA; fixings against sliding or for the rest")
+
+
+def say_disagreement() -> str:
+    """Return that sources do not agree on rigid brackets."""
+    return _(
+        "Sources disagree on rigid brackets: the Tokyo Fire Department holds L-brackets that are screwed to the wall "
+        "to be the most effective device; the Earthquake Country Alliance advises flexible straps to two studs instead."
+    )
+
+
+def say_effect_of_all(schedule: Schedule) -> list[str]:
+    """Return what the whole schedule changes, and what it costs; nothing where there is nothing to fix."""
+    if not schedule.rows:
+        return []
+    before, after = (words.fixed(one.falls, 1) for one in (schedule.before, schedule.after))
+    pieces = words.plural(sum(one.pieces for one in schedule.rows), "piece")
+    effect = ngettext(
+        "Fixing the {n:,} entry below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
+        "hold.",
+        "Fixing the {n:,} entries below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
+        "hold.",
+        len(schedule.rows), pieces=pieces, before=before, after=after,
+    )  # fmt: skip
+    return [effect, say_costs(schedule)]
+
+
+def say_costs(schedule: Schedule) -> str:
+    """Return the sum of the costs that are known, and how many entries have none."""
+    if schedule.cost is None:
+        return _("No cost is given: unit costs are read from the sheet {sheet} of the workbook.", sheet=_("Costs"))
+    known = _("The costs that the workbook gives sum to {cost}.", cost=say_cost(schedule.cost))
+    if not schedule.uncosted:
+        return known
+    return known + " " + ngettext(
+        "{n:,} entry has a part without a cost.", "{n:,} entries have a part without a cost.", schedule.uncosted
+    )  # fmt: skip
+
+
+def list_marks(schedule: Schedule) -> list[str]:
+    """Return what the marks of forces mean, and how many pieces have each; nothing of one that none has."""
+    works = [work for row in schedule.rows for work in row.works]
+    total = sum(one.pieces for one in works)
+    weights, heights = sum(one.weights_assumed for one in works), sum(one.heights_assumed for one in works)
+    metres = sum(one.pieces for one in works if one.is_per_metre)
+    texts = {
+        WEIGHT: _("weight assumed, for {n:,} of {all:,} pieces", n=weights, all=total) if weights else "",
+        HEIGHT: _("bracket height assumed, 0.9 of the piece's height, for {n:,} of {all:,} pieces",
+                  n=heights, all=total) if heights else "",
+        METRE: _("forces and fixings of one metre of the width, which is not known, for {n:,} of {all:,} pieces",
+                 n=metres, all=total) if metres else "",
+    }  # fmt: skip
+    return [f"{mark}: {text}." for mark, text in texts.items() if text]
+
+
+def list_details(schedule: Schedule) -> tuple[list[tuple[Detail, int]], list[Detail]]:
+    """Return the details that the schedule uses, each with the number of its pieces, and the alternatives to them."""
+    used: dict[str, int] = {}
+    for row in schedule.rows:
+        for work in row.works:
+            used[work.detail] = used.get(work.detail, 0) + work.pieces
+    return (
+        [(one, used[key]) for key, one in DETAILS.items() if key in used],
+        [one for key, one in DETAILS.items() if key not in used],
+    )
+
+
+# ---------------------------------------------------------------- before and after
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One number of the building before and after the schedule; `decimals` is how it is shown."""
+
+    label: str
+    before: float
+    after: float
+    decimals: int = 0
+
+
+def list_changes(schedule: Schedule) -> tuple[list[Change], list[Change]]:
+    """Return what the schedule changes: falls and pieces by class; routes by state and rooms that lose every exit."""
+    return [_change(schedule, "falls", 2), *_list_pieces(schedule)], list(_list_routes(schedule))
+
+
+def _change(schedule: Schedule, key: str, decimals: int = 0) -> Change:
+    field = schedule_fields(State)[key]
+    before, after = (field.read(one) for one in (schedule.before, schedule.after))
+    return Change(field.heading(), before, after, decimals)
+
+
+def _list_pieces(schedule: Schedule) -> Iterator[Change]:
+    before, after = schedule.before, schedule.after
+    for risk in reversed(RiskClass):
+        label = _("Pieces: {risk}", risk=words.risk_label(risk))
+        yield Change(label, before.count(risk), after.count(risk))
+    if before.apart:
+        yield _change(schedule, "pieces_apart")
+    yield _change(schedule, "pieces_anchored")
+
+
+def _list_routes(schedule: Schedule) -> Iterator[Change]:
+    before, after = dict(schedule.before.routes), dict(schedule.after.routes)
+    states = [*dict.fromkeys((*before, *after))]
+    for state in states:
+        yield Change(_("Routes: {state}", state=_(state)), before.get(state, 0), after.get(state, 0))
+    if not states:
+        return
+    yield _change(schedule, "blocked_routes_expected", 2)
+    yield _change(schedule, "cut_off_rooms_expected", 2)
+    label = schedule_fields(State)["rooms_at_risk"].heading()
+    yield Change(label, len(schedule.before.rooms_at_risk), len(schedule.after.rooms_at_risk))
+
+
+def say_rooms_at_risk(schedule: Schedule) -> str:
+    """Return the rooms that may lose every exit before, and those after; "" where there are none."""
+    before, after = schedule.before.rooms_at_risk, schedule.after.rooms_at_risk
+    if not before:
+        return ""
+    text = _("Rooms that may lose every exit before: {rooms}.", rooms=words.name_first(before, MOST_NAMES))
+    left = _("after: {rooms}.", rooms=words.name_first(after, MOST_NAMES)) if after else _("after: none.")
+    return f"{text[:-1]}; {left}"

@@ -1,0 +1,172 @@
+"""The sheet Work list: what to fix, room by room, to be printed and ticked off, and what it changes.
+
+All of it is as run, but for the costs: number of pieces times unit cost, so that another unit cost can be tried.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
+
+from assess.i18n import gettext as _
+from assess.report.content import Content
+from assess.report.findings import schedule_words
+from assess.report.findings.schedule_words import Change, Work
+from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
+from assess.schedule_fields import schedule_fields
+from assess.schedule_results import Schedule, ScheduleRow, WorkRow
+
+BOX = "☐"
+"""To be ticked on paper."""
+DONE = "☑"
+FORCES = ("tension_kn", "tension_high_kn", "tension_code_kn", "shear_kn")
+FORCE, MONEY = "0.00", "#,##0.00"
+CHANGE = 7
+"""Column of the numbers of the table before and after, which are wide enough for its labels before them."""
+
+
+def write_work(pen: Pen, page: Any, content: Content) -> None:
+    """Write the work of every room, and below it the building before and after."""
+    schedule = content.run.schedule
+    works = schedule_words.list_work(content.summary.fixes, [one.floor.floor for one in content.floors])
+    columns = widen(_list_columns(schedule), works)
+    at = {one.key: place for place, one in enumerate(columns) if one.key}
+    page.fit_to_pages(1, 0)  # on A4 across, as every sheet is printed
+    page.repeat_rows(0)
+    page.freeze_panes(1, at["place"] + 1)
+    widths = [one.width for one in columns]
+    pen.heads(page, [one.label for one in columns], widths)
+    if not works:
+        pen.put(page, 1, 0, _("No free-standing piece reaches medium, and no route needs one fixed."))
+        return
+    page.data_validation(1, at["done"], len(works), at["done"], {"validate": "list", "source": [BOX, DONE]})
+    page.autofilter(0, 0, len(works), len(columns) - 1)
+    for row, work in enumerate(works, 1):
+        _write_row(pen, page, row, columns, work, at)
+    _write_sums(pen, page, works, at)
+    below = _write_lines(pen, page, len(works) + 3, schedule, widths)
+    _write_changes(pen, page, below + 1, schedule)
+
+
+def _write_row(pen: Pen, page: Any, row: int, columns: Sequence[Column], work: Work, at: Mapping[str, int]) -> None:
+    values = [one.read(work) for one in columns]
+    page.set_row(row, row_height(values, [one.width for one in columns]))
+    for place, (column, value) in enumerate(zip(columns, values, strict=True)):
+        looks = {"bottom": 4, "align": column.align} if column.align else {"bottom": 4}
+        style = pen.style("text", column.format, **looks)
+        if column.key == "cost":
+            pieces, unit = (xl_rowcol_to_cell(row, at[name]) for name in ("pieces", "unit_cost"))
+            page.write_formula(row, place, f'=IF({unit}="","",{pieces}*{unit})', style, "" if value is None else value)
+        else:
+            pen.put(page, row, place, value, style)
+
+
+def _list_columns(schedule: Schedule) -> list[Column]:
+    own = {name: _of_work(name) for name in schedule_fields(WorkRow)}
+    screening = schedule_words.say_screening()
+    forces = [_force(own[name], screening) for name in FORCES if name != "tension_code_kn" or _has_code(schedule)]
+    return [
+        Column(_("Done"), 6, lambda _one: BOX, key="done", align="center"),
+        _of_entry("place", 5, align="center"),
+        replace(own["floor"], width=6),
+        replace(own["room"], width=12),
+        replace(own["pieces"], align="center"),
+        Column(_("Names"), 14, lambda one: one.all_names),
+        Column(_("Description"), 16, lambda one: one.described),
+        Column(_("Why"), 34, lambda one: f"{one.risk}; {one.chance}; {one.reason}", key="why"),
+        Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
+        *forces,
+        replace(own["fixings"], align="center"),
+        own["unit_cost"],
+        own["cost"],
+        _of_entry("falls_avoided", 8, only_first=True),
+        _of_entry("falls_left", 8, only_first=True),
+        Column(_("Remarks on the forces"), 26, lambda one: "; ".join(one.remarks), key="remarks"),
+        Column(_("Photo"), 10, _name_photos),
+        Column(_("Notes"), 18, lambda _one: ""),
+    ]
+
+
+def _of_work(name: str) -> Column:
+    field = schedule_fields(WorkRow)[name]
+    code = MONEY if name in ("unit_cost", "cost") else field.format
+    return of_field(field, key=name, read=lambda one: field.read(one.row), format=code)
+
+
+def _of_entry(name: str, width: int, *, only_first: bool = False, align: str = "") -> Column:
+    """Return a column of the whole entry, which stands with the most urgent part of it alone if `only_first`."""
+    field = schedule_fields(ScheduleRow)[name]
+
+    def read(one: Work) -> Any:
+        return field.read(one.entry.row) if one.is_first or not only_first else None
+
+    return of_field(field, key=name, width=width, read=read, align=align)
+
+
+def _force(column: Column, screening: str) -> Column:
+    return replace(column, label=f"{column.label}: {screening}", format=FORCE)
+
+
+def _has_code(schedule: Schedule) -> bool:
+    return any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
+
+
+def _name_photos(work: Work) -> str:
+    """Return the file names of the photos of the pieces, as the workbook has them."""
+    named = (str(one.item.field("photo") or "") for one in work.results)
+    return ", ".join(dict.fromkeys(filter(None, named)))
+
+
+def _write_sums(pen: Pen, page: Any, works: Sequence[Work], at: Mapping[str, int]) -> None:
+    """Write how many pieces there are and what they cost, below the list."""
+    row = len(works) + 1
+    page.write_string(row, at["room"], _("Sum"), pen.style("total"))
+    pieces, cost = (f"{xl_col_to_name(at[name])}2:{xl_col_to_name(at[name])}{row}" for name in ("pieces", "cost"))
+    total = sum(one.row.pieces for one in works)
+    page.write_formula(row, at["pieces"], f"=SUM({pieces})", pen.style("total", COUNT), total)
+    costs = [work.row.cost for work in works if work.row.cost is not None]
+    formula, known = f'=IF(COUNT({cost})=0,"",SUM({cost}))', sum(costs) if costs else ""
+    page.write_formula(row, at["cost"], formula, pen.style("total", MONEY), known)
+
+
+def _write_lines(pen: Pen, page: Any, row: int, schedule: Schedule, widths: Sequence[int]) -> int:
+    """Write the sentences below the list, and return the row below them."""
+    texts = [
+        *schedule_words.say_effect_of_all(schedule),
+        schedule_words.say_order(),
+        schedule_words.say_checks(),
+        schedule_words.say_disagreement(),
+        *schedule_words.list_marks(schedule),
+    ]
+    for at, text in enumerate(texts, row):
+        page.merge_range(at, 0, at, len(widths) - 1, "", pen.style("text"))
+        page.set_row(at, LINE * count_lines(text, sum(widths)))
+        pen.put(page, at, 0, text, pen.style("text"))
+    return row + len(texts)
+
+
+def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:
+    """Write the building before and after."""
+    page.write_string(row, 0, _("Before and after"), pen.style("heading"))
+    for at, text in enumerate(("", _("Before"), _("After"))):
+        _put_wide(pen, page, row + 1, at, text, pen.style("head"))
+    for at, one in enumerate((change for part in schedule_words.list_changes(schedule) for change in part), row + 2):
+        _write_change(pen, page, at, one)
+
+
+def _write_change(pen: Pen, page: Any, row: int, one: Change) -> None:
+    code = FORCE if one.decimals else COUNT
+    _put_wide(pen, page, row, 0, one.label, pen.style("text"))
+    page.set_row(row, row_height([one.label], [40]))
+    for at, value in enumerate((one.before, one.after), 1):
+        _put_wide(pen, page, row, at, value, pen.style("plain", code))
+
+
+def _put_wide(pen: Pen, page: Any, row: int, at: int, value: Any, style: Any) -> None:
+    """Write a cell of the table before and after: its labels take the columns before the numbers."""
+    if at:
+        pen.put(page, row, CHANGE + at - 1, value, style)
+    else:
+        page.merge_range(row, 0, row, CHANGE - 1, "", style)
+        pen.put(page, row, 0, value, style)
