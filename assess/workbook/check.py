@@ -137,13 +137,22 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
     """Check that each detail has one cost, and is one that the schedule may name."""
     table = tables["Costs"]
     yield from check_unique(table)
+    found: dict[str, Row] = {}
     for row in table.with_all("detail"):
-        if find_detail(row.get("detail")) is None:
-            listed = join(", ", [one.title for one in DETAILS.values()])
-            message = fill(
-                "Detail {name} is none that the schedule uses: its cost is left out.", name=row.quote("detail")
-            )
-            yield table.problem("detail", row, message, fill("Choose one of: {listed}", listed=listed), "warning")
+        detail = find_detail(row.get("detail"))
+        before = found.setdefault(detail.key if detail else "", row)
+        if detail is None:
+            yield _report_detail(table, row)
+        elif before is not row and key(before.get("detail")) != key(row.get("detail")):  # which is a duplicate already
+            cell = table.cell("detail", before.number)
+            message = fill("Detail {name} is the same as that in {cell}.", name=row.quote("detail"), cell=cell)
+            yield table.problem("detail", row, message, fill("Give each detail one cost."))
+
+
+def _report_detail(table: Table, row: Row) -> Problem:
+    listed = join(", ", [one.title for one in DETAILS.values()])
+    message = fill("Detail {name} is none that the schedule uses: its cost is left out.", name=row.quote("detail"))
+    return table.problem("detail", row, message, fill("Choose one of: {listed}", listed=listed), "warning")
 
 
 def check_floors(tables: Tables) -> Iterator[Problem]:

@@ -335,7 +335,8 @@ COSTS = Sheet(
     (
         Column("detail", "Detail", "text", "How a piece is fixed: choose from the list.", required=True,
                offered=tuple(str(one.title) for one in DETAILS.values()), width=34),
-        Column("unit_cost", "Unit cost", "number", "Of one piece, in any one currency.", required=True, low=0, high=1e6),
+        Column("unit_cost", "Unit cost", "number", "Of fixing one piece, in any one currency.", low=0, high=900_000,
+               default="none: the schedule shows no cost", width=12),
         Column("source", "Source", "text", "Where the cost comes from: an offer, a price list.", width=60),
     ),
 )  # fmt: skip

@@ -176,5 +176,7 @@ def test_what_is_avoided_is_the_same_number_in_every_report(tmp_path):
     fix = build_content(results).summary.fixes[0]
     written = assess.write_reports(results, tmp_path / "out", ("xlsx", "html"))
     assert f">{fix.saved:.3f}<" in written["html"].read_text(encoding="utf-8")
-    cell = openpyxl.load_workbook(written["xlsx"])["Fix first"]["O2"]
-    assert (cell.number_format, cell.value) == ("0.000", pytest.approx(fix.saved))
+    page = openpyxl.load_workbook(written["xlsx"])["Work list"]
+    column = next(cell.column for cell in page[1] if cell.value == "Falls avoided")
+    cells = [row[column - 1] for row in page.iter_rows(min_row=2) if row[1].value == 1]
+    assert [(cell.number_format, cell.value) for cell in cells] == [("0.000", pytest.approx(fix.saved))]

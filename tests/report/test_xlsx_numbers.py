@@ -8,6 +8,7 @@ import pytest
 
 import assess
 from assess import fields
+from assess.natural import natural_key
 from assess.report import write_reports
 from assess.report.xlsx.items_sheet import item_columns
 from assess.risk import RiskClass
@@ -189,22 +190,26 @@ def test_floors_and_motions_are_those_of_the_results(run):
             assert sorted(shown) == [(_is(pfa), _is(pfv)) for pfa, pfv in sorted(served)], "every parallel record"
 
 
-def test_what_to_fix_first_is_that_of_the_results(run, made):
-    """Each basis has a table of its own."""
-    _, book, _ = run
-    rows = [row for row in book["Fix first"].iter_rows(min_row=2, values_only=True) if isinstance(row[0], int)]
-    bases = [row[7] for row in rows]
-    assert bases
-    assert bases == sorted(bases, key=["simulated", "formula (not simulated)", "unconfirmed"].index)
-    for row in rows:
-        one = made[row[1]]
-        adopted = one.adopted
-        assert row[7] == BASES[adopted.basis]
-        assert adopted.risk.word in row[8]
-        assert row[9:12] == (_is(adopted.probability), _is(adopted.low), _is(adopted.high))
-        is_simulated = adopted.basis == "simulated"
-        assert row[12] == (_is(one.governing.simulation.ideal.probability) if is_simulated else None)
-        assert row[14] == _is(adopted.probability * one.item.quantity)
+def test_the_work_list_is_the_schedule_of_the_results(run):
+    """Every part of every entry has a row, with its forces and what is left."""
+    _, book, results = run
+    entries = results["schedule"]["entries"]
+    rows = {(row[1], row[5]): row for row in book["Work list"].iter_rows(min_row=2, values_only=True)
+            if isinstance(row[1], int)}  # fmt: skip
+    heads = [cell.value for cell in book["Work list"][1]]
+    works = [(entry, work) for entry in entries for work in entry["works"]]
+    assert works
+    assert len(rows) == len(works)
+    names = ("Floor", "Room", "Pieces", "Tension at PFA", "Tension at 84 %", "Shear", "Fixings", "Falls left")
+    at = {name: next(place for place, head in enumerate(heads) if head.startswith(name)) for name in names}
+    for entry, work in works:
+        row = rows[entry["place"], ", ".join(sorted(work["items"], key=natural_key))]
+        found = [row[at[name]] for name in ("Floor", "Room", "Pieces", "Fixings")]
+        assert found == [work["floor"], work["room"] or None, work["pieces"], work["fixings"]]
+        forces = [row[at[name]] for name in ("Tension at PFA", "Tension at 84 %", "Shear")]
+        assert forces == [_is(work[name]) for name in ("tension_kn", "tension_high_kn", "shear_kn")]
+        is_first = work is entry["works"][0]
+        assert row[at["Falls left"]] == (_is(entry["falls_left"]) if is_first else None)
 
 
 def test_inputs_and_settings_are_those_of_the_results(run):

@@ -236,7 +236,7 @@ def test_the_sheets_are_set_up(written):
 
 def test_no_text_is_a_formula(written):
     _, book, path = written
-    for name in ("Routes", "Route pieces", "Route rooms", "Fix first"):
+    for name in ("Routes", "Route pieces", "Route rooms"):
         for row in book[name].iter_rows():
             assert all(cell.data_type != "f" and cell.hyperlink is None for cell in row)
     assert book["Routes"]["AF2"].value == "=1+1"
@@ -257,12 +257,12 @@ def test_the_summary_sheet_says_what_the_page_says(written):
 
 def test_what_to_fix_first_says_for_which_route(written):
     results, book, _ = written
-    rows = {row[1]: row for row in book["Fix first"].iter_rows(min_row=2, values_only=True)}
+    rows = {row[5]: row for row in book["Work list"].iter_rows(min_row=2, values_only=True)}
     west = results.route_tables.routes[0]
     at_most = west.blocked_if_unconfirmed_fall
     before = f"{100 * west.blocked.probability:.1f} %" if at_most is None else "up to 100.0 %"
-    assert book["Fix first"]["P1"].comment.text.startswith("Sorted by class (upper estimate)")
-    assert rows["tall"][15] == f"route West: {before} → 0.0 % (step 1 of 1)"
+    said = rows["tall"][7].replace("\N{NO-BREAK SPACE}", " ")
+    assert said.endswith(f"; route West: {before} → 0.0 % (step 1 of 1)")
 
 
 def test_methods_tell_the_rule_and_the_widths_that_codes_ask_for(written):

@@ -21,7 +21,7 @@ from tests.workbooks import ITEMS, assessed, write
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
-NAMES = ["Summary", "Fix first", "Floors", "Items", "Motions", "Routes", "Methods", "Assumptions", "Quality log"]
+NAMES = ["Summary", "Work list", "Floors", "Items", "Motions", "Routes", "Methods", "Assumptions", "Quality log"]
 LONG = "A very long name of a cabinet " * 10
 
 

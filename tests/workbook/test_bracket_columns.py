@@ -24,7 +24,10 @@ def test_they_are_read_and_kept_in_the_results(tmp_path):
     assess.write_reports(results, tmp_path / "out", formats=("json",))
     (row,) = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["items"]
     assert row["weight_kg"] == 120
-    assert row["anchor"] == {"bracket_height_cm": 170.0, "bracket_capacity_kn": 1.5}
+    anchor = row["anchor"]
+    assert (anchor["bracket_height_cm"], anchor["bracket_capacity_kn"]) == (170.0, 1.5)
+    assert (anchor["weight_source"], anchor["weight_kn"]) == ("given", pytest.approx(120 * 9.80665 / 1000))
+    assert (anchor["holds"], anchor["counts_as_anchored"]) == (True, True)
 
 
 def test_other_units_are_read(tmp_path):
@@ -34,11 +37,14 @@ def test_other_units_are_read(tmp_path):
     assert found == pytest.approx((45.359237, 1.524, 1112.0554), rel=1e-6)
 
 
-def test_blank_is_null(tmp_path):
+def test_what_is_blank_is_assumed_or_null(tmp_path):
     results = assess.run(read(tmp_path), Settings(verify="none"))
     assess.write_reports(results, tmp_path / "out", formats=("json",))
     (row,) = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["items"]
-    assert (row["weight_kg"], row["anchor"]) == (None, None)
+    anchor = row["anchor"]
+    assert (row["weight_kg"], anchor["bracket_capacity_kn"], anchor["holds"]) == (None, None, None)
+    assert (anchor["weight_source"], anchor["bracket_height_cm"]) == ("estimate", pytest.approx(162))
+    assert anchor["counts_as_anchored"] is True
 
 
 @pytest.mark.parametrize(
