@@ -33,7 +33,7 @@ EXAMPLES = (
     "assess run building.xlsx --method own.toml --template my-templates",
 )
 
-FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "npz")
+FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz")
 """Those of `assess.report`, which takes long to import; the last is written only where it is named."""
 MOST_METHODS = 4
 """Fitted models that a report shows next to the published methods: a column each."""
@@ -97,11 +97,11 @@ def command(
     formats: Annotated[
         str,
         typer.Option(
-            help="Files to write, separated by commas: pdf is the report for the client, annex its details; also npz, the "
-            "result of every motion.",
+            help="Files to write, separated by commas: pdf is the report for the client, annex its details; also docx, "
+            "the report for the client in Word, and npz, the result of every motion.",
             autocompletion=list_of(FORMATS),
         ),
-    ] = ",".join(FORMATS[:-1]),
+    ] = ",".join(FORMATS[:-2]),
     jobs: Jobs = None,
     language: Annotated[
         str | None,

@@ -101,6 +101,12 @@ def _write_npz(job: Job, path: Path) -> None:
     write_npz(job.results, path, job.progress)
 
 
+def _write_docx(job: Job, path: Path) -> None:
+    from assess.report.word import write_word
+
+    write_word(job.content, path, job.options, job.progress)
+
+
 _WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
     "pdf": ("report.pdf", _write_client),
     "annex": ("annex.pdf", _write_annex),
@@ -108,6 +114,7 @@ _WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
     "html": ("report.html", _write_html),
     "json": ("results.json", _write_json),
     "csv": ("items.csv", _write_csv),
+    "docx": ("report.docx", _write_docx),
     "npz": ("outcomes.npz", _write_npz),
 }
 FILES: Mapping[str, str] = {name: file for name, (file, _) in _WRITERS.items()}
@@ -115,8 +122,9 @@ FILES: Mapping[str, str] = {name: file for name, (file, _) in _WRITERS.items()}
 _PDFS = ("pdf", "annex")
 _LAST = ("json", *_PDFS)
 """What is written last: results.json, which lists the files before it, and the PDFs, which carry it."""
-FORMATS = tuple(name for name in FILES if name != "npz")
-"""The formats that are written where none are asked for; the outcomes of every motion are for other programs."""
+FORMATS = tuple(name for name in FILES if name not in ("docx", "npz"))
+"""The formats that are written where none are asked for: not the Word edition, which needs more packages, nor the
+outcomes of every motion, which are for other programs."""
 
 
 def write_reports(
@@ -137,7 +145,8 @@ def write_reports(
         Where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever their
         format; other files are left alone.
     formats : str or sequence of str
-        Of "pdf", "annex", "xlsx", "html", "json", "csv", "npz"; all but the last by default. results.json is always written.
+        Of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz"; all but the
+        last two by default. results.json is always written.
     options : ReportOptions, optional
         Language, templates and kind of PDF; by default in the workbook's language, with the standard templates.
     progress : Progress, optional
@@ -213,8 +222,13 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
     OutputError
         If nothing can be written there.
     InputError
-        If a folder or a file of the user's stands at the name of a report; see `assess.report.ownership`.
+        If a folder or a file of the user's stands at the name of a report (see `assess.report.ownership`), or a format
+        needs a package that is not installed.
     """
+    if "docx" in formats:
+        from assess.report.word import check_word
+
+        check_word()
     there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
     if not (there.is_dir() and os.access(there, os.W_OK)):
         why = fill("you have no right to write there") if there.is_dir() else fill("{path} is a file", path=there)
@@ -240,8 +254,9 @@ def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailable
                 _write_one(job, name)
             except PdfUnavailableError as error:
                 missing = error
-                del job.listed[file]
-                job.write_data()
+                job.listed.pop(file, None)
+                if "json" in formats[:at]:
+                    job.write_data()
             except OSError as error:
                 why = error.strerror or str(error)
                 text = fill(

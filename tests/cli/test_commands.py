@@ -181,8 +181,8 @@ def test_bad_input_writes_nothing(tmp_path):
             "--scenario is 'ASCE 7-10', expected one of: as filled, recorded, given",
         ),
         (
-            ["--formats", "json,docx"],
-            "--formats: 'docx' is an unknown format; expected some of: pdf, xlsx",
+            ["--formats", "json,odt"],
+            "--formats: 'odt' is an unknown format; expected some of: pdf, xlsx",
         ),
         (["--formats", ""], "--formats: no format is named"),
         (["--open", "--formats", "json,csv"], "--open opens a report: write one of html, pdf, xlsx with --formats."),

@@ -169,6 +169,22 @@ def _list_unattached(results: Results) -> list[Problem]:
 # ---------------------------------------------------------------- the process that lays it out
 
 
+def lay_out_page(html: str, path: Path, progress: Progress = SILENT) -> None:
+    """Lay out a page of HTML as a plain PDF, of no archival kind and with nothing attached.
+
+    Raises
+    ------
+    PdfUnavailableError
+        If WeasyPrint's native libraries are missing.
+    OSError
+        If the file cannot be written.
+    CancelledError
+        If the work was cancelled.
+    """
+    job = {"html": html, "path": str(path), "variant": None, "time": report_time().isoformat(), "attachments": []}
+    _lay_out(json.dumps(job).encode(), progress)
+
+
 def _lay_out(job: bytes, progress: Progress) -> str:
     """Pass a job to `assess.report.pages.pdf_layout` in a process, which is killed where the work is cancelled.
 

@@ -1,0 +1,61 @@
+"""The Word edition of the client's report: the same page as report.pdf, as paragraphs, tables and pictures to edit.
+
+A page is rendered once by the templates; `drawings` turns what is drawn into pictures, `document` writes styles,
+headers and footers, `blocks` and `runs` write what stands between the tags.
+"""
+
+import importlib.util
+from pathlib import Path
+
+from assess.errors import InputError
+from assess.i18n import fill
+from assess.progress import SILENT, Progress
+from assess.report.content import Content
+from assess.report.report_options import ReportOptions
+
+NEEDED = {"docx": "python-docx", "pypdfium2": "pypdfium2"}
+"""Packages that a Word edition needs besides those of every report, by the modules that they bring."""
+
+
+def check_word() -> None:
+    """Check that the packages for a Word edition are there.
+
+    Raises
+    ------
+    InputError
+        If one is missing: it says what to install.
+    """
+    missing = [package for module, package in NEEDED.items() if importlib.util.find_spec(module) is None]
+    if missing:
+        text = fill(
+            "the format docx needs {packages}, which is not installed. Install it: pip install 'assess[word]'",
+            packages=", ".join(missing),
+        )
+        raise InputError(text)
+
+
+def write_word(content: Content, path: Path, options: ReportOptions, progress: Progress = SILENT) -> None:
+    """Write report.docx: the client's edition.
+
+    Raises
+    ------
+    InputError
+        If a package or a template cannot be used.
+    PdfUnavailableError
+        If the native libraries that draw plans and charts are missing.
+    OSError
+        If the file cannot be written.
+    CancelledError
+        If the work was cancelled; nothing is written.
+    """
+    check_word()
+    from assess.report.pages.html import render
+    from assess.report.word.blocks import write_page
+    from assess.report.word.document import Word
+    from assess.report.word.drawings import draw_all, take_drawings
+
+    page = render(content, options, for_print=True, edition="client", progress=progress)
+    page, drawings = progress.wait_for(lambda: take_drawings(page))
+    word = Word(content, options, draw_all(drawings, page, progress), progress)
+    write_page(word, page)
+    word.save(path)

@@ -1,0 +1,191 @@
+"""A document of Word: its styles, its header and footer, and how it is saved."""
+
+import io
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from assess.i18n import gettext as _
+from assess.progress import Progress
+from assess.report.content import Content
+from assess.report.provenance import report_time
+from assess.report.report_options import ReportOptions
+from assess.report.word.drawings import Picture
+
+FACE, FIXED = "Arial", "Courier New"
+"""Faces that every word processor has, or replaces by one of the same widths."""
+HEAD, INK, QUIET, WARNING = "1F3A4D", "1C1C1C", "4A4F54", "8C1D3F"
+"""Colours of headings, text, captions and cautions, as in the style sheets."""
+WIDTH, HEIGHT, SIDE, TOP = 210.0, 297.0, 22.0, 20.0
+"""The page and its margins [mm]."""
+
+_STYLES = {
+    "Title": (24, HEAD, True, 6), "Subtitle": (12, QUIET, False, 6),
+    "Heading 1": (16, HEAD, True, 6), "Heading 2": (12.5, HEAD, True, 4), "Heading 3": (11, HEAD, True, 3),
+    "Normal": (10, INK, False, 6), "Caption": (9, QUIET, False, 3), "List Bullet": (10, INK, False, 2),
+    "List Number": (10, INK, False, 2),
+}  # fmt: skip
+"""Styles of Word that are used: size [pt], colour, whether bold, space after [pt]."""
+_OWN = {
+    "Lead": ("Normal", 11, INK, 8), "Caution": ("Normal", 10, INK, 8), "Small": ("Normal", 9, QUIET, 4),
+    "Cell": ("Normal", 9, INK, 0), "Cell Head": ("Cell", 9, HEAD, 0), "Listing": ("Normal", 7.5, INK, 0),
+}  # fmt: skip
+"""Styles of our own, with the one that each is based on."""
+
+
+class Word:
+    """A document that is being written; `pictures` are the drawings of the page in their order."""
+
+    def __init__(
+        self, content: Content, options: ReportOptions, pictures: Sequence[Picture], progress: Progress
+    ) -> None:
+        import docx
+
+        self.content, self.options, self.pictures, self.progress = content, options, pictures, progress
+        self.file: Any = docx.Document()
+        self.bookmarks = 0
+        _set_page(self.file)
+        _set_styles(self.file, options.language or "en")
+        _set_properties(self.file, content, options)
+
+    def save(self, path: Path) -> None:
+        """Write the document; times inside it are those of the report, so that the same run makes the same bytes."""
+        packed = io.BytesIO()
+        self.file.save(packed)
+        with zipfile.ZipFile(packed) as source, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
+            for one in source.infolist():
+                self.progress.check()
+                entry = zipfile.ZipInfo(one.filename, (1980, 1, 1, 0, 0, 0))
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                target.writestr(entry, source.read(one))
+
+
+def _set_page(file: Any) -> None:
+    from docx.shared import Mm
+
+    section = file.sections[0]
+    section.page_width, section.page_height = Mm(WIDTH), Mm(HEIGHT)
+    section.left_margin = section.right_margin = Mm(SIDE)
+    section.top_margin = section.bottom_margin = Mm(TOP)
+    section.header_distance = section.footer_distance = Mm(9)
+
+
+def _set_styles(file: Any, language: str) -> None:
+    from docx.enum.style import WD_STYLE_TYPE
+
+    for name, (size, colour, is_bold, after) in _STYLES.items():
+        style = file.styles[name]
+        _set_face(style, size, colour, after)
+        style.font.bold = is_bold
+        style.font.italic = False
+    for name, (based, size, colour, after) in _OWN.items():
+        style = file.styles.add_style(name, WD_STYLE_TYPE.PARAGRAPH)
+        style.base_style = file.styles[based]
+        _set_face(style, size, colour, after)
+    file.styles["Cell Head"].font.bold = True
+    file.styles["Listing"].font.name = FIXED
+    for name in ("Heading 1", "Heading 2", "Heading 3", "Caption"):
+        file.styles[name].paragraph_format.keep_with_next = True
+    _draw_bar(file.styles["Caution"])
+    defaults = file.styles.element.find(f"{_q('w:docDefaults')}/{_q('w:rPrDefault')}/{_q('w:rPr')}")
+    if defaults is not None:
+        _set_language(defaults, language)
+
+
+def _set_language(properties: Any, language: str) -> None:
+    for one in properties.findall(_q("w:lang")):
+        properties.remove(one)
+    properties.append(make("w:lang", {"w:val": language}))
+
+
+def _set_face(style: Any, size: float, colour: str, after: float) -> None:
+    from docx.shared import Pt, RGBColor
+
+    style.font.name, style.font.size, style.font.color.rgb = FACE, Pt(size), RGBColor.from_string(colour)
+    fonts = style.element.get_or_add_rPr().get_or_add_rFonts()
+    for name in list(fonts.attrib):
+        if name.endswith("Theme"):
+            del fonts.attrib[name]
+    for kind in ("ascii", "hAnsi", "cs", "eastAsia"):
+        fonts.set(_q(f"w:{kind}"), FACE)
+    style.paragraph_format.space_before = Pt(10 if "Heading" in style.name else 0)
+    style.paragraph_format.space_after = Pt(after)
+    style.paragraph_format.line_spacing = 1.1 if style.name in ("Normal", "Lead", "Caution") else 1.0
+
+
+def _draw_bar(style: Any) -> None:
+    """Give a style a bar at its left."""
+    borders = make("w:pBdr")
+    borders.append(make("w:left", {"w:val": "single", "w:sz": "24", "w:space": "8", "w:color": WARNING}))
+    style.element.get_or_add_pPr().append(borders)
+
+
+def _set_properties(file: Any, content: Content, options: ReportOptions) -> None:
+    told, building = file.core_properties, content.run.building
+    told.title = _("Furniture in earthquakes: {building}", building=content.title)[:255]
+    told.author = ", ".join(filter(None, (building.prepared_by, building.organisation)))[:255]
+    told.comments = f"assess {content.version}"
+    told.language = options.language or "en"
+    told.created = told.modified = report_time().replace(tzinfo=None)
+
+
+# ---------------------------------------------------------------- header and footer
+
+
+def write_margins(word: Word, short: str, status: str, conditions: str, page: str, of: str) -> None:
+    """Write the header and the footer: what every page has to say, the building, and the page of all pages."""
+    section = word.file.sections[0]
+    header, footer = section.header.paragraphs[0], section.footer.paragraphs[0]
+    header.style = footer.style = word.file.styles["Small"]
+    if conditions:
+        run = header.add_run(conditions)
+        run.bold = True
+    footer.add_run(" · ".join(filter(None, (short, status))) + "\t")
+    footer.paragraph_format.tab_stops.clear_all()
+    _stop_at_right(footer)
+    for text, field in ((f"{page} ", "PAGE"), (f" {of} ", "NUMPAGES")):
+        footer.add_run(text)
+        add_field(footer, field, "1")
+
+
+def _stop_at_right(paragraph: Any) -> None:
+    from docx.enum.text import WD_TAB_ALIGNMENT
+    from docx.shared import Mm
+
+    paragraph.paragraph_format.tab_stops.add_tab_stop(Mm(WIDTH - 2 * SIDE), WD_TAB_ALIGNMENT.RIGHT)
+
+
+# ---------------------------------------------------------------- elements of Word that python-docx has no words for
+
+
+def make(name: str, attributes: dict[str, str] | None = None) -> Any:
+    """Return an element of WordprocessingML, ``w:shd``."""
+    from docx.oxml import OxmlElement
+
+    element = OxmlElement(name)
+    for key, value in (attributes or {}).items():
+        element.set(_q(key), value)
+    return element
+
+
+def _q(name: str) -> str:
+    from docx.oxml.ns import qn
+
+    return str(qn(name))
+
+
+def add_field(paragraph: Any, code: str, shown: str) -> None:
+    """Add a field that Word computes, with what it shows until then."""
+    field = make("w:fldSimple", {"w:instr": code})
+    run = make("w:r")
+    text = make("w:t")
+    text.text = shown
+    run.append(text)
+    field.append(run)
+    paragraph._p.append(field)
+
+
+def shade(properties: Any, colour: str) -> None:
+    """Fill the ground of a cell or a run; `properties` is its ``w:tcPr`` or ``w:rPr``."""
+    properties.append(make("w:shd", {"w:val": "clear", "w:color": "auto", "w:fill": colour.lstrip("#").upper()}))

@@ -1,0 +1,177 @@
+"""What a page draws, as pictures for Word: laid out as the PDF lays it out, one drawing a page, and made points."""
+
+import base64
+import re
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from html import escape, unescape
+from pathlib import Path
+from xml.etree import ElementTree
+
+from assess.progress import Progress
+
+WIDEST, TALLEST = 166.0, 150.0
+"""Largest size of a picture [mm]: a page of A4 has room for it with its heading, its caption and a short table."""
+LEAST = 3.0
+"""Least side of a picture [mm]."""
+MILLIMETRES = {"": 25.4 / 96, "px": 25.4 / 96, "pt": 25.4 / 72, "mm": 1.0, "cm": 10.0, "in": 25.4}
+"""Units of sizes in SVG and CSS [mm]."""
+POINTS = 220 / 72
+"""Pixels per point of the page: 220 dpi, which prints sharply."""
+WIDE_FROM = 60.0
+"""Width [mm] from which a drawing is no sign within a line, but fills the page's width."""
+MARK = "data-drawing"
+
+_TAG = re.compile(r"<(/?)svg\b[^>]*?(/?)>", re.IGNORECASE)
+_IMAGE = re.compile(r'<img\b[^>]*?\bsrc="data:(image/svg\+xml);base64,([^"]*)"[^>]*>', re.IGNORECASE)
+_STYLE = re.compile(r"<style>.*?</style>", re.IGNORECASE | re.DOTALL)
+_SIZE = re.compile(r"\s*([\d.]+)\s*([a-z]*)\s*$", re.IGNORECASE)
+_ALTERNATIVE = re.compile(r'\balt="([^"]*)"')
+_CORNERS = ("top-left", "top-center", "top-right", "bottom-left", "bottom-center", "bottom-right")
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A drawing of the page as SVG, with its size on paper [mm] and what it says in words."""
+
+    svg: str
+    width: float
+    height: float
+    alternative: str
+
+    @property
+    def is_wide(self) -> bool:
+        """Whether it is a figure, not a sign within a line."""
+        return self.width >= WIDE_FROM
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A drawing as PNG, with its width on paper [mm] and what it says in words."""
+
+    png: bytes
+    width: float
+    alternative: str
+
+
+def take_drawings(page: str) -> tuple[str, list[Drawing]]:
+    """Return a page with a mark in place of each drawing, ``<img data-drawing="0">``, and the drawings."""
+    drawings: list[Drawing] = []
+    parts, at = [], 0
+    for start, end, svg, alternative in sorted((*_find_inline(page), *_find_images(page))):
+        drawings.append(_measure(svg, alternative))
+        parts += [page[at:start], f'<img {MARK}="{len(drawings) - 1}">']
+        at = end
+    return "".join([*parts, page[at:]]), drawings
+
+
+def _find_inline(page: str) -> Iterator[tuple[int, int, str, str]]:
+    depth, start = 0, 0
+    for tag in _TAG.finditer(page):
+        if tag[2]:
+            continue
+        if tag[1]:
+            depth -= 1
+            if depth == 0:
+                yield start, tag.end(), page[start : tag.end()], ""
+        else:
+            start = tag.start() if depth == 0 else start
+            depth += 1
+
+
+def _find_images(page: str) -> Iterator[tuple[int, int, str, str]]:
+    for image in _IMAGE.finditer(page):
+        svg = base64.b64decode(image[2]).decode()
+        said = _ALTERNATIVE.search(image[0])
+        yield image.start(), image.end(), svg[svg.index("<svg") :], unescape(said[1]) if said else ""
+
+
+def _measure(svg: str, alternative: str) -> Drawing:
+    """Return a drawing with its size: that which it states, else that of its view box in pixels."""
+    root = ElementTree.fromstring(_declare(svg))  # noqa: S314 - drawn by this program
+    box = [float(one) for one in (root.get("viewBox") or "0 0 100 100").split()]
+    width, height = (
+        _length(root.get(name)) or side * MILLIMETRES[""] for name, side in (("width", box[2]), ("height", box[3]))
+    )
+    if width >= WIDE_FROM:
+        scale = min(WIDEST / width, TALLEST / height)
+        width, height = scale * width, scale * height
+    title = root.find("{*}title")
+    said = alternative or root.get("aria-label") or (title.text if title is not None else "") or ""
+    return Drawing(svg, max(width, LEAST), max(height, LEAST), said)
+
+
+def _declare(svg: str) -> str:
+    """Return the text of an inline drawing as a document of its own, which states its namespaces."""
+    own = svg[: svg.index(">")]
+    for name, space in (("xmlns:xlink", "http://www.w3.org/1999/xlink"), ("xmlns", "http://www.w3.org/2000/svg")):
+        if f"{name}=" not in own:
+            svg = svg.replace("<svg", f'<svg {name}="{space}"', 1)
+    return svg
+
+
+def _length(text: str | None) -> float | None:
+    """Return a length in mm, None where it states none."""
+    found = _SIZE.match(text or "")
+    return float(found[1]) * MILLIMETRES[found[2].lower()] if found and found[2].lower() in MILLIMETRES else None
+
+
+def draw_all(drawings: Sequence[Drawing], page: str, progress: Progress) -> list[Picture]:
+    """Return the drawings as pictures; `page` gives the style that they are drawn with.
+
+    Raises
+    ------
+    PdfUnavailableError
+        If WeasyPrint's native libraries are missing.
+    CancelledError
+        If the work was cancelled.
+    """
+    if not drawings:
+        return []
+    from assess.report.pages.pdf import lay_out_page
+
+    with tempfile.TemporaryDirectory(prefix="assess-") as folder:
+        path = Path(folder) / "drawings.pdf"
+        lay_out_page(_write_sheet(drawings, "".join(_STYLE.findall(page))), path, progress)
+        return progress.wait_for(lambda: _read_pictures(path, drawings))
+
+
+def _write_sheet(drawings: Sequence[Drawing], style: str) -> str:
+    """Return a page of HTML with each drawing on a sheet of its own size."""
+    empty = " ".join(f"@{corner} {{ content: none }}" for corner in _CORNERS)
+    sizes = [f"{one.width:.3f}mm {one.height:.3f}mm" for one in drawings]
+    rules = [f"@page d{at} {{ size: {size}; margin: 0; {empty} }}" for at, size in enumerate(sizes)]
+    shown = [_show(at, one) for at, one in enumerate(drawings)]
+    head = f"<meta charset='utf-8'>{style}<style>{' '.join(rules)} body {{ margin: 0 }}</style>"
+    return f"<!DOCTYPE html><html lang='en'><head>{head}</head><body>{''.join(shown)}</body></html>"
+
+
+def _show(at: int, drawing: Drawing) -> str:
+    size = f"width:{drawing.width:.3f}mm;height:{drawing.height:.3f}mm"
+    kept = "max-width:none;max-height:none;display:block;margin:0"
+    coded = base64.b64encode(_declare(drawing.svg).encode()).decode()
+    is_own = "@font-face" not in drawing.svg and "<style" not in drawing.svg
+    inside = (
+        drawing.svg.replace("<svg", f'<svg style="{escape(f"{size};{kept}")}"', 1)
+        if is_own and "style=" not in drawing.svg[: drawing.svg.index(">")]
+        else f'<img alt="" style="{size};{kept}" src="data:image/svg+xml;base64,{coded}">'
+    )
+    return f'<div style="page:d{at};break-after:page;{size};overflow:hidden">{inside}</div>'
+
+
+def _read_pictures(path: Path, drawings: Sequence[Drawing]) -> list[Picture]:
+    import io
+
+    import pypdfium2
+
+    pictures = []
+    document = pypdfium2.PdfDocument(path)
+    try:
+        for page, drawing in zip(document, drawings, strict=False):
+            file = io.BytesIO()
+            page.render(scale=POINTS).to_pil().save(file, "PNG", optimize=True)
+            pictures.append(Picture(file.getvalue(), drawing.width, drawing.alternative))
+    finally:
+        document.close()
+    return pictures

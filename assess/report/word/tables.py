@@ -1,0 +1,184 @@
+"""Tables of the page as tables of Word: heads that repeat on every page, rows that stay whole, columns as wide."""
+
+import re
+from typing import Any
+
+from assess.report.word.document import HEAD, SIDE, WIDTH, Word, make, shade
+from assess.report.word.runs import FILLS, Line
+
+SPACE = WIDTH - 2 * SIDE
+LEAST, MOST = 5.0, 34.0
+"""Characters that the width of a column without one of its own is reckoned from."""
+CHARACTER, MARGINS = 2.05, 2.4
+"""Width of a character of a cell and of the margins of one [mm]."""
+_OWN_WIDTH = re.compile(r"^w(\d+)$")
+_WORDS = re.compile(r"[ \t\n]+")
+_GROUND, _RULE = "E9EDF0", "C9CED3"
+
+
+def write_table(word: Word, table: Any) -> None:
+    """Write a table of the page; its caption stands above it."""
+    for caption in table.findall("caption"):
+        Line(word, word.file.add_paragraph(style="Caption")).fill(caption)
+    rows = [(row, is_head) for part, is_head in _parts(table) for row in part.findall("tr")]
+    grid = [list(row.iterchildren("td", "th")) for row, _is_head in rows]
+    columns = max((sum(_span(cell) for cell in row) for row in grid), default=0)
+    if not columns:
+        return
+    made = word.file.add_table(len(rows), columns)
+    made.autofit = False
+    widths = _find_widths(table, grid, columns)
+    _set_columns(made, widths)
+    for tr, cells, (row, is_head) in zip(made._tbl.tr_lst, grid, rows, strict=True):
+        word.progress.check()
+        _write_row(word, made, tr, cells, is_head=is_head, is_part="part" in row.get("class", "").split())
+    _set_borders(made)
+    word.file.add_paragraph(style="Small")
+
+
+def _parts(table: Any) -> list[tuple[Any, bool]]:
+    own = [(part, part.tag == "thead") for part in table.iterchildren("thead", "tbody", "tfoot")]
+    return own or [(table, False)]
+
+
+def _span(cell: Any) -> int:
+    return int(cell.get("colspan") or 1)
+
+
+def _write_row(word: Word, table: Any, tr: Any, cells: list[Any], *, is_head: bool, is_part: bool) -> None:
+    from docx.table import _Cell
+
+    properties = tr.get_or_add_trPr()
+    properties.append(make("w:cantSplit"))
+    if is_head:
+        properties.append(make("w:tblHeader"))
+    slots = [_Cell(tc, table) for tc in tr.tc_lst]
+    at = 0
+    for cell in cells:
+        last = min(at + _span(cell), len(slots)) - 1
+        slot = slots[at].merge(slots[last]) if last > at else slots[at]
+        _write_cell(word, slot, cell, is_head=is_head or is_part)
+        at = last + 1
+        if is_head or is_part:
+            shade(slot._tc.get_or_add_tcPr(), _GROUND)
+
+
+def _write_cell(word: Word, slot: Any, cell: Any, *, is_head: bool) -> None:
+    from docx.enum.text import WD_ALIGN_PARAGRAPH
+
+    paragraph = slot.paragraphs[0]
+    paragraph.style = word.file.styles["Cell Head" if is_head else "Cell"]
+    if "num" in cell.get("class", "").split():
+        paragraph.alignment = WD_ALIGN_PARAGRAPH.RIGHT
+    paragraph.paragraph_format.keep_with_next = is_head
+    Line(word, paragraph).fill(cell)
+
+
+# ---------------------------------------------------------------- widths
+
+
+def _find_widths(table: Any, grid: list[list[Any]], columns: int) -> list[float]:
+    """Return the width of each column [mm]: in percent where the page says so, else by what it holds.
+
+    None is narrower than its longest word, as long as there is room for all.
+    """
+    texts: list[list[str]] = [[] for _column in range(columns)]
+    for row in grid:
+        at = 0
+        for cell in row:
+            if _span(cell) == 1 and at < columns:
+                texts[at].append(" ".join(cell.itertext()))
+            at += _span(cell)
+    own = [_own_width(col) for col in table.iterfind("colgroup/col")][:columns]
+    own += [None] * (columns - len(own))
+    shares = [min(MOST, max(LEAST, *map(_reckon, one), LEAST)) for one in texts]
+    left = max(100.0 - sum(one or 0.0 for one in own), 10.0)
+    rest = sum(share for share, one in zip(shares, own, strict=True) if one is None)
+    wanted = [one if one is not None else left * share / rest for share, one in zip(shares, own, strict=True)]
+    return _fit([SPACE * one / sum(wanted) for one in wanted], [_need(one) for one in texts])
+
+
+def _fit(wanted: list[float], needed: list[float]) -> list[float]:
+    """Return widths that sum up to the page's: as wanted, but none below what it needs while the others have room."""
+    widths = [max(pair) for pair in zip(wanted, needed, strict=True)]
+    slack = sum(width - need for width, need in zip(widths, needed, strict=True))
+    excess = sum(widths) - SPACE
+    if excess > slack:
+        return [SPACE * need / sum(needed) for need in needed]
+    share = excess / slack if slack else 0.0
+    return [width - share * (width - need) for width, need in zip(widths, needed, strict=True)]
+
+
+def _need(texts: list[str]) -> float:
+    """Return the width of the longest word of a column with its margins [mm]."""
+    longest = max((len(word) for text in texts for word in _WORDS.split(text)), default=0)
+    return min(longest, MOST) * CHARACTER + MARGINS
+
+
+def _own_width(col: Any) -> float | None:
+    found = [_OWN_WIDTH.match(name) for name in col.get("class", "").split()]
+    return next((float(one[1]) for one in found if one), None)
+
+
+def _reckon(text: str) -> float:
+    """Return how many characters wide a cell would be: its longest word, or some of its text."""
+    return max(*map(len, _WORDS.split(text)), len(text) ** 0.75)
+
+
+def _set_columns(table: Any, widths: list[float]) -> None:
+    from docx.shared import Mm
+
+    for column, width in zip(table._tbl.tblGrid.gridCol_lst, widths, strict=True):
+        column.w = Mm(width)
+    for tr in table._tbl.tr_lst:
+        for tc, width in zip(tr.tc_lst, widths, strict=True):
+            tc.width = Mm(width)
+
+
+def _set_borders(table: Any) -> None:
+    properties = table._tbl.tblPr
+    borders = make("w:tblBorders")
+    for side in ("top", "left", "bottom", "right", "insideH", "insideV"):
+        is_drawn = side in ("top", "bottom", "insideH")
+        value = {"w:val": "single" if is_drawn else "nil", "w:sz": "4", "w:space": "0"}
+        borders.append(make(f"w:{side}", {**value, "w:color": HEAD if side in ("top", "bottom") else _RULE}))
+    margins = make("w:tblCellMar")
+    for side, width in (("top", 25), ("left", 60), ("bottom", 25), ("right", 60)):
+        margins.append(make(f"w:{side}", {"w:w": str(width), "w:type": "dxa"}))
+    properties.append(borders)
+    properties.append(margins)
+
+
+def write_tiles(word: Word, tiles: Any) -> None:
+    """Write the counts of the summary: one row of cells, each with the colour of its class."""
+    from docx.enum.text import WD_ALIGN_PARAGRAPH
+    from docx.table import _Cell
+
+    own = list(tiles.iterchildren("div"))
+    if not own:
+        return
+    made = word.file.add_table(1, len(own))
+    for tc, tile in zip(made._tbl.tr_lst[0].tc_lst, own, strict=True):
+        slot = _Cell(tc, made)
+        colours = [FILLS[name] for name in tile.get("class", "").split() if name in FILLS]
+        for at, part in enumerate(tile.iterchildren("span")):
+            paragraph = slot.paragraphs[0] if at == 0 else slot.add_paragraph()
+            paragraph.style = word.file.styles["Cell"]
+            paragraph.alignment = WD_ALIGN_PARAGRAPH.CENTER
+            Line(word, paragraph).fill(part)
+            _dress_tile(paragraph, part, colours)
+        if colours:
+            shade(slot._tc.get_or_add_tcPr(), colours[0][0])
+    _set_borders(made)
+    word.file.add_paragraph(style="Small")
+
+
+def _dress_tile(paragraph: Any, part: Any, colours: list[tuple[str, str]]) -> None:
+    from docx.shared import Pt, RGBColor
+
+    is_number = "tile-number" in part.get("class", "").split()
+    for run in paragraph.runs:
+        run.bold = is_number or None
+        run.font.size = Pt(18) if is_number else None
+        if colours:
+            run.font.color.rgb = RGBColor.from_string(colours[0][1].lstrip("#").upper())

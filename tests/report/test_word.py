@@ -1,0 +1,192 @@
+"""The Word edition: the client's report as headings, paragraphs, tables and pictures of Word."""
+
+import base64
+import re
+import zipfile
+from importlib import util
+from pathlib import Path
+
+import docx
+import pytest
+from lxml import html
+
+import assess
+from assess.errors import CancelledError, InputError
+from assess.progress import Progress
+from assess.report.content import build_content
+from assess.report.pages.html import render
+from assess.report.report_options import ReportOptions
+from assess.report.word import drawings
+from assess.report.word.tables import SPACE, _fit
+from assess.settings import Settings
+from tests.cli.calling import run
+from tests.workbooks import assessed, write
+
+ITEMS = [
+    {"item": "A1", "floor": "1", "breadth": 30, "width": 90, "height": 190, "x": 1.0, "y": 2.0, "room": "Office",
+     "description": "=1+1 <b>&amp;</b>\u202e"},
+    {"item": "A2", "floor": "1", "breadth": 60, "width": 90, "height": 120, "x": 4.0, "y": 2.0, "anchored": "yes"},
+    {"item": "A3", "floor": "2", "breadth": 40, "width": 80, "height": 180},
+]  # fmt: skip
+FLOORS = [{"floor": "1", "pfa_x": 0.4, "pfa_y": 0.3}, {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5}]
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """A report of three pieces of which one has a name that is no harm, its page, and the document."""
+    folder = tmp_path_factory.mktemp("word")
+    results = assessed(folder / "w.xlsx", ITEMS, FLOORS, settings=Settings(verify="none", scale=1.5))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+        files = assess.write_reports(results, folder / "out", ("docx",))
+        again = assess.write_reports(results, folder / "again", ("docx",))
+    options = ReportOptions(language="en")
+    with pytest.MonkeyPatch.context() as patch, options.spoken():
+        patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+        page = render(build_content(results), options, for_print=True, edition="client")
+    return files["docx"], again["docx"], html.fromstring(page).find("body"), docx.Document(str(files["docx"]))
+
+
+def _words(text):
+    return " ".join(text.split())
+
+
+def _said(element):
+    """Return the text of an element of the page but what its drawings hold."""
+    parts = [element.text or ""]
+    for child in element:
+        inside = child.tag in ("svg", "wbr", "style") or not isinstance(child.tag, str)
+        parts += [" " if child.tag == "br" else "" if inside else _said(child), child.tail or ""]
+    return "".join(parts)
+
+
+def test_it_has_the_headings_of_the_page(written):
+    *_, page, document = written
+    names = {"h1": "Title", "h2": "Heading 1", "h3": "Heading 2", "h4": "Heading 3"}
+    wanted = [
+        (names[one.tag], _words(_said(one)))
+        for one in page.iter(*names)
+        if not any("contents" in above.get("class", "") for above in one.iterancestors())
+    ]
+    found = [(one.style.name, _words(one.text)) for one in document.paragraphs if one.style.name in names.values()]
+    assert found == wanted
+    assert len(found) > 8
+
+
+def test_its_tables_are_those_of_the_page(written):
+    *_, page, document = written
+    own = [one for one in page.iter("table") if one.findall(".//tr")]
+    tables = [table for table in document.tables if "low" not in table.rows[0].cells[0].text]
+    assert len(tables) == len(own)
+    for table, wanted in zip(tables, own, strict=True):
+        rows = [[_words(_said(cell)) for cell in row.iter("td", "th")] for row in wanted.iter("tr")]
+        found = [[_words(cell.text) for cell in row.cells] for row in table.rows]
+        for given, there in zip(rows, found, strict=True):
+            assert there == given or len(set(there)) == 1 == len(given)  # one cell that spans all columns
+
+
+def test_text_of_the_workbook_is_text(written):
+    *_, document = written
+    cells = [cell.text for table in document.tables for row in table.rows for cell in row.cells]
+    (shown, *_) = [text for text in cells if "=1+1" in text]
+    assert "<b>&amp;</b>" in shown
+    assert "\u202e" not in shown
+
+
+def test_what_is_drawn_has_words(written):
+    path, *_, page, document = written
+    pictures = [one.get("descr") for one in document.element.iter("{*}docPr")]
+    assert len(pictures) == len(list(page.iter("svg"))) > 0
+    assert any(text and "plan" in text.lower() for text in pictures)
+    with zipfile.ZipFile(path) as packed:
+        images = [packed.read(name) for name in packed.namelist() if name.startswith("word/media/")]
+    assert images
+    assert all(image.startswith(b"\x89PNG") and len(image) > 200 for image in images)
+
+
+def test_every_page_says_the_condition_and_its_number(written):
+    *_, document = written
+    section = document.sections[0]
+    assert section.header.paragraphs[0].text == "Every floor's motion times 1.5"
+    fields = [one.get(f"{{{one.nsmap['w']}}}instr") for one in section.footer._element.iter("{*}fldSimple")]
+    assert fields == ["PAGE", "NUMPAGES"]
+
+
+def test_heads_repeat_and_rows_stay_whole(written):
+    *_, document = written
+    table = next(one for one in document.tables if len(one.rows) > 3 and one._tbl.xpath(".//w:tblHeader"))
+    assert table._tbl.tr_lst[0].xpath("./w:trPr/w:tblHeader")
+    assert all(row.xpath("./w:trPr/w:cantSplit") for row in table._tbl.tr_lst)
+
+
+def test_the_contents_lead_to_the_headings(written):
+    *_, document = written
+    targets = {one.get(f"{{{one.nsmap['w']}}}anchor") for one in document.element.iter("{*}hyperlink")}
+    places = {one.get(f"{{{one.nsmap['w']}}}name") for one in document.element.iter("{*}bookmarkStart")}
+    assert targets
+    assert targets <= places
+
+
+def test_the_same_run_makes_the_same_bytes(written):
+    one, other, *_ = written
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_it_says_what_it_is(written):
+    *_, document = written
+    told = document.core_properties
+    assert told.title.startswith("Furniture in earthquakes: ")
+    assert told.language == "en"
+    assert f"{told.created:%Y-%m-%d}" == "2023-11-14"
+
+
+def test_columns_fit_the_page_and_hold_their_words():
+    assert _fit([100.0, 66.0], [10.0, 10.0]) == [100.0, 66.0]
+    widths = _fit([150.0, 16.0], [20.0, 40.0])
+    assert sum(widths) == pytest.approx(SPACE)
+    assert widths[1] >= 40
+    crowded = _fit([SPACE / 4] * 4, [100.0, 100.0, 100.0, 32.0])
+    assert sum(crowded) == pytest.approx(SPACE)
+    assert crowded[0] > crowded[3]
+
+
+def test_drawings_are_taken_out_of_the_page_in_their_order():
+    inner = '<svg viewBox="0 0 300 150"><title>out</title><svg x="1"><rect/></svg></svg>'
+    coded = base64.b64encode(b'<svg width="72pt" height="36pt"/>').decode()
+    page = f'<p>a{inner}b<img alt="say" src="data:image/svg+xml;base64,{coded}">c</p>'
+    left, found = drawings.take_drawings(page)
+    assert left == '<p>a<img data-drawing="0">b<img data-drawing="1">c</p>'
+    assert [one.alternative for one in found] == ["out", "say"]
+    assert (found[0].width, found[0].height) == pytest.approx((166, 83))
+    assert (found[1].width, found[1].height) == pytest.approx((25.4, 12.7))
+
+
+def test_without_its_packages_it_says_what_to_install(monkeypatch, tmp_path):
+    find = util.find_spec
+    monkeypatch.setattr(util, "find_spec", lambda name, *rest: None if name == "docx" else find(name, *rest))
+    path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
+    done = run("run", str(path), "--verify", "none", "--formats", "docx", "--out", str(tmp_path / "out"))
+    assert done.exit_code == 2
+    said = _words(done.stderr)
+    assert "docx needs python-docx, which is not installed. Install it: pip install 'assess[word]'" in said
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(InputError, match=re.escape("assess[word]")):
+        assess.write_reports(assess.run(assess.read_inventory(path), Settings(verify="none")), tmp_path, "docx")
+
+
+def test_a_cancelled_one_leaves_nothing(tmp_path):
+    from threading import Event
+
+    results = assessed(tmp_path / "w.xlsx", ITEMS, FLOORS)
+    stop = Event()
+    stop.set()
+    with pytest.raises(CancelledError):
+        assess.write_reports(results, tmp_path / "out", "docx", progress=Progress(cancel=stop))
+    assert not list((tmp_path / "out").glob("*")) if (tmp_path / "out").exists() else True
+
+
+def test_the_command_writes_it(tmp_path):
+    path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
+    done = run("run", str(path), "--verify", "none", "--formats", "docx", "--out", str(tmp_path / "out"))
+    assert done.exit_code == 0
+    assert {one.name for one in Path(tmp_path / "out").iterdir()} == {"report.docx", "results.json"}
