@@ -65,7 +65,7 @@ class RouteState(StrEnum):
     @property
     def fill(self) -> str:
         """Colour on the plan: green, amber, grey and dark red, from light to dark so that they differ in grey."""
-        return ("#c5e8d5", "#f0b93a", "#8a8f94", "#8c1d3f")[self.severity]
+        return ("#d3efdf", "#f7c95c", "#8a8f94", "#8c1d3f")[self.severity]
 
 
 BLOCKED_FROM = LIMITS[1]
@@ -385,6 +385,11 @@ class WayRow:
     blocked: Chance
     blocked_if_unconfirmed_fall: Chance | None
     shared: tuple[str, ...] = ()
+
+    @property
+    def is_known(self) -> bool:
+        """Whether nothing is missing that could change its state."""
+        return self.state != RouteState.NOT_KNOWN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

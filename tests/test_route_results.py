@@ -44,8 +44,9 @@ def test_the_schema_holds(written):
         (("segments", 0, "blocked"), None),
         (("segments", 0, "state"), "not evaluated"),
         (("segments", 0, "evaluated"), False),
-        (("segments", 1, "evaluated"), True),
-        (("segments", 1, "state"), "open"),
+        (("segments", 1, "evaluated"), False),
+        (("segments", 1, "state"), "reduced"),
+        (("segments", 1, "missing"), ["Clear width"]),
         (("routes", 0, "evaluated"), False),
         (("routes", 0, "unevaluated_segments"), [1]),
         (("rooms", 0, "ways", 0, "shared"), None),
@@ -130,9 +131,7 @@ def test_a_segment_on_the_plan_has_its_ends(written):
     assert (flight.start_x_m, flight.length_m) == (None, None)
 
 
-@pytest.mark.parametrize(
-    ("state", "severity"), [("not evaluated", 0), ("open", 0), ("reduced", 1), ("not known", 2), ("blocked", 3)]
-)
+@pytest.mark.parametrize(("state", "severity"), [("open", 0), ("doubtful", 1), ("not known", 2), ("blocked", 3)])
 def test_states_are_words_in_order(state, severity):
     assert RouteState(state).severity == severity
     assert json.dumps(RouteState(state)) == f'"{state}"'
@@ -158,17 +157,23 @@ def test_what_is_blocked_by_what_is_told(written):
     assert all(one["is_fixed"] for one in routes)
 
 
-def test_a_segment_of_which_nothing_tells_what_reaches_it_has_no_chance(written):
-    """The flight joins two floors and no piece names it: that it is open is not known."""
-    found = written[1]["routes"]
+def test_a_stair_is_open_and_without_a_clear_width_not_known(written, tmp_path):
+    """The flight joins two floors and no piece names it; of one without a width that it is open is not known."""
+    flight = written[1]["routes"]["segments"][1]
+    assert (flight["state"], flight["blocked"]["probability"], flight["missing"]) == ("open", 0, [])
+    blank = [{**one, "clear_width": None} if one["segment"] == "flight" else one for one in ROUTES]
+    run = assess_routed(tmp_path / "w.xlsx", Routes=blank)
+    write_json(run, tmp_path / "r.json")
+    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))["routes"]
     assert [one["evaluated"] for one in found["segments"]] == [True, False, True, True, True]
-    flight = found["segments"][1]
-    assert (flight["state"], flight["state_upper"], flight["flags"]) == (
-        "not evaluated", "not evaluated", ["between_floors"],
+    flight, letter = found["segments"][1], "G"
+    assert (flight["state"], flight["flags"]) == ("not known", ["clear_assumed", "between_floors"])
+    (missing,) = flight["missing"]
+    assert (missing["what"], missing["names"], missing["cells"]) == (
+        "clear_width", ["West: flight"], [f"Routes!{letter}3"],
     )  # fmt: skip
     empty = ("blocked", "blocked_or_reduced", "blocked_if_anchors_fail", "under_record", "least_width_m")
     assert {flight[name] for name in empty} == {None}
-    assert flight["standing_width_m"] == 1.2
     assert [one["unevaluated_segments"] for one in found["routes"]] == [["flight"], [], []]
     assert [one["evaluated"] for one in found["routes"]] == [True, True, True]
     assert [one["unevaluated_segments"] for one in found["rooms"]] == [["flight"], ["flight"]]
@@ -183,16 +188,16 @@ def test_what_is_not_evaluated_counted_or_apart(tmp_path):
     jsonschema.validate(whole, _schema())
     found = whole["routes"]
     assert {one["segment"]: one["state"] for one in found["segments"]} == {
-        "aisle": "open", "ahead": "blocked", "aside": "open", "ladder": "not evaluated", "tunnel": "not evaluated",
-        "gap": "not evaluated",
+        "aisle": "not known", "ahead": "blocked", "aside": "not known", "ladder": "not known", "tunnel": "not known",
+        "gap": "not known",
     }  # fmt: skip
     assert [one["other_rooms"] for one in found["segments"]] == [["behind"], [], [], [], [], []]
     tunnel, gap = found["segments"][4:]
     assert (tunnel["insufficient_for_occupants"], tunnel["insufficient_after_falls"]) == (False, None)
     assert (gap["insufficient_for_occupants"], gap["insufficient_after_falls"]["probability"]) == (True, 1)
     out, cellar = found["routes"]
-    assert (out["evaluated"], out["state"], out["unevaluated_segments"]) == (True, "reduced", ["ladder"])
-    assert (cellar["evaluated"], cellar["state"], cellar["blocked"]) == (False, "not evaluated", None)
+    assert (out["evaluated"], out["state"], out["unevaluated_segments"]) == (True, "not known", ["ladder"])
+    assert (cellar["evaluated"], cellar["state"], cellar["blocked"]) == (False, "not known", None)
     assert cellar["unevaluated_segments"] == ["tunnel", "gap"]
     (lab,) = found["rooms"]
     assert lab["unevaluated_segments"] == ["ladder"]
@@ -209,12 +214,13 @@ def test_what_depends_on_unconfirmed_pieces_is_not_known(tmp_path):
     found = whole["routes"]
     aisle, west = found["segments"][0], found["routes"][0]
     for one in (aisle, west):
-        assert (one["state"], one["state_upper"], one["doubts"]) == ("not known", "blocked", ["unconfirmed_period"])
+        assert one["state"] == "not known"
+        assert {"what": "unconfirmed_period", "names": ["tall"], "cells": []} in one["missing"]
         assert (one["blocked"]["probability"], one["blocked"]["pieces"], one["blocked"]["unconfirmed"]) == (0, 0, 1)
         assert one["blocked_if_unconfirmed_fall"]["probability"] == 1
     assert aisle["pieces"][0]["falls_while_blocked"] is None
     assert "unconfirmed_period" in aisle["pieces"][0]["flags"]
-    assert [one["is_known"] for one in found["rooms"]] == [False, False]
+    assert [one["state"] for one in found["rooms"]] == ["not known", "not known"]
     assert found["rooms"][0]["loses_if_unconfirmed_fall"]["probability"] == 1
     assert (found["unknown_routes"], found["unknown_rooms"], found["blocked_routes_expected"]) == (2, 2, 0)
     assert [one["unknown_segments"] for one in found["floors"]] == [2, 0]

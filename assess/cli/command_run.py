@@ -275,14 +275,20 @@ def describe_result(results: "Results") -> Iterator[str]:
 
 
 def _describe_routes(routes: "RouteTables") -> str:
-    from assess.report.findings.route_rows import count_rooms, count_routes, say_not_counted, say_to_fill_in
+    from assess.report.findings.route_rows import (
+        count_rooms,
+        count_routes,
+        say_expected,
+        say_not_counted,
+        say_to_fill_in,
+    )
     from assess.report.findings.route_words import is_held
 
     held = sum(is_held(one, routes.risk) for one in routes.routes)
     texts = [
         count_routes(routes),
         *count_rooms(routes),
-        f"On average {routes.blocked_routes_expected:.2f} routes would be blocked.",
+        say_expected(routes),
         *say_not_counted(routes),
         *([f"If anchors fail, {held:,} would be worse."] if held else []),
         *say_to_fill_in(routes),

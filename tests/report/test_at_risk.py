@@ -35,22 +35,21 @@ def _flat(text):
 def test_routes_at_risk_stand_worst_first(routed):
     found = at_risk.list_routes_at_risk(routed)
     assert [(one.route, one.floors, one.blocker) for one in found] == [("West", "1, G", "tall"), ("Back", "1", "calm")]
-    assert len({one.state for one in found}) == 1
+    assert [one.state for one in found] == ["✕ blocked", "? not known"]
     chance = routed.route_tables.routes[1].blocked
-    expected = (
-        f"{words.percent(chance.probability)} ({words.in_percent(chance.low)} to {words.in_percent(chance.high)} %)"
-    )
-    assert _flat(found[1].chance) == expected
+    assert _flat(found[1].chance) == f"not known (at least {words.in_percent(chance.probability)} %)"
+    assert found[0].needed == "tall"
 
 
 def test_the_summary_counts_what_the_results_hold(routed):
     routes, text = routed.route_tables, " ".join(at_risk.say_routes(routed))
-    assert "2 of 3" in text
-    assert "3 %" in text
+    assert "3 evacuation routes: 1 blocked, 1 not known, 1 open." in text
+    assert "Best way from each of 2 rooms to the street: 1 blocked, 1 not known." in text
     for expected in (routes.blocked_routes_expected, routes.cut_off_rooms_expected):
         assert words.fixed(expected, 2) in text or words.fixed(expected, 1) in text
     worst = max(one.loses_every_exit.probability for one in routes.rooms)
-    assert f"Office with {words.percent(worst)}." in text
+    assert f"The room most likely to lose all exits is Office with {words.percent(worst)}." in text
+    assert "To settle what is not known: fill in X and Y, or the Route, of =apart (Items!" in text
     assert ": Yard." in text, "what hangs on anchors"
     for count in ("1 segment", "1 piece"):
         assert count in text, "what is too narrow, and what is not counted"
@@ -63,14 +62,14 @@ def test_the_page_names_them(routed, tmp_path):
         assert "".join(f"<td>{cell}</td>" for cell in cells[:3]) + f'<td class="num">{cells[3]}</td>' in html
 
 
-def test_what_is_not_excluded_is_counted_apart(routed):
-    routes = routed.route_tables
-    doubtful = tuple(replace(one, state=RouteState.OPEN) for one in routes.routes)
-    results = replace(routed, route_tables=replace(routes, routes=doubtful))
-    first, second, *_ = at_risk.say_routes(results)
-    assert "0 of 3" in first
-    assert "2 more" in second
-    assert len(at_risk.list_routes_at_risk(results)) == 2
+def test_states_are_counted_the_worst_first(routed):
+    routes, states = routed.route_tables, (RouteState.DOUBTFUL, RouteState.BLOCKED, RouteState.DOUBTFUL)
+    changed = tuple(replace(one, state=state) for one, state in zip(routes.routes, states, strict=True))
+    results = replace(routed, route_tables=replace(routes, routes=changed))
+    assert at_risk.say_routes(results)[0] == "3 evacuation routes: 1 blocked, 2 doubtful."
+    assert [one.result.state for one in at_risk.list_routes_at_risk(results)] == sorted(
+        states, key=lambda state: -state.severity
+    )
 
 
 def test_several_pieces_of_a_row_are_named_with_their_number(routed):
@@ -78,18 +77,20 @@ def test_several_pieces_of_a_row_are_named_with_their_number(routed):
     assert back.needed == "calm (2 pieces)"
 
 
-def test_a_route_that_is_not_evaluated_is_not_said_to_be_safe(tmp_path):
+def test_a_route_of_which_nothing_is_known_is_not_said_to_be_safe(tmp_path):
+    """No piece of the ground floor is listed, and the lane has no position."""
     results = assess_routed(tmp_path / "w.xlsx", Items=ITEMS[3:])
     assert [one.evaluated for one in results.route_tables.routes] == [True, True, False]
-    assert [text for text in at_risk.say_routes(results) if "evaluated" in text and "1 route" in text]
+    assert results.route_tables.routes[2].state == RouteState.NOT_KNOWN
+    assert [text for text in at_risk.say_routes(results) if "fill in From, To and Floor of Yard: lane" in text]
 
 
-def test_where_none_is_at_risk_that_is_said_with_the_chosen_risk(tmp_path):
-    results = assess_routed(tmp_path / "w.xlsx", Settings(verify="none", route_risk=0.9))
+def test_where_all_are_open_none_is_listed(tmp_path):
+    results = assess_routed(tmp_path / "w.xlsx", Items=[ITEMS[0] | {"anchored": "yes"}, ITEMS[2]])
     assert at_risk.list_routes_at_risk(results) == []
-    first, *_ = at_risk.say_routes(results)
-    assert first.startswith("None of the 3 routes")
-    assert "90 %" in first
+    first, second, *_ = at_risk.say_routes(results)
+    assert first == "3 evacuation routes: 3 open."
+    assert second == "Best way from each of 2 rooms to the street: 2 open."
 
 
 def test_without_routes_nothing_is_said(tmp_path):
@@ -191,18 +192,17 @@ def test_what_is_not_known_is_counted_apart_with_what_settles_it(unconfirmed):
     """Neither T1 nor height is known: whether West and Back are blocked depends on the bookcase and the cabinets."""
     back, west, *others = at_risk.list_routes_at_risk(unconfirmed)
     assert (west.route, west.state, west.chance) == (
-        "West", "? not known, not excluded: ✕ may be blocked", "not known (0.0 to 100.0 %)".replace(" ", "\xa0"),
+        "West", "? not known", "not known (0.0 to 100.0 %)".replace(" ", words.NO_BREAK),
     )  # fmt: skip
     text = " ".join(at_risk.say_routes(unconfirmed))
     assert (back.route, others) == ("Back", [])
-    assert "2 routes are not known: they depend on pieces whose class is not confirmed (tall, calm)." in text
-    assert "For 2 rooms it is not known whether they could lose all exits." in text
-    assert "To settle this: enter the Period T1 or the Height in the sheet Building." in text
+    assert "3 evacuation routes: 2 not known, 1 open." in text
+    assert "Best way from each of 2 rooms to the street: 2 not known." in text
+    assert "enter the Period T1 or the Height in the sheet Building" in text
     assert "Left out of these averages, as not known: routes 2, rooms 2." in text
-    line = next(one for one in describe_result(unconfirmed) if one.startswith("Evacuation routes"))
-    assert line.startswith("Evacuation routes: of 1, 0 could be blocked and 0 reduced at a risk limit of 3 %")
-    assert line.endswith("not counting 2 that depend on unconfirmed pieces: "
-                         "enter the Period T1 or the Height in the sheet Building.")  # fmt: skip
+    line = next(one for one in describe_result(unconfirmed) if "evacuation routes" in one)
+    assert line.startswith("3 evacuation routes: 2 not known, 1 open.")
+    assert line.endswith("enter the Period T1 or the Height in the sheet Building.")
 
 
 def test_steps_count_unconfirmed_pieces_as_fallen(unconfirmed):
@@ -215,15 +215,12 @@ def test_the_command_line_ends_with_the_routes(routed, tmp_path):
     def printed(results):
         return "\n".join(describe_result(results))
 
-    held = "1 could be blocked if anchors fail"
-    expected = f"{held}. On average {routed.route_tables.blocked_routes_expected:.2f} would be blocked."
-    assert f"Evacuation routes: of 3, 2 could be blocked and 0 reduced at a risk limit of 3 %; {expected}" in printed(
-        routed
-    )
+    assert "3 evacuation routes: 1 blocked, 1 not known, 1 open." in printed(routed)
+    assert f"On average {routed.route_tables.blocked_routes_expected:.2f} routes would be blocked" in printed(routed)
+    assert "If anchors fail, 1 would be worse." in printed(routed)
     blind = assess_routed(tmp_path / "blind.xlsx", Items=ITEMS[3:])
-    assert "Evacuation routes: of 2, 0 could be" in printed(blind)
-    assert "; 1 more could not be evaluated. " in printed(blind)
-    assert "Evacuation routes" not in printed(assessed(tmp_path / "w.xlsx"))
+    assert "3 evacuation routes: 3 not known." in printed(blind)
+    assert "evacuation routes" not in printed(assessed(tmp_path / "w.xlsx"))
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from assess.report.content import build_content
 from assess.report.figures.labels import overlap, place_labels
 from assess.report.figures.plan import build_plan, fallen, rectangle
 from assess.report.figures.ways import build_stretches, list_styles
-from assess.route_results import RouteState
+from assess.route_results import MissingRow, RouteState
 from assess.workbook.template import Content, write_workbook
 from tests.report.reading import render
 from tests.workbooks import FLOORS, UNVERIFIED
@@ -298,7 +298,7 @@ def test_segments_are_bands_to_scale_that_go_on_round_a_bend(routed):
 def test_states_are_told_by_colour_line_and_sign(routed):
     ways = _ways(_plans(routed)[0])
     assert {name: one.style.name for name, one in ways.items()} == {
-        "<i>aisle</i>": "blocked", "hall": "reduced", "gap": "standing", "lane": "open"
+        "<i>aisle</i>": "blocked", "hall": "open", "gap": "standing", "lane": "open"
     }  # fmt: skip
     styles = list(list_styles().values())
     assert len({(one.symbol, one.ground) for one in styles}) == len({(one.dash, one.width) for one in styles}) == 5
@@ -311,26 +311,31 @@ def test_states_are_told_by_colour_line_and_sign(routed):
 def test_the_drawing_shows_each_state_with_its_sign_and_dash(routed):
     drawing = _drawings(render(routed))[0]
     links = {link.get("class"): link for link in _links(drawing, "way")}
-    assert set(links) == {"way blocked", "way reduced", "way standing", "way open"}
+    assert set(links) == {"way blocked", "way standing", "way open"}
     assert links["way blocked"].get("href") == "#segment-1"
     assert links["way blocked"].find(f"{SVG}path").get("fill") == RouteState.BLOCKED.fill
     assert float(drawing.find(f"{SVG}g[@class='ways']").get("opacity")) < 1
     titles = {name: link.find(f"{SVG}title").text for name, link in links.items()}
-    assert re.fullmatch(r"R & S: <i>aisle</i>: ✕ may be blocked; chance of blockage \d+\.\d %", titles["way blocked"])
+    assert re.fullmatch(
+        r"R & S: <i>aisle</i>: ✕ blocked; chance of blockage \d+\.\d %; most likely by \S+", titles["way blocked"]
+    )
     assert titles["way standing"] == "R & S: gap: ✕ blocked as it stands; chance of blockage 100.0 %"
     lines = drawing.find(f"{SVG}g[@class='way-lines']")
     dashes = {one.get("class"): one.get("stroke-dasharray") for one in lines if one.get("class")}
-    assert dashes == {"blocked": "2 2.5", "reduced": "8 3", "standing": None, "open": None}
+    assert dashes == {"blocked": "2 2.5", "standing": None, "open": None}
     signs = [text.text for text in drawing.find(f"{SVG}g[@class='signs']").iter(f"{SVG}text")]
-    assert sorted(signs) == sorted(["✕", "✕", "≈", "✓"])
+    assert sorted(signs) == sorted(["✕", "✕", "✓", "✓"])
 
 
-def test_a_worse_state_that_is_not_excluded_has_a_mark(routed):
+def test_what_is_not_known_has_a_style_and_says_what_to_fill_in(routed):
     *others, lane, flight, roof = routed.route_tables.segments
     assert lane.segment == "lane"
-    unsure = replace(lane, state_upper=RouteState.REDUCED)
+    missing = (MissingRow(what="positions", names=("A-1",), cells=("Items!N7",)),)
+    unsure = replace(lane, state=RouteState.NOT_KNOWN, missing=missing)
     changed = replace(routed, route_tables=replace(routed.route_tables, segments=(*others, unsure, flight, roof)))
-    assert [one.name for one in _plans(changed)[0].ways if one.may_be] == ["lane"]
+    (way,) = (one for one in _plans(changed)[0].ways if one.name == "lane")
+    assert (way.style.name, way.style.symbol) == ("unknown", "?")
+    assert way.title.endswith("; fill in X and Y, or the Route, of A-1 (Items!N7)")
     for assessment, marks in ((routed, 0), (changed, 1)):
         signs = _drawings(render(assessment))[0].find(f"{SVG}g[@class='signs']")
         assert [text.text for text in signs.iter(f"{SVG}text")].count("?") == marks
@@ -340,10 +345,8 @@ def test_the_legend_names_the_states_and_kinds_that_occur(routed):
     html = render(routed)
     legends = re.findall(r'<p class="small legend ways">(.*?)</p>', html, re.S)
     texts = [re.sub(r"<title>.*?</title>|<[^>]*>", " ", legend).split() for legend in legends]
-    assert " ".join(texts[0]) == (
-        "✕ blocked as it stands ✕ may be blocked ≈ may be reduced ✓ open exit stair door room"
-    )
-    assert " ".join(texts[1]) == "✓ open exit stair"
+    assert " ".join(texts[0]) == ("✕ blocked as it stands ✕ blocked ✓ open exit stair door room")
+    assert " ".join(texts[1]) == "? not known exit stair", "a loose piece may stand anywhere on the roof"
     assert "Bands: segments of evacuation routes, as wide as they are clear" in html
 
 

@@ -9,8 +9,9 @@ import weasyprint
 
 import assess
 from assess.report import words
-from assess.report.findings import at_risk, route_rows
+from assess.report.findings import at_risk, route_page, route_rows
 from assess.report.findings import route_words as said
+from assess.report.findings.route_page import MOST_LINES
 from assess.report.pages.context import LIMITS
 from assess.route_results import FLAGS, RouteState
 from assess.routes.widths import RULES
@@ -39,7 +40,7 @@ ROUTES = [
     {"route": "Balcony", "segment": "gallery", "floor": "1", "start": "Office <1>", "end": "Balcony",
      "clear_width": 3.0},
     {"route": "Back", "segment": "gap", "floor": "1", "start": "Archive", "end": "Balcony", "clear_width": 0.7},
-    {"route": "Yard", "segment": "lane", "floor": "G", "clear_width": 1.5},
+    {"route": "Yard", "segment": "lane", "floor": "G", "clear_width": 1.5, "room": "Lane"},
 ]  # fmt: skip
 ITEMS = [
     {"item": "tall & thin", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 5.0, "y": 0.9, "axis": "Y",
@@ -48,7 +49,8 @@ ITEMS = [
      "route": "Balcony", "segment": "gallery", "edge_distance": 0.1},
     {"item": "held", "floor": "G", "breadth": 30, "width": 80, "height": 200, "anchored": "yes", "route": "Yard",
      "segment": "lane", "edge_distance": 0.05},
-    {"item": "away", "floor": "G", "breadth": 30, "width": 80, "height": 200, "x": 90.0, "y": 90.0},
+    {"item": "away", "floor": "G", "breadth": 30, "width": 80, "height": 200, "x": 90.0, "y": 90.0,
+     "room": "Far"},
 ]  # fmt: skip
 
 
@@ -116,7 +118,7 @@ def _item(piece):
 def test_the_building_has_every_state(assessment):
     west, balcony, back, yard = assessment.route_tables.routes
     assert west.state == RouteState.BLOCKED
-    assert balcony.state == RouteState.REDUCED
+    assert balcony.state == RouteState.OPEN
     assert not back.is_fixed
     assert yard.state == RouteState.OPEN
     assert yard.blocked_if_anchors_fail.probability > 0.1
@@ -139,12 +141,12 @@ def test_every_number_of_a_route_is_shown(name, request):
         assert not is_known or numbers == [_chance(one.blocked), _chance(one.blocked_or_reduced)]
         bounds = f"{_bounds(one.blocked)} " if one.blocked.pieces and is_known else ""
         left_out = f"; {said.say_left_out(one.unevaluated_segments)}" if one.unevaluated_segments else ""
-        assert rests == f"{bounds}{said.say_basis(one.blocked)}{left_out}"
+        assert rests == (said.say_missing(one.missing) or f"{bounds}{said.say_basis(one.blocked)}{left_out}")
         assert unanchored == _chance(one.blocked_if_anchors_fail)
         assert piece == _item(one.most_likely_piece)
 
 
-WEST = "20 draws, all together; 2 segments not evaluated"
+WEST = "20 draws, all together; 1 segment not evaluated"
 
 
 def test_a_verified_route_rests_on_its_motions(verified):
@@ -159,31 +161,32 @@ def test_what_is_not_known_says_what_settles_it(unconfirmed):
     assert west.state == RouteState.NOT_KNOWN
     html = render(unconfirmed)
     (row, *_more) = _rows(html, "routes")
-    assert row[2:5] == ["? not known, not excluded: ✕ may be blocked", "not known (0.0 to 100.0 %)", "not known"]
-    assert row[5] == "1 unconfirmed piece taken as standing; 2 segments not evaluated"
+    assert row[2:5] == ["? not known", "not known (0.0 to 100.0 %)", "–"]
+    assert row[5] == (
+        "fill in X and Y of Foot, Street (Places!C6, Places!C7); "
+        "enter the Period T1 or the Height in the sheet Building"
+    )
     assert row[7] == "–", "no piece of a known chance blocks it"
-    text, unknown = _text(_section(html)), [one for one in unconfirmed.route_tables.routes if one.doubts]
-    count = f"{len(unknown)} route is" if len(unknown) == 1 else f"{len(unknown)} routes are"
-    assert f"{count} not known: " in text
-    assert "To settle this: enter the Period T1 or the Height in the sheet Building." in text
+    text, unknown = _text(_section(html)), [one for one in unconfirmed.route_tables.routes if one.missing]
+    assert f"4 evacuation routes: 1 blocked, {len(unknown)} not known" in text
     assert "count as fallen in these chances, which is on the safe side." in text
     assert "A piece whose lower simulated class is not confirmed counts as standing and as fallen." in text
     (office, *_rooms) = _rows(html, "rooms")
-    assert unconfirmed.route_tables.rooms[0].is_known == ("not known" not in office[3])
+    assert unconfirmed.route_tables.rooms[0].is_known == ("not known" not in office[4])
     assert sum(one.unknown_routes for one in unconfirmed.route_tables.floors) >= 1
 
 
 def test_what_is_blocked_as_it_stands_is_told_from_what_may_be(html, assessment):
     states = {row[0]: row[2] for row in _rows(html, "routes")}
     assert states == {
-        "<b>West</b>": "✕ may be blocked",
-        "Balcony": "≈ may be reduced",
+        "<b>West</b>": "✕ blocked",
+        "Balcony": "✓ open",
         "Back": "✕ blocked as it stands",
         "Yard": "✓ open if the anchors hold ⚓",
     }
     assert "widen them, or move what stands inside; check the Clear width. Back: gap" in _text(_section(html))
     certain = replace(assessment.route_tables.routes[2], is_fixed=True)
-    assert said.say_route_state(certain) == "✕ blocked"
+    assert said.say_route_state(certain, 0.03) == "✕ blocked"
 
 
 @EACH
@@ -200,7 +203,7 @@ def test_every_number_of_a_segment_is_shown(name, request):
         ]
         assert said.say_segment_state(one, assessment.route_tables.risk) in row[7]
         if not one.evaluated:
-            assert row[6:11] == ["–", "– not evaluated", "–", "–", "–"]
+            assert row[6:11] == ["–", "? not known", "–", "–", "–"]
             continue
         assert row[6] == words.in_m(one.least_width_m)
         bounds = "–" if one.state == RouteState.NOT_KNOWN else _bounds(one.blocked)
@@ -260,35 +263,32 @@ def test_every_room_says_how_it_may_lose_its_exits_and_its_ways(name, request):
     assert [row[0] for row in rows] == [one.room for one in rooms] == ["Office <1>", "Archive"]
     for row, one in zip(rows, rooms, strict=True):
         assert row[2] == ", ".join(one.exits)
-        assert row[3:5] == [_flat(said.say_lost(one)), _chance(one.loses_if_anchors_fail)]
-        assert row[5] == _item(one.most_likely_piece)
-        assert one.ways[0].end in row[6]
+        assert row[3] == said.say_room_state(one)
+        assert row[4:6] == [_flat(said.say_lost(one)), _chance(one.loses_if_anchors_fail)]
+        assert row[6] == _item(one.most_likely_piece)
+        assert one.ways[0].end in row[7]
         for way in one.ways:
-            assert said.say_way(way, assessment.route_tables).replace(words.NO_BREAK, " ") in row[6]
-        assert ("no other way" in row[6]) == (len(one.ways) == 1)
+            assert said.say_way(way, assessment.route_tables).replace(words.NO_BREAK, " ") in row[7]
+        assert ("no other way" in row[7]) == (len(one.ways) == 1)
 
 
 def test_floors_say_what_is_to_be_expected(html, assessment):
     for row, one in zip(_rows(html, "route-floors"), assessment.route_tables.floors, strict=True):
         counted = (
-            one.segments,
-            one.blocked_segments_expected,
-            one.routes,
-            one.blocked_routes_expected,
-            one.rooms,
-            one.cut_off_rooms_expected,
+            (one.segments, one.blocked_segments_expected, one.unknown_segments),
+            (one.routes, one.blocked_routes_expected, one.unknown_routes),
+            (one.rooms, one.cut_off_rooms_expected, one.unknown_rooms),
         )
-        shown = [f"{value:.2f}" if isinstance(value, float) else str(value) for value in counted]
-        assert row[1:7] == [*shown[:5], f"{one.cut_off_rooms_expected:.2f}"]
-        assert row[7:] == [_chance(one.any_room_cut_off), str(one.uncounted_pieces)]
+        shown = [[str(every), f"{expected:.2f}", str(unknown)] for every, expected, unknown in counted]
+        assert row[1:10] == [cell for cells in shown for cell in cells]
+        assert row[10:] == [_chance(one.any_room_cut_off), str(one.uncounted_pieces)]
 
 
 def test_the_lead_counts_routes_and_rooms(html, assessment):
     text, routes = _text(_section(html)), assessment.route_tables
-    assert "4 evacuation routes: 2 may be blocked, 1 may be reduced, 1 below the chosen risk." in text
-    assert "2 segments of the other routes could not be evaluated." in text
-    assert f"On average {routes.blocked_routes_expected:.2f} routes would be blocked." in text
-    assert f"Of 2 rooms, on average {routes.cut_off_rooms_expected:.2f} would lose all exits." in text
+    assert "4 evacuation routes: 2 blocked, 2 open." in text
+    blocked, rooms = routes.blocked_routes_expected, routes.cut_off_rooms_expected
+    assert f"On average {blocked:.2f} routes would be blocked and {rooms:.2f} rooms would lose all exits." in text
     assert "in this scenario, not per year" in text
     for sentence in said.list_cautions(routes):
         assert sentence in text
@@ -305,12 +305,12 @@ def test_every_step_of_what_to_fix_is_shown(name, request):
     for row, (one, number, step) in zip(rows, steps, strict=True):
         assert row[:3] == [one.route, str(number), at_risk.say_row(assessment.result(step.item_index))]
         assert row[3:5] == [words.percent(step.gain), words.percent(step.left)]
-        assert row[5] == ("below the chosen risk" if number == len(one.fixes) else "")
+        assert row[5] == ("open" if number == len(one.fixes) else "")
         assert not one.is_fixed or one.fixes[-1].left < assessment.route_tables.risk
 
 
 def test_routes_that_need_nothing_are_named(html):
-    assert "2 routes are already below the limit of 3 %: Balcony, Yard." in _text(_section(html))
+    assert "2 routes are open as they are: Balcony, Yard." in _text(_section(html))
 
 
 def test_widths_are_given_with_their_publications(html):
@@ -364,8 +364,9 @@ def test_long_lists_are_bounded_and_what_is_left_out_is_least_likely(tmp_path):
     assert "80 more routes, less likely to be blocked, are in the Excel report." in text
     assert "30 more segments, less likely to be blocked, are in the Excel report." in text
     assert "30 more rooms, less likely to be cut off, are in the Excel report." in text
-    assert "160 routes could not be evaluated: the workbook places no furniture there." in text
-    assert "already below the limit" not in text
+    assert "160 routes are open as they are: Route 0, " in text, "all pieces of the floor name other routes"
+    assert len(_ways(html)) == 2 * MOST_LINES, "rooms and routes"
+    assert "9 more lines are in the Excel report, sheet Routes." in text
 
 
 @pytest.mark.slow
@@ -408,23 +409,55 @@ def unknown(tmp_path_factory):
 def test_what_is_not_evaluated_is_neither_open_nor_has_a_chance(unknown):
     html = render(unknown)
     dark, blind, hall = _rows(html, "routes")
-    assert dark[2:7] == blind[2:7] == ["– not evaluated", "–", "–", "–", "–"]
-    assert hall[2] == "✓ open"
+    assert dark[2] == "✓ open", "a stair of known width that no piece names"
+    assert (blind[2:5], blind[6:7]) == (["? not known", "–", "–"], ["–"])
+    assert blind[5] == "fill in From, To and Floor of Blind: lane (Routes!D3)"
+    assert hall[2] == "? not known"
+    assert hall[5] == "fill in X and Y, or the Route, of lost (Items!N3)"
     flight, lane, aisle, _gallery = _rows(html, "segments")
-    assert flight[6:11] == lane[6:11] == ["–", "– not evaluated", "–", "–", "–"]
-    assert aisle[7] == "✓ open"
-    assert 'class="way-state unevaluated"' in html
-    text = _text(_section(html))
-    assert "1 evacuation route: 0 may be blocked, 0 may be reduced, 1 below the chosen risk." in text
-    assert "2 routes could not be evaluated: the workbook places no furniture there." in text
-    assert "1 route is already below the limit of 3 %: Hall." in text
+    assert (flight[7], lane[6:11]) == ("✓ open", ["–", "? not known", "–", "–", "–"])
+    assert aisle[7] == "? not known"
+    assert 'class="way-state not-known"' in html
+    assert "3 evacuation routes: 2 not known, 1 open." in _text(_section(html))
 
 
-def test_where_nothing_is_evaluated_no_state_is_counted(unknown):
-    routes = replace(unknown.route_tables, routes=unknown.route_tables.routes[:2])
-    lines = route_rows.describe_routes(routes)
-    assert lines[0] == "2 routes could not be evaluated: the workbook places no furniture there."
-    assert not any("below the chosen risk" in line for line in lines)
+def test_the_page_says_for_every_route_what_to_fix_or_fill_in(html, assessment, unknown):
+    """Of the buildings: one route is blocked by a piece, one as it stands, and two open; one lacks positions."""
+    rows = _ways(html)
+    assert rows["Back: Archive → Balcony"][1:] == [
+        "✕ blocked as it stands", "100.0 %", "Back: gap", "widen it, or move what stands inside; check the Clear width",
+    ]  # fmt: skip
+    west = rows["<b>West</b>: Office <1> → Street"]
+    assert west[1:] == ["✕ blocked", _chance(assessment.route_tables.routes[0].blocked), "<b>West</b>: aisle",
+                        "tall & thin"]  # fmt: skip
+    assert rows["Balcony"][1] == "✓ open"
+    assert rows["Yard"][1] == "✓ open if the anchors hold ⚓"
+    other = _ways(render(unknown))
+    said_of_hall = next(row for name, row in other.items() if name.startswith("Hall: "))
+    assert (said_of_hall[1], said_of_hall[4]) == ("? not known", "fill in X and Y, or the Route, of lost (Items!N3)")
+
+
+def _ways(html):
+    """Return the rows of both tables of the page on routes by their first cell."""
+    bodies = re.findall(r'<table class="way-page">.*?<tbody>(.*?)</tbody>', _section(html), re.S)
+    rows = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.S)
+            for body in bodies for row in re.findall(r"<tr>(.*?)</tr>", body, re.S)]  # fmt: skip
+    return {_text(row[0]).replace(" :", ":"): [_text(cell) for cell in row] for row in rows}
+
+
+def test_rooms_that_are_alike_stand_in_one_line(assessment):
+    routes = assessment.route_tables
+    twin = replace(routes.rooms[0], room="Twin")
+    lines = route_page.list_room_lines(replace(routes, rooms=(*routes.rooms, twin)))
+    assert [one.names for one in lines if "Twin" in one.names] == ["Office <1>, Twin"]
+    assert len(lines) == len(route_page.list_room_lines(routes))
+
+
+def test_what_more_draws_would_settle_says_so(assessment):
+    (yard,) = (one for one in assessment.route_tables.routes if one.route == "Yard")
+    doubtful = replace(yard, missing=(), state=RouteState.DOUBTFUL, fixes=())
+    assert route_page.say_advice(doubtful) == "no draw blocks it: simulate more draws to settle it"
+    assert route_page.say_advice(yard) == ""
 
 
 def test_pieces_in_other_rooms_are_named_with_their_room(unknown):
@@ -438,7 +471,7 @@ def test_pieces_that_are_left_out_are_counted(unknown, tmp_path):
     sentence = "3 pieces have no usable position or route and are left out."
     html = render(unknown)
     assert sentence in _text(_section(html))
-    assert {row[0]: row[8] for row in _rows(html, "route-floors")} == {"1 – First": "3", "Floor G": "0"}
+    assert {row[0]: row[-1] for row in _rows(html, "route-floors")} == {"1 – First": "3", "Floor G": "0"}
     alone = _assess(tmp_path / "w.xlsx", Items=ITEMS[:3])
     assert route_rows.say_uncounted(alone.route_tables) == ""
 
@@ -456,10 +489,3 @@ def test_a_way_says_what_it_shares_with_the_first(assessment):
     ways = (way, replace(way, shared=(name,)))
     said_alone, said_shared = (said.say_way(one, assessment.route_tables) for one in ways)
     assert said_shared == f"{said_alone}; shares {name} with the first"
-
-
-def test_a_room_whose_ways_are_not_evaluated_has_no_chance(assessment):
-    room = assessment.route_tables.rooms[0]
-    assert route_rows.has_evaluated_way(room, assessment.route_tables)
-    segments = tuple(replace(one, evaluated=False) for one in assessment.route_tables.segments)
-    assert not route_rows.has_evaluated_way(room, replace(assessment.route_tables, segments=segments))

@@ -9,6 +9,7 @@ from assess.report import words
 from assess.report.findings.route_rows import (
     count_rooms,
     count_routes,
+    say_expected,
     say_not_counted,
     say_to_fill_in,
     say_uncounted,
@@ -117,21 +118,12 @@ def say_routes(results: Results) -> list[str]:
     return [
         count_routes(routes),
         *count_rooms(routes),
-        _say_expected(routes),
+        say_expected(routes),
         *say_not_counted(routes),
         *say_to_fill_in(routes),
         *_say_rooms(routes),
         *_say_beside(routes),
     ]
-
-
-def _say_expected(routes: RouteTables) -> str:
-    blocked, rooms = words.fixed(routes.blocked_routes_expected, 2), words.fixed(routes.cut_off_rooms_expected, 2)
-    if not routes.rooms:
-        return _("On average {count} routes would be blocked.", count=blocked)
-    return _(
-        "On average {count} routes would be blocked and {rooms} rooms would lose all exits.", count=blocked, rooms=rooms
-    )
 
 
 def _say_rooms(routes: RouteTables) -> list[str]:

@@ -6,7 +6,7 @@ from typing import TypeVar
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.report import words
-from assess.report.findings.route_words import find_chance, name_state, say_missing, say_risk
+from assess.report.findings.route_words import find_chance, name_state, say_missing
 from assess.route_results import (
     FLAGS,
     BesideRow,
@@ -31,18 +31,20 @@ def describe_routes(routes: RouteTables) -> list[str]:
     return [
         count_routes(routes),
         *count_rooms(routes),
-        _("On average {count} routes would be blocked.", count=words.fixed(routes.blocked_routes_expected, 2)),
-        ngettext(
-            "Of {n:,} room, on average {count} would lose all exits.",
-            "Of {n:,} rooms, on average {count} would lose all exits.",
-            len(routes.rooms),
-            count=words.fixed(routes.cut_off_rooms_expected, 2),
-        )
-        if routes.rooms
-        else _("No room has a way out in the workbook, so none is evaluated."),
+        say_expected(routes),
         *say_not_counted(routes),
         _("These are chances in this scenario, not per year."),
     ]
+
+
+def say_expected(routes: RouteTables) -> str:
+    """Return how many routes would be blocked, and how many rooms would lose all exits, on average."""
+    blocked, rooms = words.fixed(routes.blocked_routes_expected, 2), words.fixed(routes.cut_off_rooms_expected, 2)
+    if not routes.rooms:
+        return _("On average {count} routes would be blocked.", count=blocked)
+    return _(
+        "On average {count} routes would be blocked and {rooms} rooms would lose all exits.", count=blocked, rooms=rooms
+    )
 
 
 def count_routes(routes: RouteTables) -> str:
@@ -99,8 +101,7 @@ def say_uncounted(routes: RouteTables) -> str:
     )
     if any(row.what in ("positions", "places", "ends") for one in routes.segments for row in one.missing):
         return left_out
-    none = _("None of them could change a state: their chance of overturning is below {risk}, or they stand elsewhere.",
-             risk=say_risk(routes.risk))  # fmt: skip
+    none = _("None of them could change a state.")
     return f"{left_out} {none}"
 
 

@@ -45,14 +45,13 @@ def name_state(state: RouteState) -> str:
 
 def list_rules(risk: float) -> list[tuple[RouteState, str]]:
     """Return the states, the worst first, and when each holds at the chosen risk [-]."""
-    limit, blocked = say_risk(risk), say_risk(BLOCKED_FROM)
+    limit = say_risk(risk)
     return [
-        (RouteState.BLOCKED, _("chance of a blockage {limit} or more", limit=blocked)),
-        (RouteState.NOT_KNOWN, _("the workbook leaves out something that could change the state")),
-        (RouteState.DOUBTFUL, _("below {blocked}, but the range is not wholly below {limit}",
-                                blocked=blocked, limit=limit)),
-        (RouteState.OPEN, _("the whole range is below {limit}", limit=limit)),
-    ]  # fmt: skip
+        (RouteState.BLOCKED, _("chance {limit} or more", limit=say_risk(BLOCKED_FROM))),
+        (RouteState.NOT_KNOWN, _("something missing could change the state")),
+        (RouteState.DOUBTFUL, _("less, but its range reaches {limit}", limit=limit)),
+        (RouteState.OPEN, _("its whole range is below {limit}", limit=limit)),
+    ]
 
 
 def _say_outlook(one: SegmentRow | RouteRow, risk: float) -> str:
@@ -350,8 +349,7 @@ def say_way(way: WayRow, routes: RouteTables) -> str:
 
 
 def _say_way_blocked(way: WayRow) -> str:
-    is_known = way.state != RouteState.NOT_KNOWN
-    return say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=is_known)
+    return say_between(way.blocked, way.blocked_if_unconfirmed_fall, is_known=way.is_known)
 
 
 def _name_segments(names: Sequence[str]) -> str:

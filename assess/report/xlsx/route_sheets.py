@@ -327,7 +327,7 @@ def _way_columns(routes: RouteTables, place: int, labels: tuple[str, str, str]) 
         return lambda one: read(one.ways[place]) if len(one.ways) > place else None
 
     def chance(way: WayRow) -> float | None:
-        return way.blocked.probability if way.state != RouteState.NOT_KNOWN else None
+        return way.blocked.probability if way.is_known else None
 
     return [
         Column(labels[0], 16, of(lambda way: way.end)),
