@@ -354,5 +354,5 @@ def _find_causes(
         return ()
     lanes = {at: sweep.obstructions[at] for at in segments}
     course = sweep.course(segments)
-    steps, _ = find_fixes(scene.couplings(segments), lanes, course.is_blocked, risk, sweep.progress)
+    steps, _ = find_fixes(scene.couplings(segments), lanes, course.is_blocked, risk, progress=sweep.progress)
     return tuple(scene.piece(item) for item, _, _ in steps)

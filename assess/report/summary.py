@@ -28,9 +28,9 @@ LEAST = 12
 class Summary:
     """A paragraph in plain words, the worst pieces, what to fix first, and the routes at risk.
 
-    `apart` are sentences on the pieces that are counted apart, with what settles them; `shaking` is an
-    assumed shaking; `assumed` are this, what was assumed uncertain, and what other assumptions would change; `of_routes` are sentences on the
-    routes, none where the workbook names none.
+    `apart` are sentences on the pieces that are counted apart, with what settles them; `shaking` are those on an
+    assumed shaking; `assumed` are these, what was assumed uncertain, and what other assumptions would change;
+    `of_routes` are sentences on the routes, none where the workbook names none.
     """
 
     plainly: Sequence[str]

@@ -178,5 +178,6 @@ def test_what_is_avoided_is_the_same_number_in_every_report(tmp_path):
     assert f">{fix.saved:.3f}<" in written["html"].read_text(encoding="utf-8")
     page = openpyxl.load_workbook(written["xlsx"])["Work list"]
     column = next(cell.column for cell in page[1] if cell.value == "Falls avoided")
-    cells = [row[column - 1] for row in page.iter_rows(min_row=2) if row[1].value == 1]
-    assert [(cell.number_format, cell.value) for cell in cells] == [("0.000", pytest.approx(fix.saved))]
+    (cell,) = (row[column - 1] for row in page.iter_rows(min_row=2) if row[1].value == 1)
+    assert cell.number_format == "0.000"
+    assert cell.value == pytest.approx(fix.saved)

@@ -1,5 +1,7 @@
 """The sheet Costs: in the empty workbook, in any language, and every fault named by its cell."""
 
+from typing import Any
+
 import openpyxl
 import pytest
 
@@ -18,8 +20,9 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
 def read(folder, *rows):
-    costs = [["Detail", "Unit cost", "Source"], *rows]
-    return read_inventory(write_book(folder / "w.xlsx", {"Floors": FLOORS, "Items": ITEMS, "Costs": costs}))
+    sheets: dict[str, Any] = {"Floors": FLOORS, "Items": ITEMS}
+    sheets["Costs"] = [["Detail", "Unit cost", "Source"], *rows]
+    return read_inventory(write_book(folder / "w.xlsx", sheets))
 
 
 def test_costs_are_read(tmp_path):

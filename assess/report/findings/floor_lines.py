@@ -45,7 +45,7 @@ def _say_speed(axis: str, motions: Sequence[MotionRow]) -> str:
 
 def say_counts(counts: Counts) -> str:
     """Return the pieces of a floor by class, with what stands apart, and the expected falls."""
-    parts = [f"{words.risk_label(risk)} {pieces:,}" for risk, pieces in reversed(counts.by_class.items())]
+    parts = [f"{words.risk_label(risk)} {pieces:,}" for risk, pieces in reversed(list(counts.by_class.items()))]
     if counts.unconfirmed:
         parts.append(f"{words.UNCONFIRMED} {_('unconfirmed')} {counts.unconfirmed:,}")
     if counts.by_formula:

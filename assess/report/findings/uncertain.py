@@ -49,7 +49,7 @@ def say_assumed(results: Results) -> str:
 
 
 def say_condition(results: Results) -> str:
-    """Return for which earthquake and pieces a chance holds, as a part of a sentence: ``for an earthquake like ...``."""
+    """Return for which earthquake and pieces a chance holds, as a part of a sentence, ``for an earthquake like``."""
     if not results.has_simulated:
         return _("by a published formula, as no rocking has been simulated")
     if results.settings.ideal:

@@ -181,8 +181,7 @@ def _of_floors(content: Content, progress: Progress | None) -> dict[str, Any]:
     """Return the plans of the floors, none without `progress`: of an edition that has no floors."""
     stretches = build_stretches(content.run.route_tables)
     plans = {}
-    for page in content.shown_floors if progress is not None else ():
-        progress.check()
+    for page in progress.checked(content.shown_floors) if progress else ():
         plans[page.floor.floor] = build_plan(page, content.run, stretches.get(page.floor.floor, ()))
     return {"plans": plans, "source": motions.describe_source, "origin": motions.describe_origin}
 

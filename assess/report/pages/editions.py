@@ -59,9 +59,7 @@ def list_parts(
         "assumptions": edition == "annex" and len(content.assumptions) <= MOST_ASSUMPTIONS,
     }
     return [
-        (name, headings[name])
-        for name in SECTIONS[edition]
-        if not left_out.get(name) and _has_template(name, options)
+        (name, headings[name]) for name in SECTIONS[edition] if not left_out.get(name) and _has_template(name, options)
     ]
 
 

@@ -81,7 +81,7 @@ def render_page(
     parts, letters = list[str](), dict[str, str]()
     try:
         filled = {"equation": partial(write_equation, letters=None if context["for_print"] else letters)}
-        environment = progress.wait_for(lambda: _environment(options, filled | (filters or {})))
+        environment = progress.wait_for(lambda: _environment(options, {**filled, **(filters or {})}))
         template = progress.wait_for(lambda: environment.get_template(name))
         for part in template.generate(**context):
             progress.check()

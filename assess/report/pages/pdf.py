@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from assess.errors import AssessError, PdfUnavailableError, Problem
 from assess.i18n import fill
@@ -181,7 +181,13 @@ def lay_out_page(html: str, path: Path, progress: Progress = SILENT) -> None:
     CancelledError
         If the work was cancelled.
     """
-    job = {"html": html, "path": str(path), "variant": None, "time": report_time().isoformat(), "attachments": []}
+    job: dict[str, Any] = {
+        "html": html,
+        "path": str(path),
+        "variant": None,
+        "time": report_time().isoformat(),
+        "attachments": [],
+    }
     _lay_out(json.dumps(job).encode(), progress)
 
 

@@ -1,5 +1,6 @@
 """Tables of the page as tables of Word: heads that repeat on every page, rows that stay whole, columns as wide."""
 
+import math
 import re
 from typing import Any
 
@@ -122,7 +123,8 @@ def _own_width(col: Any) -> float | None:
 
 def _reckon(text: str) -> float:
     """Return how many characters wide a cell would be: its longest word, or some of its text."""
-    return max(*map(len, _WORDS.split(text)), len(text) ** 0.75)
+    longest = max(map(len, _WORDS.split(text)))
+    return max(float(longest), math.pow(len(text), 0.75))
 
 
 def _set_columns(table: Any, widths: list[float]) -> None:
