@@ -16,7 +16,7 @@ SECTIONS: Mapping[Edition, Sequence[str]] = {
     "client": ("summary", "schedule", "routes", "floors", "pieces", "approach", "limits", "assumptions"),
     "annex": (
         "motions", "annual", "verification", "contours", "methods", "assumptions", "quality", "references", "appendix",
-        "items", "comparison", "lists", "routes_detail",
+        "routes_detail", "items", "comparison", "lists",
     ),
     "all": (
         "summary", "schedule", "routes", "floors", "items", "motions", "annual", "approach", "comparison",
