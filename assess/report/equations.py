@@ -382,8 +382,8 @@ def write_name(name: str) -> str:
     base = _write_base(found["base"])
     index = (found["index"] or "").removeprefix("_").translate(_LOWER)
     lower = f"_{{{_write_index(index)}}}" if index else ""
-    primes = found["primes"].replace("″", "′′").replace("′", "'")
-    return base + lower + (r"^{\ast}" if found["star"] else "") + primes
+    primes = found["primes"].replace("″", "′′")  # as letters: mathtext's own primes are tiny in STIX
+    return base + lower + (r"^{\ast}" if found["star"] else "") + (rf"\mathrm{{{primes}}}" if primes else "")
 
 
 def _write_base(base: str) -> str:

@@ -36,7 +36,7 @@ LINES = [text for method in all_methods() for text in method.equations] + [one.e
         ("15.6/√H (1 + B/H)^-1.5", r"\dfrac{15.6}{\sqrt{H}}\, \left(1 + B/H\right)^{-1.5}"),
         ("(1 + x)^(-1,5)", r"\left(1 + x\right)^{- 1{,}5}"),
         ("sin²α", r"\sin^{2}\, \alpha"),
-        ("θ″ = -p²", r"\theta'' = - p^{2}"),
+        ("θ″ = -p²", r"\theta\mathrm{′′} = - p^{2}"),
         ("|a_g|/g ≤ H_f", r"\dfrac{|a_{g}|}{g} \leq H_{f}"),
         ("PFV50 = V_imp", r"\mathrm{PFV}_{50} = V_{\mathrm{imp}}"),
         ("B/H* = -2d", r"(B/H)^{\ast} = - 2 d"),
