@@ -121,7 +121,9 @@ def _kind(one: ItemResult) -> tuple[object, ...]:
     item, adopted = one.item, one.adopted
     room = item.room or item.index
     sizes = (item.breadth_cm, item.width_cm, item.height_cm, item.anchor.tension_high_kn)
-    return item.floor, room, item.type, item.description, sizes, item.importance, one.apart, adopted.upper, one.routes
+    bracket = (item.anchored, item.anchor.holds, item.anchor.holds_high) if item.anchor.holds is not None else ()
+    described = item.floor, room, item.type, item.description, sizes, bracket
+    return *described, item.importance, one.apart, adopted.upper, one.routes
 
 
 def _list_together(routes: Sequence[RouteRow]) -> list[frozenset[int]]:

@@ -43,7 +43,7 @@ def test_every_sheet_is_set_up_for_print(tmp_path):
         assert sheet.oddFooter.right.text.strip() == "Page &P of &N"
         if sheet.title != "Summary":
             assert sheet.print_title_rows == "$1:$1"
-            assert sheet.freeze_panes in (("D2",) if sheet.title == "Items" else ("A2", "B2"))
+            assert sheet.freeze_panes in ({"Items": ("D2",), "Work list": ("C2",)}.get(sheet.title, ("A2", "B2")))
         if sheet.title not in ("Summary", "Assumptions"):
             assert sheet.auto_filter.ref
 

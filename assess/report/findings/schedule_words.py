@@ -183,7 +183,7 @@ class Work:
     def reason(self) -> str:
         """Why it is to be done: that of its entry, and with which other pieces it only helps together."""
         others = [one for one in self.entry.row.works if one is not self.row]
-        texts = [self.entry.reason] if self.is_first else []
+        texts = [self.entry.reason] if self.is_first and self.entry.reason != words.DASH else []
         if others and self.entry.row.is_together:
             named = join_names(shorten_names(name for one in others for name in one.items))
             texts.append(_("only together with {names}", names=named))

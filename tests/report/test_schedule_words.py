@@ -1,0 +1,237 @@
+"""The schedule in words: names, work by room, forces, marks, costs, before and after, on the page and in the sheet."""
+
+import re
+from dataclasses import replace
+
+import openpyxl
+import pytest
+
+import assess
+from assess.details import DETAILS
+from assess.report.content import build_content
+from assess.report.findings import schedule_words as say
+from assess.report.ranking import RouteStep, say_effect
+from assess.schedule_results import NOTHING
+from assess.settings import Settings
+from assess.workbook.template import Content, write_workbook
+from tests.report.reading import write_html
+
+FLOORS = [
+    {"floor": "2", "pfa_x": 0.5, "pfa_y": 0.5, "elevation": 4},
+    {"floor": "1", "pfa_x": 0.2, "pfa_y": 0.2, "elevation": 0},
+]
+TALL = {"floor": "2", "breadth": 30, "width": 90, "height": 190, "weight": 120, "bracket_height": 170}
+ITEMS = [
+    *(TALL | {"item": f"b{at}", "room": "Beta", "description": "Bookcase"} for at in range(1, 6)),
+    TALL | {"item": "low", "room": "Alpha", "floor": "1", "breadth": 50, "height": 150, "bracket_height": 140},
+    TALL | {"item": "file", "room": "Alpha", "description": "Lateral file", "weight": None, "bracket_height": None},
+    TALL | {"item": "guess", "room": "Alpha", "weight": None, "width": None, "bracket_height": None, "quantity": 2},
+    TALL | {"item": "weak", "room": "Gamma", "anchored": "yes", "bracket_capacity": 0.05},
+    TALL | {"item": "part", "room": "Gamma", "anchored": "partly", "bracket_capacity": 0.05},
+    TALL | {"item": "firm", "room": "Gamma", "anchored": "partly", "bracket_capacity": 5},
+]
+COSTS = [{"detail": "L-bracket to studs", "unit_cost": 40.5, "source": "offer"}]
+
+pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
+
+
+def assess_these(folder, items=ITEMS, costs=(), **building):
+    path = folder / "w.xlsx"
+    rows = {"Building": [building], "Floors": FLOORS, "Items": items, "Costs": list(costs)}
+    write_workbook(path, Content(rows=rows))
+    return assess.run(assess.read_inventory(path), Settings(verify="none"))
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    return assess_these(tmp_path_factory.mktemp("words"), costs=COSTS)
+
+
+@pytest.fixture(scope="module")
+def content(results):
+    return build_content(results)
+
+
+@pytest.fixture(scope="module")
+def works(content):
+    return {one.all_names: one for one in say.list_work(content.summary.fixes, ["2", "1"])}
+
+
+# ---------------------------------------------------------------- names
+
+
+@pytest.mark.parametrize(
+    ("names", "short"),
+    [
+        (["25-09", "25-07", "25-08"], "25-07, 25-08 and 25-09"),
+        (["a10", "a9", "a8", "a7"], "a7, a8, a9 and a10"),  # numbers of different length are no run
+        (["25-07", "25-08", "25-09", "25-10", "25-12"], "25-07 to 25-10 and 25-12"),
+        (["a1", "b2", "c3", "d4"], "a1, b2, c3 and d4"),
+        (["desk"], "desk"),
+        ([f"x{at}y" for at in range(10)], "x0y, x1y, x2y, x3y, x4y, x5y, x6y, x7y and 2 more"),
+    ],
+)
+def test_names_are_shortened(names, short):
+    assert say.join_names(say.shorten_names(names)) == short
+
+
+def test_only_what_helps_together_says_so(content):
+    entry = next(one for one in content.summary.fixes if len(one.results) == 5)
+    assert entry.names == "b1 to b5"
+    joined = replace(entry, row=replace(entry.row, is_together=True))
+    assert joined.names == "b1 to b5 together"
+
+
+def test_a_part_of_an_entry_names_the_others_that_it_needs(content):
+    first, second, *_ = content.summary.fixes
+    row = replace(first.row, is_together=True, works=(*first.row.works, *second.row.works))
+    entry = replace(first, row=row, results=[*first.results, *second.results])
+    parts = sorted(say.list_work([entry], ["2", "1"]), key=lambda one: not one.is_first)
+    names = [say.join_names(say.shorten_names(one.row.items)) for one in parts]
+    for one, other in zip(parts, reversed(names), strict=True):
+        assert one.reason.endswith(f"only together with {other}")
+    assert [one.is_first for one in parts] == [True, False]
+
+
+def test_steps_of_a_route_that_are_one_entry_have_one_effect():
+    first = RouteStep("West", 0, 1, 3, 0.5, 0.4, 0.0)
+    second, third = replace(first, place=2, before=0.4, after=0.1), replace(first, place=3, before=0.1, after=0.0)
+    assert say_effect([first]) == "route West: 50.0 % → 40.0 % (step 1 of 3)"
+    assert say_effect([first, second]) == "route West: 50.0 % → 10.0 % (steps 1 to 2 of 3)"
+    assert say_effect([first, third]) == "route West: 50.0 % → 0.0 % (with all 3 steps)"
+
+
+# ---------------------------------------------------------------- work
+
+
+def test_work_stands_by_floor_and_room_and_there_by_urgency(content):
+    works = say.list_work(content.summary.fixes, ["2", "1"])
+    rooms = say.list_rooms(works, {"2": "Floor 2", "1": "Floor 1"})
+    assert [one.heading for one in rooms] == ["Floor 2: Alpha", "Floor 2: Beta", "Floor 2: Gamma", "Floor 1: Alpha"]
+    for room in rooms:
+        places = [one.entry.place for one in room.works]
+        assert places == sorted(places)
+
+
+def test_marks_and_remarks_of_forces(results, works):
+    marks = {name: one.marks for name, one in works.items()}
+    assert marks["b1, b2, b3, b4, b5"] == ""
+    assert (marks["file"], marks["guess"]) == ("w", "w, h, m")
+    low = works["low"]
+    assert (low.row.tension_high_kn, low.row.tension_kn) == (0, 0)
+    assert low.remarks == [
+        "its own weight holds it at 84 % of PFA; fixings against sliding or for the rest",
+    ]
+    assert say.list_marks(results.schedule) == [
+        "w: weight assumed, for 3 of 11 pieces.",
+        "h: bracket height assumed, 0.9 of the piece's height, for 2 of 11 pieces.",
+        "m: forces and fixings of one metre of the width, which is not known, for 2 of 11 pieces.",
+    ]
+
+
+def test_a_bracket_that_fails_is_named(results, works):
+    reasons = {name: one.reason.replace("\N{NO-BREAK SPACE}", " ") for name, one in works.items()}
+    assert reasons["weak"] == "bracket fails at PFA: counts as free-standing"
+    assert reasons["part"] == "bracket fails at 84 % of PFA: counts as free-standing"
+    assert reasons["file"] == "–"
+    assert "firm" not in works
+    assert results["firm"].is_anchored
+    assert not results["weak"].is_anchored
+
+
+def test_brackets_in_the_tables_of_pieces(results, tmp_path):
+    page = write_html(results, tmp_path)
+    table = page[page.index('id="pieces"') :].partition("</table>")[0]
+    rows = {name: row for row in re.findall(r"<tr id=.*?</tr>", table, re.DOTALL)
+            if (name := re.sub("<.*?>", "", re.search(r"<t[dh][^>]*>(.*?)</t", row)[1]))}  # fmt: skip
+    assert "bracket fails at PFA: counts as free-standing" in rows["weak"]
+    assert "bracket fails at 84 % of PFA: counts as free-standing" in rows["part"]
+    assert "bracket holds at 84 % of PFA: counts as anchored" in rows["firm"]
+    assert "bracket" not in rows["b1"]
+
+
+@pytest.mark.parametrize(
+    ("force", "said"), [(None, "–"), (0, "0.00"), (0.004, "< 0.01"), (0.005, "0.01"), (1.234, "1.23")]
+)
+def test_forces(force, said):
+    assert say.say_force(force) == said
+
+
+# ---------------------------------------------------------------- sums
+
+
+def test_what_all_of_it_changes(results):
+    effect, costs = say.say_effect_of_all(results.schedule)
+    before = f"{results.schedule.before.falls:.1f}"
+    assert effect == (
+        f"Fixing the 6 entries below (11 pieces) lowers the expected falls from {before} to 0.0, if all anchors hold."
+    )
+    assert costs == "The costs that the workbook gives sum to 405. 1 entry has a part without a cost."
+    pieces, routes = say.list_changes(results.schedule)
+    found = {one.label: (one.before, one.after) for one in pieces}
+    assert found["Anchored"] == (1, 12)
+    assert sum(before for label, (before, _) in found.items() if label.startswith("Pieces: ")) == 11
+    assert routes == []
+
+
+def test_without_costs_and_without_work(tmp_path):
+    assert "sheet Costs" in say.say_costs(assess_these(tmp_path).schedule)
+    assert say.say_effect_of_all(NOTHING) == []
+    assert say.list_details(NOTHING) == ([], list(DETAILS.values()))
+
+
+def test_details_that_are_used_and_alternatives(results):
+    used, others = say.list_details(results.schedule)
+    assert [(one.key, pieces) for one, pieces in used] == [("bracket", 10), ("base_angle", 1)]
+    assert [one.key for one in others] == ["strap", "gang", "pole"]
+
+
+# ---------------------------------------------------------------- pages and sheet
+
+
+def test_the_section_shows_every_entry_with_its_caveat(content, results, tmp_path):
+    page = write_html(results, tmp_path)
+    section = page[page.index('<section id="schedule">') :].partition("</section>")[0]
+    text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", section)).replace("\N{NO-BREAK SPACE}", " ")
+    for work in say.list_work(content.summary.fixes, ["2", "1"]):
+        assert f" {work.names} : " in text
+        assert say.say_force(work.row.shear_kn) in text
+    assert "screening, not design" in text
+    assert "Sources disagree on rigid brackets" in text
+    for one in DETAILS.values():
+        assert text.count(str(one.what)) == 1
+    assert "1,620" not in text  # costs are of what is fixed alone
+    assert "202.50" in text  # five bookcases at 40.5
+
+
+def test_a_building_with_nothing_to_fix_says_so(tmp_path):
+    low = {"item": "a", "floor": "1", "breadth": 90, "width": 90, "height": 90}
+    results = assess_these(tmp_path, [low])
+    assert results.schedule.rows == ()
+    page = write_html(results, tmp_path)
+    assert "No free-standing piece reaches medium, and no route needs one fixed." in page
+    written = assess.write_reports(results, tmp_path / "out", ("xlsx",))
+    sheet = openpyxl.load_workbook(written["xlsx"])["Work list"]
+    assert sheet["A2"].value == "No free-standing piece reaches medium, and no route needs one fixed."
+
+
+def test_the_work_list_can_be_printed_and_costs_follow(results, tmp_path):
+    written = assess.write_reports(results, tmp_path / "out", ("xlsx",))
+    sheet = openpyxl.load_workbook(written["xlsx"])["Work list"]
+    assert (sheet.page_setup.orientation, sheet.page_setup.paperSize) == ("landscape", 9)
+    assert (sheet.page_setup.fitToWidth in (None, 1), sheet.page_setup.fitToHeight) == (True, 0)
+    assert sheet.print_title_rows == "$1:$1"
+    at = {cell.value: cell.column for cell in sheet[1]}
+    rows = {row[at["Names"] - 1].value: row for row in sheet.iter_rows(min_row=2, max_row=8)}
+    bookcases = rows["b1, b2, b3, b4, b5"]
+    number = bookcases[0].row
+    assert [bookcases[at[name] - 1].value for name in ("Done", "Pieces", "Unit cost")] == ["☐", 5, 40.5]
+    letters = {name: sheet.cell(1, at[name]).column_letter for name in ("Pieces", "Unit cost", "Cost")}
+    pieces, unit, cost = letters.values()
+    assert bookcases[at["Cost"] - 1].value == f'=IF({unit}{number}="","",{pieces}{number}*{unit}{number})'
+    assert rows["file"][at["Unit cost"] - 1].value is None
+    values = openpyxl.load_workbook(written["xlsx"], data_only=True)["Work list"]
+    assert values[f"{cost}{number}"].value == pytest.approx(202.5)
+    total = next(row for row in values.iter_rows(values_only=True) if row[3] == "Sum")
+    assert total[at["Cost"] - 1] == pytest.approx(405)
+    assert any(row[0] == "Expected falls" for row in values.iter_rows(values_only=True))
