@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 DEEPEST = 16
 """Blocks inside each other."""
+MOST_INSERTS = 20_000
+"""Blocks that are inserted: each takes a tenth of a millisecond, and blocks may hold blocks."""
 CHORDS = 8
 """Chords of each curve."""
 DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRACE", "3DFACE"})
@@ -92,7 +94,7 @@ class _Reader:
         self.hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()}
         self.lines: list[list[tuple[float, float]]] = []
         self.left_out: Counter[str] = Counter()
-        self._entities = self._points = 0
+        self._entities = self._points = self._inserts = 0
 
     def take(self, entity: Any, depth: int) -> None:
         """Take in an entity, or what a block holds that it inserts."""
@@ -111,6 +113,9 @@ class _Reader:
             self.left_out[kind] += 1
 
     def _insert(self, entity: Any, depth: int) -> None:
+        self._inserts += 1
+        if self._inserts > MOST_INSERTS:
+            raise too_many()
         block = self.blocks.get(entity.dxf.name)
         if block is None or depth >= DEEPEST:
             self.left_out["INSERT"] += 1

@@ -15,7 +15,7 @@ Box = tuple[float, float, float, float]
 
 MOST_ELEMENTS = 100_000
 """Elements of a drawing that are looked at."""
-MOST_RAW = 1_000_000
+MOST_RAW = 400_000
 """Points of its lines as they are read."""
 MOST_POINTS = 60_000
 """Points that are kept: about 700 kB in a report."""

@@ -38,7 +38,7 @@ class Photos:
         It is "" where the piece has none, or where the photos that were asked for exceed `MOST_SHOWN`.
         """
         at = self.of_item[item_index] if item_index < len(self.of_item) else -1
-        if at < 0:
+        if at < 0 or f"photo/{at}" not in self.series:
             return ""
         data = self.series[f"photo/{at}"].tobytes()
         if len(data) > self.left:

@@ -24,7 +24,7 @@ THICKEST = 0.4
 """Thickness of a wall [m] up to which the outlines of two rooms count as joined: assumed."""
 GROWN = 1.0
 """How far beyond its pieces a plan is drawn, over their extent."""
-LEAST_GROWN = 3.0
+LEAST_GROWN = 20.0
 """That distance is at least this [m]."""
 
 
@@ -101,18 +101,21 @@ def widen(box: Bounds, frame: Sequence[Point]) -> Bounds:
 
 def list_rooms(places: Sequence[Place]) -> tuple[Room, ...]:
     """Return the places of a floor that have an outline, the largest first."""
-    if not any(one.outline for one in places):
+    outlined = [one for one in places if one.outline]
+    if not outlined:
         return ()
     from shapely import Polygon
 
+    ordered = sorted(((Polygon(one.outline), one) for one in outlined), key=lambda pair: -pair[0].area)
     found = []
-    for one in places:
-        if one.outline:
-            shape = Polygon(one.outline)
-            centre = shape.centroid if shape.contains(shape.centroid) else shape.representative_point()
-            name = one.place if one.x is None or one.y is None else ""
-            found.append((-shape.area, Room(name, one.outline, (centre.x, centre.y))))
-    return tuple(room for _area, room in sorted(found, key=lambda pair: pair[0]))
+    for at, (shape, one) in enumerate(ordered):
+        left = shape
+        for inner, _place in ordered[at + 1 :]:  # a core inside a corridor, say
+            left = left.difference(inner) if shape.covers(inner) and not inner.covers(left) else left
+        centre = left.centroid if left.contains(left.centroid) else left.representative_point()
+        name = one.place if one.x is None or one.y is None else ""
+        found.append(Room(name, one.outline, (centre.x, centre.y)))
+    return tuple(found)
 
 
 def find_edge(

@@ -1,0 +1,184 @@
+"""Plans of floors and photos of pieces: their columns, files and places."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import assess
+from assess.errors import WorkbookError
+from assess.model import FloorPlan, Inventory
+from assess.plans.linework import unpack
+from assess.workbook import allowance
+from assess.workbook.read import read_inventory
+from assess.workbook.template import Units
+from tests.pictures import picture
+from tests.plans.drawings import PLAN_SVG, dxf
+from tests.workbook.books import errors_of, remarks
+from tests.workbook.books import write as write_cells
+from tests.workbooks import address, write
+
+PLACED = {"plan_left": 1.0, "plan_bottom": 2.0, "plan_width": 16.0}
+PIECE = {"item": "A1", "floor": "1", "breadth": 30, "width": 80, "height": 200}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    files = {"p.png": picture("PNG", size=(1600, 1200)), "p.jpg": picture("JPEG", size=(1600, 1200)), "p.svg": PLAN_SVG}
+    for name, data in (files | {"p.dxf": dxf(), "unitless.dxf": dxf(0), "text.png": b"no picture"}).items():
+        (tmp_path / name).write_bytes(data)
+    return tmp_path
+
+
+def _write(folder: Path, floor: dict[str, Any], *items: dict[str, Any], units: Units = "si") -> Path:
+    return write(folder / "w.xlsx", [PIECE, *items], [{"floor": "1", "pfa_x": 0.3, **floor}], units)
+
+
+def _read(folder: Path, floor: dict[str, Any], *items: dict[str, Any], units: Units = "si") -> Inventory:
+    return read_inventory(_write(folder, floor, *items, units=units))
+
+
+def _cell(field: str) -> str:
+    return "Floors!" + address(field, 2, "Floors")
+
+
+def _plan(inventory: Inventory) -> FloorPlan:
+    plan = inventory.floors[0].plan
+    assert plan is not None
+    return plan
+
+
+@pytest.mark.parametrize(
+    ("name", "is_lines"), [("p.png", False), ("p.jpg", False), ("p.svg", True), ("p.dxf", True), ("unitless.dxf", True)]
+)
+def test_every_format_is_placed_by_its_numbers(folder: Path, name: str, is_lines: bool) -> None:
+    inventory = _read(folder, {"plan": name, **PLACED, "plan_turn": 90})
+    plan = _plan(inventory)
+    assert (plan.path, plan.is_lines) == (folder / name, is_lines)
+    assert (plan.left, plan.bottom, plan.width, plan.turn_deg) == (1.0, 2.0, 16.0, 90.0)
+    assert plan.height == pytest.approx(12.0, rel=1e-3)
+    assert plan.holds((0.5, 2.5))
+    assert not plan.holds((1.5, 2.5))  # it lies to the left of its lower left corner once turned
+    if is_lines:
+        assert unpack(plan.content)
+    else:
+        assert plan.content.startswith(b"\xff\xd8\xff")
+    assert remarks(inventory, "warning") == set()
+
+
+def test_the_columns_in_feet(folder: Path) -> None:
+    plan = _plan(_read(folder, {"plan": "p.png", **PLACED}, units="imperial"))
+    assert (plan.left, plan.width) == pytest.approx((0.3048, 16 * 0.3048))
+
+
+def test_a_dxf_file_tells_its_width_where_it_names_its_units(folder: Path) -> None:
+    corner = {"plan_left": 0.0, "plan_bottom": 0.0}
+    assert _plan(_read(folder, {"plan": "p.dxf", **corner})).width == 16.0
+    assert _plan(_read(folder, {"plan": "p.dxf", **corner, "plan_width": 8.0})).width == 8.0
+    unknown = _read(folder, {"plan": "unitless.dxf", **corner})
+    assert unknown.floors[0].plan is None
+    assert any("the plan is not drawn: Plan width is blank." in one for one in remarks(unknown, "warning"))
+
+
+def test_a_plan_without_its_numbers_is_not_drawn(folder: Path) -> None:
+    inventory = _read(folder, {"plan": "p.png", "plan_left": 0.0})
+    assert inventory.floors[0].plan is None
+    assert remarks(inventory, "warning") == {
+        f"{_cell('plan')}: the plan is not drawn: Plan bottom Y, Plan width are blank. Fill in X and Y of its lower left "
+        "corner, and its width in the building."
+    }
+
+
+def test_numbers_without_a_plan(folder: Path) -> None:
+    assert remarks(_read(folder, PLACED), "warning") == {
+        f"{_cell('plan_left')}: Plan left X is filled in without Plan. Name the file of the plan, or clear it."
+    }
+
+
+@pytest.mark.parametrize(
+    ("floor", "cell", "message"),
+    [
+        ({"plan": "text.png"}, "plan", "the picture 'text.png' cannot be used: it is no PNG, JPEG, SVG or DXF file."),
+        ({"plan": "p.png", "plan_width": 0}, "plan_width", "Plan width is 0 m, expected 0.5 to 5000 m"),
+        ({"plan": "p.png", "plan_width": -16}, "plan_width", "Plan width is -16 m, expected 0.5 to 5000 m"),
+        ({"plan": "p.png", "plan_turn": 999}, "plan_turn", "Plan turn is 999 deg, expected -360 to 360 deg"),
+        ({"plan": "../p.png"}, "plan", "the file '../p.png' is outside the workbook's folder."),
+    ],
+)
+def test_errors_by_cell(folder: Path, floor: dict[str, Any], cell: str, message: str) -> None:
+    with pytest.raises(WorkbookError) as caught:
+        _read(folder, {**PLACED, **floor})
+    (problem,) = caught.value.problems
+    assert f"{problem.sheet}!{problem.cell}" == _cell(cell)
+    assert problem.message.startswith(message)
+
+
+def test_what_is_left_out_is_noted(folder: Path) -> None:
+    (folder / "x.dxf").write_bytes(dxf(xref=True))
+    inventory = _read(folder, {"plan": "x.dxf", **PLACED})
+    assert f"{_cell('plan')}: of the plan the lines alone are drawn; left out: 1 TEXT, 1 XREF OTHER." in remarks(
+        inventory, "note"
+    )
+
+
+def test_pieces_outside_the_plan(folder: Path) -> None:
+    items = [{**PIECE, "item": f"B{n}", "x": x, "y": 5.0} for n, x in enumerate((0.9, 1.1, 17.1, 40.0, -3.0, 16.9))]
+    (warning,) = remarks(_read(folder, {"plan": "p.png", **PLACED}, *items), "warning")
+    assert warning.startswith(f"{_cell('plan')}: 4 pieces of 6 lie outside the plan: 'B0', 'B2', 'B3', ....")
+
+
+def test_a_plan_in_another_unit(folder: Path) -> None:
+    items = [{**PIECE, "item": f"B{n}", "x": 2.0 + 3 * n, "y": 5.0} for n in range(2)]
+    plan = {"plan": "p.png", **PLACED, "plan_width": 160.0}
+    (warning,) = remarks(_read(folder, plan, *items), "warning")
+    assert f"{_cell('plan_width')}: the plan is 160 x 120 m, while the pieces on it lie within 3 m." in warning
+    assert remarks(_read(folder, {**plan, "plan_width": 30.0}, *items), "warning") == set()
+
+
+def test_the_earlier_heading_places_a_plan(folder: Path) -> None:
+    heading = ["Floor", "PFA X [g]", "Plan image", "Plan left X [m]", "Plan bottom Y [ft]", "Plan width [cm]"]
+    path = write_cells(folder, floors=[heading, ["1", 0.5, "p.png", 1, 10, 1600]])
+    plan = _plan(read_inventory(path))
+    assert (plan.left, plan.bottom, plan.width) == pytest.approx((1, 3.048, 16))
+
+
+# ---------------------------------------------------------------- photos
+
+
+def test_photos_are_read_once_and_kept_small(folder: Path) -> None:
+    items = [
+        {**PIECE, "item": name, "photo": photo} for name, photo in (("B", "p.jpg"), ("C", "p.jpg"), ("D", "p.png"))
+    ]
+    inventory = _read(folder, {}, *items)
+    assert [item.more.get("photo") for item in inventory.items] == [None, "p.jpg", "p.jpg", "p.png"]
+    assert set(inventory.photos) == {"p.jpg", "p.png"}
+    assert all(photo.startswith(b"\xff\xd8\xff") and len(photo) < 40_000 for photo in inventory.photos.values())
+
+
+def test_a_photo_that_is_no_picture(folder: Path) -> None:
+    path = _write(folder, {}, {**PIECE, "item": "B", "photo": "text.png"}, {**PIECE, "item": "C", "photo": "p.svg"})
+    assert errors_of(path) == {
+        f"Items!{address('photo', row)}: the picture '{name}' cannot be used: it is no PNG or JPEG picture. Save it as PNG "
+        "or JPEG."
+        for row, name in ((3, "text.png"), (4, "p.svg"))
+    }
+
+
+def test_too_many_photos(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(allowance, "MOST_PHOTOS", 1)
+    path = _write(folder, {}, {**PIECE, "item": "B", "photo": "p.png"}, {**PIECE, "item": "C", "photo": "p.jpg"})
+    (error,) = errors_of(path)
+    assert error.startswith(f"Items!{address('photo', 4)}: this workbook names more than 1 photos")
+
+
+def test_series_hold_plans_and_photos_and_results_json_does_not(folder: Path) -> None:
+    inventory = _read(folder, {"plan": "p.svg", **PLACED}, {**PIECE, "item": "B", "photo": "p.jpg"})
+    results = assess.run(inventory, assess.Settings(verify="none"))
+    assert results.series["plan/0"].tobytes() == _plan(inventory).content
+    assert results.series["photo/of_item"].tolist() == [-1, 0]
+    assert results.series["photo/0"].tobytes() == inventory.photos["p.jpg"]
+    row = results.floor_rows[0].plan
+    assert row is not None
+    assert (row.file, row.width_m, row.is_lines) == ("p.svg", 16.0, True)
+    text = assess.write_reports(results, folder, "json")["json"].read_text(encoding="utf-8")
+    assert "p.svg" not in text
