@@ -7,7 +7,17 @@ import pytest
 from PIL import Image
 
 from assess import pictures
-from assess.pictures import MOST_PIXELS, SHOWN, PictureError, check_picture, count_pixels, prepare_picture
+from assess.pictures import (
+    MOST_PIXELS,
+    PHOTO,
+    SHOWN,
+    PictureError,
+    check_picture,
+    count_pixels,
+    prepare_photo,
+    prepare_picture,
+    prepare_plan,
+)
 from tests.pictures import claim_size, leave_out, picture
 
 PNG, JPEG = picture("PNG"), picture("JPEG")
@@ -90,3 +100,52 @@ def test_sixteen_bits_of_grey_become_eight() -> None:
     deep.save(target, "PNG")
     data, _ = prepare_picture(target.getvalue())
     assert Image.open(io.BytesIO(data)).getpixel((3, 3)) == (117, 117, 117)
+
+
+# ---------------------------------------------------------------- photos and plans
+
+
+def read(data: bytes) -> Image.Image:
+    shown = Image.open(io.BytesIO(data))
+    shown.load()
+    return shown
+
+
+def test_a_photo_is_small_and_upright_and_tells_nothing_of_the_camera() -> None:
+    exif = Image.Exif()
+    exif[0x0112], exif[0x010F] = 6, "Camera"  # turned to the right; its maker
+    data = picture("JPEG", size=(2000, 1000), exif=exif)
+    photo = prepare_photo(data)
+    shown = read(photo)
+    assert (shown.format, shown.size) == ("JPEG", (PHOTO // 2, PHOTO))
+    assert b"Camera" not in photo
+    assert not shown.getexif()
+    quarters = [shown.getpixel(at)[0] for at in ((250, 50), (50, 50), (250, 550))]
+    assert quarters[0] > 150  # what was on the upper left is on the upper right
+    assert max(quarters[1:]) < 50
+    assert read(prepare_photo(picture("PNG", size=(40, 30)))).size == (40, 30)  # not made larger
+
+
+def test_a_plan_is_grey_on_white() -> None:
+    content, aspect = prepare_plan(picture("PNG", size=(1600, 1200)), 400)
+    shown = read(content)
+    assert (shown.mode, shown.size, aspect) == ("L", (400, 300), 0.75)
+    clear = Image.new("RGBA", (20, 10), (0, 0, 0, 0))
+    target = io.BytesIO()
+    clear.save(target, "PNG")
+    assert read(prepare_plan(target.getvalue(), 400)[0]).getextrema() == (255, 255)
+
+
+@pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "RGB", "RGBA", "I;16"])
+def test_plans_and_photos_of_every_kind_of_pixels(mode: str) -> None:
+    data = picture("PNG", mode, size=(900, 300))
+    assert read(prepare_plan(data, 300)[0]).size == (300, 100)
+    assert read(prepare_photo(data)).size == (600, 200)
+
+
+@pytest.mark.parametrize("data", [b"", PNG[:-20], claim_size(PNG, 12_000, 12_000)])
+def test_photos_and_plans_that_cannot_be_used(data: bytes) -> None:
+    with pytest.raises(PictureError):
+        prepare_photo(data)
+    with pytest.raises(PictureError):
+        prepare_plan(data, 300)

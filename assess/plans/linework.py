@@ -21,6 +21,8 @@ MOST_POINTS = 60_000
 """Points that are kept: about 700 kB in a report."""
 FINEST = 1 / 4000
 """Share of a drawing's width below which two points of a line are the same."""
+NARROWEST, MOST_ASPECT = 1e-6, 1e3
+"""Least width and height of a drawing in its own units, and the largest ratio of them [-]."""
 FARTHEST = 1e9
 """Largest coordinate of a drawing, in its own units."""
 
@@ -76,7 +78,10 @@ def pack(lines: Sequence[Line], box: Box, *, is_down: bool) -> tuple[bytes, floa
         If nothing is left, or too much.
     """
     left, low, right, high = box
-    wide, aspect = right - left, (high - low) / (right - left)
+    wide, tall = right - left, high - low
+    if not min(wide, tall) >= max(NARROWEST, wide / MOST_ASPECT, tall / MOST_ASPECT):
+        raise empty()
+    aspect = tall / wide
     kept: list[FloatArray] = []
     for line in lines:
         points = (np.asarray(line, dtype=np.float64).reshape(-1, 2) - (left, low)) / wide

@@ -15,7 +15,7 @@ from xml.parsers import expat
 from assess.i18n import Text, fill
 from assess.pictures import MOST_BYTES, PictureError, damaged
 from assess.plans.linework import MOST_ELEMENTS, MOST_RAW, Box, describe_left_out, find_box, pack, too_many
-from assess.plans.svg_path import PathReader, Point, bend, read_number, unreadable
+from assess.plans.svg_path import NUMBER, PathReader, Point, bend, read_number, unreadable
 
 DEEPEST = 100
 """Elements inside each other."""
@@ -25,11 +25,10 @@ UNITS: Mapping[str, float] = {
     "": 1.0, "px": 1.0, "mm": 96 / 25.4, "cm": 96 / 2.54, "in": 96.0, "pt": 96 / 72, "pc": 16.0,
 }  # fmt: skip
 """Pixels of each unit of a length."""
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?"
-_LENGTH = re.compile(rf"\s*({_NUMBER})\s*([a-z]*)\s*")
-_LIST = re.compile(rf"\s*{_NUMBER}(?:[\s,]*{_NUMBER})*[\s,]*")
-_STEP = re.compile(r"[\s,]*(matrix|translate|scale|rotate|skewX|skewY)\s*\(([^()]*)\)[\s,]*")
-_STYLE = re.compile(r"(?:^|;)\s*(display|visibility|fill|stroke)\s*:\s*([^;!]*)")
+_LENGTH = re.compile(rf"({NUMBER})\s*+([a-z]*+)")
+_ENTRY = re.compile(rf"[\s,]*+({NUMBER})[\s,]*+")
+_STEP = re.compile(r"[\s,]*+(matrix|translate|scale|rotate|skewX|skewY)\s*+\(([^()]*+)\)[\s,]*+")
+_STYLE = re.compile(r"(?:^|;)\s*+(display|visibility|fill|stroke)\s*+:\s*+([^;!]*+)")
 _ROUND = 0.5522847498
 """Distance of the control points of a quarter circle, over its radius."""
 
@@ -148,17 +147,20 @@ def is_shown(style: Mapping[str, str]) -> bool:
 
 def read_list(text: str) -> list[float]:
     """Return numbers split by blanks or commas, or raise PictureError."""
-    if not text.strip():
-        return []
-    if not _LIST.fullmatch(text):
-        raise unreadable()
-    return [read_number(one) for one in re.findall(_NUMBER, text)]
+    found, at, text = [], 0, text.strip()
+    while at < len(text):
+        entry = _ENTRY.match(text, at)
+        if not entry:
+            raise unreadable()
+        found.append(read_number(entry[1]))
+        at = entry.end()
+    return found
 
 
 def read_length(attributes: Mapping[str, str], name: str) -> float | None:
     """Return a length in pixels, 0 where it is not there; None where it is relative to something else."""
-    text = attributes.get(name, "0")
-    if text.strip() == "auto" or text.rstrip().endswith(("%", "em", "ex", "rem", "vw", "vh")):
+    text = attributes.get(name, "0").strip()
+    if text == "auto" or text.endswith(("%", "em", "ex", "rem", "vw", "vh")):
         return None
     found = _LENGTH.fullmatch(text)
     if not found or found[2] not in UNITS:

@@ -15,10 +15,12 @@ Point = tuple[float, float]
 
 CHORDS = 8
 """Chords of a curve."""
-_NUMBER = re.compile(r"[\s,]*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)")
-_FLAG = re.compile(r"[\s,]*([01])")
-_COMMAND = re.compile(r"[\s,]*([MmZzLlHhVvCcSsQqTtAa])")
-_BLANK = re.compile(r"[\s,]*")
+NUMBER = r"[-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d{1,3})?"
+"""A number; its parts give nothing back, so that no text takes more than one pass."""
+_NUMBER = re.compile(rf"[\s,]*+({NUMBER})")
+_FLAG = re.compile(r"[\s,]*+([01])")
+_COMMAND = re.compile(r"[\s,]*+([MmZzLlHhVvCcSsQqTtAa])")
+_BLANK = re.compile(r"[\s,]*+")
 
 
 def unreadable() -> PictureError:

@@ -20,7 +20,7 @@ from assess.methods import Cases
 from assess.methods._fitted import read_model
 from assess.motion.formats import list_addresses, parse_records, select
 from assess.motion.record import MOST_ACCELERATION, treat
-from assess.pictures import SHOWN, PictureError, check_picture, prepare_picture
+from assess.pictures import SHOWN, PictureError, check_picture, prepare_photo, prepare_picture, prepare_plan
 from assess.settings import Settings
 from assess.workbook.read import read_inventory
 from tests.fuzz.engine import BrokenRuleError
@@ -307,6 +307,8 @@ class Pictures:
         with Image.open(io.BytesIO(prepared)) as shown:
             shown.load()
             keep(max(shown.size) <= SHOWN, "a picture that is larger than reports show")
+            keep(len(prepare_photo(data)) < 500_000, "a large photo")
+            keep(prepare_plan(data, 300)[1] > 0, "a plan without height")
             keep(kind == f"image/{str(shown.format).lower()}" or shown.format == "MPO", "a picture of another kind")
         return "read"
 

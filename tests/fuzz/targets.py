@@ -5,6 +5,7 @@ from pathlib import Path
 
 from tests.fuzz.engine import Target
 from tests.fuzz.plain_targets import Models, Pictures, Records, Xml
+from tests.fuzz.plan_target import Plans
 from tests.fuzz.workbook_target import Workbooks
 
 TARGETS: Mapping[str, Target] = {
@@ -13,6 +14,7 @@ TARGETS: Mapping[str, Target] = {
     "workbooks": Workbooks(),
     "models": Models(),
     "pictures": Pictures(),
+    "plans": Plans(),
 }
 CORPUS = Path(__file__).parent / "corpus"
 """A folder for each target: every file broke a rule once, or reaches what the seeds do not."""

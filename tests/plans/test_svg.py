@@ -98,7 +98,7 @@ def test_nothing_but_lines_comes_through():
     assert b"evil" not in drawing.content
 
 
-BOMB = "".join(f'<!ENTITY e{n} "{"&e%d;" % (n - 1) * 10}">' for n in range(1, 10))
+BOMB = "".join(f'<!ENTITY e{n} "{10 * one}">' for n, one in enumerate((f"&e{n};" for n in range(9)), start=1))
 
 
 @pytest.mark.parametrize(
@@ -122,8 +122,11 @@ BOMB = "".join(f'<!ENTITY e{n} "{"&e%d;" % (n - 1) * 10}">' for n in range(1, 10
         (svg("<rect width='5furlongs' height='5'/>"), UNREADABLE),
         (svg("<g transform='scale(1e9)'><g transform='scale(1e9)'><line x2='1e9' y2='1'/></g></g>"), UNREADABLE),
         (svg("<g transform='url(#a)'/>"), UNREADABLE),
+        (svg(f"<polyline points='{'1' * 100_000}x'/>"), UNREADABLE),
+        (svg(f"<rect width='5{' ' * 100_000}!' height='5'/>"), UNREADABLE),
         (svg("<path d='M0 0H9'/>", "<svg viewBox='0 0 0 5'>"), UNREADABLE),
         (svg("<path d='M0 0H9'/>", "<svg viewBox='0 0 inf 5'>"), UNREADABLE),
+        (svg("<path d='M0 0H9V9'/>", "<svg viewBox='0 0 1e-300 5'>"), "holds no lines"),
         (svg(""), "holds no lines"),
         (svg("<path d='M0 0H9'/>", "<svg>"), "holds no lines"),  # no frame, and no height
         (PLAN_SVG[:-4], "damaged"),
@@ -132,7 +135,7 @@ BOMB = "".join(f'<!ENTITY e{n} "{"&e%d;" % (n - 1) * 10}">' for n in range(1, 10
         (b"AC1032" + bytes(100), "is a DWG drawing, which cannot be read. Save it as DXF"),
         (b"%PDF-1.7", "no PNG, JPEG, SVG or DXF file"),
     ],
-    ids=range(26),
+    ids=range(29),
 )  # fmt: skip
 def test_what_cannot_be_used(data, message):
     with pytest.raises(PictureError, match=message):
