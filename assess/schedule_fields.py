@@ -116,9 +116,9 @@ def schedule_fields(row: type) -> Mapping[str, Field]:
 
 
 def to_record(schedule: Schedule) -> dict[str, Any]:
-    """Return the content of `schedule` in results.json."""
+    """Return the content of `schedule` in results.json; its entries are made one by one, as they are asked for."""
     return {
-        "entries": [_ENTRY.nest(one) for one in schedule.rows],
+        "entries": map(_ENTRY.nest, schedule.rows),
         "before": _STATE.nest(schedule.before),
         "after": _STATE.nest(schedule.after),
         "cost": schedule.cost,

@@ -46,23 +46,24 @@ def write_json(
             file.write(f" {json.dumps(name)}: {_dump(value)},\n")
         _write_list(file, "items", map(shape.nest, progress.checked(results)))
         file.write(",\n")
-        _write_routes(file, results.route_tables.to_record())
-        file.write(f',\n "schedule": {_dump(to_record(results.schedule))}')
+        _write_record(file, "routes", results.route_tables.to_record())
+        file.write(",\n")
+        _write_record(file, "schedule", to_record(results.schedule), "entries")
         file.write(f',\n "annual": {_dump(results.annual and asdict(results.annual))}')
         file.write(",\n")
         _write_list(file, "problems", (asdict(one) for one in results.problem_rows))
         file.write("\n}\n")
 
 
-def _write_routes(file: TextIO, record: Mapping[str, Any]) -> None:
-    """Write the routes: a line a segment, a route, a room and a floor."""
-    file.write(' "routes": {\n')
-    for at, (name, value) in enumerate(record.items()):
+def _write_record(file: TextIO, name: str, record: Mapping[str, Any], *lists: str) -> None:
+    """Write a record with lists of rows, those named among them: a line a row."""
+    file.write(f' "{name}": {{\n')
+    for at, (key, value) in enumerate(record.items()):
         file.write(",\n" if at else "")
-        if isinstance(value, list):
-            _write_list(file, name, value, " ")
+        if isinstance(value, list) or key in lists:
+            _write_list(file, key, value, " ")
         else:
-            file.write(f"  {json.dumps(name)}: {_dump(value)}")
+            file.write(f"  {json.dumps(key)}: {_dump(value)}")
     file.write("\n }")
 
 

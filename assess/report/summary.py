@@ -45,7 +45,7 @@ class Summary:
 
 def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -> Summary:
     """Gather the summary."""
-    worst, fixes = list_worst(rows), list_entries(results)
+    worst, fixes = list_worst(rows), list_entries(results, rows)
     could_be = sum(one.item.quantity for one in list_risky(rows) if one.adopted.risk < RiskClass.HIGH)
     return Summary(
         plainly=say_plainly(total, could_be, worst, fixes),

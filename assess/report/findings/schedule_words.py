@@ -114,18 +114,19 @@ class Entry:
         return ", ".join(part for part in parts if part) or words.DASH
 
 
-def list_entries(results: Results) -> list[Entry]:
-    """Return the entries of the schedule, the most urgent first."""
+def list_entries(results: Results, rows: Sequence[ItemResult]) -> list[Entry]:
+    """Return the entries of the schedule, the most urgent first; `rows` are all pieces in the order of the results."""
     steps: dict[int, list[RouteStep]] = {}
     for step in list_steps(results.route_tables):
         steps.setdefault(step.item_index, []).append(step)
-    return [_build_entry(results, row, steps) for row in results.schedule.rows]
-
-
-def _build_entry(results: Results, row: ScheduleRow, steps: Mapping[int, Sequence[RouteStep]]) -> Entry:
-    pieces = tuple(map(results.result, row.item_indices))
-    own = [step for index in row.item_indices for step in steps.get(index, ())]
     total = results.schedule.before.falls
+    return [_build_entry(row, [rows[at] for at in row.item_indices], steps, total) for row in results.schedule.rows]
+
+
+def _build_entry(
+    row: ScheduleRow, pieces: Sequence[ItemResult], steps: Mapping[int, Sequence[RouteStep]], total: float
+) -> Entry:
+    own = [step for index in row.item_indices for step in steps.get(index, ())]
     share = 1 - row.falls_left / total if total else 0.0
     own.sort(key=lambda step: (step.route, step.place))
     return Entry(row, pieces, own, None if pieces[0].apart else share)
