@@ -159,8 +159,8 @@ class Settings:
         C_AR, R_po and I_p of ASCE 7-22, 13.3.1, for the force that the code asks of anchors [-]. 1.0 and 1.5 are those
         of its table 13.5-1 for storage cabinets, shelving and laboratory equipment, as public implementations have it.
     route_risk : float
-        Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: a route is open where the upper
-        end of its interval is below it, and fixes are sought until that holds. 0.03 is where the class low ends.
+        Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: a route is open where the
+        upper end of its interval is below it, and fixes are sought until that holds. 0.03 is where the class low ends.
 
     Raises
     ------

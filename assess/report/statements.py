@@ -217,8 +217,8 @@ def _limits_of_routes() -> tuple[str, ...]:
             "overturn count: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
         ),
         _(
-            "An open route is not shown to be safe: its chance is below the chosen risk in this scenario, as far as the "
-            "workbook lists the furniture. The direction of a recorded motion is not used: a piece may fall either "
+            "An open route is not shown to be safe: its chance is below the chosen risk in this scenario, as far as "
+            "the workbook lists the furniture. The direction of a recorded motion is not used: a piece may fall either "
             "way, unless it stands against a wall and the outline of its room tells on which side that is."
         ),
     )
