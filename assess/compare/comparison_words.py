@@ -1,12 +1,13 @@
 """How a comparison calls things, in the language in use: settings, inputs, standings, directions, chances."""
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
 from assess.compare.changes import ABSENT, Direction, PieceChange, StateChange, Total
 from assess.compare.past_run import ANCHORED, AT_RISK, BELOW, BY_FORMULA, UNCONFIRMED, PastChance, PastRun
-from assess.i18n import Text, fill, number
+from assess.i18n import Text, fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.risk import RiskClass
@@ -160,10 +161,11 @@ def say_value(value: Any) -> str:
 
 
 def say_anchor(value: Any) -> str:
-    """Return the setting of what is taken as anchored: names, or the number of the first entries."""
-    if isinstance(value, int) and not isinstance(value, bool):
-        return _("the first {n:,} entries of what to fix", n=value)
-    return say_value(value)
+    """Return the setting of what is taken as anchored, ``A1,A2`` or ``first:3``, in words."""
+    first = re.fullmatch(r"first:(\d{1,9})", str(value))
+    if first:
+        return ngettext("the first entry of what to fix", "the first {n:,} entries of what to fix", int(first[1]))
+    return say_value(tuple(value.split(",")) if isinstance(value, str) and value else value)
 
 
 def say_total(value: float, is_count: bool) -> str:
