@@ -32,7 +32,6 @@ SAME = 1e-6
 SEVERITY: Mapping[str, int] = {
     "open": 0,
     "below the limit": 0,
-    "reduced": 1,
     "doubtful": 1,
     "blocked": 2,
     "at risk": 2,

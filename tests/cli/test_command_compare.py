@@ -48,7 +48,7 @@ def test_anchored_pieces_get_better_and_the_option_is_named(folder, tmp_path):
     record = json.loads(done.stdout)
     changes = {one["item"]: one["change"] for one in record["items"]}
     assert changes == {"A1": "better", "A3": "better", "A2": "same", "A4": "same", "A5": "same"}
-    assert record["after"]["settings"]["anchor"] == ["A1", "A3"]
+    assert record["after"]["settings"]["anchor"] == "A1,A3"
     assert record["counts"]["pieces"]["anchored"] == {
         "before": 1, "after": 5, "comparable": True, "within_sampling_interval": None,
     }  # fmt: skip

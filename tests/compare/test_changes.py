@@ -7,6 +7,7 @@ import pytest
 from assess.compare.changes import Direction, compare, lies_within
 from assess.compare.comparison_data import describe, dump
 from assess.compare.comparison_view import View
+from assess.compare.comparison_words import say_anchor
 from assess.compare.past_run import PastChance
 from assess.compare.read_results import read_run
 from assess.errors import InputError
@@ -259,3 +260,11 @@ def test_the_document_says_the_same(source, tmp_path):
         sum(one.quantity * one.chance.probability for one in stronger.pieces if not one.is_held)
     )
     assert dump(record).endswith("}\n")
+
+
+def test_what_is_taken_as_anchored_is_put_into_words():
+    assert say_anchor("") == say_anchor(None) == "–"
+    assert say_anchor("A1,B-2") == "A1, B-2"
+    assert say_anchor("A1,A2,A3,A4,A5,A6,A7") == "A1, A2, A3, A4, A5 and 2 more"
+    assert say_anchor("first:1") == "the first entry of what to fix"
+    assert say_anchor("first:12") == "the first 12 entries of what to fix"
