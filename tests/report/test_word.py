@@ -17,7 +17,7 @@ from assess.report.content import build_content
 from assess.report.pages.html import render
 from assess.report.report_options import ReportOptions
 from assess.report.word import drawings
-from assess.report.word.tables import SPACE, _fit
+from assess.report.word.word_tables import SPACE, _fit
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.workbooks import assessed, write

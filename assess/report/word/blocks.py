@@ -5,7 +5,7 @@ from typing import Any
 
 from assess.report.word.document import Word, make, write_margins
 from assess.report.word.runs import Line, Look, add_picture, find_picture, mark_place
-from assess.report.word.tables import write_table, write_tiles
+from assess.report.word.word_tables import write_table, write_tiles
 
 HEADINGS = {"h1": "Title", "h2": "Heading 1", "h3": "Heading 2", "h4": "Heading 3"}
 """Styles of the headings of the page."""
