@@ -172,11 +172,7 @@ class Plan:
 
 def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) -> Plan | None:
     """Return the plan of a floor with its segments, or None where neither a piece nor a segment has a position."""
-    pieces = tuple(
-        _piece(one, (one.item.x_m, one.item.y_m))
-        for one in page.results
-        if one.item.x_m is not None and one.item.y_m is not None
-    )
+    pieces = _list_pieces(page.results)
     if not pieces and not ways:
         return None
     own = [place for place in results.places if place.floor == page.floor.floor]
@@ -202,6 +198,15 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
         unit=unit,
         north=results.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
         **named,
+    )
+
+
+def _list_pieces(results: Sequence[ItemResult]) -> tuple[Piece, ...]:
+    """Return the pieces that have a position."""
+    return tuple(
+        _piece(one, (one.item.x_m, one.item.y_m))
+        for one in results
+        if one.item.x_m is not None and one.item.y_m is not None
     )
 
 
