@@ -3,6 +3,7 @@
 import io
 import struct
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -120,7 +121,7 @@ def test_a_photo_is_small_and_upright_and_tells_nothing_of_the_camera() -> None:
     assert (shown.format, shown.size) == ("JPEG", (PHOTO // 2, PHOTO))
     assert b"Camera" not in photo
     assert not shown.getexif()
-    quarters = [shown.getpixel(at)[0] for at in ((250, 50), (50, 50), (250, 550))]
+    quarters = [np.asarray(shown)[at[1], at[0], 0] for at in ((250, 50), (50, 50), (250, 550))]
     assert quarters[0] > 150  # what was on the upper left is on the upper right
     assert max(quarters[1:]) < 50
     assert read(prepare_photo(picture("PNG", size=(40, 30)))).size == (40, 30)  # not made larger

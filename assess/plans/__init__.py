@@ -6,7 +6,7 @@ Nothing of a user's file reaches a report as it is: a picture is decoded and wri
 
 from dataclasses import dataclass
 
-from assess.i18n import Text, fill
+from assess.i18n import fill
 from assess.pictures import JPEG, PNG, PictureError, prepare_plan
 
 DOTS = 100.0
@@ -37,7 +37,7 @@ class Drawing:
     aspect: float
     is_lines: bool = False
     width: float | None = None
-    left_out: tuple[Text, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 def read_plan(data: bytes, width: float | None) -> Drawing:
@@ -74,7 +74,7 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
     raise PictureError(fill("it is no PNG, JPEG, SVG or DXF file. Save it as one of them"))
 
 
-def _of_lines(content: bytes, aspect: float, left_out: tuple[Text, ...], width: float | None) -> Drawing:
+def _of_lines(content: bytes, aspect: float, left_out: tuple[str, ...], width: float | None) -> Drawing:
     return Drawing(content, aspect, is_lines=True, width=width, left_out=left_out)
 
 

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from assess.i18n import Text, fill
+from assess.i18n import fill
 from assess.pictures import PictureError, damaged
 from assess.plans.linework import FARTHEST, MOST_ELEMENTS, MOST_RAW, describe_left_out, find_box, pack, too_many
 
@@ -30,7 +30,7 @@ XREF = 4 | 8
 """Flags of a block that is another file: an external reference, and one laid over."""
 
 
-def read_dxf(data: bytes) -> tuple[bytes, float, tuple[Text, ...], float | None]:
+def read_dxf(data: bytes) -> tuple[bytes, float, tuple[str, ...], float | None]:
     """Return the lines of a DXF as `pack` keeps them, its aspect, what is left out, and its width [m] if known.
 
     Its frame is the box round its lines. No other file is read: external references are left out, and named.

@@ -1,11 +1,11 @@
 """Lines of a drawing as points: normalised to its width, cut at a frame, thinned, packed and unpacked."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.i18n import Text, fill, nfill
+from assess.i18n import fill
 from assess.pictures import PictureError
 
 FloatArray = NDArray[np.float64]
@@ -145,7 +145,7 @@ def _cut(points: FloatArray, low: FloatArray, high: FloatArray) -> Iterator[tupl
         )
 
 
-def describe_left_out(counts: dict[str, int]) -> tuple[Text, ...]:
-    """Return what is not drawn in words, the commonest first."""
+def describe_left_out(counts: Mapping[str, int]) -> tuple[str, ...]:
+    """Return what is not drawn, the commonest first: numbers with the file's own names, ``12 TEXT``."""
     ordered = sorted(counts.items(), key=lambda one: (-one[1], one[0]))
-    return tuple(nfill("{n:,} {kind}", "{n:,} {kind}", n, kind=kind[:40]) for kind, n in ordered[:6])
+    return tuple(f"{n} {kind[:40]}" for kind, n in ordered[:6])

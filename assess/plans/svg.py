@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from xml.parsers import expat
 
-from assess.i18n import Text, fill
+from assess.i18n import fill
 from assess.pictures import MOST_BYTES, PictureError, damaged
 from assess.plans.linework import MOST_ELEMENTS, MOST_RAW, Box, describe_left_out, find_box, pack, too_many
 from assess.plans.svg_path import NUMBER, PathReader, Point, bend, read_number, unreadable
@@ -36,7 +36,7 @@ Matrix = tuple[float, float, float, float, float, float]
 SAME: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
 
-def read_svg(data: bytes) -> tuple[bytes, float, tuple[Text, ...]]:
+def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
     """Return the lines of an SVG as `assess.plans.linework.pack` keeps them, its aspect, and what is left out.
 
     Its frame is the viewBox, else its width and height, else the box round its lines.

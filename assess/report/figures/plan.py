@@ -5,7 +5,7 @@ letters would be smaller than some programs can draw.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -172,7 +172,7 @@ class Plan:
 
 def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) -> Plan | None:
     """Return the plan of a floor with its segments, or None where neither a piece nor a segment has a position."""
-    pieces = _list_pieces(page.results)
+    pieces = tuple(_list_pieces(page))
     if not pieces and not ways:
         return None
     own = [place for place in results.places if place.floor == page.floor.floor]
@@ -201,15 +201,6 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     )
 
 
-def _list_pieces(results: Sequence[ItemResult]) -> tuple[Piece, ...]:
-    """Return the pieces that have a position."""
-    return tuple(
-        _piece(one, (one.item.x_m, one.item.y_m))
-        for one in results
-        if one.item.x_m is not None and one.item.y_m is not None
-    )
-
-
 def _name(
     pieces: Sequence[Piece],
     places: Sequence[tuple[Place, Point]],
@@ -232,6 +223,12 @@ def _name(
         "names": tuple(one for one in segments if not any(overlap(one.box, other) for other in names.boxes)),
         "keys": tuple(names.keys),
     }
+
+
+def _list_pieces(page: FloorPage) -> Iterator[Piece]:
+    for one in page.results:
+        if one.item.x_m is not None and one.item.y_m is not None:
+            yield _piece(one, (one.item.x_m, one.item.y_m))
 
 
 def _piece(one: ItemResult, at: Point) -> Piece:

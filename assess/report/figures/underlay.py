@@ -109,7 +109,7 @@ def list_rooms(places: Sequence[Place]) -> tuple[Room, ...]:
     ordered = sorted(((Polygon(one.outline), one) for one in outlined), key=lambda pair: -pair[0].area)
     found = []
     for at, (shape, one) in enumerate(ordered):
-        left = shape
+        left: BaseGeometry = shape
         for inner, _place in ordered[at + 1 :]:  # a core inside a corridor, say
             left = left.difference(inner) if shape.covers(inner) and not inner.covers(left) else left
         centre = left.centroid if left.contains(left.centroid) else left.representative_point()
