@@ -384,6 +384,17 @@ ANCHOR_FIELDS = (
         "tension_code_kn", fill("Tension by the code"), help="For F_p of ASCE 7-22, where SDS or Ground PGA is known."
     ),
     _of_anchor("shear_code_kn", fill("Shear by the code")),
+    _of_anchor(
+        "needed_friction", fill("Friction needed at the base"), unit="", shows=DATA,
+        help="Coefficient below which the base of the held piece slides out at PFA.",
+    ),
+    *(
+        Field(key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), kind="flag", shows=DATA, help=text)
+        for key, text in (
+            ("is_height_assumed", "Whether the workbook leaves the height of its bracket blank: 0.9 of its own."),
+            ("is_per_metre", "Whether weight and forces are those of one metre of it, as its width is not known."),
+        )
+    ),
     *(
         Field(
             key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), label=label, kind="flag",

@@ -138,4 +138,6 @@ def test_results_json(tmp_path):
         "weight_source": "given", "bracket_height_cm": 170.0, "holds": True, "counts_as_anchored": False,
     }  # fmt: skip
     assert found["tension_kn"] == pytest.approx(0.24)
+    assert found["needed_friction"] == pytest.approx(0.6 - 0.24 / 1.2)
+    assert (found["is_height_assumed"], found["is_per_metre"]) == (False, False)
     assert found["tension_code_kn"] > found["tension_low_kn"] > 0
