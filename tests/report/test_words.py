@@ -1,7 +1,6 @@
 """Numbers and sentences of the reports: none contradicts the class, the counts, or another report."""
 
 from dataclasses import replace
-from typing import Any
 
 import openpyxl
 import pytest
