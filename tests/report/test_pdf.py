@@ -119,7 +119,7 @@ def _unpack(path):
     import zlib
 
     found = re.findall(rb"stream\n(.*?)\nendstream", path.read_bytes(), re.DOTALL)
-    return b"".join(zlib.decompress(one) for one in found if one[:1] == b"\x78" and len(one) < 50_000)
+    return b"".join(zlib.decompress(one) for one in found if one[:1] == b"\x78" and len(one) < 200_000)
 
 
 @pytest.mark.slow
