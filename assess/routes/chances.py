@@ -189,14 +189,13 @@ def build_couplings(
     independent = whole.independent if whole and _is_drawn(lone) else combine(lone)
     joint = whole.joint if whole and _is_drawn(mixed) else combine(mixed) if simulated else independent
     sizes = {item: int(falls.fell[item].size) for item in simulated}
-    is_joint = not alone and len(set(sizes.values())) <= 1
     return Couplings(
         keys=keys,
         joint=joint,
         independent=independent,
         correlated=whole.correlated if whole else _correlate(falls, keys, fallen),
         ends=whole.ends if whole else _find_ends(falls, keys, fallen),
-        is_joint=is_joint,
+        is_joint=(is_joint := not alone and len(set(sizes.values())) <= 1),
         runs=min(sizes.values(), default=0),
         is_drawn=not is_joint and (_is_drawn(mixed) or _is_drawn(lone)),
         sizes=sizes,

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 
 from assess.model import Place
 from assess.natural import natural_key
@@ -63,9 +64,7 @@ def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
 
 def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> RoomRow:
     """Return one room; `rows` are all segments."""
-
-    def is_cut_off(blocked: Blocked, every: int) -> int:
-        return part.cut_off(blocked, [place.place], every)[0]
+    is_cut_off = partial(_is_cut_off, part, place.place)
 
     def happens(draws: Draws) -> tuple[int, int]:
         lost, at_most = scene.at_best_and_worst(draws, part.segments, is_cut_off)
@@ -75,23 +74,20 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
     (lost, at_most), (fallen, worst) = found.chances, found.at_most
     verdict = settle(Bounds(lost, at_most, fallen, worst), scene.risk)
     ways = _ways(scene, place, part, rows)
-    is_known = verdict.state != RouteState.NOT_KNOWN
-    first = {at: (rows[at].state, rows[at].blocked) for at in _list_decisive(ways, rows, is_known=is_known)}
     seeks_fixes = verdict.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)
     fixes, is_fixed = list_fixes(scene, part.segments, is_cut_off) if seeks_fixes else ((), True)
-    exits = tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key))
     return RoomRow(
         room=place.place,
         floor=place.floor,
-        exits=exits,
+        exits=_list_exits(part),
         by_stairs=part.by_stairs,
         loses_every_exit=lost,
         loses_if_unconfirmed_fall=fallen if lost.unconfirmed else None,
         loses_if_anchors_fail=found.if_anchors_fail,
         state=verdict.state,
-        missing=_list_missing(scene, verdict, part, ways, exits),
+        missing=_list_missing(scene, verdict, part, ways),
         most_likely_piece=found.most_likely_piece,
-        decisive_segment=scene.find_decisive(first, is_known=is_known),
+        decisive_segment=_find_decisive(scene, ways, rows, is_known=verdict.state != RouteState.NOT_KNOWN),
         fixes=fixes,
         is_fixed=is_fixed,
         unevaluated_segments=name_unevaluated(scene, part.segments),
@@ -100,23 +96,30 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
     )
 
 
-def _list_decisive(ways: Sequence[WayRow], rows: Sequence[SegmentRow], *, is_known: bool) -> tuple[int, ...]:
-    """Return the segments of the safest way out; where that does not tell, of the first that is not known."""
+def _is_cut_off(part: Part, room: str, blocked: Blocked, every: int) -> int:
+    return part.cut_off(blocked, [room], every)[0]
+
+
+def _list_exits(part: Part) -> tuple[str, ...]:
+    return tuple(sorted({end for edge in part.edges for end in edge[:2]} & part.targets, key=natural_key))
+
+
+def _find_decisive(scene: Scene, ways: Sequence[WayRow], rows: Sequence[SegmentRow], *, is_known: bool) -> int | None:
+    """Return the decisive segment of the safest way out; where that does not tell, of the first that is not known."""
     for way in ways:
-        if is_known or any(rows[at].state == RouteState.NOT_KNOWN for at in way.segment_indices):
-            return way.segment_indices
-    return ()
+        own = {at: (rows[at].state, rows[at].blocked) for at in way.segment_indices}
+        if is_known or any(state == RouteState.NOT_KNOWN for state, _ in own.values()):
+            return scene.find_decisive(own, is_known=is_known)
+    return None
 
 
-def _list_missing(
-    scene: Scene, verdict: Verdict, part: Part, ways: Sequence[WayRow], exits: tuple[str, ...]
-) -> tuple[MissingRow, ...]:
+def _list_missing(scene: Scene, verdict: Verdict, part: Part, ways: Sequence[WayRow]) -> tuple[MissingRow, ...]:
     """Return what is to be filled in for a room: of the safest way that needs any, as one known way may be enough."""
     if verdict.state != RouteState.NOT_KNOWN:
         return ()
     of_ways = (scene.list_missing(verdict, way.segment_indices) for way in ways)
     found = next(filter(None, of_ways), ()) or scene.list_missing(verdict, part.segments)
-    return (*found, MissingRow(what="beyond_stairs", names=exits)) if part.by_stairs else found
+    return (*found, MissingRow(what="beyond_stairs", names=_list_exits(part))) if part.by_stairs else found
 
 
 def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> list[WayRow]:

@@ -41,6 +41,7 @@ from assess.report.pages.page_columns import (
 from assess.report.provenance import say_reference
 from assess.report.report_options import ReportOptions
 from assess.results import MotionRow
+from assess.route_results import RouteTables
 from assess.schedule_fields import schedule_fields
 from assess.schedule_results import WorkRow
 
@@ -210,17 +211,23 @@ def _of_routes(content: Content, *, for_print: bool) -> dict[str, Any]:
         "fixes_bound": route_rows.say_fixes_bound(found),
         "unfixable": route_words.list_unfixable(found),
         "untouched": route_rows.name_untouched(found),
+        **_of_route_page(found),
+        "route_cautions": route_words.list_cautions(found),
+        "route_flags": route_rows.list_flags(found),
+        "floor_names": {page.floor.floor: page.title for page in content.floors},
+        "widths": route_words.list_widths(),
+        "default_width": route_words.say_default_width(),
+    }
+
+
+def _of_route_page(found: RouteTables) -> dict[str, Any]:
+    return {
         "way_lines": route_page.list_route_lines(found),
         "room_lines": route_page.list_room_lines(found),
         "most_way_lines": route_page.MOST_LINES,
         "state_rules": route_words.list_rules(found.risk),
         "route_lines": route_rows.describe_routes(found),
         "uncounted": route_rows.say_uncounted(found),
-        "route_cautions": route_words.list_cautions(found),
-        "route_flags": route_rows.list_flags(found),
-        "floor_names": {page.floor.floor: page.title for page in content.floors},
-        "widths": route_words.list_widths(),
-        "default_width": route_words.say_default_width(),
     }
 
 
