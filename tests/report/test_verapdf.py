@@ -23,6 +23,7 @@ from assess.report.pages.pdf import write_pdf
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.compare.past import write_routed_run
+from tests.pictures import picture
 from tests.workbooks import UNVERIFIED, assessed
 
 HERE = Path(__file__).parents[1] / "verapdf"
@@ -99,6 +100,15 @@ def test_a_small_report_is_valid_and_the_validator_can_say_no(tmp_path, jars):
     archival_as_accessible, plain_as_archival = _validate(jars, (archival, "ua1"), (plain, "3u"))
     assert re.search(r"^  5 test 1: .*PDF/UA", archival_as_accessible)
     assert "6.6" in plain_as_archival
+
+
+def test_pictures_of_users_are_valid(tmp_path, jars):
+    (tmp_path / "p.png").write_bytes(picture("PNG", "RGBA", (1600, 1200)))
+    floors = [{"floor": "1", "pfa_x": 0.4, "plan": "p.png", "plan_left": 0, "plan_bottom": 0, "plan_width": 16}]
+    items = [{"item": "A", "floor": "1", "breadth": 30, "height": 200, "x": 3, "y": 3, "photo": "p.png"}]
+    results = assessed(tmp_path / "w.xlsx", items, floors, logo="p.png", organisation="Us")
+    archival, accessible = _write(results, tmp_path / "a.pdf"), _write(results, tmp_path / "u.pdf", accessible=True)
+    assert _validate(jars, (archival, "3u"), (accessible, "ua1")) == ["", ""]
 
 
 def test_the_example_is_valid(tmp_path, jars):
