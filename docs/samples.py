@@ -16,15 +16,17 @@ SAMPLES = ROOT / "samples" / "reports"
 WORKBOOK = ROOT / "inventories" / "market-street.xlsx"
 DAY = "1767225600"
 """1 January 2026 as SOURCE_DATE_EPOCH."""
-FORMATS = ("pdf", "html", "xlsx")
+NAMES = {"pdf": "market-street.pdf", "annex": "market-street-annex.pdf", "html": "market-street.html",
+         "xlsx": "market-street.xlsx"}  # fmt: skip
+"""The formats of the samples, and the name of each."""
 
 
 def write_samples(folder: Path) -> dict[str, Path]:
     """Write the reports of the example into a folder, as `assess run` does by default; return them by format."""
     os.environ["SOURCE_DATE_EPOCH"] = DAY
     with tempfile.TemporaryDirectory() as box:
-        written = assess.write_reports(assess.run(assess.read_inventory(WORKBOOK)), box, FORMATS)
-        return {kind: Path(shutil.move(written[kind], folder / f"market-street.{kind}")) for kind in FORMATS}
+        written = assess.write_reports(assess.run(assess.read_inventory(WORKBOOK)), box, tuple(NAMES))
+        return {kind: Path(shutil.move(written[kind], folder / name)) for kind, name in NAMES.items()}
 
 
 if __name__ == "__main__":

@@ -12,7 +12,6 @@ from assess.report.findings.apart import say_apart
 from assess.report.findings.assumed_intensity import say_shaking_shortly
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
 from assess.report.findings.schedule_words import Entry, list_entries
-from assess.report.findings.uncertain import say_assumed, say_sensitivity
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 
@@ -28,15 +27,14 @@ LEAST = 12
 class Summary:
     """A paragraph in plain words, the worst pieces, what to fix first, and the routes at risk.
 
-    `apart` are sentences on the pieces that are counted apart, with what settles them; `shaking` are those on an
-    assumed shaking; `assumed` are these, what was assumed uncertain, and what other assumptions would change;
-    `of_routes` are sentences on the routes, none where the workbook names none.
+    `apart` are sentences on the pieces that are counted apart, with what settles them; `shaking` is a sentence
+    on an assumed shaking, none where none is assumed; `of_routes` are sentences on the routes, none where the workbook
+    names none.
     """
 
     plainly: Sequence[str]
     apart: Sequence[str]
     shaking: Sequence[str]
-    assumed: Sequence[str]
     worst: Sequence[ItemResult]
     fixes: Sequence[Entry]
     routes: Sequence[RouteAtRisk]
@@ -51,16 +49,11 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
         plainly=say_plainly(total, could_be, worst, fixes),
         apart=say_apart(rows),
         shaking=[text for text in (say_shaking_shortly(results),) if text],
-        assumed=[text for text in _list_assumed(results, rows) if text],
         worst=worst,
         fixes=fixes,
         routes=list_routes_at_risk(results),
         of_routes=say_routes(results),
     )
-
-
-def _list_assumed(results: Results, rows: Sequence[ItemResult]) -> tuple[str, ...]:
-    return say_shaking_shortly(results), say_assumed(results), say_sensitivity(results, rows)
 
 
 def list_worst(results: Sequence[ItemResult]) -> list[ItemResult]:

@@ -46,7 +46,10 @@ def test_all_commands_are_offered():
         ("assess run b.xlsx --scenario ASCE", ["ASCE-7-22", "ASCE-7-16"]),
         ("assess routes b.xlsx --scenario en", ["en-1998-1"]),
         ("assess run b.xlsx --formats pdf,h", ["pdf,html"]),
-        ("assess run b.xlsx --formats pdf,xlsx,html,json,", ["pdf,xlsx,html,json,csv", "pdf,xlsx,html,json,npz"]),
+        (
+            "assess run b.xlsx --formats pdf,xlsx,html,json,",
+            ["pdf,xlsx,html,json,annex", "pdf,xlsx,html,json,csv", "pdf,xlsx,html,json,npz"],
+        ),
         ("assess new w.xlsx --language ", list(LANGUAGES)),
         ("assess new w.xlsx --units i", ["imperial"]),
         ("assess study t", ["table1", "table2", "table3"]),

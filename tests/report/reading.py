@@ -7,6 +7,7 @@ from pathlib import Path
 import assess
 from assess.report.content import build_content
 from assess.report.pages import html as pages
+from assess.report.pages.editions import Edition
 from assess.report.report_options import ReportOptions
 from assess.results import Results
 
@@ -16,11 +17,13 @@ def write_html(results: Results, folder: Path, options: ReportOptions | None = N
     return assess.write_reports(results, folder, ("html",), options)["html"].read_text(encoding="utf-8")
 
 
-def render(results: Results, options: ReportOptions | None = None, *, for_print: bool = False) -> str:
+def render(
+    results: Results, options: ReportOptions | None = None, *, for_print: bool = False, edition: Edition = "all"
+) -> str:
     """Return the HTML of a report in its language, with `for_print` as the PDF is laid out from it."""
     options = options or ReportOptions(language=results.provenance.language)
     with options.spoken():
-        return pages.render(build_content(results), options, for_print=for_print)
+        return pages.render(build_content(results), options, for_print=for_print, edition=edition)
 
 
 def read_text(page: str) -> str:

@@ -232,7 +232,7 @@ def _tried(results, **chances):
 
 def test_the_summary_says_what_was_varied_and_what_it_changes(mixed):
     text = read_text(render(_tried(mixed, **{"0.2": 0.0, "0.6": 1.0})))
-    assert "not per year; the sampling interval covers the number of draws only." in text
+    assert "; the sampling interval covers the number of draws only; percentages without a range" in text
     assert "with a dispersion of 0.4 (standard deviation of ln amplitude; assumed)." in text
     assert "Sizes, centre of gravity and restitution of each piece are varied." in text
     felled, still = mixed["felled"], mixed["still"]
@@ -303,10 +303,12 @@ def test_other_conditions_are_named_on_every_page_of_the_pdf(exactly, mixed, tmp
     import pypdfium2
 
     for results, expected in ((exactly, True), (mixed, False)):
-        written = assess.write_reports(results, tmp_path / str(expected), ("pdf",))
-        document = pypdfium2.PdfDocument(written["pdf"])
-        pages = [" ".join(document[at].get_textpage().get_text_range().split()) for at in range(len(document))]
-        document.close()
+        written = assess.write_reports(results, tmp_path / str(expected), ("pdf", "annex"))
+        pages = []
+        for name in ("pdf", "annex"):
+            document = pypdfium2.PdfDocument(written[name])
+            pages += [" ".join(document[at].get_textpage().get_text_range().split()) for at in range(len(document))]
+            document.close()
         assert len(pages) > 5
         for condition in CONDITIONS:
             assert {condition in text for text in pages} == {expected}

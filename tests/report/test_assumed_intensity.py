@@ -47,11 +47,11 @@ def _section(html, start, end):
 def test_the_cover_and_the_summary_of_the_html_report_say_so(written):
     html = (written / "report.html").read_text(encoding="utf-8")
     cover = _section(html, '<header class="cover">', "</header>")
-    summary = _section(html, '<section id="summary">', '<section id="floors">')
+    summary = _section(html, '<section id="summary">', '<section id="routes"')
     assert PARAGRAPH in cover
     assert SENTENCE in summary
     assert "With a dispersion of" not in summary, "less than the published scatter is not tried"
-    assert "with a dispersion of 0.81 (standard deviation of ln amplitude; scatter of ln PGA given" in summary
+    assert "for an earthquake like this one (dispersion 0.81, scatter of ln PGA given" in summary
     assert '<p class="conditions" role="note">Assumed shaking: MMI VII, very strong</p>' in html
     assert "Worden CB, Gerstenberger MC" in _section(html, '<section id="references">', "</main>")
 

@@ -58,7 +58,7 @@ def test_html_is_well_formed_and_says_what_must_be_said(report):
     assessment, written = report
     text = _read(written["html"].read_text(encoding="utf-8"))
     assert (
-        "chance of overturning in this scenario , not per year; there are no intervals, as no rocking has been "
+        "chance of overturning in this scenario , not per year, by a published formula, as no rocking has been "
         "simulated" in text
     )
     assert "Not simulated" in text

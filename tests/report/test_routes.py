@@ -86,8 +86,8 @@ def _text(markup):
 
 
 def _section(html):
-    (found,) = re.findall(r'<section id="routes".*?(?=<section id="items")', html, re.S)
-    return found
+    """The page on routes, and its details, which stand apart."""
+    return "".join(re.findall(r'<section id="routes.*?(?=<section id="(?:floors|verification)")', html, re.S))
 
 
 def _rows(html, table):

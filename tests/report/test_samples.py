@@ -8,7 +8,7 @@ import pypdfium2
 import pytest
 
 from assess.risk import LIMITS
-from docs.samples import SAMPLES, write_samples
+from docs.samples import NAMES, SAMPLES, write_samples
 from tests.alike import differences, flatten, strip_numbers
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*extension is not supported")]
@@ -47,7 +47,7 @@ def read_xlsx(path):
     ]
 
 
-READERS = {"pdf": read_pdf, "html": read_html, "xlsx": read_xlsx}
+READERS = {"pdf": read_pdf, "annex": read_pdf, "html": read_html, "xlsx": read_xlsx}
 
 
 def read_results(path):
@@ -59,7 +59,7 @@ def read_results(path):
 
 @pytest.fixture(scope="module")
 def results(written):
-    return read_results(written["pdf"]), read_results(SAMPLES / "market-street.pdf")
+    return read_results(written["pdf"]), read_results(SAMPLES / NAMES["pdf"])
 
 
 def is_at_a_limit(now, then):
@@ -108,7 +108,7 @@ def test_samples_are_current(written, results, kind):
     classes = [[one["adopted"]["class"] for one in found["items"]] for found in results]
     now, then = (
         [hide_platforms(line, platforms) for line in READERS[kind](path)]
-        for path in (written[kind], SAMPLES / f"market-street.{kind}")
+        for path in (written[kind], SAMPLES / NAMES[kind])
     )
     if classes[0] == classes[1] and not find_moved(*results):
         assert differences(now, then) == [], "run: make samples"

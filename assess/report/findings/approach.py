@@ -20,7 +20,7 @@ def list_approach(content: "Content") -> Lines:
     """Return paragraphs by heading: motion of the floors, chances and classes, what was assumed uncertain, routes."""
     run, verified = content.run, content.verified
     lines: Lines = [
-        (_("Motion of the floors"), [_say_sources(content), *content.cautions]),
+        (_("Motion of the floors"), [_say_sources(content)]),
         (_("Chance and class"), [verified.adopted, verified.sentence, _say_classes(content)]),
     ]
     if verified.done:

@@ -109,8 +109,8 @@ class Verified:
         if not self.done:
             return _("there are no intervals, as no rocking has been simulated in this run")
         if self.left or self.unconfirmed:
-            without = _("Percentages without a range come from the formula only")
-            return f"{_(INTERVAL)}. {without}"
+            without = _("percentages without a range come from the formula only")
+            return f"{_(INTERVAL)}; {without}"
         return _(INTERVAL)
 
     @property

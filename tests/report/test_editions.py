@@ -1,0 +1,218 @@
+"""The edition for the client and the annex: their pages, what each holds, and that no page is half empty."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pypdfium2
+import pytest
+
+import assess
+from assess.report.content import build_content
+from assess.report.groups import PieceGroup, choose_groups, group_rows, join_runs
+from assess.report.pages import editions
+from assess.report.report_options import ReportOptions
+from tests.conftest import EXAMPLE
+from tests.pictures import picture
+from tests.report.reading import read_text, render
+from tests.workbooks import ITEMS, assessed
+
+MOST_PAGES = 12
+"""Pages of the client's edition, besides one for each floor plan."""
+UNCITABLE = ("general knowledge", "at hand", "http://", "https://", "www.", "shop")
+EVERY = {
+    "building": "Town hall", "address": "1 Long Street, Town", "use": "Office", "client": "Client", "storeys": 9,
+    "height": 30, "period": 1.1, "prepared_by": "Ann", "checked_by": "Ben", "approved_by": "Cid", "revision": "2",
+    "organisation": "Us & Co", "logo": "logo.png", "ground_pga": 0.3, "friction": 0.5, "restitution": 0.9,
+    "motion_uncertainty": 0.3, "piece_uncertainty": "yes",
+    "scenario": "The strongest earthquake that was recorded within a hundred kilometres, at the distance of the site. "
+    * 2,
+}  # fmt: skip
+
+
+def _read(path):
+    document = pypdfium2.PdfDocument(path)
+    pages = [" ".join(page.get_textpage().get_text_range().split()) for page in document]
+    toc = [(mark.level, mark.get_title(), mark.get_dest().get_index()) for mark in document.get_toc()]
+    document.close()
+    return pages, toc
+
+
+def _fill(path):
+    """Return for each page the lowest ink as a share of the height between its margins."""
+    shares = []
+    for page in pypdfium2.PdfDocument(path):
+        ink = np.asarray(page.render(scale=0.5).to_pil().convert("L")) < 200
+        is_wide = ink.shape[1] > ink.shape[0]
+        top, height = (16, 179) if is_wide else (20, 259)  # of 210 and 297 mm: the margins of print.css
+        scale = ink.shape[0] / (210 if is_wide else 297)
+        rows = np.nonzero(ink[int(top * scale) : int((top + height) * scale)].any(axis=1))[0]
+        shares.append(rows.max() / (height * scale) if len(rows) else 0.0)
+    return shares
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("editions")
+    (folder / "logo.png").write_bytes(picture("PNG", size=(40, 30)))
+    items = [dict(ITEMS[0], item=f"A-{at:02d}", x=float(at), y=1.0) for at in range(1, 8)]
+    return assessed(folder / "w.xlsx", [*items, *ITEMS[1:]], **EVERY)
+
+
+@pytest.fixture(scope="module")
+def written(results, tmp_path_factory):
+    return assess.write_reports(results, tmp_path_factory.mktemp("out"), ("pdf", "annex", "json"))
+
+
+def test_every_section_has_a_heading_and_a_template_or_is_left_out(results):
+    headings = editions._headings()
+    assert {name for names in editions.SECTIONS.values() for name in names} == set(headings)
+    both = {*editions.SECTIONS["client"], *editions.SECTIONS["annex"]}
+    assert {*editions.SECTIONS["all"], "pieces"} == both | {"about"}
+    content = build_content(results)
+    for edition in editions.SECTIONS:
+        parts = [name for name, _ in editions.list_parts(edition, content, ReportOptions(), is_compact=False)]
+        page = render(results, for_print=edition != "all", edition=edition)
+        found = [one for one in re.findall(r'<section id="([^"]+)"', page) if one in headings]
+        assert found == parts
+
+
+def test_the_client_reads_no_more_pages_than_a_client_reads(results, written):
+    pages, toc = _read(written["pdf"])
+    assert len(pages) <= MOST_PAGES + len(build_content(results).shown_floors)
+    parts = [title for level, title, _page in toc if level == 0]
+    assert parts[0] == "Summary"
+    assert parts[-3:] == ["How the chances were computed", "Limits of the methods", "Assumptions and defaults"]
+    starts = {title: page for level, title, page in toc if level == 0}
+    assert starts["Summary"] == 1, "the cover is one page"
+    assert min(page for page in starts.values() if page > 1) == 2, "the summary is one page"
+    for text in ("Contents", "Prepared by", "Checked by", "Approved by", "Annex, a file of its own"):
+        assert text in pages[0]
+
+
+def test_both_editions_number_their_pages_and_have_bookmarks(written):
+    for name in ("pdf", "annex"):
+        pages, toc = _read(written[name])
+        assert all(f"Page {at} of {len(pages)}" in text for at, text in enumerate(pages, 1))
+        assert {level for level, _title, _page in toc} == {0, 1}
+
+
+def test_the_annex_has_every_piece_and_what_the_classes_rest_on(results, written):
+    pages, toc = _read(written["annex"])
+    text = " ".join(pages)
+    assert all(one.item.item in text for one in results)
+    parts = [title for level, title, _page in toc if level == 0]
+    wanted = ["Motion of the floors", "Verification", "Methods", "Data-quality log", "References", "Appendix"]
+    assert [title for title in parts if title in wanted] == wanted
+    assert parts[-2:] == ["All pieces", "Comparison of the methods"]
+    assert "Default friction" in text, "the cover has no room for it"
+
+
+def test_every_source_of_the_client_can_be_cited(written):
+    text = " ".join(_read(written["pdf"])[0]).casefold()
+    assert [one for one in UNCITABLE if one in text] == []
+
+
+def test_both_carry_workbook_and_results_and_are_known_when_they_change(results, tmp_path):
+    written = assess.write_reports(results, tmp_path, ("pdf", "annex"))
+    for name in ("pdf", "annex"):
+        document = pypdfium2.PdfDocument(written[name])
+        names = [document.get_attachment(at).get_name() for at in range(document.count_attachments())]
+        assert names == ["results.json", "w.xlsx"]
+        assert document.is_tagged()
+        document.close()
+    written["annex"].write_bytes(written["annex"].read_bytes() + b"\n% mine\n")
+    with pytest.raises(assess.InputError, match=r"annex\.pdf was changed after it was written"):
+        assess.write_reports(results, tmp_path, ("json",))
+    assert written["pdf"].is_file()
+
+
+# ---------------------------------------------------------------- one number and its source
+
+
+def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path):
+    floors = [
+        {"floor": "G", "elevation": 0.0, "pfa_x": 0.135, "pfa_y": 0.12},
+        {"floor": "1", "elevation": 4.0, "pfa_x": 0.2, "pfa_y": 0.2},
+    ]
+    items = [dict(ITEMS[0], floor="1")]
+    results = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139)
+    said = build_content(results).building["ground_pga"][1]
+    assert said == (
+        "0.135 g on floor G, given PFA; 0.139 g of the workbook is not used: no floor follows a code's profile"
+    )
+    above = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139)
+    said = build_content(above).building["ground_pga"][1]
+    assert said == "0.139 g in the workbook, not used: no floor follows a code's profile"
+    profiled = assessed(tmp_path / "w.xlsx", items, [*floors[1:], {"floor": "2", "elevation": 8.0}], ground_pga=0.139)
+    assert any(one.source == "profile" for one in profiled.motions)
+    assert build_content(profiled).building["ground_pga"][1] == "0.139 g"
+
+
+# ---------------------------------------------------------------- alike pieces
+
+
+@pytest.mark.parametrize(
+    ("names", "runs"),
+    [
+        (["25-07", "25-08", "25-09"], ["25-07 to 25-09"]),
+        (["25-07", "25-08"], ["25-07", "25-08"]),
+        (["A9", "A10", "A11", "B12", "B14"], ["A9 to A11", "B12", "B14"]),
+        (["Safe", "Safe 1"], ["Safe", "Safe 1"]),
+        ([], []),
+    ],
+)
+def test_names_in_a_row_are_joined(names, runs):
+    assert join_runs(names) == runs
+
+
+def test_alike_pieces_are_one_row(results):
+    groups = group_rows(build_content(results).listed)
+    assert sum(len(group.results) for group in groups) == len(results)
+    (first,) = (group for group in groups if group.names.startswith("A-"))
+    assert (first.names, first.pieces, first.rooms) == ("A-01 to A-07 (7)", 7, "Hall")
+    listed = render(results, for_print=True, edition="client").partition('<section id="pieces">')[2]
+    assert "A-07" in read_text(listed)
+    assert "A-03" not in read_text(listed)
+
+
+def test_a_group_shows_the_chances_of_all_its_rows(results):
+    one = next(iter(results))
+    other = replace(one, adopted=replace(one.adopted, probability=0.5, low=0.4, high=0.6))
+    simulated = replace(one, adopted=replace(one.adopted, probability=0.2, low=0.1, high=0.3))
+    group = PieceGroup((simulated, other))
+    assert group.chance.replace("\xa0", " ") == "20.0 to 50.0 % (10.0 to 60.0 %)"
+    assert PieceGroup((one, other)).chance.count("(") == 0, "one of them has no interval"
+
+
+def test_of_too_many_groups_the_worst_are_shown_in_their_order(results):
+    groups = group_rows(build_content(results).listed)
+    (worst,) = (own for _floor, own in choose_groups(groups, 1))
+    assert worst[0].urgency == max(group.urgency for group in groups)
+    shown = [group for _floor, own in choose_groups(groups, 3) for group in own]
+    assert shown == [group for group in groups if group in shown]
+
+
+# ---------------------------------------------------------------- the worked example
+
+
+@pytest.mark.long
+def test_the_worked_example_has_its_pages_and_none_is_half_empty(tmp_path):
+    results = assess.run(EXAMPLE)
+    written = assess.write_reports(results, tmp_path, ("pdf", "annex"))
+    pages, toc = _read(written["pdf"])
+    plans = [page for page in build_content(results).shown_floors if page.placed]
+    assert len(pages) <= MOST_PAGES + len(plans) == 16
+    assert _count_pages(toc, len(pages))["Evacuation routes"] == 1
+    assert [at for at, share in enumerate(_fill(written["pdf"])[:-1], 1) if share < 0.5] == []
+    assert sum(share < 0.5 for share in _fill(written["annex"])[:-1]) <= 1, "where its pages turn"
+    text = " ".join(pages)
+    assert "0.135 g on floor G, recorded motion; 0.139 g of the workbook is not used" in pages[0]
+    assert [one for one in UNCITABLE if one in text.casefold()] == []
+
+
+def _count_pages(toc, count):
+    """Return on how many pages each part begins and goes on."""
+    parts = [(title, page) for level, title, page in toc if level == 0]
+    ends = [page for _title, page in parts[1:]] + [count]
+    return {title: max(1, end - page) for (title, page), end in zip(parts, ends, strict=True)}
