@@ -492,6 +492,8 @@ class RouteTables:
         Draws that are made where all combinations of falling pieces are too many.
     uncounted_pieces : int
         Sum over the floors.
+    unjoined_rooms : tuple of str
+        Rooms that no segment joins to an exit or a stair: nothing is known of their way to the street.
     """
 
     risk: float
@@ -501,6 +503,7 @@ class RouteTables:
     unknown_rooms: int = 0
     draws: int = 0
     uncounted_pieces: int = 0
+    unjoined_rooms: tuple[str, ...] = ()
     segments: tuple[SegmentRow, ...] = ()
     routes: tuple[RouteRow, ...] = ()
     rooms: tuple[RoomRow, ...] = ()

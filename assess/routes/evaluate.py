@@ -23,7 +23,7 @@ from assess.route_results import (
 from assess.routes.chances import DRAWS, Falls
 from assess.routes.network import build_course, find_ends
 from assess.routes.obstructions import Obstructions
-from assess.routes.rooms import evaluate_floor, evaluate_room, list_fixes, list_rooms, name_unevaluated
+from assess.routes.rooms import evaluate_floor, evaluate_room, list_fixes, list_rooms, list_unjoined, name_unevaluated
 from assess.routes.scene import Scene
 from assess.routes.widths import NARROWER, kinds_of, needed_width
 from assess.settings import Settings
@@ -82,7 +82,9 @@ def evaluate_routes(
         routes = tuple(step(_route(scene, name, segments)) for name in names)
         rooms = tuple(step(evaluate_room(scene, place, part, segments)) for place, part in parts)
         by_floor = [step(evaluate_floor(scene, floor, parts, segments, rooms)) for floor in floors]
-    return _join(settings.route_risk, segments, routes, rooms, by_floor)
+    return replace(
+        _join(settings.route_risk, segments, routes, rooms, by_floor), unjoined_rooms=list_unjoined(scene, parts)
+    )
 
 
 def _join(

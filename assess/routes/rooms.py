@@ -62,6 +62,13 @@ def list_rooms(scene: Scene) -> list[tuple[Place, Part]]:
     return found
 
 
+def list_unjoined(scene: Scene, found: Iterable[tuple[Place, Part]]) -> tuple[str, ...]:
+    """Return the rooms that are not among those `found`: no segment joins them to a way out."""
+    joined = {place.place for place, _part in found}
+    rooms = (place.place for place in scene.inventory.places if place.kind == "room")
+    return tuple(sorted((room for room in rooms if room not in joined), key=natural_key))
+
+
 def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> RoomRow:
     """Return one room; `rows` are all segments."""
     is_cut_off = partial(_is_cut_off, part, place.place)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from assess.report.findings.route_rows import count_rooms
 from assess.route_results import RouteState
 from tests.routes.buildings import CORRIDOR, corridor, evaluated, make_falls, one_segment, piece, place, stretch
 
@@ -217,3 +218,14 @@ def test_along_a_corridor_the_plan_tells():
     """A placed piece is counted by its position: it leaves nothing open."""
     found = evaluated(make_falls([0.2]), [piece(2.0, x=5.0, y=8.0)], [corridor()], CORRIDOR)
     assert (found.segments[0].state, found.rooms[0].state) == (OPEN, OPEN)
+
+
+def test_a_room_that_no_segment_joins_is_named():
+    rooms = [*CORRIDOR, place("Cellar 10", "room"), place("Cellar 2", "room"), place("Side door", "door")]
+    found = evaluated(make_falls([0.0]), [WHOLE], [corridor()], rooms)
+    assert [one.room for one in found.rooms] == ["West"]
+    assert found.unjoined_rooms == ("Cellar 2", "Cellar 10")
+    (sentence,) = count_rooms(found)[1:]
+    assert "joins 2 more rooms to no exit or stair" in sentence
+    assert "Cellar 2, Cellar 10" in sentence
+    assert evaluated(make_falls([0.0]), [WHOLE], [corridor()], CORRIDOR).unjoined_rooms == ()

@@ -19,6 +19,8 @@ from assess.route_results import (
 )
 
 Row = TypeVar("Row")
+MOST_ROOMS = 3
+"""Rooms without a way out that a sentence names."""
 QUIET = ("own_rooms", "walls_unknown", "required_assumed")
 """Flags that do not keep a segment in a short list: they matter only where a piece reaches it."""
 
@@ -54,12 +56,29 @@ def count_routes(routes: RouteTables) -> str:
 
 
 def count_rooms(routes: RouteTables) -> list[str]:
-    """Return how many rooms have a best way to the street in which state; nothing without rooms."""
+    """Return how many rooms have a best way to the street in which state, and which have none; nothing without rooms."""
+    unjoined = _say_unjoined(routes)
     if not routes.rooms:
-        return []
+        return unjoined
     return [ngettext("Best way from {n:,} room to the street: {states}.",
                      "Best way from each of {n:,} rooms to the street: {states}.",
-                     len(routes.rooms), states=_count_states([one.state for one in routes.rooms]))]  # fmt: skip
+                     len(routes.rooms), states=_count_states([one.state for one in routes.rooms])),
+            *unjoined]  # fmt: skip
+
+
+def _say_unjoined(routes: RouteTables) -> list[str]:
+    """Return which rooms have no way to an exit or a stair in the workbook."""
+    rooms = routes.unjoined_rooms
+    if not rooms:
+        return []
+    named = words.name_first([words.cut(room, 30) for room in rooms], MOST_ROOMS)
+    return [ngettext(
+        "The workbook joins {n:,} more room to no exit or stair, so that its way out is not known: {named}. Add the way "
+        "to Routes.",
+        "The workbook joins {n:,} more rooms to no exit or stair, so that their way out is not known: {named}. Add the "
+        "ways to Routes.",
+        len(rooms), named=named,
+    )]  # fmt: skip
 
 
 def _count_states(states: Sequence[RouteState]) -> str:

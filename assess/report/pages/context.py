@@ -101,16 +101,23 @@ def _of_content(
         "logo": embed_logo(content.run),
         "photo_of": Photos(content.run).photo_of,
         "floor_bars": build_bars(content.worst_floors),
-        "marks": words.marks(),
-        "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
-        "apart_legend": words.apart_legend(),
-        "has_apart": bool(content.total.unconfirmed or content.total.by_formula),
+        **_of_marks(content),
         "schedule": _of_schedule(content),
         **_of_floors(content, progress if "floors" in names else None),
         **_of_client(content),
         "shown_assumptions": content.assumptions[: MOST_ASSUMPTIONS if edition == "client" else None],
         **_of_routes(content, for_print=for_print),
         **_of_methods(content),
+    }
+
+
+def _of_marks(content: Content) -> dict[str, Any]:
+    """Return the legend of marks, and whether pieces stand apart."""
+    return {
+        "marks": words.marks(),
+        "symbols": {"unconfirmed": words.UNCONFIRMED, "by_formula": words.BY_FORMULA},
+        "apart_legend": words.apart_legend(),
+        "has_apart": bool(content.total.unconfirmed or content.total.by_formula),
     }
 
 
