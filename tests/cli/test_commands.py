@@ -182,7 +182,7 @@ def test_bad_input_writes_nothing(tmp_path):
         ),
         (
             ["--formats", "json,odt"],
-            "--formats: 'odt' is an unknown format; expected some of: pdf, xlsx",
+            "--formats: 'odt' is an unknown format; expected some of: pdf, annex, xlsx",
         ),
         (["--formats", ""], "--formats: no format is named"),
         (["--open", "--formats", "json,csv"], "--open opens a report: write one of html, pdf, xlsx with --formats."),

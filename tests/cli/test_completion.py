@@ -48,7 +48,7 @@ def test_all_commands_are_offered():
         ("assess run b.xlsx --formats pdf,h", ["pdf,html"]),
         (
             "assess run b.xlsx --formats pdf,xlsx,html,json,",
-            ["pdf,xlsx,html,json,annex", "pdf,xlsx,html,json,csv", "pdf,xlsx,html,json,npz"],
+            ["pdf,xlsx,html,json,annex", "pdf,xlsx,html,json,csv", "pdf,xlsx,html,json,docx", "pdf,xlsx,html,json,npz"],
         ),
         ("assess new w.xlsx --language ", list(LANGUAGES)),
         ("assess new w.xlsx --units i", ["imperial"]),

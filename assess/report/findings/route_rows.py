@@ -56,7 +56,7 @@ def count_routes(routes: RouteTables) -> str:
 
 
 def count_rooms(routes: RouteTables) -> list[str]:
-    """Return how many rooms have a best way to the street in which state, and which have none; nothing without rooms."""
+    """Return how many rooms have a best way to the street in which state, and which rooms have none."""
     unjoined = _say_unjoined(routes)
     if not routes.rooms:
         return unjoined
@@ -73,10 +73,10 @@ def _say_unjoined(routes: RouteTables) -> list[str]:
         return []
     named = words.name_first([words.cut(room, 30) for room in rooms], MOST_ROOMS)
     return [ngettext(
-        "The workbook joins {n:,} more room to no exit or stair, so that its way out is not known: {named}. Add the way "
-        "to Routes.",
-        "The workbook joins {n:,} more rooms to no exit or stair, so that their way out is not known: {named}. Add the "
-        "ways to Routes.",
+        "The workbook joins {n:,} more room to no exit or stair, so that its way out is not known: {named}. Add the "
+        "way to Routes.",
+        "The workbook joins {n:,} more rooms to no exit or stair, so that their way out is not known: {named}. Add "
+        "the ways to Routes.",
         len(rooms), named=named,
     )]  # fmt: skip
 
