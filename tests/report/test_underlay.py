@@ -228,6 +228,8 @@ def test_photos_by_item_and_no_more_than_a_report_holds(tmp_path):
     assert found[0] == ""
     assert found[1] == found[2]
     assert found[1].startswith("data:image/jpeg;base64,")
+    page = render(results)
+    assert page.count('class="photo"') == 2
     photos.left = 10
     assert photos.photo_of(1) == ""
     assert Photos(_assess(tmp_path, [PIECE])).photo_of(0) == ""
