@@ -128,8 +128,7 @@ def test_tables_of_routes_join_by_name_and_index(tmp_path):
     assert segments["segment"].tolist() == [one.segment for one in results.route_tables.segments]
     chances = [one.blocked.probability if one.blocked else None for one in results.route_tables.segments]
     assert [None if pd.isna(value) else value for value in segments["blocked_probability"]] == chances
-    assert None in chances
-    assert set(segments["state"]) <= {"open", "reduced", "blocked", "not evaluated"}
+    assert set(segments["state"]) <= {"open", "doubtful", "blocked", "not known"}
     assert routes["segment_indices"].tolist() == [[0, 1, 2], [3], [4]]
     assert routes["fixes"].tolist()[0] == ["tall"]
     assert rooms["ways"].tolist() == [["Street"], ["Street"]]

@@ -122,7 +122,7 @@ def test_by_the_formulas_alone_nothing_stands_apart(formulas):
     content = build_content(formulas)
     assert {one.apart for one in formulas} == {""}
     assert (content.total.free, content.total.unconfirmed, content.total.by_formula) == (7, 0, 0)
-    assert content.summary.apart == content.summary.assumed == []
+    assert content.summary.apart == []
     text = read_text(render(formulas))
     assert "unconfirmed" not in text.partition("What the marks mean")[0]
     assert "by formula only" not in text

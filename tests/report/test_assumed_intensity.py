@@ -11,6 +11,7 @@ from assess.intensity import MIDORIKAWA, WORDEN
 from assess.report import write_reports
 from assess.report.content import build_content
 from assess.report.findings.assumed_intensity import say_shaking, say_shaking_shortly
+from assess.report.findings.uncertain import say_assumed
 from assess.settings import Settings
 from tests.cli.calling import run
 from tests.workbooks import assessed, write
@@ -130,7 +131,8 @@ def test_a_derived_pga_and_an_open_class_are_among_the_assumptions(tmp_path):
 def test_a_larger_motion_uncertainty_is_the_workbooks(tmp_path):
     results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shaking=CHOICE, motion_uncertainty=1.0,
                        settings=Settings(runs=25))  # fmt: skip
-    (text,) = [one for one in build_content(results).summary.assumed if "dispersion of 1 " in one]
+    text = say_assumed(results)
+    assert "dispersion of 1 " in text
     assert "as filled in" in text
 
 

@@ -53,8 +53,8 @@ def test_all_formats_are_written(tmp_path):
 
 
 def test_an_unknown_format_is_refused(tmp_path):
-    with pytest.raises(assess.InputError, match="formats: 'docx' is unknown, expected some of: pdf, annex, xlsx"):
-        assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("docx",))
+    with pytest.raises(assess.InputError, match="formats: 'odt' is unknown, expected some of: pdf, annex, xlsx"):
+        assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("odt",))
     assert not (tmp_path / "out").exists()
 
 

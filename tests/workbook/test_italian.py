@@ -184,8 +184,8 @@ def test_the_classes_stand_in_italian(book: Any) -> None:
 
 def test_a_workbook_typed_by_hand(tmp_path: Path) -> None:
     items: Rows = [
-        ["ELEMENTO", "piano", "profondita [mm]", " Altezza[cm]", "Ancorato", "Importanza", "Tipo", "Foto", "Classe (formula)"],
-        ["A1", "1", 400, 180, "Si", "Incolumita'", None, "a.jpg", "▲ alto"],
+        ["ELEMENTO", "piano", "profondita [mm]", " Altezza[cm]", "Ancorato", "Importanza", "Tipo", "Colore", "Classe (formula)"],
+        ["A1", "1", 400, 180, "Si", "Incolumita'", None, "rosso", "▲ alto"],
         ["A2", "1", None, None, "in parte", "vita", "Baule", None, "?"],
     ]  # fmt: skip
     items[2][5] = "beni"  # type: ignore[index]
@@ -199,7 +199,7 @@ def test_a_workbook_typed_by_hand(tmp_path: Path) -> None:
     first, second = inventory.items
     assert (first.breadth, first.height, first.anchored, first.importance) == (0.4, 1.8, "yes", "life safety")
     assert (second.breadth, second.anchored, second.importance) == (0.3, "partly", "property")
-    assert inventory.extra_columns == ("Foto",)
+    assert inventory.extra_columns == ("Colore",)
     told = inventory.building
     assert (told.storeys, told.use, told.client, told.scenario_kind) == (4, "Uffici", "Un ente", "as filled")
     assert told.ground_pga == pytest.approx(0.980665)

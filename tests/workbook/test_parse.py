@@ -112,23 +112,23 @@ def test_header_too_far_down(tmp_path: Path) -> None:
 
 
 def test_unknown_columns_are_kept(tmp_path: Path) -> None:
-    header = [*ITEMS[0], "Photo", "Inventory no.", "Bought"]
+    header = [*ITEMS[0], "Picture", "Inventory no.", "Bought"]
     rows: Sheet = [
-        ["A1", "1", 40, 180, "a.jpg", 4711.0, datetime(2020, 5, 1)],
+        ["A1", "1", 40, 180, "left", 4711.0, datetime(2020, 5, 1)],
         ["A2", "1", 50, 180, None, "x\u202ey", True],
     ]
     inventory = read(tmp_path, [header, *rows])
-    assert inventory.extra_columns == ("Photo", "Inventory no.", "Bought")
-    assert [one.extra for one in inventory.items] == [("a.jpg", "4711", "2020-05-01T00:00:00"), ("", "xy", "TRUE")]
+    assert inventory.extra_columns == ("Picture", "Inventory no.", "Bought")
+    assert [one.extra for one in inventory.items] == [("left", "4711", "2020-05-01T00:00:00"), ("", "xy", "TRUE")]
     assert remarks(inventory, "note") == {
-        "Items!E1: the column 'Photo' is not known; it is kept, not used.",
+        "Items!E1: the column 'Picture' is not known; it is kept, not used.",
         "Items!F1: the column 'Inventory no.' is not known; it is kept, not used.",
         "Items!G1: the column 'Bought' is not known; it is kept, not used.",
     }
 
 
 def test_a_row_without_an_entry_is_left_out(tmp_path: Path) -> None:
-    inventory = read(tmp_path, [[*ITEMS[0], "Photo"], [*ITEMS[1], None], [None, None, None, " ", "b.jpg"]])
+    inventory = read(tmp_path, [[*ITEMS[0], "Picture"], [*ITEMS[1], None], [None, None, None, " ", "right"]])
     assert len(inventory.items) == 1
     assert remarks(inventory, "warning") == {"Items!E3: stands in a row without an entry; the row is left out."}
 

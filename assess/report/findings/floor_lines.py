@@ -47,7 +47,8 @@ def say_counts(counts: Counts) -> str:
     """Return the pieces of a floor by class, with what stands apart, and the expected falls."""
     parts = [f"{words.risk_label(risk)} {pieces:,}" for risk, pieces in reversed(list(counts.by_class.items()))]
     if counts.unconfirmed:
-        parts.append(f"{words.UNCONFIRMED} {_('unconfirmed')} {counts.unconfirmed:,}")
+        unconfirmed = _("unconfirmed")
+        parts.append(f"{words.UNCONFIRMED} {unconfirmed} {counts.unconfirmed:,}")
     if counts.by_formula:
         parts.append(f"{words.BY_FORMULA} {_('by formula only')} {counts.by_formula:,}")
     if counts.anchored:

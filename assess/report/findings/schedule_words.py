@@ -243,9 +243,10 @@ def list_work(entries: Sequence[Entry], floors: Sequence[str]) -> list[Work]:
 
 def list_rooms(works: Sequence[Work], floors: Mapping[str, str]) -> list[Room]:
     """Return work under the headings of its rooms; `floors` are the titles of the floors by their names."""
+    nowhere = _("no room given")
 
     def head(floor: str, room: str) -> str:
-        return f"{floors[floor]}: {words.cut(room, 60) if room else _('no room given')}"
+        return f"{floors[floor]}: {words.cut(room, 60) or nowhere}"
 
     rooms = groupby(works, key=lambda one: (one.row.floor, one.row.room))
     return [Room(head(*place), list(own)) for place, own in rooms]
@@ -335,11 +336,14 @@ def list_marks(schedule: Schedule) -> list[str]:
     weights, heights = sum(one.weights_assumed for one in works), sum(one.heights_assumed for one in works)
     metres = sum(one.pieces for one in works if one.is_per_metre)
     texts = {
-        WEIGHT: _("weight assumed, for {n:,} of {all:,} pieces", n=weights, all=total) if weights else "",
-        HEIGHT: _("bracket height assumed, 0.9 of the piece's height, for {n:,} of {all:,} pieces",
-                  n=heights, all=total) if heights else "",
-        METRE: _("forces and fixings of one metre of the width, which is not known, for {n:,} of {all:,} pieces",
-                 n=metres, all=total) if metres else "",
+        WEIGHT: ngettext("weight assumed, for {some:,} of {n:,} piece", "weight assumed, for {some:,} of {n:,} pieces",
+                         total, some=weights) if weights else "",
+        HEIGHT: ngettext("bracket height assumed, 0.9 of the piece's height, for {some:,} of {n:,} piece",
+                         "bracket height assumed, 0.9 of the piece's height, for {some:,} of {n:,} pieces",
+                         total, some=heights) if heights else "",
+        METRE: ngettext("forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} piece",
+                        "forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} pieces",
+                        total, some=metres) if metres else "",
     }  # fmt: skip
     return [f"{mark}: {text}." for mark, text in texts.items() if text]
 
