@@ -341,9 +341,11 @@ def list_marks(schedule: Schedule) -> list[str]:
         HEIGHT: ngettext("bracket height assumed, 0.9 of the piece's height, for {some:,} of {n:,} piece",
                          "bracket height assumed, 0.9 of the piece's height, for {some:,} of {n:,} pieces",
                          total, some=heights) if heights else "",
-        METRE: ngettext("forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} piece",
-                        "forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} pieces",
-                        total, some=metres) if metres else "",
+        METRE: ngettext(
+            "forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} piece",
+            "forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} pieces",
+            total, some=metres,
+        ) if metres else "",
     }  # fmt: skip
     return [f"{mark}: {text}." for mark, text in texts.items() if text]
 

@@ -2,6 +2,8 @@
 
 import math
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from assess.report.word.document import HEAD, SIDE, WIDTH, Word, make, shade
@@ -17,22 +19,52 @@ _WORDS = re.compile(r"[ \t\n]+")
 _GROUND, _RULE = "E9EDF0", "C9CED3"
 
 
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A cell of the page with the row and column of the table at which it begins, and how many it spans."""
+
+    cell: Any
+    row: int
+    column: int
+    rows: int
+    columns: int
+
+
+def place_cells(rows: Sequence[Any]) -> list[Placed]:
+    """Return the cells of the rows of a page where a browser puts them: beside those that span rows from above."""
+    taken: set[tuple[int, int]] = set()
+    found = []
+    for at, row in enumerate(rows):
+        column = 0
+        for cell in row.iterchildren("td", "th"):
+            while (at, column) in taken:
+                column += 1
+            high = min(int(cell.get("rowspan") or 1), len(rows) - at)
+            found.append(Placed(cell, at, column, high, int(cell.get("colspan") or 1)))
+            taken |= {(at + down, column + right) for down in range(high) for right in range(found[-1].columns)}
+            column += found[-1].columns
+    return found
+
+
 def write_table(word: Word, table: Any) -> None:
     """Write a table of the page; its caption stands above it."""
     for caption in table.findall("caption"):
         Line(word, word.file.add_paragraph(style="Caption")).fill(caption)
     rows = [(row, is_head) for part, is_head in _parts(table) for row in part.findall("tr")]
-    grid = [list(row.iterchildren("td", "th")) for row, _is_head in rows]
-    columns = max((sum(_span(cell) for cell in row) for row in grid), default=0)
+    placed = place_cells([row for row, _is_head in rows])
+    columns = max((one.column + one.columns for one in placed), default=0)
     if not columns:
         return
     made = word.file.add_table(len(rows), columns)
     made.autofit = False
-    widths = _find_widths(table, grid, columns)
-    _set_columns(made, widths)
-    for tr, cells, (row, is_head) in zip(made._tbl.tr_lst, grid, rows, strict=True):
+    _set_columns(made, _find_widths(table, placed, columns))
+    slots = [list(tr.tc_lst) for tr in made._tbl.tr_lst]
+    for tr, (_row, is_head) in zip(made._tbl.tr_lst, rows, strict=True):
         word.progress.check()
-        _write_row(word, made, tr, cells, is_head=is_head, is_part="part" in row.get("class", "").split())
+        _set_row(tr, is_head=is_head)
+    for one in placed:
+        row, is_head = rows[one.row]
+        _write_slot(word, made, slots, one, is_head=is_head or "part" in row.get("class", "").split())
     _set_borders(made)
     word.file.add_paragraph(style="Small")
 
@@ -42,26 +74,22 @@ def _parts(table: Any) -> list[tuple[Any, bool]]:
     return own or [(table, False)]
 
 
-def _span(cell: Any) -> int:
-    return int(cell.get("colspan") or 1)
-
-
-def _write_row(word: Word, table: Any, tr: Any, cells: list[Any], *, is_head: bool, is_part: bool) -> None:
-    from docx.table import _Cell
-
+def _set_row(tr: Any, *, is_head: bool) -> None:
     properties = tr.get_or_add_trPr()
     properties.append(make("w:cantSplit"))
     if is_head:
         properties.append(make("w:tblHeader"))
-    slots = [_Cell(tc, table) for tc in tr.tc_lst]
-    at = 0
-    for cell in cells:
-        last = min(at + _span(cell), len(slots)) - 1
-        slot = slots[at].merge(slots[last]) if last > at else slots[at]
-        _write_cell(word, slot, cell, is_head=is_head or is_part)
-        at = last + 1
-        if is_head or is_part:
-            shade(slot._tc.get_or_add_tcPr(), _GROUND)
+
+
+def _write_slot(word: Word, table: Any, slots: list[list[Any]], one: Placed, *, is_head: bool) -> None:
+    from docx.table import _Cell
+
+    first = _Cell(slots[one.row][one.column], table)
+    last = slots[one.row + one.rows - 1][one.column + one.columns - 1]
+    slot = first.merge(_Cell(last, table)) if one.rows > 1 or one.columns > 1 else first
+    _write_cell(word, slot, one.cell, is_head=is_head)
+    if is_head:
+        shade(slot._tc.get_or_add_tcPr(), _GROUND)
 
 
 def _write_cell(word: Word, slot: Any, cell: Any, *, is_head: bool) -> None:
@@ -78,18 +106,15 @@ def _write_cell(word: Word, slot: Any, cell: Any, *, is_head: bool) -> None:
 # ---------------------------------------------------------------- widths
 
 
-def _find_widths(table: Any, grid: list[list[Any]], columns: int) -> list[float]:
+def _find_widths(table: Any, placed: Sequence[Placed], columns: int) -> list[float]:
     """Return the width of each column [mm]: in percent where the page says so, else by what it holds.
 
     None is narrower than its longest word, as long as there is room for all.
     """
     texts: list[list[str]] = [[] for _column in range(columns)]
-    for row in grid:
-        at = 0
-        for cell in row:
-            if _span(cell) == 1 and at < columns:
-                texts[at].append(" ".join(cell.itertext()))
-            at += _span(cell)
+    for one in placed:
+        if one.columns == 1:
+            texts[one.column].append(" ".join(one.cell.itertext()))
     own = [_own_width(col) for col in table.iterfind("colgroup/col")][:columns]
     own += [None] * (columns - len(own))
     shares = [min(MOST, max(LEAST, *map(_reckon, one), LEAST)) for one in texts]
