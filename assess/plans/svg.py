@@ -133,9 +133,14 @@ class SvgReader:
 
 
 def read_style(attributes: Mapping[str, str], above: Mapping[str, str]) -> dict[str, str]:
-    """Return what decides whether a shape is seen: its own, else that of the element round it."""
+    """Return what decides whether a shape is seen: its own, else that of the element round it.
+
+    What lies in an element that is not displayed stays hidden, whatever it says itself (SVG 1.1, 11.5).
+    """
     own = {name: attributes[name] for name in ("display", "visibility", "fill", "stroke") if name in attributes}
     own |= dict(_STYLE.findall(attributes.get("style", "")))
+    if above.get("display") == "none":
+        own["display"] = "none"
     return {**above, **{name: value.strip() for name, value in own.items()}}
 
 

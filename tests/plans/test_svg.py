@@ -73,6 +73,16 @@ def test_what_is_hidden_or_beyond_the_frame_is_not_drawn():
     np.testing.assert_allclose(line, [(0, 0.375), (1, 0.375)])
 
 
+@pytest.mark.parametrize("off", ["display='none'", "style='display:none'"])
+def test_a_layer_that_is_off_hides_all_in_it(off):
+    shown = "<path style='display:inline;visibility:visible' stroke='#000' d='M0 0H9'/>"
+    layer = f"<g {off}>{shown}<g display='inline'>{shown}</g></g>"
+    (line,) = lines_of(f"{layer}<path d='M0 600H1600'/>")
+    np.testing.assert_allclose(line, [(0, 0.375), (1, 0.375)])
+    (line,) = lines_of(f"<g visibility='hidden'>{shown}</g>")  # unlike visibility, which a shape may take back
+    np.testing.assert_allclose(line, [(0, 0.75), (9 / 1600, 0.75)])
+
+
 def test_the_frame_is_the_viewbox_else_the_size_else_the_lines():
     size = "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='50mm'>"
     assert read_plan(svg("<path d='M0 0L10 10'/>", size), None).aspect == pytest.approx(0.5)
