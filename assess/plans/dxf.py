@@ -7,7 +7,7 @@ import io
 import logging
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from assess.i18n import fill
@@ -21,6 +21,8 @@ DEEPEST = 16
 """Blocks inside each other."""
 MOST_INSERTS = 20_000
 """Blocks that are inserted: each takes a tenth of a millisecond, and blocks may hold blocks."""
+MOST_TAGS = 1_000_000
+"""Pairs of a group code and its value: a line has about a dozen. Each takes some 7 microseconds."""
 CHORDS = 8
 """Chords of each curve."""
 DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRACE", "3DFACE"})
@@ -66,12 +68,28 @@ def _open(data: bytes) -> "Document":
         raise PictureError(message) from None
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
     try:
+        _check_size(recover.bytes_loader(io.BytesIO(data)))
         document, _auditor = recover.read(io.BytesIO(data))
+    except PictureError:
+        raise
     except Exception:  # likewise
         raise damaged() from None
     if b"EOF" not in data[-64:] and not data.startswith(b"AutoCAD Binary"):
         raise damaged()
     return document
+
+
+def _check_size(tags: Iterable[Any]) -> None:
+    """Raise PictureError where there are too many elements (group code 0) or tags; they are not kept meanwhile."""
+    elements = 0
+    for at, tag in enumerate(tags, start=1):
+        elements += tag.code == 0
+        if elements > MOST_ELEMENTS:
+            raise too_many()
+        if at > MOST_TAGS:
+            raise PictureError(
+                fill("it has more than {most:,} group codes. Save the walls and doors alone", most=MOST_TAGS)
+            )
 
 
 def _metres(document: "Document") -> float | None:

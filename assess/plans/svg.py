@@ -123,10 +123,11 @@ class SvgReader:
         if name == "g" or not is_shown(style):
             return
         for line in _SHAPES[name](attributes):
-            self._points += len(line)
+            self._points += max(len(line), 1)
             if self._points > MOST_RAW:
                 raise too_many()
-            self.lines.append([apply(matrix, point) for point in line])
+            if len(line) > 1:
+                self.lines.append([apply(matrix, point) for point in line])
 
 
 # ---------------------------------------------------------------- attributes
@@ -138,7 +139,7 @@ def read_style(attributes: Mapping[str, str], above: Mapping[str, str]) -> dict[
     What lies in an element that is not displayed stays hidden, whatever it says itself (SVG 1.1, 11.5).
     """
     own = {name: attributes[name] for name in ("display", "visibility", "fill", "stroke") if name in attributes}
-    own |= dict(_STYLE.findall(attributes.get("style", "")))
+    own |= {found[1]: found[2] for found in _STYLE.finditer(attributes.get("style", ""))}
     if above.get("display") == "none":
         own["display"] = "none"
     return {**above, **{name: value.strip() for name, value in own.items()}}
@@ -158,6 +159,8 @@ def read_list(text: str) -> list[float]:
         if not entry:
             raise unreadable()
         found.append(read_number(entry[1]))
+        if len(found) > 2 * MOST_RAW:
+            raise too_many()
         at = entry.end()
     return found
 

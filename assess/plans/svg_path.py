@@ -48,7 +48,10 @@ class PathReader:
         self.count = 0
 
     def read(self) -> list[list[Point]]:
-        """Return the points of every part, or raise PictureError."""
+        """Return the points of every part, or raise PictureError.
+
+        Each command has left a point or a part, though a part may have one point or none: their number tells the work.
+        """
         command = ""
         while (blank := _BLANK.match(self.text, self.at)) and blank.end() < len(self.text):
             found = _COMMAND.match(self.text, self.at)
@@ -58,7 +61,7 @@ class PathReader:
                 raise unreadable()
             self._do(command)
             command = {"M": "L", "m": "l"}.get(command, command)
-        return [line for line in self.lines if len(line) > 1]
+        return self.lines
 
     def _do(self, command: str) -> None:
         kind = command.upper()
@@ -88,13 +91,16 @@ class PathReader:
     def _go(self, *points: Point) -> None:
         if not all(abs(value) <= FARTHEST for point in points for value in point):
             raise unreadable()
-        self.count += len(points)
-        if self.count > MOST_RAW:
-            raise too_many()
+        self._count(len(points))
         if self.kind not in "MZ" and not self.lines[-1]:
             self.lines[-1].append(self.begun)
         self.lines[-1] += points
         self.here = points[-1]
+
+    def _count(self, done: int) -> None:
+        self.count += done
+        if self.count > MOST_RAW:
+            raise too_many()
 
     def _move(self, origin: Point) -> None:
         self.begun = self._point(origin)
@@ -104,6 +110,7 @@ class PathReader:
     def _close(self, _origin: Point) -> None:
         if self.lines[-1]:
             self._go(self.begun)
+        self._count(1)
         self.lines.append([])
         self.here = self.begun
 

@@ -1,8 +1,24 @@
 """Drawings of plans for tests: a plate of 16 x 12 m with two rooms, as SVG and DXF."""
 
 import io
+from pathlib import Path
 
 import ezdxf
+
+from tests.apart import run_apart
+
+MOST_MEMORY = 200
+"""MB at the peak, 45 of them for Python and its libraries."""
+_CHILD = """
+import sys
+from pathlib import Path
+from assess.pictures import PictureError
+from assess.plans import read_plan
+try:
+    print(len(read_plan(Path(sys.argv[1]).read_bytes(), None).content), "bytes")
+except PictureError as error:
+    print(error)
+"""
 
 SVG_HEAD = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1600 1200">'
 
@@ -33,6 +49,11 @@ def dxf(units: int = 4, *, xref: bool = False) -> bytes:
         document.add_xref_def("secret/other.dxf", "OTHER")
         space.add_blockref("OTHER", (0, 0))
     return write(document)
+
+
+def read_apart(path: Path) -> str:
+    """Read a plan in a process of its own; return what it says, having checked how much memory it took."""
+    return run_apart(_CHILD, path, most_memory=MOST_MEMORY, seconds=120)
 
 
 def write(document: "ezdxf.document.Drawing") -> bytes:

@@ -5,11 +5,12 @@ import sys
 import ezdxf
 import numpy as np
 import pytest
+from ezdxf import recover
 
 from assess.pictures import PictureError
 from assess.plans import read_plan
 from assess.plans.linework import unpack
-from tests.plans.drawings import dxf, write
+from tests.plans.drawings import dxf, read_apart, write
 
 
 def test_lines_with_the_width_that_the_units_tell():
@@ -72,6 +73,36 @@ def test_what_cannot_be_used(fill, message):
     fill(document)
     with pytest.raises(PictureError, match=message):
         read_plan(write(document), None)
+
+
+def text_dxf(content):
+    return b"0\nSECTION\n2\nENTITIES\n" + content + b"0\nENDSEC\n0\nEOF\n"
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [(b"0\nX\n" * 100_000, "more than 100,000 elements"), (b" 000 \r\nX\r\n" * 100_000, "more than 100,000 elements"),
+     (b"0\nTEXT\n" + b"1\nX\n" * 1_000_000, "more than 1,000,000 group codes"),
+     (b"999\nnote\n" * 1_200_000, "larger than 10 MB")],
+    ids=["elements", "other zeros", "tags", "bytes"],
+)  # fmt: skip
+def test_a_large_drawing_is_refused_before_ezdxf_builds_it(content, message, monkeypatch):
+    built = []
+    monkeypatch.setattr(recover, "read", lambda *_: built.append(1))
+    with pytest.raises(PictureError, match=message):
+        read_plan(text_dxf(content), None)
+    assert not built
+
+
+def test_values_of_zero_are_no_elements():
+    lines = b"0\nLINE\n8\n0\n10\n0\n20\n0\n11\n9\n21\n9\n" + b"62\n0\n" * 100_001
+    assert len(unpack(read_plan(text_dxf(lines), None).content)) == 1
+
+
+def test_memory_of_a_large_drawing(tmp_path):
+    path = tmp_path / "x.dxf"
+    path.write_bytes(text_dxf(b"0\nX\n" * 1_000_000))
+    assert "more than 100,000 elements" in read_apart(path)
 
 
 def test_without_ezdxf_one_line_says_what_to_install(monkeypatch):

@@ -8,7 +8,7 @@ import pytest
 from assess.pictures import PictureError
 from assess.plans import read_plan
 from assess.plans.linework import unpack
-from tests.plans.drawings import PLAN_SVG, svg
+from tests.plans.drawings import PLAN_SVG, read_apart, svg
 
 UNREADABLE = "a path, a number or a transform in it cannot be read"
 
@@ -122,6 +122,10 @@ BOMB = "".join(f'<!ENTITY e{n} "{10 * one}">' for n, one in enumerate((f"&e{n};"
         (svg("<g>" * 200 + "</g>" * 200), "damaged"),
         (svg(f"<path d='M0 0{'l1 9-1-9' * 40_000}'/>"), "60,000 points"),
         (svg(f"<path d='M0 0{'c1 1 2 2 3 3' * 60_000}'/>"), "60,000 points"),
+        (svg(f"<path d='M0 0 1 1{'z' * 500_000}'/>"), "60,000 points"),
+        (svg(f"<path d='M0 0 1 1{'z' * 90_000}'/>" * 5), "60,000 points"),
+        (svg(f"<path d='{'M0 0' * 90_000}'/>" * 5), "60,000 points"),
+        (svg(f"<polyline points='{'0 ' * 800_001}'/>"), "60,000 points"),
         (svg("<path d='M0 0L1e300 5'/>"), UNREADABLE),
         (svg("<path d='M0 0L1e999 5'/>"), UNREADABLE),
         (svg("<path d='M0 0LNaN 5'/>"), UNREADABLE),
@@ -145,11 +149,18 @@ BOMB = "".join(f'<!ENTITY e{n} "{10 * one}">' for n, one in enumerate((f"&e{n};"
         (b"AC1032" + bytes(100), "is a DWG drawing, which cannot be read. Save it as DXF"),
         (b"%PDF-1.7", "no PNG, JPEG, SVG or DXF file"),
     ],
-    ids=range(29),
+    ids=range(33),
 )  # fmt: skip
 def test_what_cannot_be_used(data, message):
     with pytest.raises(PictureError, match=message):
         read_plan(data, 16.0)
+
+
+@pytest.mark.parametrize(("before", "item"), [("<polyline points='", "0 "), ("<path d='M0 0 1 1", "z")])
+def test_memory_of_a_large_drawing(tmp_path, before, item):
+    path = tmp_path / "x.svg"
+    path.write_bytes(svg(f"{before}{item * (10_000_000 // len(item))}'/>"))
+    assert "60,000 points" in read_apart(path)
 
 
 def test_a_document_type_without_entities_is_read():
