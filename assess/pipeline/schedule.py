@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.details import DETAILS, Detail, count_fixings, find_detail
-from assess.model import Cost, Inventory, Item
+from assess.model import Cost, Inventory
 from assess.natural import natural_key
 from assess.results import ItemResult, ItemRow, Results
 from assess.risk import RiskClass
@@ -42,7 +42,7 @@ def build_schedule(
     held = {one.item.index for one in chosen}
     return Schedule(
         rows=tuple(
-            _describe(place, entry, inventory, costs, together, avoided[place - 1], left[place - 1])
+            _describe(place, entry, costs, together, avoided[place - 1], left[place - 1])
             for place, entry in enumerate(entries, 1)
         ),
         before=_sum_up(rows, results.route_tables, ()),
@@ -122,7 +122,7 @@ def _kind(one: ItemResult) -> tuple[object, ...]:
     room = item.room or item.index
     sizes = (item.breadth_cm, item.width_cm, item.height_cm, item.anchor.tension_high_kn)
     bracket = (item.anchored, item.anchor.holds, item.anchor.holds_high) if item.anchor.holds is not None else ()
-    described = item.floor, room, item.type, item.description, sizes, bracket
+    described = item.floor, room, item.type, item.description, choose_detail(item), sizes, bracket
     return *described, item.importance, one.apart, adopted.upper, one.routes
 
 
@@ -145,7 +145,6 @@ def _list_together(routes: Sequence[RouteRow]) -> list[frozenset[int]]:
 def _describe(
     place: int,
     entry: Sequence[ItemResult],
-    inventory: Inventory,
     costs: Mapping[str, Cost],
     together: Sequence[frozenset[int]],
     avoided: float,
@@ -162,15 +161,15 @@ def _describe(
         item_indices=indices,
         pieces=sum(one.item.quantity for one in entry),
         is_together=any(len(one & set(indices)) > 1 for one in together),
-        works=tuple(_describe_work(own, inventory, costs) for own in alike.values()),
+        works=tuple(_describe_work(own, costs) for own in alike.values()),
         falls_avoided=avoided,
         falls_left=left,
     )
 
 
-def _describe_work(alike: Sequence[ItemResult], inventory: Inventory, costs: Mapping[str, Cost]) -> WorkRow:
+def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> WorkRow:
     first, rows = alike[0].item, [one.item for one in alike]
-    detail = DETAILS[choose_detail(inventory.items[first.index])]
+    detail = DETAILS[choose_detail(first)]
     pieces, cost = sum(one.quantity for one in rows), costs.get(detail.key)
     forces = [find_forces(one, detail) for one in rows]
     high, code = max(one.high for one in forces), _find_largest([one.code for one in forces])
@@ -230,7 +229,7 @@ def _find_costs(costs: Sequence[Cost]) -> dict[str, Cost]:
     return {detail.key: one for detail, one in found if detail}
 
 
-def choose_detail(item: Item) -> str:
+def choose_detail(item: ItemRow) -> str:
     """Return the generic detail for a piece: at the base where it stands free of walls or is a filing cabinet."""
     named = f"{item.type} {item.description}".casefold()
     if item.against_wall is False or any(word in named for word in FILES):

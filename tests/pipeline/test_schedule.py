@@ -37,6 +37,19 @@ def test_alike_pieces_of_a_room_are_one_entry(tmp_path):
     assert (first.place, first.room, first.pieces, first.is_together) == (1, "A", 4, False)
 
 
+@pytest.mark.parametrize("order", [("wall", "free"), ("free", "wall")])
+def test_pieces_that_are_fixed_in_different_ways_are_not_alike(tmp_path, order):
+    given = {"wall": "yes", "free": "no"}
+    items = [TALL | {"item": name, "room": "A", "against_wall": given[name]} for name in order]
+    results, schedule, _ = schedule_of(tmp_path, items)
+    works = {one.items: one for row in schedule.rows for one in row.works}
+    details = {items: one.detail for items, one in works.items()}
+    assert details == {("wall",): "bracket", ("free",): "base_angle"}
+    tension = results["free"].item.anchor.tension_kn
+    assert works["wall",].tension_kn == pytest.approx(tension)
+    assert works["free",].tension_kn == pytest.approx(tension * 0.9 * 190 / 30)
+
+
 def test_what_is_left_adds_up(tmp_path):
     items = [TALL | {"item": f"{room}1", "room": room, "quantity": n} for room, n in (("A", 1), ("B", 4), ("C", 2))]
     results, schedule, names = schedule_of(tmp_path, items)
