@@ -2,7 +2,8 @@
 
 A piece of weight W turns about its toe; a bracket at height h holds it back. For a horizontal acceleration k and an
 upward one k_v, both as shares of g, moments about the toe give the tension T = W [k z - (1 - k_v) B/2]/h, and nothing
-where the weight alone holds it. What the base has to carry is k W - T: friction carries at most mu (1 - k_v) W of it.
+where the weight alone holds it. What the base has to carry is |k W - T|: friction carries at most mu (1 - k_v) W of
+it. A bracket below z - B/(2 k), without k_v, takes more than k W, and the base slides towards the wall.
 
 References
 ----------
@@ -66,13 +67,13 @@ def find_tension_without_weight(
 def find_needed_friction(
     *, weight: ArrayLike, acceleration: ArrayLike, tension: ArrayLike, vertical: ArrayLike = 0.0
 ) -> FloatArray:
-    """Return the coefficient of friction below which an anchored piece slides out at its base [-].
+    """Return the coefficient of friction below which an anchored piece slides at its base, out or to the wall [-].
 
     `tension` is that of its bracket; the other parameters are as in `find_tension`. Infinite where k_v is 1 or more.
     """
     w, k, t, up = (np.asarray(one, float) for one in (weight, acceleration, tension, vertical))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(up < 1, np.maximum(k - t / w, 0) / (1 - up), np.inf))
+        return np.asarray(np.where(up < 1, np.abs(k - t / w) / (1 - up), np.inf))
 
 
 def find_code_demand(

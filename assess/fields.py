@@ -386,7 +386,7 @@ ANCHOR_FIELDS = (
     _of_anchor("shear_code_kn", fill("Shear by the code")),
     _of_anchor(
         "needed_friction", fill("Friction needed at the base"), unit="", shows=DATA,
-        help="Coefficient below which the base of the held piece slides out at PFA.",
+        help="Coefficient below which the base of the held piece slides at PFA.",
     ),
     *(
         Field(key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), kind="flag", shows=DATA, help=text)

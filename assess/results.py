@@ -295,9 +295,9 @@ class AnchorRow:
     tension_without_weight_kn : float
         The same for PFA without the help of the weight.
     shear_kn : float
-        At the base for PFA.
+        At the base for PFA, in whichever direction.
     needed_friction : float
-        Coefficient of friction below which the base slides out [-].
+        Coefficient of friction below which the base slides [-].
     tension_code_kn, shear_code_kn : float, optional
         For F_p of ASCE 7-22, 13.3.1; None where neither SDS nor Ground PGA is known.
     holds, holds_high, holds_code : bool, optional

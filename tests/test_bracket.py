@@ -26,6 +26,15 @@ def test_friction_that_the_base_needs_of_physics_f():
     assert found == pytest.approx(0.471, abs=5e-4)
 
 
+def test_a_low_bracket_takes_more_than_the_force_and_the_base_slides_to_the_wall():
+    """Below z - B/(2 k), 0.567 m: T = 1.2 (0.6 x 0.9 - 0.2) / 0.4 = 1.02, more than k W = 0.72; 0.30 / 1.2 is left."""
+    low = PIECE | {"height": np.array([0.40, 0.90 - 0.40 / 1.2])}
+    tension = find_tension(**low, acceleration=0.6, breadth=0.40)
+    assert tension == pytest.approx([1.02, 0.72])
+    found = find_needed_friction(weight=1.2, acceleration=0.6, tension=tension)
+    assert found == pytest.approx([0.25, 0], abs=1e-12)
+
+
 def test_where_the_weight_holds_it_alone_there_is_no_tension():
     """Below B/(2 z) it does not start to turn."""
     limit = 0.40 / 2 / 0.90

@@ -53,9 +53,10 @@ class Anchors:
     capacity : (n,) array
         Tension that the bracket carries [N]; NaN where it is not known.
     tension, tension_low, tension_high, tension_without_weight, shear : (n,) arrays
-        At the bracket, for PFA and for its 16 % and 84 %; without the help of the weight; and at the base, for PFA [N].
+        At the bracket, for PFA and for its 16 % and 84 %; without the help of the weight; and at the base, for PFA, in
+        whichever direction [N].
     needed_friction : (n,) array
-        Coefficient of friction below which the base slides out at PFA [-].
+        Coefficient of friction below which the base slides at PFA [-].
     tension_code, shear_code : (n,) arrays
         The same for the code's F_p [N]; NaN where it is not known.
     held : (n,) boolean array
@@ -131,10 +132,10 @@ def find_anchors(inventory: Inventory, cases: "Cases", governing: NDArray[np.int
         tension_low=low,
         tension_high=high,
         tension_without_weight=find_tension_without_weight(**body, acceleration=pfa / GRAVITY),
-        shear=pfa / GRAVITY * weight - middle,
+        shear=np.abs(pfa / GRAVITY * weight - middle),
         needed_friction=find_needed_friction(weight=weight, acceleration=pfa / GRAVITY, tension=middle),
         tension_code=tension_code,
-        shear_code=code * weight - tension_code,
+        shear_code=np.abs(code * weight - tension_code),
         held=find_held(inventory, pfa, cases.uncertainty.motion),
     )
 

@@ -211,15 +211,16 @@ def find_forces(item: ItemRow, detail: Detail) -> Forces:
     """Return what the fixings of a piece have to carry in a way to fix it.
 
     Moments about the toe give the tension at the bracket; at the base the same moment acts on the breadth, and the base
-    carries the whole horizontal force.
+    carries the whole horizontal force, k W: that of the tension without the help of the weight, k W z/h.
     """
     anchor = item.anchor
+    whole = anchor.tension_without_weight_kn * anchor.bracket_height_cm / (item.centre_of_gravity * item.height_cm)
     lever = anchor.bracket_height_cm / item.breadth_cm if detail.is_at_base else 1.0
     return Forces(
         anchor.tension_kn * lever,
         anchor.tension_high_kn * lever,
         None if anchor.tension_code_kn is None else anchor.tension_code_kn * lever,
-        anchor.shear_kn + (anchor.tension_kn if detail.is_at_base else 0.0),
+        whole if detail.is_at_base else anchor.shear_kn,
     )
 
 

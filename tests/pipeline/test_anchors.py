@@ -40,6 +40,15 @@ def test_published_check_values(tmp_path, pfa, tension, without_weight):
     assert (found.tension_code_kn, found.holds) == (None, None)
 
 
+def test_the_base_of_a_low_bracket_carries_what_it_takes_too_much(tmp_path):
+    """Bracket at 0.40 m, below z - B/(2 k): T = 1.02 kN of k W = 0.72; by the code 1.1816 of 0.7385, 0.2 upward."""
+    building = {"sds": 1.0, "height": 20, "period": 0.8, "scenario_kind": "given"}
+    found = anchor_of(assess_one(tmp_path, building, {"elevation": 20}, bracket_height=40))
+    assert (found.tension_kn, found.tension_code_kn) == pytest.approx((1.02, 1.1816), abs=1e-4)
+    assert (found.shear_kn, found.shear_code_kn) == pytest.approx((0.30, 0.4431), abs=1e-4)
+    assert found.needed_friction == pytest.approx(0.25)
+
+
 def test_the_scatter_of_pfa(tmp_path):
     found = anchor_of(assess_one(tmp_path, {"motion_uncertainty": 0.4}))
     for k, tension in ((0.6 * 0.670320, found.tension_low_kn), (0.6 * 1.491825, found.tension_high_kn)):

@@ -119,11 +119,21 @@ BY_HAND = {
     "base": (
         {"weight": 1200 / 9.80665, "description": "Lateral file"}, ("base_angle", 1.3000, 2.2345, 2.2482, 0.6000, 2),
     ),
+    # The same: a height of a bracket, below z - B/(2 k) = 0.65 m, changes nothing at the base.
+    "low": (
+        {"weight": 1200 / 9.80665, "description": "Lateral file", "bracket_height": 30},
+        ("base_angle", 1.3000, 2.2345, 2.2482, 0.6000, 2),
+    ),
+    # The bookcase with its bracket at 0.30 m: T as at the base, of B = 0.30 m; shear 1.3000 - 0.6000 = 0.7000 kN;
+    # 2.2482 / 0.8541 = 2.63, so 3 screws.
+    "under": (
+        {"weight": 1200 / 9.80665, "bracket_height": 30}, ("bracket", 1.3000, 2.2345, 2.2482, 0.7000, 3),
+    ),
 }  # fmt: skip
-"""Three pieces by hand: what is given besides `TALL`; detail, T at PFA, at 84 %, by the code, shear, fixings."""
+"""Pieces by hand: what is given besides `TALL`; detail, T at PFA, at 84 %, by the code, shear, fixings."""
 
 
-def test_the_forces_of_three_pieces_by_hand(tmp_path):
+def test_the_forces_of_pieces_by_hand(tmp_path):
     items = [TALL | {"item": name, "room": name} | given for name, (given, _) in BY_HAND.items()]
     building = {"sds": 1.0, "motion_uncertainty": 0.4}
     _, schedule, _ = schedule_of(tmp_path, items, Building=[building])
