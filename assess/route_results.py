@@ -220,7 +220,7 @@ class SegmentRow:
         Its row in the sheet Routes.
     evaluated : bool
         Whether it is known which pieces can reach it: by the plan, because a piece names it, because it is a stair of
-        known width, or because no piece of its floor that could matter is left out.
+        known width, or because the pieces of its floor that are left out hardly fall, all of them together.
     clear_width_used_m, required_width_used_m : float
         With what was assumed where the workbook says nothing [m].
     standing_width_m, least_width_m : float

@@ -19,9 +19,10 @@ from assess.route_results import (
 )
 from assess.routes.chances import Draws, union
 from assess.routes.fixes import IsBlocked, find_fixes
+from assess.routes.missing import combine
 from assess.routes.network import Blocked, Part, build_course, build_graph, find_parts, find_rooms, find_ways
 from assess.routes.scene import Scene
-from assess.routes.states import Bounds, Verdict, settle
+from assess.routes.states import Verdict
 from assess.routes.widths import kinds_of
 
 UNKNOWN = 0.5
@@ -73,13 +74,14 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
     """Return one room; `rows` are all segments."""
     is_cut_off = partial(_is_cut_off, part, place.place)
 
-    def happens(draws: Draws) -> tuple[int, int]:
-        lost, at_most = scene.at_best_and_worst(draws, part.segments, is_cut_off)
-        return lost, draws.every if part.by_stairs else at_most
+    def happens(draws: Draws) -> tuple[int, int, int]:
+        lost, known, at_most = scene.at_best_and_worst(draws, part.segments, is_cut_off)
+        return (lost, draws.every, draws.every) if part.by_stairs else (lost, known, at_most)
 
     found = scene.judge(part.segments, happens)
-    (lost, at_most), (fallen, worst) = found.chances, found.at_most
-    verdict = settle(Bounds(lost, at_most, fallen, worst), scene.risk)
+    lost, fallen = found.chances[0], found.at_most[0]
+    record = scene.under_record(part.segments, happens)
+    verdict = scene.settle(part.segments, found.chances, found.at_most, record)
     ways = _ways(scene, place, part, rows)
     seeks_fixes = verdict.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)
     fixes, is_fixed = list_fixes(scene, part.segments, is_cut_off) if seeks_fixes else ((), True)
@@ -141,13 +143,15 @@ def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) ->
 
 
 def _way(scene: Scene, segments: tuple[int, ...], end: str) -> WayRow:
-    (lost, at_most), (fallen, worst) = scene.bounds(
-        segments, lambda draws: scene.at_best_and_worst(draws, segments, _is_any_blocked)
-    )
+    def happens(draws: Draws) -> tuple[int, int, int]:
+        return scene.at_best_and_worst(draws, segments, _is_any_blocked)
+
+    standing, if_fallen = scene.bounds(segments, happens)
+    lost, fallen = standing[0], if_fallen[0]
     return WayRow(
         segment_indices=segments,
         end=end,
-        state=settle(Bounds(lost, at_most, fallen, worst), scene.risk).state,
+        state=scene.settle(segments, standing, if_fallen, scene.under_record(segments, happens)).state,
         blocked=lost,
         blocked_if_unconfirmed_fall=fallen if lost.unconfirmed else None,
     )
@@ -201,11 +205,13 @@ def _blocked_here(scene: Scene, route: str, segments: Sequence[int]) -> float | 
     """Return the chance that a route is blocked by its segments on one floor; None where its state is not known."""
     own = {at: one for at, one in scene.segments_of(route).items() if at in segments}
     course = build_course(own, kinds_of(scene.inventory.places))
-    (lost, at_most), (fallen, worst) = scene.bounds(
-        own, lambda draws: scene.at_best_and_worst(draws, own, course.is_blocked)
-    )
-    state = settle(Bounds(lost, at_most, fallen, worst), scene.risk).state
-    return None if state == RouteState.NOT_KNOWN else lost.probability
+
+    def happens(draws: Draws) -> tuple[int, int, int]:
+        return scene.at_best_and_worst(draws, own, course.is_blocked)
+
+    standing, fallen = scene.bounds(own, happens)
+    verdict = scene.settle(own, standing, fallen, scene.under_record(own, happens))
+    return None if verdict.state == RouteState.NOT_KNOWN else standing[0].probability
 
 
 def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chance | None:
@@ -214,5 +220,6 @@ def _find_any_cut_off(scene: Scene, rooms: Sequence[tuple[Place, Part]]) -> Chan
     def is_any_lost(blocked: Blocked, every: int) -> int:
         return union(part.cut_off(blocked, [place.place], every)[0] for place, part in rooms)
 
-    (lost, _), (_, worst) = scene.bounds(segments, lambda draws: scene.at_best_and_worst(draws, segments, is_any_lost))
-    return lost if scene.is_known(lost, worst) else None
+    standing, fallen = scene.bounds(segments, lambda draws: scene.at_best_and_worst(draws, segments, is_any_lost))
+    worst = combine(fallen[1], fallen[2], scene.any_left_out_falls(segments))
+    return standing[0] if scene.is_known(standing[0], worst) else None

@@ -1,6 +1,6 @@
 """What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypedDict
 
@@ -10,7 +10,7 @@ from assess.model import Inventory, Segment
 from assess.progress import SILENT, Progress
 from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
-from assess.routes.missing import find_missing
+from assess.routes.missing import combine, find_any_falls, find_missing, is_unknown, list_left_out
 from assess.routes.network import Blocked
 from assess.routes.obstructions import Obstructions
 from assess.routes.states import Bounds, Verdict, settle
@@ -61,21 +61,39 @@ class Scene:
     _of_all: dict[tuple[bool, bool], Couplings] = field(default_factory=dict)
     """Of all pieces, by whether anchors fail and unconfirmed pieces fall: those of fewer pieces share its draws."""
     _missing: dict[int, tuple[MissingRow, ...]] = field(default_factory=dict)
+    _left_out: dict[int, tuple[int, ...]] = field(default_factory=dict)
 
     def segments_of(self, route: str) -> dict[int, Segment]:
         """Return the segments of a route by their number."""
         return {at: one.segment for at, one in enumerate(self.obstructions) if one.segment.route == route}
 
     def missing(self, segment: int) -> tuple[MissingRow, ...]:
-        """Return what is missing of a segment."""
+        """Return what is missing of a segment; of pieces that are left out, whether or not they matter."""
         if segment not in self._missing:
             one = self.obstructions[segment]
-            self._missing[segment] = find_missing(one, self.inventory, self.falls, self.risk)
+            self._missing[segment] = find_missing(one, self.inventory, self.left_out(segment))
         return self._missing[segment]
 
+    def left_out(self, segment: int) -> tuple[int, ...]:
+        """Return the pieces, by their index, that may fall and of which it is not known whether they reach a segment."""
+        if segment not in self._left_out:
+            found = list_left_out(self.obstructions[segment], self.inventory, self.falls)
+            self._left_out[segment] = tuple(found)
+        return self._left_out[segment]
+
+    def any_left_out_falls(self, segments: Iterable[int]) -> tuple[float, float]:
+        """Return how likely any piece falls that is left out of some segments, and the upper end [-]."""
+        return find_any_falls(self.falls, {item for at in segments for item in self.left_out(at)}, self.z)
+
+    def is_unknown(self, segment: int) -> bool:
+        """Tell whether nothing is known of a segment, whatever falls."""
+        return is_unknown(self.obstructions[segment], self.inventory)
+
     def is_evaluated(self, segment: int) -> bool:
-        """Tell whether it is known which pieces can reach a segment, or that none that could matter does."""
-        return self.obstructions[segment].is_evaluated or not self.missing(segment)
+        """Tell whether it is known which pieces can reach a segment, or those left out hardly fall, all together."""
+        if self.obstructions[segment].is_evaluated:
+            return True
+        return not self.is_unknown(segment) and self.any_left_out_falls([segment])[1] < self.risk
 
     def piece(self, item: int) -> PieceRef:
         """Return the reference to a piece by its index."""
@@ -191,14 +209,15 @@ class Scene:
         are blocked, and the set of all draws.
         """
 
-        def happens(draws: Draws) -> tuple[int, int, int]:
-            blocked, at_most = self.at_best_and_worst(draws, segments, is_blocked)
-            return blocked, at_most, blocked | self.narrowed(draws, segments)
+        def happens(draws: Draws) -> tuple[int, int, int, int]:
+            found = self.at_best_and_worst(draws, segments, is_blocked)
+            return *found, found[0] | self.narrowed(draws, segments)
 
         found = self.judge(segments, happens)
-        record = self._under_record(segments, happens)
-        (blocked, at_most, either), (fallen, worst, _) = found.chances, found.at_most
-        verdict = settle(Bounds(blocked, at_most, fallen, worst), self.risk, record)
+        record = self.under_record(segments, happens)
+        blocked, *_, either = found.chances
+        fallen = found.at_most[0]
+        verdict = self.settle(segments, found.chances, found.at_most, record)
         return Outlook(
             state=verdict.state,
             missing=self.list_missing(verdict, segments),
@@ -212,15 +231,39 @@ class Scene:
 
     def at_best_and_worst(
         self, draws: Draws, segments: Collection[int], is_blocked: Callable[[Blocked, int], int]
-    ) -> tuple[int, int]:
-        """Return the sets of the draws in which segments are blocked together; what is missing leaves open, or blocks.
+    ) -> tuple[int, int, int]:
+        """Return the sets of the draws in which segments are blocked together, by what is missing.
 
+        It leaves all open; those are blocked of which nothing is known; those as well that left-out pieces may reach.
         `is_blocked` is as in `outlook`.
         """
         own = self.blocked(draws, segments)
-        unknown = [at for at in segments if self.missing(at)]
+        unknown = [at for at in segments if self.is_unknown(at)]
+        reached = [at for at in segments if self.left_out(at)]
         best = is_blocked(own, draws.every)
-        return best, is_blocked({**own, **dict.fromkeys(unknown, draws.every)}, draws.every) if unknown else best
+        known = is_blocked({**own, **dict.fromkeys(unknown, draws.every)}, draws.every) if unknown else best
+        blocked = dict.fromkeys([*unknown, *reached], draws.every)
+        return best, known, is_blocked({**own, **blocked}, draws.every) if reached else known
+
+    def settle(
+        self,
+        segments: Collection[int],
+        standing: Sequence[Chance],
+        fallen: Sequence[Chance],
+        record: RouteState | None = None,
+    ) -> Verdict:
+        """Return the state of some segments by the chances of what `at_best_and_worst` returns, in this order.
+
+        `standing` are those with unconfirmed pieces standing, `fallen` those with them fallen.
+        """
+        any_falls = self.any_left_out_falls(segments)
+        bounds = Bounds(
+            best=standing[0],
+            if_missing=combine(standing[1], standing[2], any_falls),
+            if_fallen=fallen[0],
+            worst=combine(fallen[1], fallen[2], any_falls),
+        )
+        return settle(bounds, self.risk, record)
 
     def list_missing(self, verdict: Verdict, segments: Collection[int]) -> tuple[MissingRow, ...]:
         """Return what is to be filled in so that the state of some segments is known; nothing where it is."""
@@ -235,14 +278,17 @@ class Scene:
     def find_decisive(self, rows: Mapping[int, tuple[RouteState, Chance | None]], *, is_known: bool) -> int | None:
         """Return which segment decides the state of several, by the state and chance of each; None where none does.
 
-        Where it is not known the first that is not, else the one that is most likely blocked.
+        Where it is not known the first that is not, or of which something is missing; else the one that is most likely blocked.
         """
         if not is_known:
-            return next((at for at, (state, _) in rows.items() if state == RouteState.NOT_KNOWN), None)
+            return next(
+                (at for at, (state, _) in rows.items() if state == RouteState.NOT_KNOWN),
+                next((at for at in rows if self.missing(at)), None),
+            )
         chances = {at: chance.probability for at, (_, chance) in rows.items() if chance and chance.high > 0}
         return max(chances, key=lambda at: chances[at], default=None)
 
-    def _under_record(self, segments: Collection[int], happens: Happens) -> RouteState | None:
+    def under_record(self, segments: Collection[int], happens: Happens) -> RouteState | None:
         """Return the state under the recorded motion itself; pieces of which that is not known count as standing."""
         keys = self.keys(segments)
         known = self.falls.in_record[np.array([item for item, _ in keys], dtype=np.intp)]

@@ -71,6 +71,45 @@ def test_one_that_could_matter_does(given):
     assert (lone(**given).state, [row.what for row in lone(**given).missing]) == (NOT_KNOWN, ["positions"])
 
 
+@pytest.mark.parametrize(("quantity", "state"), [(1, OPEN), (2, NOT_KNOWN), (20, NOT_KNOWN)])
+def test_left_out_pieces_count_together(quantity, state):
+    """Each falls at 2 %: two of them, independently, at 3.96 %, in one row or in several."""
+    row = evaluated(make_falls([0.02], quantity=[quantity]), [piece(2.0, **LOOSE, quantity=quantity)],
+                    [corridor()], CORRIDOR)  # fmt: skip
+    rows = evaluated(make_falls([0.02] * quantity), [piece(2.0, **LOOSE)] * quantity, [corridor()], CORRIDOR)
+    assert [one.routes[0].state for one in (row, rows)] == [state, state]
+    assert [one.rooms[0].state for one in (row, rows)] == [state, state]
+    assert len(rows.routes[0].missing) == (state is NOT_KNOWN)
+    assert [len(one.names) for one in rows.segments[0].missing] == [quantity] * (state is NOT_KNOWN)
+
+
+def test_left_out_pieces_count_with_those_that_reach_it():
+    """2 % by a piece at the edge and 2 % by one that is left out are 3.96 %; 10 % and 2 % stay doubtful."""
+    items = [piece(2.0, x=5.0, y=1.1, width=0.8, axis="Y"), piece(2.0, **LOOSE)]
+    found = [one_segment(make_falls([own, 0.02]), items, corridor()) for own in (0.0, 0.02, 0.1, 0.29)]
+    assert [one.state for one in found] == [OPEN, NOT_KNOWN, DOUBTFUL, NOT_KNOWN]
+
+
+def test_left_out_pieces_of_all_segments_of_a_route_count_together():
+    """Each of two segments is open at 2 %; the route and the room, which need both, are not known."""
+    segments = [stretch("a", "West", "Mid", room="One"), stretch("b", "Mid", "East", room="Two")]
+    places = [*CORRIDOR, place("Mid", "", (5, 0))]
+    items = [piece(2.0, **LOOSE, room="One"), piece(2.0, **LOOSE, room="Two")]
+    found = evaluated(make_falls([0.02, 0.02]), items, segments, places)
+    assert [one.state for one in found.segments] == [OPEN, OPEN]
+    assert (found.routes[0].state, found.rooms[0].state) == (NOT_KNOWN, NOT_KNOWN)
+    assert [(row.what, row.names) for row in found.routes[0].missing] == [("positions", ("P0", "P1"))]
+    assert found.routes[0].decisive_segment == 0
+
+
+def test_left_out_pieces_that_fall_in_the_same_draws_count_once():
+    """2 of 200 draws: 3.6 % at most, and 1 of 300 1.9 %, however many pieces fall in that same draw."""
+    for count, runs, state in ((2, 200, NOT_KNOWN), (1, 300, OPEN)):
+        fell = [at < count for at in range(runs)]
+        falls = make_falls([count / runs] * 9, high=[0.02] * 9, fell=dict.fromkeys(range(9), fell))
+        assert one_segment(falls, [piece(2.0, **LOOSE)] * 9, corridor()).state is state
+
+
 def test_blocked_wins_over_what_is_missing():
     items = [piece(2.0, x=5.0, y=1.1, width=0.8, axis="Y"), piece(2.0, **LOOSE)]
     found = [one_segment(make_falls([chance, 0.9]), items, corridor()) for chance in (0.29, 0.3)]
@@ -93,6 +132,30 @@ def test_a_segment_without_a_plan_needs_its_places():
 def test_a_floor_of_which_no_furniture_is_listed_is_not_known_without_a_plan():
     (found,) = evaluated(make_falls([]), [], [stretch()]).segments
     assert (found.state, found.evaluated) == (NOT_KNOWN, False)
+
+
+def test_one_on_no_floor_that_joins_nothing_is_not_known_whatever_names_it():
+    """A piece that names it tells nothing of the others: they have a floor, it has none."""
+    items = [piece(2.0, 0.1, route="Way", segment="a"), piece(2.0, **LOOSE)]
+    found = evaluated(make_falls([0.001, 0.9]), items, [stretch(floor="")]).segments[0]
+    assert (found.state, [row.what for row in found.missing]) == (NOT_KNOWN, ["ends"])
+
+
+def test_positions_of_places_and_of_pieces_are_asked_for_at_once():
+    ends = [place("West", "room"), place("East", "exit")]
+    found = evaluated(make_falls([0.2]), [piece(2.0, **LOOSE)], [corridor()], ends).segments[0]
+    assert [row.what for row in found.missing] == ["places", "positions"]
+
+
+# ---------------------------------------------------------------- the recorded motion
+
+
+def test_what_was_blocked_under_the_record_is_so_for_its_room_too():
+    one = piece(2.0, x=5.0, y=1.2, width=1.0, axis="Y")
+    found = evaluated(make_falls([0.1], in_record=[1]), [one], [corridor(required=1.2)], CORRIDOR)
+    (room,) = found.rooms
+    assert [found.segments[0].state, found.routes[0].state, room.state, room.ways[0].state] == [BLOCKED] * 4
+    assert room.fixes
 
 
 # ---------------------------------------------------------------- stairs
@@ -188,7 +251,7 @@ def test_what_is_missing_matters_only_with_what_is_unconfirmed():
     items = [piece(1.5, 0.0, route="Way", segment="east"), piece(2.0, **LOOSE, room="Gallery")]
     (room,) = evaluated(make_falls([0.9, 0.5], unconfirmed=[0]), items, segments, places).rooms
     assert room.state is NOT_KNOWN
-    assert {row.what for row in room.missing} <= {"unconfirmed_period", "positions"}
+    assert {row.what for row in room.missing} <= {"unconfirmed_period", "places", "positions"}
     assert room.missing
 
 

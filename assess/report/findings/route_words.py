@@ -229,14 +229,14 @@ def _of_states() -> tuple[str, ...]:
             "end that it serves is cut off from its way out, and a room if all its ways to the street are."
         ),
         _(
-            "Segments and routes that are blocked under the recorded motion itself count as blocked whatever their "
-            "chance."
+            "Segments, routes and the ways of rooms that are blocked under the recorded motion itself count as blocked "
+            "whatever their chance."
         ),
         _(
             "Not known: a piece without a position or Route may stand in the way, a stair has no Clear width, or the "
-            "class of a piece is not confirmed. Pieces whose chance is below the chosen risk, that are anchored, or "
-            "that stand on another floor or in another room do not matter. Nothing falls on a stair but pieces that "
-            "name it."
+            "class of a piece is not confirmed. Pieces without a position or Route matter where the chance that any "
+            "of them falls could change the state; anchored pieces and those on another floor or in another room do "
+            "not matter. Nothing falls on a stair but pieces that name it."
         ),
         _("Not counted: pieces that slide or roll on castors, spilt contents, doors that jam or are shut, and people."),
     )
