@@ -56,11 +56,6 @@ class WorkRow:
     cost: float | None
     cost_source: str
 
-    @property
-    def demand_kn(self) -> float:
-        """The tension that the fixings are counted by [kN]."""
-        return max(self.tension_high_kn, self.tension_code_kn or 0.0)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScheduleRow:

@@ -161,12 +161,6 @@ def ideal_chance(one: ItemResult) -> str:
     return _with_interval(found.ideal.probability, found.ideal.low, found.ideal.high)
 
 
-def varied_chance(one: ItemResult) -> str:
-    """Return the chance in an earthquake like the governing motion, the piece varied, with its interval."""
-    found = one.governing.simulation
-    return DASH if found is None else _with_interval(found.probability, found.low, found.high)
-
-
 def under_record(one: ItemResult) -> str:
     """Return what it does under the recorded motion itself, the worst where there are several."""
     if one.fell_in_record:
