@@ -11,7 +11,7 @@ REFUSED = "refused, with how to cut it down"
 BY_CELL = "an error at the cell that names it"
 OPEN, FORMATS, ARCHIVE = "assess.workbook.open", "assess.motion.formats", "assess.motion.formats._archive"
 COMMON, CSV, TEXT = (f"assess.motion.formats.{name}" for name in ("_format", "plain_csv", "_text"))
-ALLOWANCE, PICTURES = "assess.workbook.allowance", "assess.pictures"
+ALLOWANCE, PICTURES, PLANS = "assess.workbook.allowance", "assess.pictures", "assess.plans"
 
 ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
     ("Workbook: size of the file", OPEN, "MAX_FILE", 2**20, "{:.0f} MiB", REFUSED),
@@ -42,6 +42,18 @@ ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
     ("Picture: pixels", PICTURES, "MOST_PIXELS", 1e6, "{:.0f} million", BY_CELL),
     ("Picture: longer side in a report", PICTURES, "SHOWN", 1, "{:,.0f} pixels", "made smaller"),
     ("All pictures of a workbook: pixels", ALLOWANCE, "MOST_PICTURE_PIXELS", 1e6, "{:.0f} million", BY_CELL),
+    ("Plan as DXF: size of the file", PLANS, "MOST_FILE", 2**20, "{:.0f} MiB", BY_CELL),
+    ("Plan as DXF: group codes", f"{PLANS}.dxf", "MOST_TAGS", 1, "{:,.0f}", BY_CELL),
+    ("Plan as DXF: blocks that are inserted", f"{PLANS}.dxf", "MOST_INSERTS", 1, "{:,.0f}", BY_CELL),
+    ("Plan as SVG: size of the file", PICTURES, "MOST_BYTES", 2**20, "{:.0f} MiB", BY_CELL),
+    ("Plan as SVG or DXF: elements", f"{PLANS}.linework", "MOST_ELEMENTS", 1, "{:,.0f}", BY_CELL),
+    ("Plan as SVG or DXF: points as read", f"{PLANS}.linework", "MOST_RAW", 1, "{:,.0f}", BY_CELL),
+    ("Plan as SVG or DXF: points that are kept", f"{PLANS}.linework", "MOST_POINTS", 1, "{:,.0f}", BY_CELL),
+    ("All drawings of a workbook: files", ALLOWANCE, "MOST_DRAWINGS", 1, "{:,.0f}", BY_CELL),
+    ("All drawings of a workbook: size of the files", ALLOWANCE, "MOST_DRAWING_BYTES", 1e6, "{:.0f} MB", BY_CELL),
+    ("Photos of a workbook: files", ALLOWANCE, "MOST_PHOTOS", 1, "{:,.0f}", BY_CELL),
+    ("Photos of a workbook: size of all as reports hold them", ALLOWANCE, "MOST_PHOTO_BYTES", 1e6, "{:.0f} MB",
+     BY_CELL),
     ("Fitted model: size of the file", "assess.methods._fitted", "MOST_BYTES", 2**10, "{:.0f} KiB", REFUSED),
     ("Fitted model: terms of a polynomial", "assess.methods._fitted", "MOST_TERMS", 1, "{:.0f}", REFUSED),
     ("Fitted models of a run", "assess.cli.command_run", "MOST_METHODS", 1, "{:.0f}", REFUSED),

@@ -13,6 +13,10 @@ MOST_ARCHIVES = 50
 """Zip archives among them."""
 MOST_PICTURE_PIXELS = 500_000_000
 """Pixels of the logo and of all plans."""
+MOST_DRAWINGS = 50
+"""Plans that are drawings: one at all its limits takes about 10 s to read."""
+MOST_DRAWING_BYTES = 50_000_000
+"""Bytes of their files."""
 MOST_PHOTOS = 400
 """Photos of pieces: each takes a tenth of a second to read, and about 40 kB in a report."""
 MOST_PHOTO_BYTES = 30_000_000
@@ -27,6 +31,8 @@ class Allowance:
     samples: int = 0
     archives: int = 0
     pixels: int = 0
+    drawings: int = 0
+    drawing_bytes: int = 0
     photos: int = 0
     photo_bytes: int = 0
 
@@ -58,6 +64,18 @@ class Allowance:
                 most=MOST_PICTURE_PIXELS / 1e6,
             )
             raise CellError(message, fill("Save them smaller, or name fewer."))
+
+    def take_drawing(self, size: int) -> None:
+        """Count a drawing of `size` bytes before it is read; CellError where they are too many."""
+        self.drawings += 1
+        self.drawing_bytes += size
+        if self.drawings > MOST_DRAWINGS or self.drawing_bytes > MOST_DRAWING_BYTES:
+            message = fill(
+                "this workbook names more than {most} drawings as plans, or drawings of more than {size:.0f} MB.",
+                most=MOST_DRAWINGS,
+                size=MOST_DRAWING_BYTES / 1e6,
+            )
+            raise CellError(message, fill("Save the walls and doors alone, or name fewer."))
 
     def take_photo(self, size: int = 0) -> None:
         """Count a photo before it is read, and its `size` in bytes after; CellError where they are too many."""

@@ -56,7 +56,7 @@ class PictureReader:
         self.logo: Path | None = None
         self.plans: dict[int, FloorPlan] = {}
         self.photos: dict[str, bytes] = {}
-        self._drawings: dict[tuple[str, float | None], tuple[Path, Drawing] | CellError] = {}
+        self._plans: dict[str | tuple[str, float | None], tuple[Path, Drawing] | CellError] = {}
         self._useless: dict[str, CellError] = {}
         self._allowance = Allowance()
 
@@ -128,17 +128,25 @@ class PictureReader:
             yield from _check_place(table, row, plan, items)
 
     def _draw(self, text: str, width: float | None) -> tuple[Path, Drawing] | CellError:
-        """Return where a plan is and what is drawn of it, once for all floors that name it at one width."""
-        if (text, width) not in self._drawings:
+        """Return where a plan is and what is drawn of it, once for all floors that name it.
+
+        A picture is read once for each width, by which its pixels are chosen.
+        """
+        found = self._plans.get(text) or self._plans.get((text, width))
+        if found is None:
             try:
-                self._drawings[text, width] = self._read(text, lambda data: self._take_plan(data, width))
+                found = self._read(text, lambda data: self._take_plan(data, width))
             except CellError as error:
-                self._drawings[text, width] = error
-        return self._drawings[text, width]
+                found = error
+            is_scaled = not isinstance(found, CellError) and not found[1].is_lines
+            self._plans[(text, width) if is_scaled else text] = found
+        return found
 
     def _take_plan(self, data: bytes, width: float | None) -> Drawing:
         if is_picture(data):
             self._allowance.take_pixels(count_pixels(data))
+        else:
+            self._allowance.take_drawing(len(data))
         return read_plan(data, width)
 
     # ------------------------------------------------------------ files

@@ -8,8 +8,9 @@ import pytest
 import assess
 from assess.errors import WorkbookError
 from assess.model import FloorPlan, Inventory
+from assess.plans import Drawing, read_plan
 from assess.plans.linework import unpack
-from assess.workbook import allowance
+from assess.workbook import allowance, picture_files
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Units
 from tests.pictures import picture
@@ -140,6 +141,44 @@ def test_the_earlier_heading_places_a_plan(folder: Path) -> None:
     path = write_cells(folder, floors=[heading, ["1", 0.5, "p.png", 1, 10, 1600]])
     plan = _plan(read_inventory(path))
     assert (plan.left, plan.bottom, plan.width) == pytest.approx((1, 3.048, 16))
+
+
+# ---------------------------------------------------------------- what all plans may take
+
+
+def _write_floors(folder: Path, plans: list[str]) -> Path:
+    floors = [
+        {"floor": str(n), "pfa_x": 0.3, "plan": plan, **PLACED, "plan_width": 10.0 + n}
+        for n, plan in enumerate(plans, start=1)
+    ]
+    return write(folder / "w.xlsx", [PIECE], floors)
+
+
+def test_a_drawing_is_read_once_whatever_its_widths_and_a_picture_for_each(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[float | None] = []
+
+    def count(data: bytes, width: float | None) -> Drawing:
+        done.append(width)
+        return read_plan(data, width)
+
+    monkeypatch.setattr(picture_files, "read_plan", count)
+    floors = read_inventory(_write_floors(folder, ["p.svg"] * 4 + ["p.png"] * 2)).floors
+    assert [floor.plan.width for floor in floors if floor.plan] == [11, 12, 13, 14, 15, 16]
+    assert done == [11, 15, 16]
+    done.clear()
+    assert len(errors_of(_write_floors(folder, ["text.png"] * 3))) == 3, "an error at every cell, of one reading"
+    assert done == [11]
+
+
+@pytest.mark.parametrize(("name", "most"), [("MOST_DRAWINGS", 1), ("MOST_DRAWING_BYTES", len(PLAN_SVG) + 9)])
+def test_too_many_drawings(folder: Path, monkeypatch: pytest.MonkeyPatch, name: str, most: int) -> None:
+    monkeypatch.setattr(allowance, name, most)
+    (folder / "q.svg").write_bytes(PLAN_SVG)
+    (error,) = errors_of(_write_floors(folder, ["p.svg", "p.svg", "p.png", "q.svg"]))
+    assert error.startswith(f"Floors!{address('plan', 5, 'Floors')}: this workbook names more than ")
+    assert error.endswith(" MB. Save the walls and doors alone, or name fewer.")
 
 
 # ---------------------------------------------------------------- photos
