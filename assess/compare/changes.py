@@ -31,10 +31,8 @@ SAME = 1e-6
 """Difference of chances [-] up to which they are equal: rounding of other machines."""
 SEVERITY: Mapping[str, int] = {
     "open": 0,
-    "below the limit": 0,
     "doubtful": 1,
     "blocked": 2,
-    "at risk": 2,
 }
 """States of routes and rooms in rising order; from and to any other state no direction is told."""
 ABSENT = ""
@@ -429,7 +427,7 @@ def count_states(rows: Iterable[PastState]) -> Counter[str]:
     return Counter(one.state for one in rows)
 
 
-def list_states(comparison: Comparison) -> list[str]:
-    """Return the states of routes in both runs: from the worst down, then those that have no place in that order."""
-    there = {one.state for run in (comparison.before, comparison.after) for one in run.routes}
+def list_states(*runs: Iterable[PastState]) -> list[str]:
+    """Return the states of the routes, or rooms, of runs: from the worst down, then those without a place in that."""
+    there = {one.state for rows in runs for one in rows}
     return sorted(there, key=lambda state: (-SEVERITY.get(state, 0 if state == NOT_KNOWN else -1), state))

@@ -6,12 +6,12 @@ lacks.
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from assess.compare.changes import Comparison, PieceChange, StateChange, Total, count_states, list_states
-from assess.compare.past_run import AT_RISK, PastChance, PastPiece, PastRun, PastState
+from assess.compare.past_run import PastChance, PastPiece, PastRun, PastState
 from assess.compare.read_results import COMPARISON
 from assess.version import __version__
 
@@ -63,20 +63,20 @@ def _run(run: PastRun) -> dict[str, Any]:
         "workbook_sha256": run.workbook_sha256,
         "basis": run.main_basis,
         "settings": dict(run.settings),
+        "unjoined_rooms": list(run.unjoined_rooms),
     }
 
 
 def _counts(found: Comparison) -> dict[str, Any]:
     runs = (found.before, found.after)
-    states = [count_states(run.routes) for run in runs]
-    rooms = [count_states(run.rooms)[AT_RISK] for run in runs]
     return {
         "pieces": {one: _total(found.count_standing(one)) for one in found.standings()},
         "expected_falls": _total(found.falls),
         "expected_falls_counted_in_both": found.falls_of_both and _total(found.falls_of_both),
-        "routes": {one: {"before": states[0][one], "after": states[1][one]} for one in list_states(found)},
+        "routes": _states(*(run.routes for run in runs)),
         "blocked_routes_expected": {"before": runs[0].blocked_routes, "after": runs[1].blocked_routes},
-        "rooms_at_risk": {"before": rooms[0], "after": rooms[1]},
+        "rooms": _states(*(run.rooms for run in runs)),
+        "unjoined_rooms": {"before": len(runs[0].unjoined_rooms), "after": len(runs[1].unjoined_rooms)},
         "cut_off_rooms_expected": {"before": runs[0].cut_off_rooms, "after": runs[1].cut_off_rooms},
     }
 
@@ -88,6 +88,11 @@ def _total(total: Total) -> dict[str, Any]:
         "comparable": total.is_comparable,
         "within_sampling_interval": total.is_within,
     }
+
+
+def _states(before: Sequence[PastState], after: Sequence[PastState]) -> dict[str, Any]:
+    was, now = count_states(before), count_states(after)
+    return {one: {"before": was[one], "after": now[one]} for one in list_states(before, after)}
 
 
 def _piece(one: PieceChange) -> dict[str, Any]:
@@ -130,7 +135,3 @@ def _state(one: StateChange, kind: str) -> dict[str, Any]:
         "before": sides[0],
         "after": sides[1],
     }
-
-
-def _state_of(row: PastState | None) -> dict[str, Any] | None:
-    return None if row is None else {"state": row.state, "chance": row.chance and _chance(row.chance)}

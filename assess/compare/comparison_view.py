@@ -18,7 +18,7 @@ from assess.compare.changes import (
     count_states,
     list_states,
 )
-from assess.compare.past_run import ANCHORED, AT_RISK, CLASSES
+from assess.compare.past_run import ANCHORED, CLASSES, PastState
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.report import words
@@ -143,7 +143,8 @@ class View:
         there |= {one.direction for one in (*self.found.routes, *self.found.rooms)}
         if there & {*WORSE}:
             return "worse"
-        if not there & {Direction.UNCLEAR, *ONE_SIDED}:
+        is_joined_alike = {*self.before.unjoined_rooms} == {*self.after.unjoined_rooms}
+        if is_joined_alike and not there & {Direction.UNCLEAR, *ONE_SIDED}:
             return "better" if there & {*BETTER} else "same"
         return "unclear"
 
@@ -194,18 +195,27 @@ class View:
         return [text for text in texts if text]
 
     def list_others(self) -> list[str]:
-        """Return what else is to be known at once: pieces in one run alone, and those that cannot be compared."""
+        """Return what else is to be known at once: what is in one run alone, cannot be compared, or is not joined."""
         texts = [
             self._name_pieces(Direction.ADDED, _say_added),
             self._name_pieces(Direction.REMOVED, _say_removed),
             self._name_pieces(Direction.UNCLEAR, _say_unclear) if self.found.has_same_basis else "",
-            self._name_states(
-                [one for one in self.found.routes if one.direction == Direction.UNCLEAR], _say_unclear_routes
-            )
-            if self.found.has_same_basis
-            else "",
+            *(
+                self._name_states([one for one in rows if one.direction == Direction.UNCLEAR], sentence)
+                for rows, sentence in ((self.found.routes, _say_unclear_routes), (self.found.rooms, _say_unclear_rooms))
+                if self.found.has_same_basis
+            ),
+            *self._name_unjoined(),
         ]
         return [text for text in texts if text]
+
+    def _name_unjoined(self) -> list[str]:
+        """Return which rooms no segment joins to a way out."""
+        was, now = self.before.unjoined_rooms, self.after.unjoined_rooms
+        if was == now:
+            return [_say_unjoined_in_both(len(now), _name_rooms(now))] if now else []
+        sides = ((_("BEFORE"), was), (_("AFTER"), now))
+        return [_say_unjoined(len(rooms), _name_rooms(rooms), name) for name, rooms in sides if rooms]
 
     def _name_pieces(self, direction: Direction, sentence: Sentence) -> str:
         changes = self.found.list_counted(direction)
@@ -273,28 +283,35 @@ class View:
         return lines
 
     def list_route_counts(self) -> list[CountLine]:
-        """Return the routes by state and the expected number blocked, the rooms at risk and the expected number."""
+        """Return the routes and rooms by state, the expected numbers blocked or cut off, and the rooms not joined."""
         found, (was, now) = self.found, (self.before, self.after)
-        states = [count_states(run.routes) for run in (was, now)]
-        lines = [
-            _line(
-                _("routes: {state}", state=say.name_state(one)),
-                Total(states[0][one], states[1][one], found.has_same_basis),
-                is_worse_up=SEVERITY.get(one, 0) > 0,
-                is_worse_down=one == "open",
-            )
-            for one in list_states(found)
-        ]
+        lines = self._count_states(was.routes, now.routes, lambda state: _("routes: {state}", state=state))
         if found.routes:
             blocked = Total(was.blocked_routes, now.blocked_routes, found.has_same_basis)
             lines.append(_line(_("expected blocked routes"), blocked, is_count=False, is_worse_up=True))
         if found.rooms:
-            rooms = [count_states(run.rooms)[AT_RISK] for run in (was, now)]
-            at_risk = Total(rooms[0], rooms[1], found.has_same_basis)
-            lines.append(_line(_("rooms at risk of losing every exit"), at_risk, is_worse_up=True))
+            lines += self._count_states(was.rooms, now.rooms, lambda state: _("rooms: {state}", state=state))
             cut_off = Total(was.cut_off_rooms, now.cut_off_rooms, found.has_same_basis)
             lines.append(_line(_("expected rooms that lose every exit"), cut_off, is_count=False, is_worse_up=True))
+        if was.unjoined_rooms or now.unjoined_rooms:
+            unjoined = Total(len(was.unjoined_rooms), len(now.unjoined_rooms), is_comparable=True)
+            lines.append(_line(_("rooms joined to no exit or stair"), unjoined))
         return lines
+
+    def _count_states(
+        self, before: Sequence[PastState], after: Sequence[PastState], label: Callable[[str], str]
+    ) -> list[CountLine]:
+        """Return the routes or rooms by state."""
+        was, now = count_states(before), count_states(after)
+        return [
+            _line(
+                label(say.name_state(one)),
+                Total(was[one], now[one], self.found.has_same_basis),
+                is_worse_up=SEVERITY.get(one, 0) > 0,
+                is_worse_down=one == "open",
+            )
+            for one in list_states(before, after)
+        ]
 
     def build_matrix(self) -> Matrix:
         """Return the pieces by standing before and after; those of one run alone have a row and column of their own."""
@@ -388,8 +405,8 @@ def _say_routes(n: int, names: str) -> str:
 
 def _say_rooms(n: int, names: str) -> str:
     return ngettext(
-        "{n:,} room is more likely to lose every exit: {names}.",
-        "{n:,} rooms are more likely to lose every exit: {names}.",
+        "The best way from {n:,} room to the street gets worse: {names}.",
+        "The best ways from {n:,} rooms to the street get worse: {names}.",
         n,
         names=names,
     )
@@ -399,6 +416,35 @@ def _say_unclear_routes(n: int, names: str) -> str:
     return ngettext(
         "{n:,} route cannot be compared: {names}.", "{n:,} routes cannot be compared: {names}.", n, names=names
     )
+
+
+def _say_unclear_rooms(n: int, names: str) -> str:
+    return ngettext(
+        "{n:,} room cannot be compared: {names}.", "{n:,} rooms cannot be compared: {names}.", n, names=names
+    )
+
+
+def _say_unjoined(n: int, names: str, run: str) -> str:
+    return ngettext(
+        "In {run}, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
+        "In {run}, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
+        n,
+        run=run,
+        names=names,
+    )
+
+
+def _say_unjoined_in_both(n: int, names: str) -> str:
+    return ngettext(
+        "In both runs, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
+        "In both runs, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
+        n,
+        names=names,
+    )
+
+
+def _name_rooms(rooms: Sequence[str]) -> str:
+    return words.name_first([words.cut(one, 30) for one in rooms], NAMED)
 
 
 def _say_within(n: int) -> str:

@@ -1,12 +1,11 @@
 """How a comparison calls things, in the language in use: settings, inputs, standings, directions, chances."""
 
-import math
 import re
 from collections.abc import Mapping
 from typing import Any
 
 from assess.compare.changes import ABSENT, Direction, PieceChange, StateChange, Total
-from assess.compare.past_run import ANCHORED, AT_RISK, BELOW, BY_FORMULA, UNCONFIRMED, PastChance, PastRun
+from assess.compare.past_run import ANCHORED, BY_FORMULA, UNCONFIRMED, PastChance, PastRun
 from assess.i18n import Text, fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.report import words
@@ -68,8 +67,6 @@ _STANDINGS: Mapping[str, Text] = {
     UNCONFIRMED: fill("unconfirmed"),
     BY_FORMULA: fill("by formula only"),
     ANCHORED: fill("anchored"),
-    AT_RISK: fill("at risk"),
-    BELOW: fill("below the limit"),
     "doubtful": fill("doubtful"),
 }
 _BASES: Mapping[str, Text] = {
@@ -182,12 +179,6 @@ def say_difference(total: Total, is_count: bool) -> str:
         return say_total(0, is_count)
     text = f"{'+' if difference > 0 else '−'}{say_total(abs(difference), is_count)}"
     return _("{change} (within the sampling interval)", change=text) if total.is_within else text
-
-
-def say_points(before: PastChance, after: PastChance) -> str:
-    """Return the difference of two chances in percentage points with its sign."""
-    points = 100 * (after.probability - before.probability)
-    return f"{'+' if points > 0 else '−' if points < 0 else ''}{number(math.fabs(points), '.1f')}"
 
 
 def list_conditions(run: PastRun) -> list[str]:

@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from assess.risk import RiskClass
+from assess.route_results import RouteState
 
 CLASSES = tuple(risk.word for risk in reversed(RiskClass))
 """The words of the classes, the highest first."""
 UNCONFIRMED, BY_FORMULA, ANCHORED = "unconfirmed", "by formula", "anchored"
 APART = (UNCONFIRMED, BY_FORMULA, ANCHORED)
 """What stands outside the classes of a run."""
-AT_RISK, BELOW, NOT_KNOWN = "at risk", "below the limit", "not known"
-"""The standing of a room: its chance of losing every exit against the limit of its run."""
+NOT_KNOWN = str(RouteState.NOT_KNOWN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class PastState:
     name, floor : str
         Of a route the floor is "".
     state : str
-        Of a route in the words of its run; of a room one of `AT_RISK`, `BELOW` and `NOT_KNOWN`.
+        Of the route, or of the best way from the room to the street, in the words of its run.
     chance : PastChance, optional
         Of being blocked, or of losing every exit; None where that was not evaluated.
     """
@@ -118,6 +118,8 @@ class PastRun:
         Expected number of routes that are blocked and of rooms that lose every exit, among those known.
     unknown_routes, unknown_rooms : int
         Those that are not known.
+    unjoined_rooms : tuple of str
+        Rooms that no segment joins to an exit or a stair.
     """
 
     path: Path
@@ -142,6 +144,7 @@ class PastRun:
     cut_off_rooms: float
     unknown_routes: int
     unknown_rooms: int
+    unjoined_rooms: tuple[str, ...]
 
     @property
     def name(self) -> str:

@@ -8,7 +8,6 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any, Never, TypeVar
 
@@ -216,18 +215,16 @@ class _Reader:
 
     def routes(self, routes: Mapping[str, Any]) -> dict[str, Any]:
         """Return the routes and rooms, by the fields of `PastRun`."""
-        risk = self.share(routes, "risk", "routes")
         own, rooms = self.rows(routes, "routes", "routes"), self.rows(routes, "rooms", "routes")
         return {
             "routes": self.unique(own, "routes.routes", self.route, lambda one: key(one.name)),
-            "rooms": self.unique(
-                rooms, "routes.rooms", partial(self.room, risk=risk), lambda one: (key(one.floor), key(one.name))
-            ),
-            "route_risk": risk,
+            "rooms": self.unique(rooms, "routes.rooms", self.room, lambda one: (key(one.floor), key(one.name))),
+            "route_risk": self.share(routes, "risk", "routes"),
             "blocked_routes": self.number(routes, "blocked_routes_expected", "routes"),
             "cut_off_rooms": self.number(routes, "cut_off_rooms_expected", "routes"),
             "unknown_routes": self.count(routes, "unknown_routes", "routes"),
             "unknown_rooms": self.count(routes, "unknown_rooms", "routes"),
+            "unjoined_rooms": self.list_texts(routes, "unjoined_rooms", "routes"),
         }
 
     def is_simulated(self, record: Mapping[str, Any], items: Sequence[Mapping[str, Any]]) -> bool:
@@ -266,16 +263,13 @@ class _Reader:
             chance=self.chance_or_none(row, "blocked", place),
         )
 
-    def room(self, row: Mapping[str, Any], place: str, risk: float) -> past.PastState:
-        """Return a room; `risk` is the limit [-] by which it is at risk."""
-        chance = self.chance_or_none(row, "loses_every_exit", place)
-        is_known = chance is not None and row.get("is_known") is not False
-        state = past.AT_RISK if chance is not None and chance.probability >= risk else past.BELOW
+    def room(self, row: Mapping[str, Any], place: str) -> past.PastState:
+        """Return a room."""
         return past.PastState(
             name=self.text(row, "room", place),
             floor=self.text(row, "floor", place),
-            state=state if is_known else past.NOT_KNOWN,
-            chance=chance,
+            state=self.text(row, "state", place),
+            chance=self.chance_or_none(row, "loses_every_exit", place),
         )
 
     def shaking(self, origin: Mapping[str, Any]) -> str:
@@ -360,6 +354,19 @@ class _Reader:
         """Return an object of texts."""
         found = self.part(row, name, place)
         return {plain_line(one): self.text(found, one, f"{place}.{name}") for one in found}
+
+    def list_texts(self, row: Mapping[str, Any], name: str, place: str) -> tuple[str, ...]:
+        """Return a list of texts, each on one line; none where an earlier version did not write it."""
+        if name not in row:
+            return ()
+        found = self.get(
+            row,
+            name,
+            place,
+            fill("a list of texts"),
+            lambda value: isinstance(value, list) and all(isinstance(one, str) for one in value),
+        )
+        return tuple(plain_line(one) for one in found)
 
     def choice(self, row: Mapping[str, Any], name: str, place: str, choices: Sequence[str]) -> str:
         """Return one of some words."""

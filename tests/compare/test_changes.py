@@ -14,6 +14,7 @@ from assess.errors import InputError
 from assess.risk import wilson_interval
 from assess.settings import Settings
 from tests.compare.past import item, read_changed, write_routed_run, write_run
+from tests.report.routed import ITEMS, PLACES
 from tests.workbooks import UNVERIFIED
 
 
@@ -201,18 +202,62 @@ def test_states_of_routes_have_an_order_and_unknown_ones_have_none(routed, tmp_p
     assert labels[:4] == ["routes: blocked", "routes: doubtful", "routes: not known", "routes: open"]
 
 
-def test_rooms_that_lose_every_exit_are_named(routed, tmp_path):
-    def edit(record):
-        record["routes"]["cut_off_rooms_expected"] = 0.0
-        for one in record["routes"]["rooms"]:
-            one["loses_every_exit"].update(probability=0.0, low=0.0, high=0.0)
+def test_rooms_whose_way_out_gets_worse_are_named(tmp_path):
+    before = read_run(write_routed_run(tmp_path / "a", Settings(verify="none", scale=0.05), Items=ITEMS[:3]))
+    after = read_run(write_routed_run(tmp_path / "b", UNVERIFIED, Items=ITEMS[:3]))
+    assert {one.name: one.state for one in before.rooms} == {"Office": "doubtful", "Archive": "open"}
+    assert {one.name: one.state for one in after.rooms} == {"Office": "blocked", "Archive": "doubtful"}
+    view = View(compare(before, after))
+    assert view.list_worse()[-1] == (
+        "The best ways from 2 rooms to the street get worse: Archive (open → doubtful); Office (doubtful → blocked)."
+    )
+    lines = {line.label: line.texts for line in view.list_route_counts()}
+    assert lines["rooms: blocked"] == ("0", "1", "+1")
+    assert lines["rooms: open"] == ("1", "0", "−1")
 
-    found = compare(read_changed(routed, tmp_path, edit), read_run(routed))
-    assert {one.direction for one in found.rooms} == {Direction.WORSE}
-    text = View(found).list_worse()[-1]
-    assert text.startswith("2 rooms are more likely to lose every exit: Archive (below the limit → at risk)")
-    lines = {line.label: line.texts for line in View(found).list_route_counts()}
-    assert lines["rooms at risk of losing every exit"] == ("0", "2", "+2")
+
+def test_a_room_whose_way_out_is_not_known_is_not_safe(routed, tmp_path):
+    """In the file its chance is below the limit: it leaves out a piece whose position is missing."""
+
+    def edit(record):
+        archive = next(one for one in record["routes"]["rooms"] if one["room"] == "Archive")
+        assert archive["state"] == "not known"
+        archive["loses_every_exit"].update(probability=0.0, low=0.0, high=0.0)
+
+    unknown = read_changed(routed, tmp_path / "a", edit)
+    known = read_run(write_routed_run(tmp_path / "b", Settings(verify="none", scale=0.05), Items=ITEMS[:3]))
+    assert {one.name: one.state for one in unknown.rooms} == {"Office": "blocked", "Archive": "not known"}
+    found = compare(unknown, known)
+    assert {one.name: one.direction.value for one in found.rooms} == {"Office": "better", "Archive": "unclear"}
+    assert "1 room cannot be compared: Archive (not known → open)." in View(found).list_others()
+    assert describe(found)["counts"]["rooms"] == {
+        "blocked": {"before": 1, "after": 0},
+        "doubtful": {"before": 0, "after": 1},
+        "not known": {"before": 1, "after": 0},
+        "open": {"before": 0, "after": 1},
+    }
+
+
+def test_rooms_that_no_segment_joins_to_a_way_out_are_named(routed, tmp_path):
+    cellar = {"place": "Cellar", "floor": "G", "kind": "room"}
+    more = read_run(write_routed_run(tmp_path / "a", UNVERIFIED, Places=[*PLACES, cellar]))
+    assert more.unjoined_rooms == ("Cellar",)
+    view = View(compare(read_run(routed), more))
+    assert view.list_others() == [
+        "In AFTER, 1 room is joined to no exit or stair, so that its way out is not known: Cellar."
+    ]
+    assert (view.tone, view.headline) == ("unclear", "Nothing gets worse as far as it can be compared.")
+    assert {line.label: line.texts for line in view.list_route_counts()}["rooms joined to no exit or stair"] == (
+        "0",
+        "1",
+        "+1",
+    )
+    assert describe(view.found)["after"]["unjoined_rooms"] == ["Cellar"]
+    same = View(compare(more, more))
+    assert same.tone == "same"
+    assert same.list_others() == [
+        "In both runs, 1 room is joined to no exit or stair, so that its way out is not known: Cellar."
+    ]
 
 
 def test_two_buildings_are_a_warning_and_without_a_common_item_an_error(source, routed, tmp_path):
