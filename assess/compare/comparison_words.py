@@ -47,8 +47,12 @@ INPUTS: Mapping[str, tuple[Text, str]] = {
     "height_cm": (fill("Height"), "cm"),
     "centre_of_gravity": (fill("Centre of gravity"), ""),
     "weight_kg": (fill("Weight"), "kg"),
+    "friction": (fill("Friction"), ""),
     "anchored": (fill("Anchored"), ""),
+    "bracket_height_cm": (fill("Bracket height"), "cm"),
+    "bracket_capacity_kn": (fill("Bracket capacity"), "kN"),
     "against_wall": (fill("Against wall"), ""),
+    "axis": (fill("Axis"), ""),
     "pfa_g": (fill("PFA"), "g"),
     "pfv_cm_s": (fill("PFV"), "cm/s"),
 }

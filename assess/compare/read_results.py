@@ -35,8 +35,12 @@ INPUTS = (
     "height_cm",
     "centre_of_gravity",
     "weight_kg",
+    "friction",
     "anchored",
+    "bracket_height_cm",
+    "bracket_capacity_kn",
     "against_wall",
+    "axis",
     "pfa_g",
     "pfv_cm_s",
 )
@@ -251,7 +255,7 @@ class _Reader:
             basis=self.choice(adopted, "basis", inside, BASES),
             risk=_CLASSES[self.choice(adopted, "class", inside, tuple(_CLASSES))],
             chance=self.chance(adopted, inside),
-            inputs={name: _plain(row.get(name)) for name in INPUTS},
+            inputs=_read_inputs(row),
         )
 
     def route(self, row: Mapping[str, Any], place: str) -> past.PastState:
@@ -401,6 +405,16 @@ class _Reader:
             plain_line(name): tuple(plain_line(str(one)) for one in value) if isinstance(value, list) else _plain(value)
             for name, value in record.items()
         }
+
+
+def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the inputs of a piece; of its bracket, which stands apart, no height where that is assumed."""
+    anchor = row.get("anchor")
+    bracket = anchor if isinstance(anchor, dict) else {}
+    found = {**row, **{name: bracket.get(name) for name in ("bracket_height_cm", "bracket_capacity_kn")}}
+    if bracket.get("is_height_assumed") is True:
+        found["bracket_height_cm"] = None
+    return {name: _plain(found.get(name)) for name in INPUTS}
 
 
 def _plain(value: Any) -> Any:

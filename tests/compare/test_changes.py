@@ -7,7 +7,7 @@ import pytest
 from assess.compare.changes import Direction, compare, lies_within
 from assess.compare.comparison_data import describe, dump
 from assess.compare.comparison_view import View
-from assess.compare.comparison_words import say_anchor
+from assess.compare.comparison_words import say_anchor, say_inputs
 from assess.compare.past_run import PastChance
 from assess.compare.read_results import read_run
 from assess.errors import InputError
@@ -69,6 +69,30 @@ def test_pieces_go_worse_and_better_by_class_chance_and_anchor(source, tmp_path)
     assert forth.count(Direction.WORSE) == 2
     assert View(forth).tone == View(back).tone == "worse"
     assert "2 pieces go to a higher class or are no longer anchored: A1, A5." in View(forth).list_worse()
+
+
+def test_why_a_piece_is_anchored_no_longer_is_said(tmp_path):
+    """Its bracket was strong enough; friction and the axis that governs change likewise."""
+
+    def run(name, floor, **bracket):
+        rows = [{"item": "A", "floor": "1", "breadth": 30, "width": 80, "height": 200, "anchored": "yes", **bracket}]
+        return read_run(write_run(tmp_path / name, UNVERIFIED, items=rows, floors=[{"floor": "1", **floor}]))
+
+    floors = {"pfa_x": 0.6, "pfa_y": 0.2}, {"pfa_x": 0.2, "pfa_y": 0.6}
+    before = run("a", floors[0], bracket_capacity=9.0)
+    after = run("b", floors[1], bracket_capacity=0.1, bracket_height=150, friction=0.3)
+    (one,) = compare(before, after).pieces
+    assert (one.direction, one.standing_before) == (Direction.WORSE, "anchored")
+    assert say_inputs(one) == [
+        "Friction: – → 0.3",
+        "Bracket height: – → 150 cm",
+        "Bracket capacity: 9 → 0.1 kN",
+        "Axis: X → Y",
+    ]
+    assert describe(compare(before, after))["items"][0]["inputs"]["bracket_capacity_kn"] == {
+        "before": 9.0,
+        "after": 0.1,
+    }
 
 
 def test_rows_and_columns_of_the_matrix_add_up_to_the_counts(source, tmp_path):
