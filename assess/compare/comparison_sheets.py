@@ -10,7 +10,7 @@ from assess.compare import comparison_words as say
 from assess.compare.changes import ABSENT, PieceChange, StateChange
 from assess.compare.comparison_facts import list_facts
 from assess.compare.comparison_view import CountLine, View
-from assess.compare.past_run import PastChance, PastPiece
+from assess.compare.past_run import NOT_KNOWN, PastChance, PastPiece, PastState
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
@@ -187,11 +187,7 @@ def _write_states(
         *([Column(_("Floor"), 8, lambda one: one.floor)] if with_floor else []),
         Column(_("State, {run}", run=_("BEFORE")), 16, lambda one: say.name_state(one.states[0])),
         Column(_("State, {run}", run=_("AFTER")), 16, lambda one: say.name_state(one.states[1])),
-        *(
-            column
-            for name, side in sides
-            for column in _list_chances(name, partial(_read, side, lambda one: one.chance))
-        ),
+        *(column for name, side in sides for column in _list_chances(name, partial(_read, side, _read_known))),
     ]
     pen.listing(page, columns, rows)
 
@@ -241,6 +237,11 @@ def _read(side: Side, read: Callable[[Any], Any], one: Any) -> Any:
     """Return what `read` finds in a side of a change, None where the run lacks the row."""
     found: PastPiece | None = side(one)
     return None if found is None else read(found)
+
+
+def _read_known(state: PastState) -> PastChance | None:
+    """Return the chance of a route or room; None where it is not known, as that leaves out what is missing."""
+    return None if state.state == NOT_KNOWN else state.chance
 
 
 def _label(standing: str) -> str:

@@ -178,3 +178,12 @@ def test_what_fails_or_is_cancelled_leaves_nothing(found, tmp_path, monkeypatch)
 def test_it_speaks_italian(found, tmp_path):
     page = write_comparison(found, tmp_path, ("html",), ReportOptions(language="it"))["html"]
     assert '<html lang="it">' in page.read_text(encoding="utf-8")
+
+
+def test_a_chance_that_is_not_known_is_no_number_in_the_workbook(found, written):
+    book = openpyxl.load_workbook(written["xlsx"])
+    for sheet, rows in (("Routes", found.routes), ("Rooms", found.rooms)):
+        heads, *lines = book[sheet].iter_rows(values_only=True)
+        for run, one in ((run, dict(zip(heads, line, strict=True))) for line in lines for run in ("BEFORE", "AFTER")):
+            assert (one[f"Chance, {run}"] is None) == (one[f"State, {run}"] == "not known")
+        assert any(one.states[1] == "not known" for one in rows)
