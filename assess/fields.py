@@ -398,7 +398,9 @@ ANCHOR_FIELDS = (
     *(
         Field(
             key=key, read=attrgetter(f"item.anchor.{key}"), path=("anchor", key), label=label, kind="flag",
-            is_optional=True, shows=DATA, help="Null where the capacity is not known.",
+            is_optional=True, shows=DATA,
+            help="Null where the capacity is not known, and where it carries the force of one metre of a piece whose "
+            "width is not known.",
         )
         for key, label in (
             ("holds", fill("Bracket holds at PFA")), ("holds_high", fill("Bracket holds at 84 % of PFA")),

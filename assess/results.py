@@ -302,6 +302,8 @@ class AnchorRow:
         For F_p of ASCE 7-22, 13.3.1; None where neither SDS nor Ground PGA is known.
     holds, holds_high, holds_code : bool, optional
         Whether the bracket carries the tension for PFA, for its 84 %, and for the code; None where that is not known.
+        Where `is_per_metre` it is False where it does not carry the tension of one metre, and None where it carries one
+        above 0.
     """
 
     weight_kn: float

@@ -8,6 +8,11 @@ where SDS or Ground PGA is known. `assess.bracket` has the equations.
 A partly anchored piece with a known capacity counts as anchored where its bracket carries the demand of 84 %, and
 stands free where it does not (elastic-brittle, after Majdalaweyh and Pang 2022). An anchored piece whose bracket does
 not carry the demand of the scenario stands free too.
+
+Where neither weight nor width of a piece is known, forces are those of one metre of it. A bracket that does not carry
+these counts as one that does not hold, which is the safe side for a narrower piece; of one that does it is not known
+whether it holds, unless the weight alone holds the piece, whatever its width. So a partly anchored piece stands free,
+and an anchored one, not known to fail, stays anchored.
 """
 
 from collections.abc import Sequence
@@ -86,7 +91,9 @@ class Anchors:
 
         def holds(tension: FloatArray) -> bool | None:
             demand, capacity = tension[at], self.capacity[at]
-            return None if np.isnan(demand) or np.isnan(capacity) else bool(demand <= capacity)
+            if np.isnan(demand) or np.isnan(capacity):
+                return None
+            return None if weight.is_per_metre and 0 < demand <= capacity else bool(demand <= capacity)
 
         return AnchorRow(
             weight_kn=_in_kn(weight.value),
@@ -149,10 +156,11 @@ def find_held(inventory: Inventory, pfa: FloatArray, dispersion: float) -> BoolA
     ]
     if known:
         own = [items[at] for at in known]
-        piece = _list_pieces(own, [find_weight(one, inventory.language) for one in own])
+        weights = [find_weight(one, inventory.language) for one in own]
+        piece, is_per_metre = _list_pieces(own, weights), np.array([one.is_per_metre for one in weights])
         capacity = _list_numbers([one.bracket_capacity for one in own])
         _, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa[known], dispersion))
-        held[known] = capacity >= np.where(held[known], middle, high)
+        held[known] = np.where(held[known], capacity >= middle, (capacity >= high) & ~(is_per_metre & (high > 0)))
     return held
 
 

@@ -193,16 +193,21 @@ def list_beside(one: ItemResult) -> list[str]:
 
 def say_bracket(one: ItemResult) -> str:
     """Return what follows from a bracket whose capacity is known: whether the piece counts as anchored; "" else."""
-    anchored, holds, holds_high = one.item.anchored, one.item.anchor.holds, one.item.anchor.holds_high
-    if anchored == "yes" and holds is False:
-        return _("bracket fails at PFA: counts as free-standing")
-    if anchored == "partly" and holds_high is not None:
-        return (
-            _("bracket holds at 84 % of PFA: counts as anchored")
-            if holds_high
-            else _("bracket fails at 84 % of PFA: counts as free-standing")
-        )
-    return ""
+    anchored, anchor = one.item.anchored, one.item.anchor
+    if anchored not in ("yes", "partly") or anchor.bracket_capacity_kn is None:
+        return ""
+    holds = anchor.holds if anchored == "yes" else anchor.holds_high
+    if holds is None and one.is_anchored:
+        return _("width not known, so whether its bracket holds is not known: counts as anchored")
+    if holds is None:
+        return _("width not known, so whether its bracket holds is not known: counts as free-standing")
+    if anchored == "yes":
+        return "" if holds else _("bracket fails at PFA: counts as free-standing")
+    return (
+        _("bracket holds at 84 % of PFA: counts as anchored")
+        if holds
+        else _("bracket fails at 84 % of PFA: counts as free-standing")
+    )
 
 
 def risk_words(one: ItemResult) -> str:

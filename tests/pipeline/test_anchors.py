@@ -138,6 +138,39 @@ def test_what_counts_as_anchored(tmp_path, anchored, capacity, held):
         assert found.holds_high is (capacity >= found.tension_high_kn)
 
 
+@pytest.mark.parametrize(
+    ("anchored", "capacity", "held", "holds", "holds_high"),
+    [
+        ("partly", 5, False, None, None),  # it carries one metre, of a piece that may be wider
+        ("partly", 0.8, False, None, False),
+        ("yes", 5, True, None, None),
+        ("yes", 0.8, True, None, False),
+        ("yes", 0.5, False, False, False),  # it does not carry one metre
+    ],
+)
+def test_a_bracket_may_not_hold_an_unknown_width(tmp_path, anchored, capacity, held, holds, holds_high):
+    """One metre weighs 430 x 0.4 x 1.8 g = 3.036 kN: T = 0.607 kN, and 1.082 kN at 84 %."""
+    results = assess_one(
+        tmp_path, {"motion_uncertainty": 0.4}, anchored=anchored, bracket_capacity=capacity, weight=None, width=None
+    )
+    found = anchor_of(results)
+    assert (found.tension_kn, found.tension_high_kn) == pytest.approx((0.6072, 1.0816), abs=1e-4)
+    assert results["a"].is_anchored is held
+    assert (found.is_per_metre, found.holds, found.holds_high) == (True, holds, holds_high)
+
+
+def test_a_piece_that_its_weight_holds_is_held_whatever_its_width(tmp_path):
+    results = assess_one(tmp_path, anchored="partly", bracket_capacity=0.1, weight=None, width=None, breadth=120)
+    found = anchor_of(results)
+    assert (found.tension_high_kn, found.is_per_metre, found.holds_high) == (0, True, True)
+    assert results["a"].is_anchored
+
+
+def test_the_weight_of_a_piece_of_unknown_width_is_enough(tmp_path):
+    results = assess_one(tmp_path, anchored="partly", bracket_capacity=0.43, width=None)
+    assert (results["a"].is_anchored, anchor_of(results).holds_high) == (True, True)
+
+
 def test_results_json(tmp_path):
     results = assess_one(tmp_path, {"sds": 1.0, "height": 20}, {"elevation": 20}, bracket_capacity=0.3)
     assess.write_reports(results, tmp_path / "out", formats=("json",))

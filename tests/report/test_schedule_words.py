@@ -11,6 +11,7 @@ from assess.details import DETAILS
 from assess.report.content import build_content
 from assess.report.findings import schedule_words as say
 from assess.report.ranking import RouteStep, say_effect
+from assess.report.words import say_bracket
 from assess.schedule_results import NOTHING
 from assess.settings import Settings
 from assess.workbook.template import Content, write_workbook
@@ -137,6 +138,21 @@ def test_a_bracket_that_fails_is_named(results, works):
     assert "firm" not in works
     assert results["firm"].is_anchored
     assert not results["weak"].is_anchored
+
+
+@pytest.mark.parametrize(
+    ("anchored", "words"),
+    [
+        ("yes", "width not known, so whether its bracket holds is not known: counts as anchored"),
+        ("partly", "width not known, so whether its bracket holds is not known: counts as free-standing"),
+    ],
+)
+def test_a_bracket_of_a_piece_of_unknown_width_is_named(tmp_path, anchored, words):
+    bare = TALL | {"weight": None, "width": None, "bracket_capacity": 50, "anchored": anchored}
+    results = assess_these(tmp_path, [bare | {"item": "bare"}, bare | {"item": "blank", "bracket_capacity": None}])
+    assert results["bare"].is_anchored is (anchored == "yes")
+    assert say_bracket(results["bare"]) == words
+    assert say_bracket(results["blank"]) == ""
 
 
 def test_brackets_in_the_tables_of_pieces(results, tmp_path):

@@ -17,6 +17,7 @@ from assess.settings import Settings
 from tests.conftest import EXAMPLE
 from tests.recalculate import needs_libreoffice, stored_cells, write_report
 from tests.report.parallel import BRACKETS, HELD, Cells, Edit, assess_rich, read_items, recalculate
+from tests.workbooks import assessed
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -216,6 +217,27 @@ def _state(row: dict[str, Any]) -> str:
     if row["class"] == AGAIN:
         return "again"
     return "held" if row["class"].startswith(ANCHORED) else "free"
+
+
+@pytest.mark.parametrize("verify", ["none", "all"])
+def test_a_bracket_of_a_piece_of_unknown_width(tmp_path, verify):
+    """What counts as anchored is as run and after Anchored is edited; once a width is typed, it is to be run again."""
+    bare = {"floor": "1", "breadth": 30, "height": 200, "bracket_capacity": 50.0}
+    items = [bare | {"item": name, "anchored": word} for name, word in (("a", "yes"), ("b", "partly"), ("c", "yes"))]
+    items += [bare | {"item": "d", "anchored": "partly"}, bare | {"item": "e", "anchored": "yes"}]
+    items[-1]["bracket_capacity"] = 0.01
+    floors = [{"floor": "1", "pfa_x": 0.5, "pfa_y": 0.5}]
+    results = assessed(tmp_path / "w.xlsx", items, floors, settings=Settings(verify=verify, runs=40))
+    write_report(results, tmp_path / "r.xlsx")
+    book = Book(results, tmp_path / "r.xlsx")
+    shown = {item: _state(row) for item, row in book.items(stored_cells(book.path)).items()}
+    assert shown == {"a": "held", "b": "free", "c": "held", "d": "free", "e": "free"}
+    assert {one.item.item for one in results if one.is_anchored} == {"a", "c"}
+    edits = [(*book.cell("a", "width_cm"), 90.0), (*book.cell("b", "width_cm"), 90.0)]
+    edits += [(*book.cell("c", "anchored"), "partly"), (*book.cell("d", "anchored"), "yes")]
+    cells = recalculate(book.path, edits, "formualizer", tmp_path)
+    found = {item: _state(row) for item, row in book.items(cells).items()}
+    assert found == {"a": "again", "b": "again", "c": "free", "d": "held", "e": "free"}
 
 
 @pytest.mark.parametrize("kind", ["by_formula", "simulated"])
