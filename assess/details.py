@@ -117,6 +117,9 @@ DETAILS: Mapping[str, Detail] = {
 }  # fmt: skip
 """Generic details by their key."""
 
+AT_WALL, AT_BASE = "bracket", "base_angle"
+"""Keys of the details that the schedule prices; the others are alternatives to them."""
+
 
 def count_fixings(detail: Detail, tension: float) -> int:
     """Return how many fixings a tension [N] needs, `LEAST_FIXINGS` at least and where no capacity is printed."""

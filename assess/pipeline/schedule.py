@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.details import DETAILS, Detail, count_fixings, find_detail
+from assess.details import AT_BASE, AT_WALL, DETAILS, Detail, count_fixings, find_detail
 from assess.model import Cost, Inventory
 from assess.natural import natural_key
 from assess.results import ItemResult, ItemRow, Results
@@ -234,8 +234,8 @@ def choose_detail(item: ItemRow) -> str:
     """Return the generic detail for a piece: at the base where it stands free of walls or is a filing cabinet."""
     named = f"{item.type} {item.description}".casefold()
     if item.against_wall is False or any(word in named for word in FILES):
-        return "base_angle"
-    return "bracket"
+        return AT_BASE
+    return AT_WALL
 
 
 # ---------------------------------------------------------------- before and after

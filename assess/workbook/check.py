@@ -6,7 +6,7 @@ and notes the cells of errors, so that what has been reported once is not report
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from assess.details import DETAILS, find_detail
+from assess.details import AT_BASE, AT_WALL, DETAILS, find_detail
 from assess.errors import ElevationGap, Gap, Problem
 from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES
@@ -134,7 +134,7 @@ def check_catalogue(tables: Tables) -> Iterator[Problem]:
 
 
 def check_costs(tables: Tables) -> Iterator[Problem]:
-    """Check that each detail has one cost, and is one that the schedule may name."""
+    """Check that each detail has one cost, and is one that the schedule prices."""
     table = tables["Costs"]
     yield from check_unique(table)
     found: dict[str, Row] = {}
@@ -147,12 +147,24 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
             cell = table.cell("detail", before.number)
             message = fill("Detail {name} is the same as that in {cell}.", name=row.quote("detail"), cell=cell)
             yield table.problem("detail", row, message, fill("Give each detail one cost."))
+        elif detail.key not in (AT_WALL, AT_BASE) and row.get("unit_cost") is not None:
+            yield _report_alternative(table, row)
 
 
 def _report_detail(table: Table, row: Row) -> Problem:
     listed = join(", ", [one.title for one in DETAILS.values()])
     message = fill("Detail {name} is none that the schedule uses: its cost is left out.", name=row.quote("detail"))
     return table.problem("detail", row, message, fill("Choose one of: {listed}", listed=listed), "warning")
+
+
+def _report_alternative(table: Table, row: Row) -> Problem:
+    wall, base = (DETAILS[key].title for key in (AT_WALL, AT_BASE))
+    message = fill(
+        "Detail {name} is an alternative, which the schedule does not price: its cost is left out.",
+        name=row.quote("detail"),
+    )
+    fix = fill("The schedule prices these: {wall}, {base}.", wall=wall, base=base)
+    return table.problem("detail", row, message, fix, "warning")
 
 
 def check_floors(tables: Tables) -> Iterator[Problem]:

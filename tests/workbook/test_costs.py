@@ -27,10 +27,10 @@ def read(folder, *rows):
 
 def test_costs_are_read(tmp_path):
     inventory = read(
-        tmp_path, ["base angle", 40.5, "offer of May"], ["ceiling pole", 0, ""], ["L-bracket to studs", None]
+        tmp_path, ["base angle", 40.5, "offer of May"], ["L-bracket to studs", 0, ""], ["ceiling pole", None]
     )
     found = [(one.row, one.detail, one.unit_cost, one.source) for one in inventory.costs]
-    assert found == [(2, "base angle", 40.5, "offer of May"), (3, "ceiling pole", 0, "")]
+    assert found == [(2, "base angle", 40.5, "offer of May"), (3, "L-bracket to studs", 0, "")]
     assert not [one for one in inventory.problems if one.sheet == "Costs"]
 
 
@@ -60,6 +60,20 @@ def test_an_unknown_detail_is_a_warning(tmp_path):
     assert all(str(detail.title) in one.fix for detail in DETAILS.values())
 
 
+def test_a_cost_of_what_the_schedule_never_prices_is_a_warning_at_its_cell(tmp_path):
+    inventory = read(tmp_path, *([str(one.title), 7] for one in DETAILS.values()))
+    found = {one.cell: one for one in inventory.problems if one.sheet == "Costs"}
+    assert {DETAILS[key].title: f"A{at}" for at, key in enumerate(DETAILS, 2) if f"A{at}" in found} == {
+        "straps to two studs": "A3", "gang the row together": "A5", "ceiling pole": "A6",
+    }  # fmt: skip
+    assert {one.severity for one in found.values()} == {"warning"}
+    pole = found["A6"]
+    assert pole.message == (
+        "Detail 'ceiling pole' is an alternative, which the schedule does not price: its cost is left out."
+    )
+    assert pole.fix == "The schedule prices these: L-bracket to studs, base angle."
+
+
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_the_empty_workbook_offers_every_detail(tmp_path, language):
     path = tmp_path / "new.xlsx"
@@ -81,4 +95,4 @@ def test_details_are_known_in_every_language(tmp_path, language):
     catalogue = load_catalogue(language)
     inventory = read(tmp_path, *([catalogue.find(str(one.title)), 7] for one in DETAILS.values()))
     assert len(inventory.costs) == len(DETAILS)
-    assert not [one for one in inventory.problems if one.sheet == "Costs" and one.severity != "note"]
+    assert not [one for one in inventory.problems if one.sheet == "Costs" and "is none that" in one.message]
