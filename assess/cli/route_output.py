@@ -137,6 +137,7 @@ class Sweep:
             "floors": list(one.floors),
             "scenario_pfa_g": None if peaks is None else [_in_g(peak) for peak in peaks],
             "evaluated": one.is_evaluated,
+            "unevaluated_segments": list(one.unevaluated),
             "doubtful_pieces": one.doubtful,
             "causes": [{"item": piece.item, "row": piece.row} for piece in one.causes],
             "chances": [
@@ -275,9 +276,16 @@ class _Passing:
 
 
 def _describe_pieces(one: RouteFragility) -> str:
-    first = one.blocked[0]
     if not one.is_evaluated:
         return "not evaluated: the workbook places no furniture there"
+    if not one.unevaluated:
+        return _describe_known(one)
+    named = words.name_first([repr(words.cut(name, 40)) for name in one.unevaluated], MOST_CAUSES)
+    return f"{_describe_known(one)}; without segments that are not evaluated: {named}"
+
+
+def _describe_known(one: RouteFragility) -> str:
+    first = one.blocked[0]
     if first.pieces:
         doubtful = f"; at least, as the motions of {count(one.doubtful, 'piece')} may be too weak"
         return f"{count(first.pieces, 'piece')}; {say_basis(first)}{doubtful if one.doubtful else ''}"

@@ -22,13 +22,13 @@ class Verdict:
     Parameters
     ----------
     limit : float
-        Chance from which a route counts as blocked [-].
+        The chosen risk, below which a route counts as open [-].
     lowest_g, highest_g : float
         The smallest and the largest value [g].
     evaluated : tuple of RouteFragility
-        The routes that can be judged.
-    not_evaluated : tuple of str
-        The names of the others.
+        The routes that can be judged: all their segments are evaluated, or those that are reach the limit.
+    not_evaluated : tuple of RouteFragility
+        The others.
     below_up_to_g : float, optional
         The last value up to which the chances of all routes are below the limit [g]; None where it is none.
     reached_at_g : float, optional
@@ -50,7 +50,7 @@ class Verdict:
     lowest_g: float
     highest_g: float
     evaluated: tuple[RouteFragility, ...]
-    not_evaluated: tuple[str, ...]
+    not_evaluated: tuple[RouteFragility, ...]
     below_up_to_g: float | None
     reached_at_g: float | None
     first: tuple[RouteFragility, ...]
@@ -61,8 +61,8 @@ class Verdict:
 
     @property
     def lower_bounds(self) -> tuple[str, ...]:
-        """The routes whose chances are lower bounds, as the motions of pieces next to them may be too weak."""
-        return tuple(one.route for one in self.evaluated if one.doubtful)
+        """The routes whose chances are lower bounds: motions may be too weak, or a segment is not evaluated."""
+        return tuple(one.route for one in self.evaluated if one.doubtful or one.unevaluated)
 
     def describe(self) -> dict[str, Any]:
         """Return it as data, with its text."""
@@ -70,7 +70,12 @@ class Verdict:
             "text": self.say(),
             "limit": self.limit,
             "evaluated_routes": len(self.evaluated),
-            "not_evaluated": list(self.not_evaluated),
+            "not_evaluated": [one.route for one in self.not_evaluated],
+            "not_evaluated_segments": [
+                {"route": one.route, "segments": list(one.unevaluated)}
+                for one in (*self.not_evaluated, *self.evaluated)
+                if one.unevaluated
+            ],
             "below_up_to_g": self.below_up_to_g,
             "reached_at_g": self.reached_at_g,
             "first": [
@@ -90,16 +95,21 @@ class Verdict:
 
     def _sentences(self) -> Iterator[str]:
         if not self.evaluated:
-            yield "No route can be evaluated: the workbook places no furniture next to any."
-            return
-        yield from self._say_reached()
+            if not any(one.is_evaluated for one in self.not_evaluated):
+                yield "No route can be evaluated: the workbook places no furniture next to any."
+                return
+            yield "No route can be evaluated as a whole."
+        else:
+            yield from self._say_reached()
         if self.anchored_at_g is not None:
             named, reach = _name([one.route for one in self.anchored], MOST_ROUTES), _reaches(len(self.anchored))
             yield f"If the anchors fail, {named} {reach} {100 * self.limit:g} % from {self.anchored_at_g:.4g} g."
         if self.lower_bounds:
             yield f"The chances of {_name(self.lower_bounds, MOST_ROUTES)} are lower bounds."
         if self.not_evaluated:
-            yield f"Not evaluated: {_name(self.not_evaluated, MOST_ROUTES)}."
+            yield f"Not evaluated: {words.name_first([_name_part(one) for one in self.not_evaluated], MOST_ROUTES)}."
+        if parts := [_name_part(one) for one in self.evaluated if one.unevaluated]:
+            yield f"Counted without what is not evaluated: {words.name_first(parts, MOST_ROUTES)}."
         if self.unplaced:
             yield f"Left out: {count(self.unplaced, 'piece')} without a usable position or route."
 
@@ -127,7 +137,7 @@ class Verdict:
 
 def find_verdict(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
     """Return what the chances at the values of PFA [g] come to."""
-    evaluated = tuple(one for one in fragility.routes if one.is_evaluated)
+    evaluated = tuple(one for one in fragility.routes if _is_judged(one, fragility.limit))
     ways = [(one, _find_first(one.blocked, fragility.limit)) for one in evaluated]
     anchored = [(one, _find_first(one.if_anchors_fail, fragility.limit)) for one in evaluated if one.if_anchors_fail]
     at = min((at for _, at in ways if at is not None), default=None)
@@ -140,7 +150,7 @@ def find_verdict(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
         lowest_g=pfa_g[0],
         highest_g=pfa_g[-1],
         evaluated=evaluated,
-        not_evaluated=tuple(one.route for one in fragility.routes if not one.is_evaluated),
+        not_evaluated=tuple(one for one in fragility.routes if not _is_judged(one, fragility.limit)),
         below_up_to_g=pfa_g[below] if below >= 0 and evaluated else None,
         reached_at_g=None if at is None else pfa_g[at],
         first=tuple(sorted(first, key=lambda one: -one.blocked[at or 0].probability)),
@@ -149,6 +159,12 @@ def find_verdict(fragility: Fragility, pfa_g: Sequence[float]) -> Verdict:
         anchored=tuple(one for one, own in anchored if is_early and own == early),
         unplaced=fragility.unplaced,
     )
+
+
+def _is_judged(route: RouteFragility, limit: float) -> bool:
+    """Tell whether a verdict can rely on a route: below the limit only with all segments evaluated."""
+    is_reached = _find_first(route.blocked, limit) is not None
+    return route.is_evaluated and (is_reached or not route.unevaluated)
 
 
 def _find_first(chances: Sequence[Chance], limit: float) -> int | None:
@@ -165,6 +181,14 @@ def _blame(route: RouteFragility) -> str:
 
 def _quote(name: str) -> str:
     return repr(words.cut(name, LONGEST))
+
+
+def _name_part(route: RouteFragility) -> str:
+    """Return a route with its segments that are not evaluated, unless none is."""
+    if not route.is_evaluated:
+        return _quote(route.route)
+    segments = f"segment{'' if len(route.unevaluated) == 1 else 's'} {_name(route.unevaluated, MOST_PIECES)}"
+    return f"{_quote(route.route)} ({segments})"
 
 
 def _name(names: Sequence[str], most: int) -> str:

@@ -70,6 +70,9 @@ class RouteFragility:
         The same with anchored pieces taken as free-standing; None where there are none.
     is_evaluated : bool
         Whether it is known of any of its segments what can reach it.
+    unevaluated : tuple of str
+        Names of the segments of which that is not known, at the largest value: the chances are without them, so lower
+        bounds.
     doubtful : int
         Pieces that reach it whose motions may be too weak; anchored ones count.
     scenario_pfa : pair of float, optional
@@ -84,6 +87,7 @@ class RouteFragility:
     blocked: tuple[Chance, ...]
     if_anchors_fail: tuple[Chance, ...] | None
     is_evaluated: bool
+    unevaluated: tuple[str, ...]
     doubtful: int
     scenario_pfa: tuple[float, float] | None
     causes: tuple[PieceRef, ...]
@@ -331,13 +335,15 @@ def _route(sweep: _Sweep, name: str, doubtful: frozenset[int]) -> RouteFragility
     segments = scene.segments_of(name)
     floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))
     peaks = [demand.pfa for floor in floors for axis in AXES for demand in sweep.assessment.demands[floor, axis]]
+    unknown = [at for at in segments if levels[-1].scene.is_unknown(at) or not levels[-1].scene.is_evaluated(at)]
     reaching = {item for item, _ in scene.keys(segments, anchors_fail=True)}
     return RouteFragility(
         route=name,
         floors=floors,
         blocked=tuple(one.chances[0] for one in judged),
         if_anchors_fail=tuple(one.if_anchors_fail for one in judged if one.if_anchors_fail) or None,
-        is_evaluated=any(scene.obstructions[at].is_evaluated for at in segments),
+        is_evaluated=len(unknown) < len(segments),
+        unevaluated=tuple(segments[at].segment for at in unknown),
         doubtful=sum(inventory.items[item].quantity for item in reaching & doubtful),
         scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
         causes=_find_causes(sweep, levels, name, segments),

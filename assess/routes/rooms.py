@@ -80,8 +80,7 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
 
     found = scene.judge(part.segments, happens)
     lost, fallen = found.chances[0], found.at_most[0]
-    record = scene.under_record(part.segments, happens)
-    verdict = scene.settle(part.segments, found.chances, found.at_most, record)
+    verdict = scene.settle(part.segments, found.chances, found.at_most, scene.under_record(part.segments, happens))
     ways = _ways(scene, place, part, rows)
     seeks_fixes = verdict.state in (RouteState.DOUBTFUL, RouteState.BLOCKED)
     fixes, is_fixed = list_fixes(scene, part.segments, is_cut_off) if seeks_fixes else ((), True)

@@ -75,7 +75,7 @@ class Scene:
         return self._missing[segment]
 
     def left_out(self, segment: int) -> tuple[int, ...]:
-        """Return the pieces, by their index, that may fall and of which it is not known whether they reach a segment."""
+        """Return the pieces (indices) that may fall and of which it is not known whether they reach a segment."""
         if segment not in self._left_out:
             found = list_left_out(self.obstructions[segment], self.inventory, self.falls)
             self._left_out[segment] = tuple(found)
@@ -278,7 +278,7 @@ class Scene:
     def find_decisive(self, rows: Mapping[int, tuple[RouteState, Chance | None]], *, is_known: bool) -> int | None:
         """Return which segment decides the state of several, by the state and chance of each; None where none does.
 
-        Where it is not known the first that is not, or of which something is missing; else the one that is most likely blocked.
+        Where it is not known the first that is not, or of which something is missing; else the one most likely blocked.
         """
         if not is_known:
             return next(

@@ -34,7 +34,7 @@ CORRIDOR = {"segment": "corridor", "clear_width": 1.5, "required_width": 0.9}
 ROUTES = [
     {"route": "Aula", "floor": "1", **CORRIDOR},
     {"route": "=Bar", "floor": "2", **CORRIDOR},
-    {"route": "Closet", "floor": "2", **CORRIDOR},
+    {"route": "Closet", "floor": "3", **CORRIDOR},
 ]
 SHAPE = {"width": 80, "axis": "X", "edge_distance": 0}
 ITEMS = [
@@ -42,7 +42,7 @@ ITEMS = [
     {"item": "a2", "floor": "1", "breadth": 30, "height": 170, "route": "Aula", "anchored": "yes", **SHAPE},
     {"item": "b1", "floor": "2", "breadth": 50, "height": 180, "route": "=Bar", "quantity": 2, **SHAPE},
 ]
-FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.5}]
+FLOORS = [{"floor": "1", "record_x": "slow.csv"}, {"floor": "2", "pfa_x": 0.5}, {"floor": "3", "pfa_x": 0.5}]
 SWEEP = ("--pfa", "0.1:0.9:0.2", "--runs", "20", "--seed", "3")
 HEADS = "route,floors,pfa_g,blocked,low,high,independent,correlated,if_anchors_fail,pieces,unverified,runs,inserted"
 
@@ -179,6 +179,27 @@ def test_the_verdict_of_routes_of_which_nothing_is_known():
     )
 
 
+@pytest.mark.parametrize(("chances", "said", "judged"), [
+    ([0.0, 0.02], "No route can be evaluated as a whole. Not evaluated: 'A' (segment 'stair').", False),
+    (
+        [0.0, 0.03],
+        "The only route stays below 3 % up to 0.1 g. From 0.2 g 'A' (blocked with nothing fallen) reaches 3 %. The "
+        "chances of 'A' are lower bounds. Counted without what is not evaluated: 'A' (segment 'stair').",
+        True,
+    ),
+])  # fmt: skip
+def test_a_route_is_below_the_limit_only_with_all_segments_evaluated(chances, said, judged):
+    """What its other segments reach, it reaches; what they do not, the one that is not evaluated may."""
+    sweep = swept_with(chances, 0)
+    (route,) = sweep.fragility.routes
+    part = replace(sweep, fragility=replace(sweep.fragility, routes=(replace(route, unevaluated=("stair",)),)))
+    assert part.verdict.say() == said
+    data = part.verdict.describe()
+    assert data["not_evaluated"] == ([] if judged else ["A"])
+    assert data["not_evaluated_segments"] == [{"route": "A", "segments": ["stair"]}]
+    assert "without segments that are not evaluated: 'stair'" in part.to_text()
+
+
 def test_the_verdict_counts_the_pieces_that_are_left_out(tmp_path):
     """A verdict on routes of which not everything beside them is known says so; warnings come after it."""
     loose = {"item": "c1", "floor": "1", "breadth": 40, "height": 180, "quantity": 3}
@@ -202,6 +223,7 @@ def swept_with(chances: list[float], spread: float, anchors: list[float] | None 
 
     route = RouteFragility(
         route="A", floors=(), blocked=tuple(map(chance, chances)), scenario_pfa=(1.5, 2.5), is_evaluated=True,
+        unevaluated=(),
         if_anchors_fail=anchors and tuple(map(chance, anchors)), doubtful=0,
         causes=(),
     )  # fmt: skip
@@ -263,7 +285,7 @@ def test_the_csv_is_the_document(swept):
     rows = list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
     number = len(document["pfa_g"])
     assert [row["route"] for row in rows] == ["Aula"] * number + ["'=Bar"] * number + ["Closet"]
-    assert [row["floors"] for row in rows] == ["1"] * number + ["2"] * number + ["2"]
+    assert [row["floors"] for row in rows] == ["1"] * number + ["2"] * number + ["3"]
     assert set(list(rows.pop().values())[2:]) == {""}, "nothing tells what can reach the closet"
     every = [at for one in document["routes"] for at in one["chances"]]
     for row, at in zip(rows, every, strict=True):
@@ -281,7 +303,7 @@ def test_the_text_is_the_document(swept):
     assert "\nChances are of an earthquake with that PFA, not per year." in text
     assert "\nAula (floor 1): 1 piece; 20 draws, all together\n" in text
     assert "\n=Bar (floor 2): 2 pieces; 20 draws, all together\n" in text
-    assert "\nCloset (floor 2): not evaluated: the workbook places no furniture there\n" in text
+    assert "\nCloset (floor 3): not evaluated: the workbook places no furniture there\n" in text
     blocks = {block.split(" (")[0]: block for block in text.split("\n\n")[1:]}
     for one in document["routes"][:2]:
         for label, name in (("chance [%]", "blocked"), ("  from", "low"), ("  to", "high")):
@@ -337,6 +359,7 @@ def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
             blocked=(chance,),
             if_anchors_fail=None,
             is_evaluated=True,
+            unevaluated=(),
             scenario_pfa=None,
             doubtful=0,
             causes=(),

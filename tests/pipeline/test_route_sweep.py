@@ -323,3 +323,22 @@ def test_nothing_is_read_off_a_jump(chances, level, between):
 def test_jumps():
     assert find_jumps([0.0, 0.3, 0.5, 0.7, 0.9, 0.6]) == [0, 4], "20 percentage points are none"
     assert find_jumps([0.5]) == []
+
+
+def test_a_stair_without_a_clear_width_is_named(tmp_path):
+    """As in the report, where that route is not known; with a width it is evaluated."""
+    flight = {"route": "A", "segment": "flight", "start": "Up", "end": "Down", "required_width": 0.9}
+    places = [{"place": "Up", "floor": "2", "kind": "stair"}, {"place": "Down", "floor": "1", "kind": "stair"}]
+    write_records(tmp_path, "pulse", "slow")
+    for width, named in ((None, ("flight",)), (1.2, ())):
+        rows = {
+            "Building": [{}], "Floors": [{"floor": name, "record_x": "pulse.csv"} for name in "12"],
+            "Items": [CABINET], "Places": places, "Routes": [CORRIDOR, {**flight, "clear_width": width}],
+        }  # fmt: skip
+        path = tmp_path / "stairs.xlsx"
+        write_workbook(path, Content(rows=rows), "si")
+        assessment = compute(assess.read_inventory(path), SETTINGS)
+        (route,) = fragility(assessment, 0.01).routes
+        assert (route.is_evaluated, route.unevaluated) == (True, named)
+        (row,) = build_results(assessment, figures=False).route_tables.routes
+        assert row.unevaluated_segments == named
