@@ -457,9 +457,10 @@ class FloorRoutesRow:
     """One floor: its segments, its routes (by those segments alone), its rooms, and the expected losses among them.
 
     Expected losses are of those that are known; `unknown_segments`, `unknown_routes` and `unknown_rooms` count the
-    others. `any_room_cut_off` is the chance that at least one of its rooms loses every exit; None without rooms, or
-    where something is missing that decides whether it is below the chosen risk. `uncounted_pieces` have neither a
-    usable position nor a Route: whether they fall onto a segment is not known.
+    others; rooms that no segment joins to a way out are not among its rooms. `any_room_cut_off` is the chance that at
+    least one of its rooms loses every exit; None without rooms, or where something is missing that decides whether it
+    is below the chosen risk. `uncounted_pieces` have neither a usable position nor a Route: whether they fall onto a
+    segment is not known.
     """
 
     floor: str
@@ -487,7 +488,7 @@ class RouteTables:
     blocked_routes_expected, cut_off_rooms_expected : float
         Expected number of routes that are blocked, and of rooms that lose every exit, among those that are known.
     unknown_routes, unknown_rooms : int
-        The others: something is missing that could change their state.
+        The others: something is missing that could change their state; unjoined rooms count.
     draws : int
         Draws that are made where all combinations of falling pieces are too many.
     uncounted_pieces : int

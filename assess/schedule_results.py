@@ -117,7 +117,7 @@ class State:
     blocked_routes, cut_off_rooms : float
         Expected number of routes that are blocked, and of rooms that lose every exit.
     rooms_at_risk : tuple of str
-        Rooms whose best way to the street is not open.
+        Rooms whose best way to the street is not open, or that no segment joins to one.
     """
 
     falls: float

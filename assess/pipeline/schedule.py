@@ -256,14 +256,16 @@ def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[in
         routes=tuple((str(state), states[state]) for state in RouteState if states[state]),
         blocked_routes=routes.blocked_routes_expected,
         cut_off_rooms=routes.cut_off_rooms_expected,
-        rooms_at_risk=tuple(_list_rooms_at_risk(routes)),
+        rooms_at_risk=tuple(list_rooms_at_risk(routes)),
     )
 
 
-def _list_rooms_at_risk(routes: RouteTables) -> Iterator[str]:
+def list_rooms_at_risk(routes: RouteTables) -> Iterator[str]:
+    """Yield the rooms whose best way to the street is not open, those last that no segment joins to one."""
     for room in routes.rooms:
         if room.state != RouteState.OPEN:
             yield room.room
+    yield from routes.unjoined_rooms
 
 
 def hold(held: NDArray[np.bool_], further: Collection[int]) -> NDArray[np.bool_]:

@@ -82,9 +82,7 @@ def evaluate_routes(
         routes = tuple(step(_route(scene, name, segments)) for name in names)
         rooms = tuple(step(evaluate_room(scene, place, part, segments)) for place, part in parts)
         by_floor = [step(evaluate_floor(scene, floor, parts, segments, rooms)) for floor in floors]
-    return replace(
-        _join(settings.route_risk, segments, routes, rooms, by_floor), unjoined_rooms=list_unjoined(scene, parts)
-    )
+    return _join(settings.route_risk, segments, routes, rooms, by_floor, list_unjoined(scene, parts))
 
 
 def _join(
@@ -93,6 +91,7 @@ def _join(
     routes: tuple[RouteRow, ...],
     rooms: tuple[RoomRow, ...],
     by_floor: Sequence[FloorRoutesRow],
+    unjoined: tuple[str, ...],
 ) -> RouteTables:
     """Return the tables with their sums; floors without segments and rooms are left out."""
     floors = tuple(one for one in by_floor if one.segments or one.rooms)
@@ -102,9 +101,10 @@ def _join(
         blocked_routes_expected=sum(one.blocked.probability for one in known if one.blocked),
         cut_off_rooms_expected=sum(one.loses_every_exit.probability for one in rooms if one.is_known),
         unknown_routes=len(routes) - len(known),
-        unknown_rooms=sum(not one.is_known for one in rooms),
+        unknown_rooms=sum(not one.is_known for one in rooms) + len(unjoined),
         draws=DRAWS,
         uncounted_pieces=sum(one.uncounted_pieces for one in floors),
+        unjoined_rooms=unjoined,
         segments=segments,
         routes=routes,
         rooms=rooms,

@@ -2,6 +2,7 @@
 
 import pytest
 
+from assess.pipeline.schedule import list_rooms_at_risk
 from assess.report.findings.route_rows import count_rooms
 from assess.route_results import RouteState
 from tests.routes.buildings import CORRIDOR, corridor, evaluated, make_falls, one_segment, piece, place, stretch
@@ -288,6 +289,9 @@ def test_a_room_that_no_segment_joins_is_named():
     found = evaluated(make_falls([0.0]), [WHOLE], [corridor()], rooms)
     assert [one.room for one in found.rooms] == ["West"]
     assert found.unjoined_rooms == ("Cellar 2", "Cellar 10")
+    assert (found.unknown_rooms, found.rooms[0].state, list(list_rooms_at_risk(found))) == (
+        2, OPEN, ["Cellar 2", "Cellar 10"],
+    )  # fmt: skip
     (sentence,) = count_rooms(found)[1:]
     assert "joins 2 more rooms to no exit or stair" in sentence
     assert "Cellar 2, Cellar 10" in sentence
