@@ -91,9 +91,8 @@ class Anchors:
 
         def holds(tension: FloatArray) -> bool | None:
             demand, capacity = tension[at], self.capacity[at]
-            if np.isnan(demand) or np.isnan(capacity):
-                return None
-            return None if weight.is_per_metre and 0 < demand <= capacity else bool(demand <= capacity)
+            is_open = np.isnan(demand) or np.isnan(capacity) or (weight.is_per_metre and 0 < demand <= capacity)
+            return None if is_open else bool(demand <= capacity)
 
         return AnchorRow(
             weight_kn=_in_kn(weight.value),

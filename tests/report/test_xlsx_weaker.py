@@ -233,7 +233,7 @@ def test_a_bracket_of_a_piece_of_unknown_width(tmp_path, verify):
     shown = {item: _state(row) for item, row in book.items(stored_cells(book.path)).items()}
     assert shown == {"a": "held", "b": "free", "c": "held", "d": "free", "e": "free"}
     assert {one.item.item for one in results if one.is_anchored} == {"a", "c"}
-    edits = [(*book.cell("a", "width_cm"), 90.0), (*book.cell("b", "width_cm"), 90.0)]
+    edits: list[Edit] = [(*book.cell("a", "width_cm"), 90.0), (*book.cell("b", "width_cm"), 90.0)]
     edits += [(*book.cell("c", "anchored"), "partly"), (*book.cell("d", "anchored"), "yes")]
     cells = recalculate(book.path, edits, "formualizer", tmp_path)
     found = {item: _state(row) for item, row in book.items(cells).items()}
