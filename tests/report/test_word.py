@@ -77,7 +77,7 @@ def test_it_has_the_headings_of_the_page(written):
 def _grid(table):
     """Return the texts of a table of the page as Word gives them: a cell that spans several stands in each of them."""
     rows = list(table.iter("tr"))
-    found = {}
+    found: dict[tuple[int, int], str] = {}
     for one in place_cells(rows):
         spots = itertools.product(range(one.rows), range(one.columns))
         found |= {(one.row + down, one.column + right): _words(_said(one.cell)) for down, right in spots}
