@@ -141,7 +141,7 @@ def test_without_its_series_a_report_names_what_is_left_out(tmp_path):
         "w.xlsx is not attached to the PDF: the results hold no copy of it."
     ]
     assert [file.name for file in list_attached(gone)] == ["results.json"]
-    write_pdf(build_content(gone), tmp_path / "a.pdf", ReportOptions())
+    write_pdf(build_content(gone), tmp_path / "a.pdf", ReportOptions(), edition="annex")
     document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
     text = " ".join(" ".join(document[at].get_textpage().get_text_range() for at in range(len(document))).split())
     assert list(_attachments(document)) == ["results.json"]

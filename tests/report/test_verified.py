@@ -160,7 +160,7 @@ class TestChanges:
         assert len(rows) == 3
         note = "○ low, could be medium, lowered by simulation (formula: high)"
         assert text.count(note) == 2 * 2  # all pieces, classes lowered
-        assert text.count("○ low ?↓") == 2 * 2  # on one line: the worst, what to fix first
+        assert text.count("○ low ?↓") == 3 * 2  # on one line: the worst, what to fix first, what to fix
         assert text.count("ƒ medium by formula only") == text.count("ƒ low by formula only") == 1  # not simulated
         assert text.count("depends on its anchor (free-standing: low, could be medium, lowered by simulation") == 2
         assert "Class lowered by simulation: 3 pieces in 3 rows (1 of them anchored): 3 from high." in text
