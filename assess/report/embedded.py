@@ -1,9 +1,10 @@
 """Pictures of users as a report embeds them: the logo, and photos of pieces."""
 
 import base64
+from collections.abc import Iterable
 
 from assess.pictures import PictureError, prepare_picture
-from assess.results import Results
+from assess.results import ItemResult, Results
 
 MOST_SHOWN = 20_000_000
 """Bytes of all photos that one report embeds: what goes beyond is left out."""
@@ -31,6 +32,14 @@ class Photos:
         self.series = results.series
         self.of_item = self.series["photo/of_item"].tolist() if "photo/of_item" in self.series else []
         self.left = MOST_SHOWN
+
+    def first_photo(self, results: Iterable[ItemResult]) -> tuple[str, str] | None:
+        """Return the name of the first of some pieces that has a photo, and its address; None where none has one."""
+        for one in results:
+            photo = self.photo_of(one.item.index)
+            if photo:
+                return one.item.item, photo
+        return None
 
     def photo_of(self, item_index: int) -> str:
         """Return the address of the photo of a piece, by its `ItemRow.index`.

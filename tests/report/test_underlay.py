@@ -230,6 +230,8 @@ def test_photos_by_item_and_no_more_than_a_report_holds(tmp_path):
     assert found[1].startswith("data:image/jpeg;base64,")
     page = render(results)
     assert page.count('class="photo"') == 2
+    assert photos.first_photo(list(results)) == ("A1", found[1])
+    assert photos.first_photo(list(results)[:1]) is None
     photos.left = 10
     assert photos.photo_of(1) == ""
     assert Photos(_assess(tmp_path, [PIECE])).photo_of(0) == ""

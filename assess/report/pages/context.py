@@ -99,7 +99,7 @@ def _of_content(
         "tables": _list_tables(content),
         "listings": _listings(content) if is_compact else {},
         "logo": embed_logo(content.run),
-        "photo_of": Photos(content.run).photo_of,
+        "first_photo": Photos(content.run).first_photo,
         "floor_bars": build_bars(content.worst_floors),
         **_of_marks(content),
         "schedule": _of_schedule(content),

@@ -103,6 +103,8 @@ def _write_image(word: Word, element: Any) -> None:
 
 def _write_contents(word: Word, element: Any) -> None:
     """Write the contents: a field that Word fills with pages, which shows the headings until then."""
+    for heading in element.iterchildren("h2"):
+        Line(word, word.file.add_paragraph(style="Subtitle")).fill(heading)
     paragraph = word.file.add_paragraph(style="Normal")
     paragraph._p.append(_field_part("begin"))
     code = make("w:r")

@@ -8,7 +8,7 @@ from typing import Any
 from assess.plain_text import plain_text
 from assess.report.word.document import Word, make, shade
 from assess.report.word.drawings import MARK
-from assess.report.words import class_name
+from assess.report.words import NO_BREAK, class_name
 from assess.risk import RiskClass
 
 FILLS = {
@@ -17,6 +17,8 @@ FILLS = {
 }
 """Ground and ink of badges and tiles, by their class in the page."""
 PICTURE = "data:image/"
+LOGO, PHOTO = 40.0, 24.0
+"""Widths of a logo and of a photo of a piece [mm]."""
 _SPACE = re.compile(r"[ \t\r\n\f]+")
 _BOLD, _ITALIC = ("strong", "b", "th", "dt"), ("em", "i")
 _LEFT_OUT = ("script", "style", "title", "col", "colgroup", "wbr")
@@ -55,6 +57,8 @@ class Line:
             self.paragraph.add_run().add_break()
             self.is_at_space = True
         elif child.tag == "img":
+            if "photo" in classes:
+                self.paragraph.add_run().add_break()
             self._show(child)
         elif "hidden" not in classes and child.get("aria-hidden") != "true":
             if child.tag in ("p", "div", "li", "ul", "figure") and self.paragraph.runs:
@@ -64,7 +68,7 @@ class Line:
 
     def write(self, text: str | None, look: Look) -> None:
         """Write text, its white space as single spaces."""
-        said = _SPACE.sub(" ", plain_text(text or ""))
+        said = _SPACE.sub(NO_BREAK if look.ground else " ", plain_text(text or ""))
         said = said.lstrip(" ") if self.is_at_space else said
         if said:
             self.is_at_space = said.endswith(" ")
@@ -116,7 +120,8 @@ def find_picture(word: Word, image: Any) -> tuple[bytes, float, str] | None:
         return None
     import base64
 
-    return base64.b64decode(source.partition(",")[2]), 40.0, image.get("alt", "")
+    width = PHOTO if "photo" in image.get("class", "").split() else LOGO
+    return base64.b64decode(source.partition(",")[2]), width, image.get("alt", "")
 
 
 def add_picture(paragraph: Any, data: bytes, width: float, alternative: str) -> None:

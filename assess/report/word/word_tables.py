@@ -15,6 +15,8 @@ LEAST, MOST = 5.0, 34.0
 CHARACTER, MARGINS = 2.05, 2.4
 """Width of a character of a cell and of the margins of one [mm]."""
 _OWN_WIDTH = re.compile(r"^w(\d+)$")
+SIZE, SMALLEST = 9.0, 6.5
+"""Sizes of the letters of a cell [pt]: that of its style, and the least."""
 _WORDS = re.compile(r"[ \t\n]+")
 _GROUND, _RULE = "E9EDF0", "C9CED3"
 
@@ -57,14 +59,16 @@ def write_table(word: Word, table: Any) -> None:
         return
     made = word.file.add_table(len(rows), columns)
     made.autofit = False
-    _set_columns(made, _find_widths(table, placed, columns))
+    widths, scale = _find_widths(table, placed, columns)
+    _set_columns(made, widths)
     slots = [list(tr.tc_lst) for tr in made._tbl.tr_lst]
     for tr, (_row, is_head) in zip(made._tbl.tr_lst, rows, strict=True):
         word.progress.check()
         _set_row(tr, is_head=is_head)
     for one in placed:
         row, is_head = rows[one.row]
-        _write_slot(word, made, slots, one, is_head=is_head or "part" in row.get("class", "").split())
+        slot = _write_slot(word, made, slots, one, is_head=is_head or "part" in row.get("class", "").split())
+        _shrink(slot, scale)
     _set_borders(made)
     word.file.add_paragraph(style="Small")
 
@@ -81,7 +85,15 @@ def _set_row(tr: Any, *, is_head: bool) -> None:
         properties.append(make("w:tblHeader"))
 
 
-def _write_slot(word: Word, table: Any, slots: list[list[Any]], one: Placed, *, is_head: bool) -> None:
+def _shrink(slot: Any, scale: float) -> None:
+    """Set the text of a cell smaller where the words of its table would not fit the page."""
+    from docx.shared import Pt
+
+    for run in slot.paragraphs[0].runs if scale < 1 else ():
+        run.font.size = Pt(round(max(SMALLEST, SIZE * scale), 1))
+
+
+def _write_slot(word: Word, table: Any, slots: list[list[Any]], one: Placed, *, is_head: bool) -> Any:
     from docx.table import _Cell
 
     first = _Cell(slots[one.row][one.column], table)
@@ -90,6 +102,7 @@ def _write_slot(word: Word, table: Any, slots: list[list[Any]], one: Placed, *, 
     _write_cell(word, slot, one.cell, is_head=is_head)
     if is_head:
         shade(slot._tc.get_or_add_tcPr(), _GROUND)
+    return slot
 
 
 def _write_cell(word: Word, slot: Any, cell: Any, *, is_head: bool) -> None:
@@ -106,10 +119,10 @@ def _write_cell(word: Word, slot: Any, cell: Any, *, is_head: bool) -> None:
 # ---------------------------------------------------------------- widths
 
 
-def _find_widths(table: Any, placed: Sequence[Placed], columns: int) -> list[float]:
-    """Return the width of each column [mm]: in percent where the page says so, else by what it holds.
+def _find_widths(table: Any, placed: Sequence[Placed], columns: int) -> tuple[list[float], float]:
+    """Return the width of each column [mm], in percent where the page says so, else by what it holds; and a scale.
 
-    None is narrower than its longest word, as long as there is room for all.
+    None is narrower than its longest word; the scale is that of the letters at which there is room for all.
     """
     texts: list[list[str]] = [[] for _column in range(columns)]
     for one in placed:
@@ -121,7 +134,8 @@ def _find_widths(table: Any, placed: Sequence[Placed], columns: int) -> list[flo
     left = max(100.0 - sum(one or 0.0 for one in own), 10.0)
     rest = sum(share for share, one in zip(shares, own, strict=True) if one is None)
     wanted = [one if one is not None else left * share / rest for share, one in zip(shares, own, strict=True)]
-    return _fit([SPACE * one / sum(wanted) for one in wanted], [_need(one) for one in texts])
+    needed = [_need(one) for one in texts]
+    return _fit([SPACE * one / sum(wanted) for one in wanted], needed), min(1.0, SPACE / sum(needed))
 
 
 def _fit(wanted: list[float], needed: list[float]) -> list[float]:
