@@ -195,7 +195,7 @@ def test_of_too_many_groups_the_worst_are_shown_in_their_order(results):
 # ---------------------------------------------------------------- the worked example
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_worked_example_has_its_pages_and_none_is_half_empty(tmp_path):
     results = assess.run(EXAMPLE)
     written = assess.write_reports(results, tmp_path, ("pdf", "annex"))
