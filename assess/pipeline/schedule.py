@@ -23,6 +23,8 @@ from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
 
 APART = ("", "unconfirmed", "formula")
 """The bases in the order of lists: that of the run, and what stands apart."""
+NO_FALLS = 1e-12
+"""Expected number of falls below which a difference is that of rounding."""
 FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "schedario", "classificatore")
 """Words of a description or type, in every language of the workbook, by which a piece is fixed at its base."""
 
@@ -36,7 +38,7 @@ def build_schedule(
     entries = group_fixes(chosen, results.route_tables.routes)
     avoided = [sum(map(count_falls, one)) for one in entries]
     total = sum(count_falls(one) for one in rows if not one.is_anchored)
-    left = list(accumulate(avoided, lambda sum_left, one: max(0.0, sum_left - one), initial=total))[1:]
+    left = list(accumulate(avoided, _take_off, initial=total))[1:]
     costs = _find_costs(inventory.costs)
     together = _list_together(results.route_tables.routes)
     held = {one.item.index for one in chosen}
@@ -48,6 +50,12 @@ def build_schedule(
         before=_sum_up(rows, results.route_tables, ()),
         after=_sum_up(rows, evaluate(held) if held else results.route_tables, held),
     )
+
+
+def _take_off(falls: float, avoided: float) -> float:
+    """Return the falls that are left; what is left of rounding alone is 0."""
+    left = falls - avoided
+    return left if left >= NO_FALLS else 0.0
 
 
 def count_falls(one: ItemResult) -> float:

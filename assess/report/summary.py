@@ -11,7 +11,7 @@ from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
 from assess.report.findings.assumed_intensity import say_shaking_shortly
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
-from assess.report.findings.schedule_words import Entry, list_entries
+from assess.report.findings.schedule_words import Entry, list_entries, say_doubtful_brackets
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 
@@ -46,7 +46,7 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
     worst, fixes = list_worst(rows), list_entries(results, rows)
     could_be = sum(one.item.quantity for one in list_risky(rows) if one.adopted.risk < RiskClass.HIGH)
     return Summary(
-        plainly=say_plainly(total, could_be, worst, fixes),
+        plainly=say_plainly(total, could_be, worst, fixes, rows),
         apart=say_apart(rows),
         shaking=[text for text in (say_shaking_shortly(results),) if text],
         worst=worst,
@@ -74,8 +74,13 @@ def _worst_first(one: ItemResult) -> tuple[object, ...]:
     return -one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)
 
 
-def say_plainly(total: Counts, could_be: int, worst: Sequence[ItemResult], fixes: Sequence[Entry]) -> list[str]:
-    """Return the first paragraph of the summary; `could_be` pieces reach high by the upper estimate only."""
+def say_plainly(
+    total: Counts, could_be: int, worst: Sequence[ItemResult], fixes: Sequence[Entry], rows: Sequence[ItemResult] = ()
+) -> list[str]:
+    """Return the first paragraph of the summary; `could_be` pieces reach high by the upper estimate only.
+
+    `rows` are all pieces, of which the anchored ones are named whose brackets may fail.
+    """
     texts = [_say_counts(total)]
     if could_be and total.risky:
         texts.append(ngettext("{n:,} more could be either.", "{n:,} more could be either.", could_be))
@@ -85,6 +90,7 @@ def say_plainly(total: Counts, could_be: int, worst: Sequence[ItemResult], fixes
         texts.append(ngettext("{n:,} further piece is anchored and not classified: it depends on its anchors.",
                               "{n:,} further pieces are anchored and not classified: they depend on their anchors.",
                               total.anchored))  # fmt: skip
+    texts += say_doubtful_brackets(rows)
     if worst and worst[0].adopted.risk > RiskClass.LOW:
         one = worst[0]
         texts.append(_("The worst is {item} ({what}, floor {floor}) with a chance of {chance}.",

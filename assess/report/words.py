@@ -192,22 +192,49 @@ def list_beside(one: ItemResult) -> list[str]:
 
 
 def say_bracket(one: ItemResult) -> str:
-    """Return what follows from a bracket whose capacity is known: whether the piece counts as anchored; "" else."""
+    """Return what follows from a bracket whose capacity is known: whether the piece counts as anchored; "" else.
+
+    Of one that holds by the criterion of its piece, PFA or its 84 %, it is said where it fails by a stricter one.
+    """
     anchored, anchor = one.item.anchored, one.item.anchor
     if anchored not in ("yes", "partly") or anchor.bracket_capacity_kn is None:
         return ""
     holds = anchor.holds if anchored == "yes" else anchor.holds_high
-    if holds is None and one.is_anchored:
-        return _("width not known, so whether its bracket holds is not known: counts as anchored")
+    if one.is_anchored:
+        return _say_bracket_of_anchored(one, holds)
     if holds is None:
         return _("width not known, so whether its bracket holds is not known: counts as free-standing")
     if anchored == "yes":
-        return "" if holds else _("bracket fails at PFA: counts as free-standing")
-    return (
-        _("bracket holds at 84 % of PFA: counts as anchored")
-        if holds
-        else _("bracket fails at 84 % of PFA: counts as free-standing")
-    )
+        return _("bracket fails at PFA: counts as free-standing")
+    return _("bracket fails at 84 % of PFA: counts as free-standing")
+
+
+def _say_bracket_of_anchored(one: ItemResult, holds: bool | None) -> str:
+    anchor = one.item.anchor
+    fails = anchor.holds_high is False, anchor.holds_code is False
+    if holds is None:
+        text = _("width not known, so whether its bracket holds is not known: counts as anchored")
+        further = {
+            (True, False): _("bracket fails at 84 % of PFA"),
+            (False, True): _("bracket fails by the code"),
+            (True, True): _("bracket fails at 84 % of PFA and by the code"),
+        }
+        return "; ".join((text, further[fails])) if any(fails) else text
+    if one.item.anchored == "partly":
+        if fails[1]:
+            return _("bracket holds at 84 % of PFA, fails by the code: counts as anchored")
+        return _("bracket holds at 84 % of PFA: counts as anchored")
+    return {
+        (False, False): "",
+        (True, False): _("bracket holds at PFA, fails at 84 % of PFA: counts as anchored"),
+        (False, True): _("bracket holds at PFA, fails by the code: counts as anchored"),
+        (True, True): _("bracket holds at PFA, fails at 84 % of PFA and by the code: counts as anchored"),
+    }[fails]
+
+
+def has_doubtful_bracket(one: ItemResult) -> bool:
+    """Tell whether a piece counts as anchored by a bracket that fails at 84 % of PFA or by the code."""
+    return one.is_anchored and False in (one.item.anchor.holds_high, one.item.anchor.holds_code)
 
 
 def risk_words(one: ItemResult) -> str:

@@ -153,7 +153,7 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
 
 def _report_detail(table: Table, row: Row) -> Problem:
     listed = join(", ", [one.title for one in DETAILS.values()])
-    message = fill("Detail {name} is none that the schedule uses: its cost is left out.", name=row.quote("detail"))
+    message = fill("Detail {name} is not a known way of fixing: its cost is left out.", name=row.quote("detail"))
     return table.problem("detail", row, message, fill("Choose one of: {listed}", listed=listed), "warning")
 
 

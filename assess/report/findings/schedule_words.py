@@ -317,6 +317,19 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
     return [effect, say_costs(schedule)]
 
 
+def say_doubtful_brackets(rows: Iterable[ItemResult]) -> list[str]:
+    """Return which pieces count as anchored by brackets that fail at 84 % of PFA or by the code; nothing if none."""
+    found = sorted(filter(words.has_doubtful_bracket, rows), key=lambda one: natural_key(one.item.item))
+    if not found:
+        return []
+    text = ngettext(
+        "{n:,} anchored piece has a bracket that fails at 84 % of PFA or by the code: {names}.",
+        "{n:,} anchored pieces have brackets that fail at 84 % of PFA or by the code: {names}.",
+        sum(one.item.quantity for one in found), names=words.name_first([one.item.item for one in found], MOST_NAMES),
+    )  # fmt: skip
+    return [text]
+
+
 def say_costs(schedule: Schedule) -> str:
     """Return the sum of the costs that are known, and how many entries have none."""
     if schedule.cost is None:

@@ -122,7 +122,14 @@ def class_notes(one: ItemResult) -> str:
         texts.append(words.was_lowered(say_class(adopted.lowered_from)))
     if is_as_run(one) and one.fell_in_record:
         texts.append(_("as it overturns under the record itself"))
+    if bracket := say_bracket_held(one):
+        texts.append(bracket)
     return ", ".join(texts)
+
+
+def say_bracket_held(one: ItemResult) -> str:
+    """Return what is to be known of the bracket by which a piece counts as anchored; "" of any other."""
+    return words.say_bracket(one) if one.is_anchored and is_as_run(one) else ""
 
 
 def say_listed_class(one: ItemResult) -> str:

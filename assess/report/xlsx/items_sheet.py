@@ -14,6 +14,7 @@ from xlsxwriter.utility import xl_col_to_name
 
 from assess.fields import Field, item_fields
 from assess.i18n import gettext as _
+from assess.report import words
 from assess.report.content import Content
 from assess.report.xlsx.item_formulas import AT_RUN, BRACKET, ROW, ItemFormulas, build_terms, live_formulas
 from assess.report.xlsx.item_values import (
@@ -25,6 +26,7 @@ from assess.report.xlsx.item_values import (
     list_simulated,
     listed_chance,
     order_number,
+    say_bracket_held,
     say_unsettled,
     under_record,
     upper_class,
@@ -198,7 +200,8 @@ def _as_run(method: "MethodInfo") -> Column:
 
 
 def _marks(one: ItemResult) -> str:
-    return ", ".join(_(flag.replace("_", " ")) for flag in one.adopted.flags)
+    texts = [_(flag.replace("_", " ")) for flag in one.adopted.flags]
+    return ", ".join([*texts, *filter(None, (words.say_bracket(one),))])
 
 
 def _own(results: Results, taken: set[str]) -> Iterator[Column]:
@@ -237,6 +240,7 @@ def _workings(results: Results) -> Iterator[Column]:
     yield column("held_yes", _("Held if anchored"), lambda one: int(one.item.anchor.holds is not False))
     yield column("held_partly", _("Held if partly anchored"), lambda one: int(one.item.anchor.holds_high is True))
     yield column("settle", _("How to settle the class"), _settle)
+    yield column("bracket_held", _("Bracket as run"), say_bracket_held)
     yield column("rank", _("Rank"), _if_as_run(lambda one: int(one.adopted.risk)), is_live=True)
     yield column("rank_upper", _("Rank, upper"), _if_as_run(lambda one: int(one.adopted.upper)), is_live=True)
     yield column("rank_formula", _("Rank, formula"), _if_as_run(lambda one: int(one.formula_class)), is_live=True)
