@@ -273,8 +273,12 @@ def _odd_period(inventory: Inventory, demands: Demands, roof: float) -> Iterator
 
 
 def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
-    """Report which of Ground PGA and SDS is not used; with a hazard file chances a year refer to the former."""
+    """Report which of Ground PGA and SDS no floor uses; with a hazard file chances a year refer to the former.
+
+    The code's force on anchors uses SDS where it is given, else Ground PGA.
+    """
     building = inventory.building
+    for_anchors = "ground_pga" if building.sds is None else "sds"
     given = {"ground_pga": None if inventory.hazard else building.ground_pga, "sds": building.sds}
     if not list_floors(demands, "profile"):
         for name, label in (("ground_pga", "Ground PGA"), ("sds", "SDS")):
@@ -283,12 +287,17 @@ def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Ite
                 if scenario != "as filled":
                     why = fill("scenario '{scenario}'", scenario=fill(scenario))
                 message = fill("{what} is not used: {why}.", what=fill(label), why=why)
+                if name == for_anchors:
+                    message = fill(
+                        "{what} is used for the code's force on anchors only: {why}.", what=fill(label), why=why
+                    )
                 yield Problem("note", "Building", building.cell(name), message)
     elif building.ground_pga is not None and building.sds is not None:
         by_sds = PGA_OF_SDS * building.sds
         if abs(by_sds - building.ground_pga) > ALIKE * max(building.ground_pga, by_sds):
             message = fill(
-                "SDS is not used: 0.4 SDS is {by_sds:.3f} g, Ground PGA {used:.3f} g is used.",
+                "SDS is used for the code's force on anchors only: 0.4 SDS is {by_sds:.3f} g, but floors follow Ground PGA "
+                "{used:.3f} g.",
                 by_sds=by_sds / GRAVITY,
                 used=building.ground_pga / GRAVITY,
             )

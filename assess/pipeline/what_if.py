@@ -1,5 +1,6 @@
 """What if some pieces were anchored, and their anchors held."""
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
@@ -13,17 +14,29 @@ from assess.schedule_results import ScheduleRow
 from assess.workbook.names import key
 
 
+_FIRST = re.compile(r"\s*first\s*(:|$)", re.IGNORECASE)
+"""What begins as the form that names the first entries of the schedule."""
+
+
 def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
     """Return an inventory in which the items of these names are anchored, with brackets that hold.
 
     Raises
     ------
     SettingsError
-        If there is no item of a name.
+        If there is no item of a name, or a name is meant as ``first:N`` and is not.
     """
     known = {key(one.item): at for at, one in enumerate(inventory.items)}
     for name in names:
         if key(name) not in known:
+            if _FIRST.match(name):
+                raise SettingsError(
+                    fill(
+                        "anchor is {name!r}, expected first:N with a whole number N of at least 1, alone, or names of "
+                        "items.",
+                        name=name,
+                    )
+                )
             fault = fill("anchor: there is no item {name!r} in Items.", name=name)
             near = get_close_matches(name, [one.item for one in inventory.items], 1, 0.6)
             raise SettingsError(join(" ", (fault, *(fill("Did you mean {name}?", name=repr(one)) for one in near))))

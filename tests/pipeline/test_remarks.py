@@ -54,8 +54,14 @@ def test_ground_motion_that_no_floor_needs_is_kept_not_used(tmp_path, scenario, 
     remarks = _remarks(tmp_path, [{"floor": "1", "pfa_x": 0.3}], scenario, ground_pga=0.2, sds=0.5)
     assert remarks == {
         f"Building!B20: Ground PGA is not used: {why}.": "note",
-        f"Building!B22: SDS is not used: {why}.": "note",
+        f"Building!B22: SDS is used for the code's force on anchors only: {why}.": "note",
     }
+
+
+def test_without_sds_the_codes_force_on_anchors_follows_ground_pga(tmp_path):
+    remarks = _remarks(tmp_path, [{"floor": "1", "pfa_x": 0.3}], ground_pga=0.2)
+    text = "Building!B20: Ground PGA is used for the code's force on anchors only: no floor follows a profile."
+    assert remarks == {text: "note"}
 
 
 @pytest.mark.parametrize("floor", [{"pfa_x": 0.3}, {"pfa_x": 0.3, "pfv_x": 40}])
@@ -81,8 +87,8 @@ def test_a_ground_velocity_too_small_for_a_floor_is_told(tmp_path, pgv, is_small
 def test_ground_pga_comes_before_an_sds_that_differs(tmp_path, sds, severity):
     """0.4 x 0.503 = 0.2012 differs from 0.2 by 0.6 %; 0.24 would shake more, 0.16 less."""
     remarks = _remarks(tmp_path, [{"floor": "1", "elevation": 3}], ground_pga=0.2, sds=sds)
-    values = f"0.4 SDS is {0.4 * sds:.3f} g, Ground PGA 0.200 g is used"
-    text = f"Building!B22: SDS is not used: {values}. Correct one of them, or clear it."
+    values = f"0.4 SDS is {0.4 * sds:.3f} g, but floors follow Ground PGA 0.200 g"
+    text = f"Building!B22: SDS is used for the code's force on anchors only: {values}. Correct one of them, or clear it."
     assert remarks == ({text: severity} if severity else {})
 
 

@@ -135,12 +135,16 @@ def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path):
         {"floor": "1", "elevation": 4.0, "pfa_x": 0.2, "pfa_y": 0.2},
     ]
     items = [dict(ITEMS[0], floor="1")]
-    results = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139)
+    results = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139, sds=0.4)
     said = build_content(results).building["ground_pga"][1]
     assert said == (
         "0.135 g on floor G, given PFA; 0.139 g of the workbook is not used: no floor follows a code's profile"
     )
-    above = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139)
+    of_anchors = "used for the code's force on anchors only: no floor follows a code's profile"
+    assert build_content(results).building["sds"][1] == f"0.4 g, {of_anchors}"
+    alone = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139)
+    assert build_content(alone).building["ground_pga"][1] == f"0.139 g, {of_anchors}"
+    above = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139, sds=0.4)
     said = build_content(above).building["ground_pga"][1]
     assert said == "0.139 g in the workbook, not used: no floor follows a code's profile"
     profiled = assessed(tmp_path / "w.xlsx", items, [*floors[1:], {"floor": "2", "elevation": 8.0}], ground_pga=0.139)

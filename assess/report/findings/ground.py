@@ -6,7 +6,7 @@ from assess.report.findings.motions import describe_source, list_floors
 from assess.results import MotionRow, Results
 
 PEAKS = ("ground_pga", "sds")
-"""Fields of the building that serve floors on a code's profile alone, and chances a year."""
+"""Fields of the building that serve floors on a code's profile, chances a year, and the code's force on anchors."""
 
 
 def say_ground(results: Results, name: str, given: str) -> str:
@@ -24,6 +24,8 @@ def say_ground(results: Results, name: str, given: str) -> str:
     reason = _find_reason(results, name)
     if not reason:
         return given
+    if name == _find_for_anchors(results):
+        return _("{given}, used for the code's force on anchors only: {reason}", given=given, reason=reason)
     used = _find_used(results)
     if used is None:
         return _("{given} in the workbook, not used: {reason}", given=given, reason=reason)
@@ -34,8 +36,13 @@ def say_ground(results: Results, name: str, given: str) -> str:
     )  # fmt: skip
 
 
+def _find_for_anchors(results: Results) -> str:
+    """Return the field of the building that the code's force on anchors follows: SDS where it is given."""
+    return "sds" if results.building.sds is not None else "ground_pga"
+
+
 def _find_reason(results: Results, name: str) -> str:
-    """Return why a peak is not used, "" where it is."""
+    """Return why no floor's motion follows a peak, "" where one does."""
     building = results.building
     if name == "ground_pga" and building.hazard:
         return ""
