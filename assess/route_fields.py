@@ -49,6 +49,7 @@ _LABELS: Mapping[str, tuple[str, str]] = {
     "blocked_unconfirmed": (fill("Unconfirmed pieces"), ""),
     "blocked_if_unconfirmed_fall_probability": (fill("Blocked if unconfirmed pieces fall"), ""),
     "missing": (fill("To fill in"), ""),
+    "missing_after": (fill("To fill in once these are done"), ""),
     "decisive_segment": (fill("Decisive segment"), ""),
     "from_places": (fill("From"), ""),
     "to_places": (fill("To"), ""),

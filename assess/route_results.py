@@ -345,6 +345,9 @@ class RouteRow:
         The smallest set found that opens the route, with unconfirmed pieces fallen.
     is_fixed : bool
         Whether one exists: not where it is blocked with nothing fallen.
+    missing_after : tuple of MissingRow
+        What is to be filled in once all of `fixes` are done, as the route would be not known then; empty where it would
+        be known, or where there is nothing to fix.
     annual, annual_if_anchors_fail : AnnualRow, optional
         How often a year it is blocked if all anchors hold, and with anchored pieces taken as free-standing; the second
         is None where there are none, both where no hazard file is given.
@@ -368,6 +371,7 @@ class RouteRow:
     decisive_segment: int | None
     fixes: tuple[RouteFixRow, ...]
     is_fixed: bool
+    missing_after: tuple[MissingRow, ...] = ()
     annual: AnnualRow | None = None
     annual_if_anchors_fail: AnnualRow | None = None
 
@@ -418,6 +422,8 @@ class RoomRow:
         Index of the segment on its safest way that decides the state, as in `RouteRow`.
     fixes, is_fixed
         As in `RouteRow`: what opens the best way; fixes are sought where it is doubtful or blocked.
+    missing_after : tuple of MissingRow
+        As in `RouteRow`.
     unevaluated_segments : tuple of str
         Segments on any of its ways out that are not evaluated.
     unevaluated_indices : tuple of int
@@ -444,6 +450,7 @@ class RoomRow:
     unevaluated_segments: tuple[str, ...]
     unevaluated_indices: tuple[int, ...]
     ways: tuple[WayRow, ...]
+    missing_after: tuple[MissingRow, ...] = ()
     annual: AnnualRow | None = None
 
     @property

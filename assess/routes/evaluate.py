@@ -23,7 +23,15 @@ from assess.route_results import (
 from assess.routes.chances import DRAWS, Falls
 from assess.routes.network import build_course, find_ends
 from assess.routes.obstructions import Obstructions
-from assess.routes.rooms import evaluate_floor, evaluate_room, list_fixes, list_rooms, list_unjoined, name_unevaluated
+from assess.routes.rooms import (
+    evaluate_floor,
+    evaluate_room,
+    find_missing_after,
+    list_fixes,
+    list_rooms,
+    list_unjoined,
+    name_unevaluated,
+)
 from assess.routes.scene import Scene
 from assess.routes.widths import NARROWER, kinds_of, needed_width
 from assess.settings import Settings
@@ -236,4 +244,5 @@ def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
         decisive_segment=scene.find_decisive(chances, is_known=outlook["state"] != RouteState.NOT_KNOWN),
         fixes=fixes,
         is_fixed=is_fixed,
+        missing_after=find_missing_after(scene, segments, fixes, course.is_blocked),
     )

@@ -17,7 +17,7 @@ from assess.route_results import (
     SegmentRow,
     WayRow,
 )
-from assess.routes.chances import Draws, union
+from assess.routes.chances import Draws, Happens, union
 from assess.routes.fixes import IsBlocked, find_fixes
 from assess.routes.missing import combine
 from assess.routes.network import Blocked, Part, build_course, build_graph, find_parts, find_rooms, find_ways
@@ -47,6 +47,27 @@ def list_fixes(scene: Scene, segments: Collection[int], is_blocked: IsBlocked) -
     return tuple(found), is_fixed
 
 
+def find_missing_after(
+    scene: Scene, segments: Collection[int], fixes: Sequence[RouteFixRow], is_blocked: IsBlocked
+) -> tuple[MissingRow, ...]:
+    """Return what is to be filled in once fixes are done so that it is known whether some segments are open."""
+    if not _may_lack(scene, segments, fixes):
+        return ()
+    held = scene.with_held(fix.item_index for fix in fixes)
+    verdict = _settle(held, segments, lambda draws: held.at_best_and_worst(draws, segments, is_blocked))
+    return held.list_missing(verdict, segments)
+
+
+def _may_lack(scene: Scene, segments: Collection[int], fixes: Sequence[RouteFixRow]) -> bool:
+    """Tell whether there is anything to fix and anything missing; fixes count unconfirmed pieces already."""
+    return bool(fixes) and any(scene.missing(at) for at in segments)
+
+
+def _settle(scene: Scene, segments: Collection[int], happens: Happens) -> Verdict:
+    standing, fallen = scene.bounds(segments, happens)
+    return scene.settle(segments, standing, fallen, scene.under_record(segments, happens))
+
+
 # ---------------------------------------------------------------- rooms
 
 
@@ -72,12 +93,7 @@ def list_unjoined(scene: Scene, found: Iterable[tuple[Place, Part]]) -> tuple[st
 
 def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> RoomRow:
     """Return one room; `rows` are all segments."""
-    is_cut_off = partial(_is_cut_off, part, place.place)
-
-    def happens(draws: Draws) -> tuple[int, int, int]:
-        lost, known, at_most = scene.at_best_and_worst(draws, part.segments, is_cut_off)
-        return (lost, draws.every, draws.every) if part.by_stairs else (lost, known, at_most)
-
+    is_cut_off, happens = partial(_is_cut_off, part, place.place), partial(_lose, scene, part, place.place)
     found = scene.judge(part.segments, happens)
     lost, fallen = found.chances[0], found.at_most[0]
     verdict = scene.settle(part.segments, found.chances, found.at_most, scene.under_record(part.segments, happens))
@@ -98,6 +114,7 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
         decisive_segment=_find_decisive(scene, ways, rows, is_known=verdict.state != RouteState.NOT_KNOWN),
         fixes=fixes,
         is_fixed=is_fixed,
+        missing_after=_list_missing_after(scene, place, part, ways, fixes),
         unevaluated_segments=name_unevaluated(scene, part.segments),
         unevaluated_indices=tuple(at for at in part.segments if not scene.is_evaluated(at)),
         ways=tuple(ways),
@@ -106,6 +123,23 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
 
 def _is_cut_off(part: Part, room: str, blocked: Blocked, every: int) -> int:
     return part.cut_off(blocked, [room], every)[0]
+
+
+def _lose(scene: Scene, part: Part, room: str, draws: Draws) -> tuple[int, int, int]:
+    """Return the sets of the draws in which a room loses every exit, as `Scene.at_best_and_worst` does."""
+    lost, known, at_most = scene.at_best_and_worst(draws, part.segments, partial(_is_cut_off, part, room))
+    return (lost, draws.every, draws.every) if part.by_stairs else (lost, known, at_most)
+
+
+def _list_missing_after(
+    scene: Scene, place: Place, part: Part, ways: Sequence[WayRow], fixes: Sequence[RouteFixRow]
+) -> tuple[MissingRow, ...]:
+    """Return what is to be filled in for a room once its fixes are done."""
+    if not (fixes and part.by_stairs) and not _may_lack(scene, part.segments, fixes):
+        return ()
+    held = scene.with_held(fix.item_index for fix in fixes)
+    verdict = _settle(held, part.segments, partial(_lose, held, part, place.place))
+    return _list_missing(held, verdict, part, ways)
 
 
 def _list_exits(part: Part) -> tuple[str, ...]:

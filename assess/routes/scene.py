@@ -1,7 +1,7 @@
 """What every evaluation of routes starts from: the segments, how pieces fall, and which of them are blocked by that."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TypedDict
 
 import numpy as np
@@ -62,6 +62,19 @@ class Scene:
     """Of all pieces, by whether anchors fail and unconfirmed pieces fall: those of fewer pieces share its draws."""
     _missing: dict[int, tuple[MissingRow, ...]] = field(default_factory=dict)
     _left_out: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    _with_held: dict[frozenset[int], "Scene"] = field(default_factory=dict)
+
+    def with_held(self, items: Iterable[int]) -> "Scene":
+        """Return the scene with further pieces (indices) anchored."""
+        held = frozenset(items)
+        if held not in self._with_held:
+            anchored = self.falls.anchored.copy()
+            anchored[list(held)] = True
+            falls = replace(self.falls, anchored=anchored)
+            self._with_held[held] = Scene(
+                self.inventory, self.obstructions, falls, self.risk, self.seed, self.z, self.progress
+            )
+        return self._with_held[held]
 
     def segments_of(self, route: str) -> dict[int, Segment]:
         """Return the segments of a route by their number."""

@@ -3,7 +3,7 @@
 import pytest
 
 from assess.pipeline.schedule import list_rooms_at_risk
-from assess.report.findings.route_rows import count_rooms
+from assess.report.findings.route_rows import count_rooms, say_uncounted
 from assess.route_results import RouteState
 from tests.routes.buildings import CORRIDOR, corridor, evaluated, make_falls, one_segment, piece, place, stretch
 
@@ -296,3 +296,23 @@ def test_a_room_that_no_segment_joins_is_named():
     assert "joins 2 more rooms to no exit or stair" in sentence
     assert "Cellar 2, Cellar 10" in sentence
     assert evaluated(make_falls([0.0]), [WHOLE], [corridor()], CORRIDOR).unjoined_rooms == ()
+
+
+def test_what_is_missing_matters_once_the_fixes_are_done():
+    """A blocked route and room say what would leave them not known; nothing where all is placed or held."""
+    loose, wall = piece(2.0, **LOOSE), WHOLE
+    for chances, missing in ((([0.5, 0.2]), ["positions"]), ([0.5, 0.02], []), ([0.5, 0.0], [])):
+        found = evaluated(make_falls(chances), [wall, loose], [corridor()], CORRIDOR)
+        for one in (found.routes[0], found.rooms[0]):
+            assert (one.state, one.missing, [fix.item for fix in one.fixes]) == (BLOCKED, (), ["P0"])
+            assert [row.what for row in one.missing_after] == missing
+        later = "could change a state once the pieces listed are fixed."
+        assert say_uncounted(found).endswith(later if missing else "None of them could change a state.")
+
+
+def test_a_stair_that_a_piece_blocks_needs_its_width_once_that_is_fixed():
+    own = piece(1.5, 0.0, route="Stair", segment="flight")
+    flights = [stretch("flight", "Up", "Down", **FLIGHT, clear_width=width) for width in (None, 1.2)]
+    found = [evaluated(make_falls([0.5]), [own], [one], STAIR_ENDS).routes[0] for one in flights]
+    assert [one.state for one in found] == [BLOCKED, BLOCKED]
+    assert [[row.what for row in one.missing_after] for one in found] == [["clear_width", "stair_pieces"], []]

@@ -13,6 +13,7 @@ from assess.report.findings.route_words import (
     say_blocked,
     say_lost,
     say_missing,
+    say_missing_after,
     say_room_state,
     say_route_state,
     say_segment,
@@ -101,7 +102,7 @@ def list_room_lines(routes: RouteTables) -> list[Line]:
     def kind(one: RoomRow) -> tuple[object, ...]:
         if one.state == RouteState.OPEN:
             return one.state, one.exits
-        return one.state, one.exits, say_lost(one), one.decisive_segment, _list_fixed(one), one.missing
+        return one.state, one.exits, say_lost(one), one.decisive_segment, _list_fixed(one), one.missing, one.missing_after
 
     order = sorted(routes.rooms, key=lambda one: (-one.state.severity, -one.loses_every_exit.probability))
     lines = []
@@ -152,7 +153,7 @@ def say_advice(one: RouteRow | RoomRow) -> str:
         return _("widen it, or move what stands inside; check the Clear width")
     if one.state == RouteState.DOUBTFUL and not one.fixes:
         return _("no draw blocks it: simulate more draws to settle it")
-    return ""
+    return say_missing_after(one)
 
 
 def _name(places: Sequence[str]) -> str:

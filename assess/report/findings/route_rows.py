@@ -21,6 +21,8 @@ from assess.route_results import (
 Row = TypeVar("Row")
 MOST_ROOMS = 3
 """Rooms without a way out that a sentence names."""
+UNPLACED = ("positions", "places", "ends", "stair_floor")
+"""What is missing, as keys of `assess.route_results.MISSING`, where pieces are left out."""
 QUIET = ("own_rooms", "walls_unknown", "required_assumed")
 """Flags that do not keep a segment in a short list: they matter only where a piece reaches it."""
 
@@ -118,8 +120,12 @@ def say_uncounted(routes: RouteTables) -> str:
         "{n:,} pieces have no usable position or route and are left out.",
         count,
     )
-    if any(row.what in ("positions", "places", "ends") for one in routes.segments for row in one.missing):
+    rows = (*routes.segments, *routes.routes, *routes.rooms)
+    if any(row.what in UNPLACED for one in rows for row in one.missing):
         return left_out
+    if any(row.what in UNPLACED for one in (*routes.routes, *routes.rooms) for row in one.missing_after):
+        later = _("What is left out could change a state once the pieces listed are fixed.")
+        return f"{left_out} {later}"
     none = _("None of them could change a state.")
     return f"{left_out} {none}"
 

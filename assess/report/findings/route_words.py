@@ -300,6 +300,11 @@ def say_missing(missing: Sequence[MissingRow]) -> str:
     return "; ".join(_say_one_missing(one) for one in missing)
 
 
+def say_missing_after(one: RouteRow | RoomRow) -> str:
+    """Return what keeps a route or a room's way from being known once its fixes are done; "" where nothing does."""
+    return _("not known then; to settle it: {fix}", fix=say_missing(one.missing_after)) if one.missing_after else ""
+
+
 def _say_one_missing(one: MissingRow) -> str:
     names, cells = name_few(one.names), words.name_first(one.cells, MOST_NAMED)
     said = {

@@ -344,6 +344,7 @@ FILTERS: Mapping[str, Any] = {
     "cost": schedule_words.say_cost,
     "force": schedule_words.say_force,
     "say_chance": route_words.say_chance,
+    "say_missing_after": route_words.say_missing_after,
     "say_left_out": route_words.say_left_out,
     "say_lost": route_words.say_lost,
     "say_missing": route_words.say_missing,

@@ -155,6 +155,7 @@ def _route_columns(routes: RouteTables) -> list[Column]:
         of_field(route_fields(RouteRow)["segment_indices"], read=lambda one: len(one.segment_indices), format=COUNT),
         _said(RouteRow, "decisive_segment", 0, lambda one: _name_segment(routes, one.decisive_segment)),
         _said(RouteRow, "unevaluated_segments", 0, lambda one: ", ".join(one.unevaluated_segments)),
+        _said(RouteRow, "missing_after", 0, lambda one: say.say_missing(one.missing_after)),
     ]
 
 
@@ -292,7 +293,7 @@ def write_route_rooms(pen: Pen, page: Any, content: Content) -> None:
     """Write every room with its safest way out, and the next, which shares as few segments with it as possible."""
     rooms = content.run.route_tables.rooms
     below = pen.listing(page, _room_columns(content.run.route_tables), rooms)
-    pen.bar(page, f"H2:H{below}")
+    pen.bar(page, f"I2:I{below}")
     page.freeze_panes(1, 1)
     page.repeat_columns(0)
 
@@ -306,6 +307,7 @@ def _room_columns(routes: RouteTables) -> list[Column]:
         _said(RoomRow, "decisive_segment", 24, lambda one: _name_segment(routes, one.decisive_segment)),
         _said(RoomRow, "fixes", 30, _name_fixes),
         _said(RoomRow, "missing", 30, lambda one: say.say_missing(one.missing)),
+        _said(RoomRow, "missing_after", 30, lambda one: say.say_missing(one.missing_after)),
         *(
             _known(RoomRow, f"loses_every_exit_{part}", width, lambda one: one.is_known)
             for part, width in (("probability", 11), ("low", 9), ("high", 9), ("independent", 12), ("correlated", 10))
