@@ -105,6 +105,10 @@ STATE_FIELDS = (
         read=attrgetter("cut_off_rooms")),
     _of("rooms_at_risk", "list", fill("Rooms that may lose every exit"), read=lambda one: list(one.rooms_at_risk),
         help="Their chance of losing every exit is at least the chosen risk, or not known."),
+    _of("unknown_routes", "count", fill("Left out of these averages: routes not known"),
+        help="Routes that blocked_routes_expected leaves out."),
+    _of("unknown_rooms", "count", fill("Left out of these averages: rooms not known"),
+        help="Rooms that cut_off_rooms_expected leaves out."),
 )  # fmt: skip
 """What is to be expected of the building."""
 _ENTRY, _STATE = Shape(ENTRY_FIELDS), Shape(STATE_FIELDS)

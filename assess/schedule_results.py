@@ -115,7 +115,9 @@ class State:
     routes : mapping as tuple of (str, int)
         Routes by their state.
     blocked_routes, cut_off_rooms : float
-        Expected number of routes that are blocked, and of rooms that lose every exit.
+        Expected number of routes that are blocked, and of rooms that lose every exit, among those that are known.
+    unknown_routes, unknown_rooms : int
+        Those that these two leave out, as they are not known.
     rooms_at_risk : tuple of str
         Rooms whose best way to the street is not open, or that no segment joins to one.
     """
@@ -128,6 +130,8 @@ class State:
     blocked_routes: float
     cut_off_rooms: float
     rooms_at_risk: tuple[str, ...]
+    unknown_routes: int = 0
+    unknown_rooms: int = 0
 
     def count(self, risk: RiskClass) -> int:
         """Return how many pieces are of a class."""

@@ -76,6 +76,8 @@ def _counts(found: Comparison) -> dict[str, Any]:
         "routes": _states(*(run.routes for run in runs)),
         "blocked_routes_expected": {"before": runs[0].blocked_routes, "after": runs[1].blocked_routes},
         "rooms": _states(*(run.rooms for run in runs)),
+        "unknown_routes": {"before": runs[0].unknown_routes, "after": runs[1].unknown_routes},
+        "unknown_rooms": {"before": runs[0].unknown_rooms, "after": runs[1].unknown_rooms},
         "unjoined_rooms": {"before": len(runs[0].unjoined_rooms), "after": len(runs[1].unjoined_rooms)},
         "cut_off_rooms_expected": {"before": runs[0].cut_off_rooms, "after": runs[1].cut_off_rooms},
     }

@@ -265,6 +265,8 @@ def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[in
         blocked_routes=routes.blocked_routes_expected,
         cut_off_rooms=routes.cut_off_rooms_expected,
         rooms_at_risk=tuple(list_rooms_at_risk(routes)),
+        unknown_routes=routes.unknown_routes,
+        unknown_rooms=routes.unknown_rooms,
     )
 
 

@@ -4,6 +4,7 @@ import pytest
 
 import assess
 from assess.details import DETAILS, SCREW, count_fixings
+from assess.report.findings.schedule_words import list_changes
 from assess.settings import Settings
 from assess.workbook.template import Content, write_workbook
 
@@ -158,3 +159,24 @@ def test_a_building_without_anything_to_fix(tmp_path):
     _, schedule, _ = schedule_of(tmp_path, [SQUAT | {"item": "a"}])
     assert schedule.rows == ()
     assert schedule.before == schedule.after
+
+
+def test_routes_and_rooms_that_averages_leave_out_are_counted(tmp_path):
+    """The hall is blocked; once its cabinet is held, the one without a position leaves it not known."""
+    tall = {"floor": "1", "breadth": 30, "width": 90, "height": 190, "weight": 120}
+    items = [tall | {"item": "near", "route": "Way", "edge_distance": 0}, tall | {"item": "loose"}]
+    places = [
+        {"place": "Office", "kind": "room", "floor": "1", "x": 0, "y": 0},
+        {"place": "Street", "kind": "exit", "floor": "1", "x": 9, "y": 0},
+    ]
+    way = {"route": "Way", "segment": "hall", "floor": "1", "start": "Office", "end": "Street", "clear_width": 1.8}
+    found, schedule, _ = schedule_of(tmp_path, items, Places=places, Routes=[way])
+    assert found.route_tables.routes[0].state == "blocked"
+    held = [tall | {"item": "near", "route": "Way", "edge_distance": 0, "anchored": "yes"}, items[1]]
+    found, schedule, _ = schedule_of(tmp_path, held, Places=places, Routes=[way])
+    assert found.route_tables.routes[0].state == "not known"
+    assert (schedule.before.unknown_routes, schedule.before.unknown_rooms) == (1, 1)
+    assert (schedule.after.unknown_routes, schedule.after.unknown_rooms) == (0, 0)
+    labels = {one.label: (one.before, one.after) for one in list_changes(schedule)[1]}
+    assert labels["Left out of these averages: routes not known"] == (1, 0)
+    assert labels["Left out of these averages: rooms not known"] == (1, 0)

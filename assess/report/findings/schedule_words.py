@@ -418,6 +418,8 @@ def _list_routes(schedule: Schedule) -> Iterator[Change]:
         return
     yield _change(schedule, "blocked_routes_expected", 2)
     yield _change(schedule, "cut_off_rooms_expected", 2)
+    left_out = (_change(schedule, "unknown_routes"), _change(schedule, "unknown_rooms"))
+    yield from (one for one in left_out if one.before or one.after)
     label = schedule_fields(State)["rooms_at_risk"].heading()
     yield Change(label, len(schedule.before.rooms_at_risk), len(schedule.after.rooms_at_risk))
 
