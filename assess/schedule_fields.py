@@ -59,6 +59,10 @@ WORK_FIELDS = (
         "fixings", "count", fill("Fixings each"), width=8,
         help="Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one.",
     ),
+    _of(
+        "fixings_are_least", "flag", read=attrgetter("is_least"),
+        help="Whether they are the least, not a result: no capacity is printed.",
+    ),
     _of("weights_assumed", "count", help="Pieces whose weight is an estimate."),
     _of("heights_assumed", "count", help="Pieces whose bracket height is assumed."),
     _of("is_per_metre", "flag", help="Whether forces are those of one metre of a piece, as its width is not known."),

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from assess.details import DETAILS
 from assess.risk import RiskClass
 
 
@@ -55,6 +56,11 @@ class WorkRow:
     unit_cost: float | None
     cost: float | None
     cost_source: str
+
+    @property
+    def is_least(self) -> bool:
+        """Whether the number of fixings is the least that any piece has, as no capacity of one is printed."""
+        return DETAILS[self.detail].capacity is None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -36,7 +36,7 @@ from assess.pipeline.tables import (
     list_demands,
 )
 from assess.pipeline.verify import choose_motions, find_uncertainty, remark_suite, verify
-from assess.pipeline.what_if import anchor_first, anchor_named
+from assess.pipeline.what_if import anchor_first, anchor_named, spell_names
 from assess.pipeline.worked import choose_example, work_example
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
@@ -138,6 +138,7 @@ def compute(
     every = _join_methods(methods)
     settings = settings if suite is None else replace(settings, runs=len(suite))
     if isinstance(settings.anchor, tuple):
+        settings = replace(settings, anchor=spell_names(inventory, settings.anchor))
         inventory = anchor_named(inventory, settings.anchor)
     assessment = progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress))
     if isinstance(settings.anchor, int):

@@ -4,43 +4,63 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
+from typing import NoReturn
 
-from assess.errors import SettingsError
+from assess.errors import Problem, SettingsError
 from assess.i18n import fill, join
-from assess.model import Inventory
+from assess.model import Inventory, Item
 from assess.pipeline.anchors import find_anchors
 from assess.pipeline.assessment import Assessment
 from assess.schedule_results import ScheduleRow
 from assess.workbook.names import key
 
-
 _FIRST = re.compile(r"\s*first\s*(:|$)", re.IGNORECASE)
 """What begins as the form that names the first entries of the schedule."""
 
 
-def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
-    """Return an inventory in which the items of these names are anchored, with brackets that hold.
+def spell_names(inventory: Inventory, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the names of items as the workbook spells them, each once.
 
     Raises
     ------
     SettingsError
         If there is no item of a name, or a name is meant as ``first:N`` and is not.
     """
-    known = {key(one.item): at for at, one in enumerate(inventory.items)}
-    for name in names:
-        if key(name) not in known:
-            if _FIRST.match(name):
-                raise SettingsError(
-                    fill(
-                        "anchor is {name!r}, expected first:N with a whole number N of at least 1, alone, or names of "
-                        "items.",
-                        name=name,
-                    )
-                )
-            fault = fill("anchor: there is no item {name!r} in Items.", name=name)
-            near = get_close_matches(name, [one.item for one in inventory.items], 1, 0.6)
-            raise SettingsError(join(" ", (fault, *(fill("Did you mean {name}?", name=repr(one)) for one in near))))
-    return _anchor(inventory, {known[key(name)] for name in names})
+    known = {key(one.item): one.item for one in inventory.items}
+    return tuple(dict.fromkeys(known[key(name)] if key(name) in known else _refuse(inventory, name) for name in names))
+
+
+def _refuse(inventory: Inventory, name: str) -> NoReturn:
+    if _FIRST.match(name):
+        text = fill(
+            "anchor is {name!r}, expected first:N with a whole number N of at least 1, alone, or names of items.",
+            name=name,
+        )
+        raise SettingsError(text)
+    fault = fill("anchor: there is no item {name!r} in Items.", name=name)
+    near = get_close_matches(name, [one.item for one in inventory.items], 1, 0.6)
+    raise SettingsError(join(" ", (fault, *(fill("Did you mean {name}?", name=repr(one)) for one in near))))
+
+
+def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
+    """Return an inventory in which the items of these names are anchored, with brackets that hold.
+
+    Its problems get a note on each that the workbook has as anchored already.
+
+    Raises
+    ------
+    SettingsError
+        If there is no item of a name.
+    """
+    wanted = set(spell_names(inventory, names))
+    indices = {at for at, one in enumerate(inventory.items) if one.item in wanted}
+    notes = [_note_anchored(inventory.items[at]) for at in sorted(indices) if inventory.items[at].anchored == "yes"]
+    return replace(_anchor(inventory, indices), problems=(*inventory.problems, *notes))
+
+
+def _note_anchored(item: Item) -> Problem:
+    message = fill("Item {name!r} is anchored already: its anchor is taken to hold.", name=item.item)
+    return Problem("note", "Items", "", message)
 
 
 def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessment:

@@ -78,7 +78,7 @@ def group_rows(rows: Sequence[ItemResult]) -> list[PieceGroup]:
     """Return rows that stand in the order of the tables (`assess.report.row_order.order_rows`) as groups."""
     groups: dict[tuple[object, ...], list[ItemResult]] = {}
     for one in rows:
-        groups.setdefault((*find_kind(one), one.item.anchored), []).append(one)
+        groups.setdefault((*find_kind(one), one.item.anchored, words.say_bracket(one)), []).append(one)
     return [PieceGroup(tuple(own)) for own in groups.values()]
 
 

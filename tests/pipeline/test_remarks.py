@@ -88,7 +88,9 @@ def test_ground_pga_comes_before_an_sds_that_differs(tmp_path, sds, severity):
     """0.4 x 0.503 = 0.2012 differs from 0.2 by 0.6 %; 0.24 would shake more, 0.16 less."""
     remarks = _remarks(tmp_path, [{"floor": "1", "elevation": 3}], ground_pga=0.2, sds=sds)
     values = f"0.4 SDS is {0.4 * sds:.3f} g, but floors follow Ground PGA 0.200 g"
-    text = f"Building!B22: SDS is used for the code's force on anchors only: {values}. Correct one of them, or clear it."
+    text = (
+        f"Building!B22: SDS is used for the code's force on anchors only: {values}. Correct one of them, or clear it."
+    )
     assert remarks == ({text: severity} if severity else {})
 
 

@@ -6,7 +6,7 @@ import pytest
 
 import assess
 from assess.errors import SettingsError
-from assess.pipeline.what_if import anchor_named
+from assess.pipeline.what_if import anchor_named, spell_names
 from assess.settings import Settings
 from tests.conftest import EXAMPLE
 
@@ -51,6 +51,18 @@ def test_what_was_taken_as_anchored_is_in_the_settings(inventory):
     results = assess.run(inventory, Settings(verify="none"), anchor=[first, f" {second.lower()} "], figures=False)
     assert results[first].is_anchored
     assert results[second].is_anchored
+
+
+def test_names_are_kept_as_the_workbook_spells_them_and_once(inventory):
+    spelled = replace(inventory, items=(replace(inventory.items[0], item="Big-A"), *inventory.items[1:]))
+    assert spell_names(spelled, ["big-a", " BIG-A ", "Big-A"]) == ("Big-A",)
+
+
+def test_an_item_that_is_anchored_already_gets_a_note(inventory):
+    held = replace(inventory, items=(replace(inventory.items[0], anchored="yes"), *inventory.items[1:]))
+    name, other = (one.item for one in inventory.items[:2])
+    noted = anchor_named(held, [name, other]).problems[len(held.problems) :]
+    assert [str(one) for one in noted] == [f"Items: Item {name!r} is anchored already: its anchor is taken to hold."]
 
 
 def test_a_bracket_that_is_too_weak_is_taken_to_hold(inventory):

@@ -127,7 +127,10 @@ def test_marks_and_remarks_of_forces(results, works):
         "w: weight assumed, for 3 of 11 pieces.",
         "h: bracket height assumed, 0.9 of the piece's height, for 2 of 11 pieces.",
         "m: forces and fixings of one metre of the width, which is not known, for 2 of 11 pieces.",
+        "2+: at least 2, as no capacity is printed.",
     ]
+    assert say.say_fixings(works["file"].row) == "2+"
+    assert isinstance(say.say_fixings(low.row), int)
 
 
 def test_a_bracket_that_fails_is_named(results, works):
@@ -153,6 +156,28 @@ def test_a_bracket_of_a_piece_of_unknown_width_is_named(tmp_path, anchored, word
     assert results["bare"].is_anchored is (anchored == "yes")
     assert say_bracket(results["bare"]) == words
     assert say_bracket(results["blank"]) == ""
+
+
+@pytest.mark.parametrize(
+    ("anchored", "capacity", "words"),
+    [
+        ("yes", "high", ""),
+        ("yes", "middle", "bracket holds at PFA, fails at 84 % of PFA: counts as anchored"),
+        ("yes", "code", "bracket holds at PFA, fails at 84 % of PFA and by the code: counts as anchored"),
+        ("partly", "code", "bracket holds at 84 % of PFA, fails by the code: counts as anchored"),
+    ],
+)
+def test_an_anchored_piece_whose_bracket_may_fail_is_named(tmp_path, anchored, capacity, words):
+    named = TALL | {"item": "firm", "anchored": anchored}
+    plain = assess_these(tmp_path, [named])["firm"].item.anchor
+    between = (plain.tension_kn + plain.tension_high_kn) / 2
+    chosen = plain.tension_high_kn * 1.01 if capacity == "high" or anchored == "partly" else between
+    sds = 3.0 if capacity == "code" else None
+    results = assess_these(tmp_path, [named | {"bracket_capacity": chosen}], sds=sds)
+    assert results["firm"].is_anchored
+    assert say_bracket(results["firm"]) == words
+    said = "1 anchored piece has a bracket that fails at 84 % of PFA or by the code: firm."
+    assert (said in build_content(results).summary.plainly) is bool(words)
 
 
 def test_brackets_in_the_tables_of_pieces(results, tmp_path):

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from assess.details import DETAILS, Detail
+from assess.details import DETAILS, LEAST_FIXINGS, Detail
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.natural import natural_key
@@ -24,6 +24,8 @@ MOST_NAMES = 8
 """Names, or rows of them, that a page has room for; the Excel report holds all."""
 HELD = "¹"
 """Mark of a tension of 0 at 84 % of PFA."""
+LEAST = "+"
+"""Mark of a number of fixings that is the least, not a result."""
 WEIGHT, HEIGHT, METRE = "w", "h", "m"
 """Marks of forces that rest on an assumed weight or bracket height, and of those of one metre of a piece."""
 
@@ -252,6 +254,11 @@ def list_rooms(works: Sequence[Work], floors: Mapping[str, str]) -> list[Room]:
     return [Room(head(*place), list(own)) for place, own in rooms]
 
 
+def say_fixings(work: WorkRow) -> int | str:
+    """Return how many fixings a piece needs; with a mark where that is the least, as no capacity is printed."""
+    return f"{work.fixings}{LEAST}" if work.is_least else work.fixings
+
+
 def say_force(force: float | None) -> str:
     """Return a force [kN] with two decimals, a dash for what is not known."""
     if force is not None and 0 < force < 0.005:
@@ -360,6 +367,8 @@ def list_marks(schedule: Schedule) -> list[str]:
             total, some=metres,
         ) if metres else "",
     }  # fmt: skip
+    if any(one.is_least for one in works):
+        texts[f"{LEAST_FIXINGS}{LEAST}"] = _("at least {n}, as no capacity is printed", n=LEAST_FIXINGS)
     return [f"{mark}: {text}." for mark, text in texts.items() if text]
 
 

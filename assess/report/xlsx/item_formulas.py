@@ -301,7 +301,7 @@ class ItemFormulas:
         fell = literal(", " + _("as it overturns under the record itself"))
         notes = [(f"{upper}>{rank}", could_be), (f"{formula}>{rank}", lowered), (f"{self.cells['fell']}=1", fell)]
         texts = [] if is_settled else [f"{literal(', ')}&{self.cells['settle']}"]
-        held = f"AND({self.cells['held']}={literal(self.terms.yes)},{self.cells['bracket_held']}<>\"\")"
+        held = f'AND({self.cells["held"]}={literal(self.terms.yes)},{self.cells["bracket_held"]}<>"")'
         notes.append((held, f"{literal(', ')}&{self.cells['bracket_held']}"))
         texts += [f'IF({test},{text},"")' for test, text in notes]
         return f"MID({'&'.join(texts)},3,300)"

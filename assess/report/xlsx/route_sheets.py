@@ -232,7 +232,8 @@ def _describe(row: _Beside | _Step) -> str:
 
 def _say_class(one: ItemResult) -> str:
     if one.is_anchored:
-        return f"{ANCHORED}{words.risk_words(one)}"
+        bracket = words.say_bracket(one)
+        return ANCHORED + "; ".join([words.risk_words(one), *([bracket] if bracket else [])])
     return ", ".join([say_class(one.adopted.risk), *words.risk_notes(one)])
 
 

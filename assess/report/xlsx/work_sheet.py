@@ -77,7 +77,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         Column(_("Why"), 34, lambda one: f"{one.risk}; {one.chance}; {one.reason}", key="why"),
         Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
         *forces,
-        replace(own["fixings"], align="center"),
+        replace(own["fixings"], align="center", read=lambda one: schedule_words.say_fixings(one.row)),
         own["unit_cost"],
         own["cost"],
         _of_entry("falls_avoided", 8, only_first=True),
