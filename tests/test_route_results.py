@@ -167,7 +167,7 @@ def test_a_stair_is_open_and_without_a_clear_width_not_known(written, tmp_path):
     found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))["routes"]
     assert [one["evaluated"] for one in found["segments"]] == [True, False, True, True, True]
     flight, letter = found["segments"][1], "G"
-    assert (flight["state"], flight["flags"]) == ("not known", ["clear_assumed", "between_floors"])
+    assert (flight["state"], flight["flags"]) == ("not known", ["stair_width_missing", "between_floors"])
     (missing,) = flight["missing"]
     assert (missing["what"], missing["names"], missing["cells"]) == (
         "clear_width", ["West: flight"], [f"Routes!{letter}3"],

@@ -73,7 +73,7 @@ class Obstructions:
     @property
     def is_stair(self) -> bool:
         """Whether it joins two places and lies on no floor: no piece can fall there but those that name it."""
-        return not self.segment.floor and bool(self.segment.start and self.segment.end)
+        return is_stair(self.segment)
 
     @property
     def is_evaluated(self) -> bool:
@@ -156,9 +156,14 @@ def _obstruct(
     )
 
 
+def is_stair(segment: Segment) -> bool:
+    """Tell whether a segment joins two places and lies on no floor."""
+    return not segment.floor and bool(segment.start and segment.end)
+
+
 def _flag(inventory: Inventory, segment: Segment, *, has_band: bool) -> Iterator[str]:
     if segment.clear_width is None:
-        yield "clear_assumed"
+        yield "stair_width_missing" if is_stair(segment) else "clear_assumed"
     if segment.required_width is None:
         yield "required_assumed"
     if has_band:

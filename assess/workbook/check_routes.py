@@ -47,7 +47,7 @@ def check_segments(tables: Tables) -> Iterator[Problem]:
     """Check each segment by itself: its widths, its ends, its length and its floor."""
     table, places = tables["Routes"], tables["Places"]
     known = places_by_name(places)
-    yield from _check_clear_width(table)
+    yield from _check_clear_width(table, places)
     for row in table.rows:
         yield from _check_joined(table, row)
         yield from _check_widths(table, row)
@@ -57,17 +57,33 @@ def check_segments(tables: Tables) -> Iterator[Problem]:
             yield from _check_floor(table, row, [places.sound("floor", start), places.sound("floor", end)])
 
 
-def _check_clear_width(table: Table) -> Iterator[Problem]:
-    """Warn of segments whose clear width is blank: once where the sheet lacks the column."""
-    message = fill(
+def _check_clear_width(table: Table, places: Table) -> Iterator[Problem]:
+    """Warn of segments whose clear width is blank: once for stairs and once for others if the column is not there."""
+    of_stair = fill(
+        "Clear width of a stair is blank: whether the stair is open is not known, unless pieces that name it block the "
+        "required width."
+    )
+    of_level = fill(
         "Clear width is blank: it is taken as the required width, so anything that reaches into it blocks it."
     )
-    fix = fill("Fill in Clear width.")
-    lack = [row for row in table.rows if table.lacks(row, "clear_width")]
+    fix, known = fill("Fill in Clear width."), places_by_name(places)
+    lack = {
+        row.number: of_stair if _is_stair(table, row, known, places) else of_level
+        for row in table.rows
+        if table.lacks(row, "clear_width")
+    }
     if "clear_width" in table.places:
-        yield from (table.problem("clear_width", row, message, fix, "warning") for row in lack)
-    elif lack:
-        yield table.problem_at_top(message, fix, "warning")
+        rows = (row for row in table.rows if row.number in lack)
+        yield from (table.problem("clear_width", row, lack[row.number], fix, "warning") for row in rows)
+        return
+    yield from (table.problem_at_top(message, fix, "warning") for message in dict.fromkeys(lack.values()))
+
+
+def _is_stair(table: Table, row: Row, known: Mapping[str, Row], places: Table) -> bool:
+    """Tell whether a segment joins places of different floors and names none."""
+    ends = [known.get(key(table.sound(name, row) or "")) for name in ("start", "end")]
+    floors = {places.sound("floor", one) for one in ends if one is not None}
+    return table.lacks(row, "floor") and len(floors) > 1
 
 
 def _check_joined(table: Table, row: Row) -> Iterator[Problem]:

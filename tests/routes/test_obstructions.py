@@ -14,7 +14,7 @@ def test_a_segment_that_neither_plan_nor_piece_tells_of_is_not_evaluated():
     found = evaluated(make_falls([0.2, 0.2]), items, segments, STAIRS)
     assert [one.evaluated for one in found.segments] == [True, False, False]
     assert [one.flags for one in found.segments] == [
-        ("no_plan",), ("no_plan",), ("clear_assumed", "between_floors"),
+        ("no_plan",), ("no_plan",), ("stair_width_missing", "between_floors"),
     ]  # fmt: skip
     assert [(one.evaluated, one.unevaluated_segments) for one in found.routes] == [(True, ("b",)), (False, ("flight",))]
 

@@ -200,6 +200,10 @@ CLEAR = (
     "Clear width is blank: it is taken as the required width, so anything that reaches into it blocks it. "
     "Fill in Clear width."
 )
+STAIR = (
+    "Clear width of a stair is blank: whether the stair is open is not known, unless pieces that name it block the "
+    "required width. Fill in Clear width."
+)
 WARNINGS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
     "narrower than required": (
         {"hall": {"Clear": 0.8, "Required": 1.5}},
@@ -212,6 +216,7 @@ WARNINGS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
         "is blocked with nothing fallen. Fill in the width that must stay free.",
     ),
     "no clear width": ({"hall": {"Clear": None}}, f"Routes!F4: {CLEAR}"),
+    "no clear width of a stair": ({"flight": {"Clear": None}}, f"Routes!F3: {STAIR}"),
     "From alone": ({"flight": {"To": None}}, f"Routes!E3: From is filled in without To: {JOINS}"),
     "To alone": ({"flight": {"From": None}}, f"Routes!D3: To is filled in without From: {JOINS}"),
     "a distance to nothing": (
