@@ -23,8 +23,8 @@ FLAGS: Mapping[str, str] = {
     "nearer_than_plan": "its Edge distance is smaller than its position on the plan gives: the distance counts",
     "standing_inside": "it stands in the route with nothing fallen",
     "clear_assumed": "no Clear width is given: the required width is used, so any piece that reaches in blocks it",
-    "stair_width_missing": "no Clear width is given: whether this stair is open is not known, unless pieces that name it "
-    "block the required width",
+    "stair_width_missing": "no Clear width is given: whether this stair is open is not known, unless pieces that name "
+    "it block the required width",
     "required_assumed": "no Required width is given: 0.9 m is used",
     "walls_unknown": "no Room is given: placed pieces behind a wall count as well",
     "own_rooms": "placed pieces of other rooms do not count unless they name it",

@@ -48,6 +48,7 @@ def check_segments(tables: Tables) -> Iterator[Problem]:
     table, places = tables["Routes"], tables["Places"]
     known = places_by_name(places)
     yield from _check_clear_width(table, places)
+    yield from _check_twice_joined(table)
     for row in table.rows:
         yield from _check_joined(table, row)
         yield from _check_widths(table, row)
@@ -84,6 +85,29 @@ def _is_stair(table: Table, row: Row, known: Mapping[str, Row], places: Table) -
     ends = [known.get(key(table.sound(name, row) or "")) for name in ("start", "end")]
     floors = {places.sound("floor", one) for one in ends if one is not None}
     return table.lacks(row, "floor") and len(floors) > 1
+
+
+def _check_twice_joined(table: Table) -> Iterator[Problem]:
+    """Warn of a segment without a Clear width between two places that one of another route joins with a width."""
+    if "clear_width" not in table.places:
+        return
+    wide: dict[frozenset[str], list[Row]] = {}
+    for row in table.with_all("route", "start", "end", "clear_width"):
+        wide.setdefault(_ends_of(row), []).append(row)
+    for row in table.with_all("route", "start", "end"):
+        others = (one for one in wide.get(_ends_of(row), ()) if key(one.get("route")) != key(row.get("route")))
+        twin = next(others, None) if table.lacks(row, "clear_width") else None
+        if twin is not None:
+            message = fill(
+                "{cell} joins the same places and gives a Clear width; here it is blank.",
+                cell=table.cell("clear_width", twin.number),
+            )
+            fix = fill("If both are the same way, fill in the same width.")
+            yield table.problem("clear_width", row, message, fix, "warning")
+
+
+def _ends_of(row: Row) -> frozenset[str]:
+    return frozenset(key(row.get(name)) for name in ("start", "end"))
 
 
 def _check_joined(table: Table, row: Row) -> Iterator[Problem]:

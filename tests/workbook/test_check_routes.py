@@ -241,6 +241,17 @@ WARNINGS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize(("clear", "told"), [(None, True), (1.0, False)])
+def test_the_same_places_joined_with_and_without_a_width(tmp_path: Path, clear: float | None, told: bool) -> None:
+    other = ("Routes", ["Other", "back", None, "Lower", "Upper", clear, 0.9])
+    found = remarks(sound(tmp_path, other), "warning")
+    twin = (
+        "Routes!F5: F3 joins the same places and gives a Clear width; here it is blank. If both are the same way, fill "
+        "in the same width."
+    )
+    assert found == ({f"Routes!F5: {STAIR}", twin} if told else set())
+
+
 @pytest.mark.parametrize("name", WARNINGS)
 def test_warnings_by_cell_each_once(tmp_path: Path, name: str) -> None:
     changes, expected = WARNINGS[name]

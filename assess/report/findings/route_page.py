@@ -102,7 +102,8 @@ def list_room_lines(routes: RouteTables) -> list[Line]:
     def kind(one: RoomRow) -> tuple[object, ...]:
         if one.state == RouteState.OPEN:
             return one.state, one.exits
-        return one.state, one.exits, say_lost(one), one.decisive_segment, _list_fixed(one), one.missing, one.missing_after
+        lack = one.missing, one.missing_after
+        return one.state, one.exits, say_lost(one), one.decisive_segment, _list_fixed(one), lack
 
     order = sorted(routes.rooms, key=lambda one: (-one.state.severity, -one.loses_every_exit.probability))
     lines = []
