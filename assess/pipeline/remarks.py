@@ -296,8 +296,8 @@ def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Ite
         by_sds = PGA_OF_SDS * building.sds
         if abs(by_sds - building.ground_pga) > ALIKE * max(building.ground_pga, by_sds):
             message = fill(
-                "SDS is used for the code's force on anchors only: 0.4 SDS is {by_sds:.3f} g, but floors follow Ground PGA "
-                "{used:.3f} g.",
+                "SDS is used for the code's force on anchors only: 0.4 SDS is {by_sds:.3f} g, but floors follow Ground "
+                "PGA {used:.3f} g.",
                 by_sds=by_sds / GRAVITY,
                 used=building.ground_pga / GRAVITY,
             )
