@@ -302,11 +302,13 @@ class View:
     def _count_left_out(self) -> list[CountLine]:
         """Return how many routes and rooms the expected numbers leave out in either run; nothing where none."""
         was, now = self.before, self.after
-        counts = [
+        counts = (
             (_("left out of these averages: routes not known"), was.unknown_routes, now.unknown_routes),
             (_("left out of these averages: rooms not known"), was.unknown_rooms, now.unknown_rooms),
+        )
+        return [
+            _line(label, Total(before, after, is_comparable=True)) for label, before, after in counts if before or after
         ]
-        return [_line(label, Total(*sides, is_comparable=True)) for label, *sides in counts if any(sides)]
 
     def _count_states(
         self, before: Sequence[PastState], after: Sequence[PastState], label: Callable[[str], str]

@@ -10,6 +10,7 @@ from assess.report.findings.route_words import find_chance, name_state, say_miss
 from assess.route_results import (
     FLAGS,
     BesideRow,
+    RoomRow,
     RouteFixRow,
     RouteRow,
     RouteState,
@@ -120,12 +121,14 @@ def say_uncounted(routes: RouteTables) -> str:
         "{n:,} pieces have no usable position or route and are left out.",
         count,
     )
-    rows = (*routes.segments, *routes.routes, *routes.rooms)
+    rows: list[RouteRow | RoomRow] = [*routes.routes, *routes.rooms]
     if any(row.what in UNPLACED for one in rows for row in one.missing):
         return left_out
-    if any(row.what in UNPLACED for one in (*routes.routes, *routes.rooms) for row in one.missing_after):
+    if any(row.what in UNPLACED for one in rows for row in one.missing_after):
         later = _("What is left out could change a state once the pieces listed are fixed.")
         return f"{left_out} {later}"
+    if any(row.what in UNPLACED for one in routes.segments for row in one.missing):
+        return left_out
     none = _("None of them could change a state.")
     return f"{left_out} {none}"
 
