@@ -138,8 +138,8 @@ def compute(
     every = _join_methods(methods)
     settings = settings if suite is None else replace(settings, runs=len(suite))
     if isinstance(settings.anchor, tuple):
-        settings = replace(settings, anchor=spell_names(inventory, settings.anchor))
-        inventory = anchor_named(inventory, settings.anchor)
+        names = spell_names(inventory, settings.anchor)
+        settings, inventory = replace(settings, anchor=names), anchor_named(inventory, names)
     assessment = progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress))
     if isinstance(settings.anchor, int):
         schedule = build_results(assessment, figures=False, progress=progress).schedule

@@ -94,11 +94,12 @@ def _check_size(tags: Iterable[Any]) -> None:
 
 def _metres(document: "Document") -> float | None:
     """Return the length of a drawing unit [m]; None where the drawing does not tell."""
-    from ezdxf import units
+    from ezdxf.enums import InsertUnits
+    from ezdxf.units import conversion_factor
 
     code = document.header.get("$INSUNITS", 0)
     try:
-        factor = float(units.conversion_factor(units.InsertUnits(code), units.InsertUnits.Meters)) if code else 0.0
+        factor = float(conversion_factor(InsertUnits(code), InsertUnits.Meters)) if code else 0.0
     except (ValueError, TypeError, KeyError, ZeroDivisionError):
         return None
     return factor if 0 < factor < math.inf else None

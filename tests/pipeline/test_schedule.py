@@ -173,8 +173,8 @@ def test_routes_and_rooms_that_averages_leave_out_are_counted(tmp_path):
     found, schedule, _ = schedule_of(tmp_path, items, Places=places, Routes=[way])
     assert str(found.route_tables.routes[0].state) == "blocked"
     held = [tall | {"item": "near", "route": "Way", "edge_distance": 0, "anchored": "yes"}, items[1]]
-    found, schedule, _ = schedule_of(tmp_path, held, Places=places, Routes=[way])
-    assert str(found.route_tables.routes[0].state) == "not known"
+    again, schedule, _ = schedule_of(tmp_path, held, Places=places, Routes=[way])
+    assert str(again.route_tables.routes[0].state) == "not known"
     assert (schedule.before.unknown_routes, schedule.before.unknown_rooms) == (1, 1)
     assert (schedule.after.unknown_routes, schedule.after.unknown_rooms) == (0, 0)
     labels = {one.label: (one.before, one.after) for one in list_changes(schedule)[1]}

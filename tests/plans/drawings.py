@@ -3,7 +3,8 @@
 import io
 from pathlib import Path
 
-import ezdxf
+import ezdxf.document
+from ezdxf.filemanagement import new
 
 from tests.apart import run_apart
 
@@ -33,7 +34,7 @@ PLAN_SVG = svg('<rect width="1600" height="1200"/><path d="M800 0v700H0"/>')
 
 def dxf(units: int = 4, *, xref: bool = False) -> bytes:
     """Return a DXF of the plate, 16,000 x 12,000 units; 4 are millimetres, 0 says nothing."""
-    document = ezdxf.new()
+    document = new()
     document.header["$INSUNITS"] = units
     space = document.modelspace()
     space.add_lwpolyline([(0, 0), (16000, 0), (16000, 12000), (0, 12000)], close=True)

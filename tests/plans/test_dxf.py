@@ -2,10 +2,10 @@
 
 import sys
 
-import ezdxf
 import numpy as np
 import pytest
 from ezdxf import recover
+from ezdxf.filemanagement import new
 
 from assess.pictures import PictureError
 from assess.plans import read_plan
@@ -69,7 +69,7 @@ def flat(document):
     [(nested, "more than 100,000"), (repeated, "more than 100,000"), (far, "damaged"), (flat, "no lines")],
 )  # fmt: skip
 def test_what_cannot_be_used(fill, message):
-    document = ezdxf.new()
+    document = new()
     fill(document)
     with pytest.raises(PictureError, match=message):
         read_plan(write(document), None)
