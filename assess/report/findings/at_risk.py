@@ -22,7 +22,6 @@ from assess.report.findings.route_words import (
     say_blocked,
     say_chance,
     say_missing,
-    say_missing_after,
     say_route_state,
 )
 from assess.results import ItemResult, Results
@@ -72,16 +71,10 @@ def list_routes_at_risk(results: Results) -> list[RouteAtRisk]:
             one,
             routes.risk,
             _blocker(one),
-            _say_fixes(results, one),
+            ", ".join(say_row(results.result(fix.item_index)) for fix in one.fixes) or say_missing(one.missing),
         )
         for one in found
     ]
-
-
-def _say_fixes(results: Results, one: RouteRow) -> str:
-    """Return the pieces to fix and what is to be filled in then; without any, what settles the state."""
-    fixes = ", ".join(say_row(results.result(fix.item_index)) for fix in one.fixes)
-    return "; ".join(filter(None, (fixes, say_missing_after(one)))) or say_missing(one.missing)
 
 
 def _blocker(one: RouteRow) -> str:
