@@ -429,7 +429,8 @@ def test_the_page_says_for_every_route_what_to_fix_or_fill_in(html, assessment, 
     ]  # fmt: skip
     west = rows["<b>West</b>: Office <1> → Street"]
     assert west[1:] == ["✕ blocked", _chance(assessment.route_tables.routes[0].blocked), "<b>West</b>: aisle",
-                        "tall & thin"]  # fmt: skip
+                        "tall & thin ; not known then; to settle it: fill in X and Y of Foot, Street (Places!C6, "
+                        "Places!C7)"]  # fmt: skip
     assert rows["Balcony"][1] == "✓ open"
     assert rows["Yard"][1] == "✓ open if the anchors hold ⚓"
     other = _ways(render(unknown))
