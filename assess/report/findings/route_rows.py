@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
+from assess.i18n import ngettext
 from assess.report import words
-from assess.report.findings.route_words import find_chance, name_state, say_missing
+from assess.report.findings.route_words import count_state, find_chance, say_missing
 from assess.route_results import (
     FLAGS,
     BesideRow,
@@ -86,7 +86,7 @@ def _say_unjoined(routes: RouteTables) -> list[str]:
 
 def _count_states(states: Sequence[RouteState]) -> str:
     counts = [(state, states.count(state)) for state in sorted(RouteState, key=lambda one: -one.severity)]
-    return ", ".join(f"{number(count, ',d')} {name_state(state)}" for state, count in counts if count)
+    return ", ".join(count_state(state, count) for state, count in counts if count)
 
 
 def say_to_fill_in(routes: RouteTables) -> list[str]:

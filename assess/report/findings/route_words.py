@@ -43,6 +43,16 @@ def name_state(state: RouteState) -> str:
     }[state]
 
 
+def count_state(state: RouteState, n: int) -> str:
+    """Return how many routes or rooms are in a state: ``3 blocked``."""
+    return {
+        RouteState.OPEN: ngettext("{n:,} open", "{n:,} open", n),
+        RouteState.DOUBTFUL: ngettext("{n:,} doubtful", "{n:,} doubtful", n),
+        RouteState.BLOCKED: ngettext("{n:,} blocked", "{n:,} blocked", n),
+        RouteState.NOT_KNOWN: ngettext("{n:,} not known", "{n:,} not known", n),
+    }[state]
+
+
 def list_rules(risk: float) -> list[tuple[RouteState, str]]:
     """Return the states, the worst first, and when each holds at the chosen risk [-]."""
     limit = say_risk(risk)

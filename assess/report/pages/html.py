@@ -138,7 +138,13 @@ def _environment(options: ReportOptions, filters: Mapping[str, Any] | None = Non
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {**FILTERS, "equation": write_equation, "breakable": write_breakable, **(filters or {})}
+    environment.filters |= {
+        **FILTERS,
+        "equation": write_equation,
+        "breakable": write_breakable,
+        "lower_indices": lower_indices,
+        **(filters or {}),
+    }
     environment.globals |= GLOBALS
     return environment
 
