@@ -46,13 +46,12 @@ def _say_speed(axis: str, motions: Sequence[MotionRow]) -> str:
 def say_counts(counts: Counts) -> str:
     """Return the pieces of a floor by class, with what stands apart, and the expected falls."""
     parts = [f"{words.risk_label(risk)} {pieces:,}" for risk, pieces in reversed(list(counts.by_class.items()))]
-    if counts.unconfirmed:
-        unconfirmed = _("unconfirmed")
-        parts.append(f"{words.UNCONFIRMED} {unconfirmed} {counts.unconfirmed:,}")
-    if counts.by_formula:
-        parts.append(f"{words.BY_FORMULA} {_('by formula only')} {counts.by_formula:,}")
-    if counts.anchored:
-        parts.append(f"{words.ANCHORED} {_('anchored')} {counts.anchored:,}")
+    apart = (
+        (words.UNCONFIRMED, _("unconfirmed"), counts.unconfirmed),
+        (words.BY_FORMULA, _("by formula only"), counts.by_formula),
+        (words.ANCHORED, _("anchored"), counts.anchored),
+    )
+    parts += [f"{sign} {name} {pieces:,}" for sign, name, pieces in apart if pieces]
     pieces = ngettext("{n:,} piece", "{n:,} pieces", counts.total)
     return _("{pieces}: {classes}; expected falls {falls}.", pieces=pieces, classes=", ".join(parts),
              falls=counts.falls)  # fmt: skip
