@@ -143,7 +143,10 @@ def test_a_ground_motion_that_is_not_used_says_what_is(tmp_path):
     of_anchors = "used for the code's force on anchors only: no floor follows a code's profile"
     assert build_content(results).building["sds"][1] == f"0.4 g, {of_anchors}"
     alone = assessed(tmp_path / "w.xlsx", items, floors, ground_pga=0.139)
-    assert build_content(alone).building["ground_pga"][1] == f"0.139 g, {of_anchors}"
+    said = build_content(alone).building["ground_pga"][1]
+    assert said == f"0.135 g on floor G, given PFA; 0.139 g of the workbook is {of_anchors}"
+    unused = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139)
+    assert build_content(unused).building["ground_pga"][1] == f"0.139 g, {of_anchors}"
     above = assessed(tmp_path / "w.xlsx", items, floors[1:], ground_pga=0.139, sds=0.4)
     said = build_content(above).building["ground_pga"][1]
     assert said == "0.139 g in the workbook, not used: no floor follows a code's profile"
@@ -210,7 +213,7 @@ def test_the_worked_example_has_its_pages_and_none_is_half_empty(tmp_path):
     assert [at for at, share in enumerate(_fill(written["pdf"])[:-1], 1) if share < 0.5] == []
     assert sum(share < 0.5 for share in _fill(written["annex"])[:-1]) <= 1, "where its pages turn"
     text = " ".join(pages)
-    assert "0.135 g on floor G, recorded motion; 0.139 g of the workbook is not used" in pages[0]
+    assert "0.135 g on floor G, recorded motion; 0.139 g of the workbook is used for the code's force" in pages[0]
     assert UNCITABLE.findall(text) == []
 
 

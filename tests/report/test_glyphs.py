@@ -103,7 +103,8 @@ from assess.report.report_options import ReportOptions
 results = assess.run(sys.argv[1], verify="none")
 print(*pdf.list_problems(results), sep="\\n")
 for accessible in (False, True):
-    pdf.write_pdf(build_content(results), Path(sys.argv[2 + accessible]), ReportOptions(accessible=accessible))
+    options = ReportOptions(accessible=accessible)
+    pdf.write_pdf(build_content(results), Path(sys.argv[2 + accessible]), options, edition="all")
 """
 
 

@@ -94,15 +94,14 @@ def test_rows_are_cards_whose_cells_have_the_heads_of_their_columns(open_page):
         assert first.evaluate(shown) != "none"
 
 
-def test_the_table_of_signatures_is_whole(open_page):
+def test_who_is_responsible_is_whole_and_asks_for_no_signature(open_page):
     page = open_page(PHONE)
     table = page.locator("table.signing")
     for role in ("Prepared by", "Checked by", "Approved by"):
         box = table.get_by_text(role, exact=True).bounding_box()
         assert box["height"] < 40, "on one line"
     labels = table.locator("tbody tr").first.locator("td").evaluate_all("all => all.map(one => one.dataset.label)")
-    assert labels == ["Name", "Signature", "Date"]
-    assert all(one.bounding_box()["height"] > 20 for one in table.locator("tbody td").all()), "room to sign in"
+    assert labels == ["Name"], "a page is not signed"
 
 
 def test_filters_work_with_a_thumb(open_page):

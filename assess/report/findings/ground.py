@@ -24,16 +24,20 @@ def say_ground(results: Results, name: str, given: str) -> str:
     reason = _find_reason(results, name)
     if not reason:
         return given
-    if name == _find_for_anchors(results):
-        return _("{given}, used for the code's force on anchors only: {reason}", given=given, reason=reason)
-    used = _find_used(results)
+    used = _find_used(results) if name == "ground_pga" else None
+    of_anchors = name == _find_for_anchors(results)
     if used is None:
+        if of_anchors:
+            return _("{given}, used for the code's force on anchors only: {reason}", given=given, reason=reason)
         return _("{given} in the workbook, not used: {reason}", given=given, reason=reason)
-    return _(
-        "{used} g on floor {floor}, {source}; {given} of the workbook is not used: {reason}",
-        used=words.in_g(used.pfa_g), floor=words.cut(used.floor, 20), source=describe_source(used), given=given,
-        reason=reason,
-    )  # fmt: skip
+    names = {"used": words.in_g(used.pfa_g), "floor": words.cut(used.floor, 20), "source": describe_source(used)}
+    if of_anchors:
+        return _(
+            "{used} g on floor {floor}, {source}; {given} of the workbook is used for the code's force on anchors "
+            "only: {reason}", **names, given=given, reason=reason,
+        )  # fmt: skip
+    return _("{used} g on floor {floor}, {source}; {given} of the workbook is not used: {reason}", **names, given=given,
+             reason=reason)  # fmt: skip
 
 
 def _find_for_anchors(results: Results) -> str:
