@@ -116,8 +116,8 @@ def _interrupted_at(at, events, number, folder, *words):
     """Run the command with a signal at an event; return its status, its errors, and how many events there were."""
     (folder / "tmp").mkdir(exist_ok=True)
     code = AT.replace("EVENTS", repr(events))
-    done = subprocess.run(
-        [sys.executable, "-c", code, str(int(number)), str(at), *map(str, words)],
+    done = subprocess.run(  # Python moves files as well where it keeps what it compiled
+        [sys.executable, "-B", "-c", code, str(int(number)), str(at), *map(str, words)],
         env=os.environ | {"TMPDIR": str(folder / "tmp"), "MPLCONFIGDIR": str(folder)},
         cwd=folder, capture_output=True, text=True, timeout=120, check=False,
     )  # fmt: skip
