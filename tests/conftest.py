@@ -8,6 +8,7 @@ import pytest
 from hypothesis import settings
 
 import assess
+from docs.screenshot import find_browser
 from tests.workbooks import UNVERIFIED
 
 EXAMPLE = Path(__file__).parents[1] / "inventories" / "market-street.xlsx"
@@ -31,6 +32,17 @@ def pytest_configure() -> None:
         os.environ.pop(name, None)
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Start a browser without a window; tests that take it are skipped where there is none."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=find_browser())
+        yield browser
+        browser.close()
 
 
 @pytest.fixture(scope="session")

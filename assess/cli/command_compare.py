@@ -9,7 +9,7 @@ import typer
 
 from assess.cli.completion import list_of, one_of
 from assess.cli.console import show_progress
-from assess.cli.options import AsJson
+from assess.cli.options import AsJson, read_formats
 from assess.errors import InputError
 from assess.i18n import LANGUAGES, find_language
 
@@ -53,7 +53,7 @@ def command(
     compare.xlsx, and always compare.json, which lists them: a later comparison into the folder replaces these alone.
     Nothing is assessed again. Chances that were simulated are not set against chances by formula.
     """
-    wanted = _read_formats(formats)
+    wanted = read_formats(formats, FORMATS)
     code = find_language(language) if language else ""
     if out.exists() and not out.is_dir():
         raise InputError(f"--out: {out} is a file; name a folder")
@@ -75,15 +75,6 @@ def command(
             typer.echo(line)
     for file in written.values():
         typer.echo(f"wrote {file}", err=True)
-
-
-def _read_formats(formats: str) -> list[str]:
-    wanted = [name.strip().lower() for name in formats.split(",") if name.strip()]
-    unknown = [name for name in wanted if name not in FORMATS]
-    if unknown or not wanted:
-        named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
-        raise InputError(f"--formats: {named}; expected some of: {', '.join(FORMATS)}.")
-    return wanted
 
 
 def _find_own_language(run: "PastRun") -> str:

@@ -20,6 +20,7 @@ from assess.cli.options import (
     Span,
     Workbook,
     check_file,
+    read_formats,
     read_settings,
     save_with_figure,
 )
@@ -148,12 +149,7 @@ def _find(
 def _read_formats(text: str) -> list[str]:
     from assess.cli.fragility_output import FORMATS
 
-    wanted = [name.strip().lower() for name in text.split(",") if name.strip()]
-    unknown = [name for name in wanted if name not in FORMATS]
-    if unknown or not wanted:
-        named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
-        raise InputError(f"--formats: {named}; expected some of: {', '.join(FORMATS)}")
-    return list(dict.fromkeys(wanted))
+    return list(dict.fromkeys(read_formats(text, FORMATS)))
 
 
 def _check_folder(folder: Path) -> None:

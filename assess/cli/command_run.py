@@ -9,7 +9,7 @@ import typer
 from assess.cli.completion import list_of, one_of
 from assess.cli.console import print_warnings, show_progress
 from assess.cli.opening import open_file
-from assess.cli.options import Jobs, Runs, Scale, Scenario, Seed, Workbook, read_settings
+from assess.cli.options import Jobs, Runs, Scale, Scenario, Seed, Workbook, read_formats, read_settings
 from assess.errors import InputError
 from assess.i18n import LANGUAGES
 from assess.progress import Progress
@@ -186,11 +186,7 @@ def _write(
 def _read_formats(formats: str, verify: str, open_report: bool) -> list[str]:
     from assess.report import FILES
 
-    wanted = [name.strip().lower() for name in formats.split(",") if name.strip()]
-    unknown = [name for name in wanted if name not in FILES]
-    if unknown or not wanted:
-        named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
-        raise InputError(f"--formats: {named}; expected some of: {', '.join(FILES)}.")
+    wanted = read_formats(formats, FILES)
     if "npz" in wanted and verify == "none":
         raise InputError("--formats: npz holds results of the simulation: leave out npz or --verify none.")
     if open_report and not set(wanted) & set(OPENED):

@@ -1,7 +1,7 @@
 """Options that several commands have: their help, and what turns them into arguments of the library."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -153,6 +153,16 @@ def check_size(option: str, value: float, name: str = "") -> None:
 MOST_LEVELS = 50
 _NUMBER = r"(\d{1,4}(?:\.\d{0,12})?|\.\d{1,12})"
 _SPAN = re.compile(rf"{_NUMBER}:{_NUMBER}(?::{_NUMBER})?", re.ASCII)
+
+
+def read_formats(text: str, known: Collection[str]) -> list[str]:
+    """Return the formats that --formats names, in small letters; raises InputError for one that is not known."""
+    wanted = [name.strip().lower() for name in text.split(",") if name.strip()]
+    unknown = [name for name in wanted if name not in known]
+    if unknown or not wanted:
+        named = f"{unknown[0]!r} is an unknown format" if unknown else "no format is named"
+        raise InputError(f"--formats: {named}; expected some of: {', '.join(known)}.")
+    return wanted
 
 
 @dataclass(frozen=True, slots=True)

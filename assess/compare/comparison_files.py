@@ -10,10 +10,10 @@ from pathlib import Path
 from assess.compare.changes import Comparison
 from assess.compare.comparison_data import write_data
 from assess.compare.comparison_view import View
-from assess.delivery.deliver import check_moves, deliver, stage_for
+from assess.delivery.deliver import check_moves, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.stages import NEW
-from assess.errors import InputError, OutputError, PdfUnavailableError
+from assess.errors import InputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report import check_folder
@@ -94,7 +94,7 @@ def write_comparison(
             missing = _write_all(job, wanted)
             deliver(stage, folder, lambda target: find_reports(target, job.written, FILES["json"]), progress)
     except OSError as error:
-        raise _fault(folder, error) from None
+        raise explain_fault(folder, error, FILES.values()) from None
     if missing:
         raise missing
     return {name: folder / file for name, file in FILES.items() if file in job.written}
@@ -108,7 +108,7 @@ def check_out(folder: Path, formats: Sequence[str]) -> None:
         try:
             check_moves(folder)
         except OSError as error:
-            raise _fault(folder, error) from None
+            raise explain_fault(folder, error, FILES.values()) from None
         find_reports(folder, names, FILES["json"])
 
 
@@ -176,15 +176,3 @@ def _write_pdf(job: _Job, path: Path, data: Path) -> None:
     if not seal(path, data):
         job.listed[path.name] = find_digest(path)
         _write_one(job, "json")
-
-
-def _fault(folder: Path, error: OSError) -> OutputError:
-    why = error.strerror or str(error)
-    where = Path(error.filename2 or error.filename or folder)
-    if where.name in FILES.values():
-        return OutputError(
-            fill(
-                "{path} could not be replaced: {why}. Is it open in another program?", path=folder / where.name, why=why
-            )
-        )
-    return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))

@@ -13,6 +13,8 @@ from assess.delivery.folder_lock import locked
 from assess.delivery.moves import Move, has_journal, plan_move, recover
 from assess.delivery.stages import NEW, note_exchange, staging
 from assess.delivery.traces import moving
+from assess.errors import OutputError
+from assess.i18n import fill
 from assess.progress import SILENT, Progress
 
 # ---------------------------------------------------------------- a folder
@@ -84,6 +86,18 @@ def check_moves(folder: Path) -> None:
     if has_journal(folder):
         with locked(folder):
             finish_move(folder)
+
+
+def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> OutputError:
+    """Return the error of `files` that could not be brought to a folder, from what the system refused."""
+    why = error.strerror or str(error)
+    where = Path(error.filename2 or error.filename or folder)
+    if where.name in files:
+        path = folder / where.name
+        return OutputError(
+            fill("{path} could not be replaced: {why}. Is it open in another program?", path=path, why=why)
+        )
+    return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))
 
 
 def _put(new: Path, target: Path) -> bool:

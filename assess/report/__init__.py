@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from assess.delivery.deliver import check_moves, deliver, stage_for
+from assess.delivery.deliver import check_moves, deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, flush_file
 from assess.delivery.stages import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
@@ -183,7 +183,7 @@ def write_reports(
             missing = _write_all(job, folder, _arrange(formats))
             deliver(stage, folder, lambda target: find_reports(target, job.written), progress)
     except OSError as error:
-        raise _fault(folder, error) from None
+        raise explain_fault(folder, error, FILES.values()) from None
     if missing:
         raise missing
     return {name: folder / file for name, file in FILES.items() if file in job.written}
@@ -193,18 +193,6 @@ def _arrange(formats: Sequence[str]) -> list[str]:
     """Return formats in the order in which they are written: results.json lists the others, and the PDFs carry it."""
     wanted = {*formats, "json"}
     return [name for name in FILES if name in wanted - set(_LAST)] + [name for name in _LAST if name in wanted]
-
-
-def _fault(folder: Path, error: OSError) -> OutputError:
-    why = error.strerror or str(error)
-    where = Path(error.filename2 or error.filename or folder)
-    if where.name in FILES.values():
-        return OutputError(
-            fill(
-                "{path} could not be replaced: {why}. Is it open in another program?", path=folder / where.name, why=why
-            )
-        )
-    return OutputError(fill("{folder} cannot be written to: {why}.", folder=folder, why=why))
 
 
 def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
@@ -237,7 +225,7 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
         try:
             check_moves(folder)
         except OSError as error:
-            raise _fault(folder, error) from None
+            raise explain_fault(folder, error, FILES.values()) from None
         find_reports(folder, {FILES[name] for name in (*formats, "json")})
 
 

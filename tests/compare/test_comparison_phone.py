@@ -6,7 +6,6 @@ from assess.compare.changes import compare
 from assess.compare.comparison_files import write_comparison
 from assess.compare.read_results import read_run
 from assess.settings import Settings
-from docs.screenshot import find_browser
 from tests.compare.past import write_routed_run
 from tests.report.test_phone import DESK, OVER_THE_EDGE, PHONE, _examine, pytestmark
 from tests.workbooks import UNVERIFIED
@@ -23,16 +22,12 @@ def page_path(tmp_path_factory):
 
 
 @pytest.mark.parametrize("width", [DESK, PHONE])
-def test_axe_finds_nothing_in_a_comparison(page_path, width):
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find_browser())
-        page = browser.new_page(viewport={"width": width, "height": 844})
-        page.goto(page_path.as_uri())
-        assert page.locator(".conditions").inner_text() == "BEFORE: motion × 0.05"
-        assert _examine(page) == []
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
-        page.evaluate("document.querySelector('.scroll').classList.add('scroller')")
-        assert page.evaluate(OVER_THE_EDGE, width) == []
-        browser.close()
+def test_axe_finds_nothing_in_a_comparison(browser, page_path, width):
+    page = browser.new_page(viewport={"width": width, "height": 844})
+    page.goto(page_path.as_uri())
+    assert page.locator(".conditions").inner_text() == "BEFORE: motion × 0.05"
+    assert _examine(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.evaluate("document.querySelector('.scroll').classList.add('scroller')")
+    assert page.evaluate(OVER_THE_EDGE, width) == []
+    page.close()

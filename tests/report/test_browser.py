@@ -45,16 +45,6 @@ def report(tmp_path_factory):
     return assess.write_reports(assessment, folder, "html")["html"]
 
 
-@pytest.fixture(scope="module")
-def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find_browser())
-        yield browser
-        browser.close()
-
-
 @pytest.fixture
 def open_page(browser, report):
     """Open the report in a window of its own; whatever it complains of, or asks the network for, fails the test."""

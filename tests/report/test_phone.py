@@ -37,16 +37,6 @@ def report(example, tmp_path_factory):
     return assess.write_reports(example, tmp_path_factory.mktemp("phone"), "html")["html"]
 
 
-@pytest.fixture(scope="module")
-def browser():
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=find_browser())
-        yield browser
-        browser.close()
-
-
 @pytest.fixture
 def open_page(browser, report):
     pages = []
