@@ -27,6 +27,11 @@ MARK_SCROLLERS = """() => [...document.querySelectorAll("body *")]
     .filter((one) => /auto|scroll/.test(getComputedStyle(one).overflowX) && one.scrollWidth > one.clientWidth + 1)
     .map((one) => (one.classList.add("scroller"), one))
     .map((one) => [one.tabIndex, one.ariaLabel ?? one.getAttribute("aria-labelledby")])"""
+LINES_OF_TEXT = """all => all.map((one) => {
+    const range = document.createRange();
+    range.selectNodeContents(one);
+    return range.getClientRects().length;
+})"""
 CELLS_WITHOUT_A_LABEL = """() => [...document.querySelectorAll("table:has(thead) tbody td")]
     .filter((one) => one.dataset.label === undefined || (one.dataset.label === "" && one.textContent.trim() !== ""))
     .map((one) => one.closest("table").className + ": " + one.textContent.trim().slice(0, 40))"""
@@ -104,6 +109,13 @@ def test_filters_work_with_a_thumb(open_page):
     assert set(shown.evaluate_all("all => all.map(one => one.dataset.floor)")) == {"42"}
     for control in bar.locator("select:visible, input:visible, button:visible").all():
         assert control.bounding_box()["height"] >= 44, "WCAG 2.2, 2.5.5: a target of 44 pixels"
+
+
+@pytest.mark.parametrize("width", [DESK, PHONE])
+def test_no_name_of_a_piece_is_broken_at_its_hyphen(open_page, width):
+    names = open_page(width).locator("#routes td a[href^='#row-']:visible")
+    assert names.count() > 30
+    assert set(names.evaluate_all(LINES_OF_TEXT)) == {1}
 
 
 def test_figures_and_equations_fit(open_page):
