@@ -1,0 +1,101 @@
+// One sheet of the workbook as the page holds it: its columns and the values of its rows.
+
+/** The letters of a column counted from 0: 0 is A, 26 is AA. */
+export function columnLetters(at) {
+  let letters = "";
+  for (let rest = at + 1; rest > 0; rest = Math.floor((rest - 1) / 26)) {
+    letters = String.fromCharCode(65 + ((rest - 1) % 26)) + letters;
+  }
+  return letters;
+}
+
+/** A cell as messages call it, with the title of the sheet: Items!H14. */
+export function cellName(sheet, row, at) {
+  return `${sheet?.title ?? "?"}!${columnLetters(at)}${row}`;
+}
+
+/** Whether a value fills its cell. */
+export const isFilled = (value) => value !== null && value !== undefined && value !== "";
+
+export class Sheet {
+  #rows = new Map();
+  #numbers = null;
+  #columns = new Map();
+  #fields = new Map();
+
+  /** @param {object} data a sheet of `GET /api/book` */
+  constructor(data) {
+    Object.assign(this, {
+      name: data.name, title: data.title || data.name, layout: data.layout ?? "table", found: data.found !== false,
+      headerRow: data.header_row ?? 1, capacity: data.capacity ?? 0, frozen: data.frozen ?? 1, columns: data.columns ?? [],
+    });
+    for (const column of this.columns) {
+      if (this.layout === "table") this.#columns.set(column.at, column);
+      if (column.field) this.#fields.set(column.field, column);
+    }
+    for (const [row, cells] of data.rows ?? []) this.#rows.set(row, cells);
+  }
+
+  /** The numbers of the rows with any value, ascending; not to be changed. */
+  get rowNumbers() {
+    this.#numbers ??= [...this.#rows.keys()].filter((row) => row > this.headerRow || this.layout === "form").sort((a, b) => a - b);
+    return this.#numbers;
+  }
+
+  /** The last row with any value that somebody filled in; the header where there is none. */
+  get lastRow() {
+    const numbers = this.rowNumbers;
+    for (let i = numbers.length - 1; i >= 0; i--) if (this.isUsed(numbers[i])) return numbers[i];
+    return this.headerRow;
+  }
+
+  /** The value of a cell: null where it is blank. */
+  value(row, at) {
+    return this.#rows.get(row)?.[at] ?? null;
+  }
+
+  /** Set a value in this copy only. */
+  put(row, at, value) {
+    let cells = this.#rows.get(row);
+    if (!cells) {
+      if (value === null) return;
+      this.#rows.set(row, (cells = []));
+      this.#numbers = null;
+    }
+    while (cells.length < at) cells.push(null);
+    cells[at] = value;
+  }
+
+  /** The column, or the line of a form, of a field; undefined where the workbook lacks it. */
+  column(field) {
+    return this.#fields.get(field);
+  }
+
+  /** The column at a place; of a form, the line in a row. */
+  columnAt(at, row) {
+    return this.layout === "form" ? this.columns.find((line) => line.row === row) : this.#columns.get(at);
+  }
+
+  /** Whether somebody filled a cell of the row; columns that Excel computes do not count. */
+  isUsed(row) {
+    const cells = this.#rows.get(row);
+    return cells !== undefined && cells.some((value, at) => isFilled(value) && this.#columns.get(at)?.kind !== "live");
+  }
+
+  /** The row below the last that is used; where the sheet ends there, the first that is blank, else null. */
+  firstFreeRow() {
+    const next = this.lastRow + 1;
+    const end = this.capacity ? this.headerRow + this.capacity : Infinity;
+    if (next <= end) return next;
+    for (let row = this.headerRow + 1; row <= end; row++) if (!this.isUsed(row)) return row;
+    return null;
+  }
+
+  /** The different texts of a column, in the order of the rows. */
+  names(field) {
+    const column = this.column(field);
+    if (!column) return [];
+    const all = this.rowNumbers.map((row) => this.value(row, column.at)).filter(isFilled).map(String);
+    return [...new Set(all)];
+  }
+}
