@@ -99,3 +99,13 @@ export class Sheet {
     return [...new Set(all)];
   }
 }
+
+/** The next name after one that no other has: "A1" gives "A2", "Desk" gives "Desk 2". */
+export function nextName(name, names) {
+  const taken = new Set(names.map(String));
+  const [, stem, digits] = /^(.*?)(\d*)$/s.exec(String(name));
+  for (let n = digits ? Number(digits) + 1 : 2; ; n++) {
+    const next = digits ? stem + String(n).padStart(digits.length, "0") : `${stem} ${n}`;
+    if (!taken.has(next)) return next;
+  }
+}

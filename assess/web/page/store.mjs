@@ -118,7 +118,7 @@ class Store extends EventTarget {
   /** Add a change to what waits; one of the very cells that the last waiting one changes takes its place. */
   #queueUp(group) {
     const last = this.#queue.at(-1);
-    const replaces = last && !last.isSent && last.label === group.label && last.keys.size === group.keys.size &&
+    const replaces = last && !last.isSent && !last.path && last.label === group.label && last.keys.size === group.keys.size &&
       [...group.keys].every((one) => last.keys.has(one));
     if (!replaces) {
       this.#queue.push(group);
@@ -130,13 +130,12 @@ class Store extends EventTarget {
     last.resolve = (done) => (earlier(done), group.resolve(done));
   }
 
-  async #send() {
-    if (this.#sending || this.#stopped) return this.#sending;
-    this.#sending = this.#sendAll();
-    await this.#sending;
-    this.#sending = null;
-    if (this.#queue.length && !this.#stopped) this.#send();
-    return null;
+  #send() {
+    if (this.#stopped) return;
+    this.#sending ??= this.#sendAll().finally(() => {
+      this.#sending = null;
+      if (this.#queue.length) this.#send();
+    });
   }
 
   async #sendAll() {
@@ -146,14 +145,15 @@ class Store extends EventTarget {
       group.isSent = true;
       this.#tell("state");
       try {
-        const change = await post("/api/edit", { version: this.state.version, edits: group.edits, label: group.label });
+        const body = { version: this.state.version, ...(group.path ? {} : { edits: group.edits, label: group.label }) };
+        const change = await post(group.path ?? "/api/edit", body);
         if (book !== this.#books) return;
         this.#queue.shift();
         await this.#accept(change);
+        if (group.path) this.#tell("history", change.cells ?? []);
         group.resolve(true);
       } catch (error) {
-        if (book !== this.#books) return;
-        await this.#handleFault(error, group);
+        if (book === this.#books) await this.#handleFault(error, group);
       }
     }
   }
@@ -163,6 +163,7 @@ class Store extends EventTarget {
     if (REFUSED.has(error.status)) {
       this.#queue.shift();
       this.#takeBack(group);
+      this.#tell("state");
       this.#explain(error, group);
       group.resolve(false);
       return null;
@@ -170,9 +171,16 @@ class Store extends EventTarget {
     this.#stopped = true;
     group.isSent = false;
     this.#tell("state");
-    const resend = () => ((this.#stopped = false), this.#send());
-    const text = tn("{n} change has not been sent yet. {why}", "{n} changes have not been sent yet. {why}", this.#queue.length, { n: this.#queue.length, why: error.message || t("The server does not answer.") });
-    return notice(text, { kind: "error", actions: [[t("Try again"), resend]] });
+    const n = this.#queue.length;
+    const why = error.message || t("The server does not answer.");
+    const text = tn("{n} change has not been sent yet. {why}", "{n} changes have not been sent yet. {why}", n, { n, why });
+    return notice(text, { kind: "error", actions: [[t("Try again"), () => this.resend()]] });
+  }
+
+  /** Send what waits once more, after the server did not answer. */
+  resend() {
+    this.#stopped = false;
+    this.#send();
   }
 
   /** Set refused cells back, except those that a later change has set since. */
@@ -187,6 +195,10 @@ class Store extends EventTarget {
 
   #explain(error, group) {
     const refused = error.body?.refused ?? [];
+    if (refused.length === 0 && group.path) {
+      notice(error.message, { kind: "error" });
+      return;
+    }
     if (refused.length === 0) {
       const [name, row, at] = group.edits[0];
       const where = cellName(this.sheet(name), row, at);
@@ -198,30 +210,38 @@ class Store extends EventTarget {
     notice(`${t("Not changed, because cells cannot be changed:")} ${lines.join("; ")}`, { kind: "error" });
   }
 
-  /** Read the book again where the server has another version; what waits is sent again where nobody changed its cells. */
+  /** Read the book again where the server has another version, and explain what of the changes that wait is lost. */
   async #resume(error) {
-    const waiting = this.#queue;
     const old = this.state.version;
-    this.#queue = [];
+    const first = this.#queue[0];
+    first.repeated = (first.repeated ?? 0) + 1;
     try {
-      await this.load();
+      const lost = await this.#reread(() => this.state.version !== old && first.repeated <= TIMES_REPEATED);
+      this.#tellConflict(error, lost);
     } catch (fault) {
-      this.#queue = waiting;
-      return this.#handleFault(fault, waiting[0]);
+      if (fault.status !== 409) await this.#handleFault(fault, first);
     }
-    const repeated = waiting[0]?.repeated ?? 0;
-    const isFree = (group) => group.before.every(([name, row, at, value]) => same(this.sheet(name)?.value(row, at), value));
-    const canSend = this.book && this.state.version !== old && repeated < TIMES_REPEATED;
-    const lost = waiting.filter((group) => !canSend || !isFree(group));
-    for (const group of lost) group.resolve(false);
-    for (const group of waiting.filter((one) => !lost.includes(one))) {
+  }
+
+  /** Read the book again; what waits is kept where nobody else changed its cells. Returns what is not. */
+  async #reread(canSend = () => true) {
+    const book = await get("/api/book");
+    const waiting = this.#queue;
+    this.#queue = [];
+    this.replaceBook(book);
+    const lost = [];
+    for (const group of waiting) {
+      const isFree = group.before.every(([name, row, at, value]) => same(this.sheet(name)?.value(row, at), value));
+      if (!canSend() || !isFree || (group.path && group.isSent)) {
+        lost.push(group);
+        group.resolve(false);
+        continue;
+      }
       group.isSent = false;
-      group.repeated = repeated + 1;
       this.#put(group.edits);
       this.#queue.push(group);
     }
-    this.#tellConflict(error, lost);
-    return null;
+    return lost;
   }
 
   #tellConflict(error, lost) {
@@ -244,7 +264,7 @@ class Store extends EventTarget {
     if (change.missing) this.book.missing = change.missing;
     const other = change.language && change.language !== this.book.language;
     this.#tell("state");
-    if (other && this.#queue.length === 0) await this.load(); // titles and choices are in the language of the workbook
+    if (other) await this.#reread(); // titles and choices are in the language of the workbook
     else this.refreshLive();
   }
 
@@ -261,24 +281,14 @@ class Store extends EventTarget {
     return this.#step("/api/redo");
   }
 
-  async #step(path) {
-    await this.#settle();
-    if (!this.book || this.#stopped) return;
-    try {
-      const change = await post(path, { version: this.state.version });
-      await this.#accept(change);
-      this.#tell("history", change.cells ?? []);
-    } catch (error) {
-      if (error.status === 409) {
-        await this.load();
-        notice(t("The workbook was changed in another window and has been read again."), { kind: "info" });
-      } else notice(error.message, { kind: "error" });
-    }
-  }
-
-  /** Wait until nothing waits to be sent. */
-  async #settle() {
-    while (this.#sending) await this.#sending;
+  /** Undo and redo stand in the same queue as edits, so that each finds the version that it expects. */
+  #step(path) {
+    const can = path === "/api/undo" ? this.state.can_undo : this.state.can_redo;
+    if (!this.book || (!can && this.#queue.length === 0)) return Promise.resolve(false);
+    return new Promise((resolve) => {
+      this.#queue.push({ path, edits: [], before: [], label: "", resolve, keys: new Set() });
+      this.#send();
+    });
   }
 
   // ---- live values

@@ -1,0 +1,129 @@
+// The rows of the view: all in the file's order, or some of them sorted. The file's order is never changed.
+
+import { cellText, sortKey } from "./grid_cells.mjs";
+import { isFilled } from "./sheet.mjs";
+
+const BLANK = 40;
+const RANKS = { number: 0, boolean: 1, string: 2 };
+
+export class RowOrder {
+  #rows = null;
+  #indices = null;
+  #used = 0;
+
+  constructor(store, sheet) {
+    this.store = store;
+    this.sheet = sheet;
+    this.sort = null; // {column, down}
+    this.filters = new Map(); // at -> {column, contains, values}
+    this.collator = new Intl.Collator(document.documentElement.lang || undefined, { numeric: true, sensitivity: "base" });
+  }
+
+  /** Whether the rows stand as in the file, all of them. */
+  get isPlain() {
+    return this.sort === null && this.filters.size === 0;
+  }
+
+  get #end() {
+    const { headerRow, capacity, lastRow } = this.sheet;
+    return Math.max(lastRow, Math.min(lastRow + BLANK, capacity ? headerRow + capacity : Infinity));
+  }
+
+  get length() {
+    return this.#rows ? this.#rows.length : Math.max(0, this.#end - this.sheet.headerRow);
+  }
+
+  /** How many of the used rows are in sight, and how many there are. */
+  get shown() {
+    return this.#used;
+  }
+
+  get total() {
+    return this.sheet.rowNumbers.filter((row) => this.sheet.isUsed(row)).length;
+  }
+
+  row(index) {
+    return this.#rows ? this.#rows[index] : this.sheet.headerRow + 1 + index;
+  }
+
+  /** Where a row stands in the view, -1 where it is filtered out. */
+  indexOf(row) {
+    if (!this.#rows) return row > this.sheet.headerRow && row - this.sheet.headerRow <= this.length ? row - this.sheet.headerRow - 1 : -1;
+    this.#indices ??= new Map(this.#rows.map((one, i) => [one, i]));
+    return this.#indices.get(row) ?? -1;
+  }
+
+  /** The row at an index, also past the end of the view, where rows are free; null where the sheet has no more. */
+  rowOrFree(index) {
+    if (index < this.length) return this.row(index);
+    const { headerRow, capacity } = this.sheet;
+    const last = Math.max(this.#end, this.length ? this.row(this.length - 1) : headerRow);
+    const row = last + 1 + index - this.length;
+    return capacity && row > headerRow + capacity ? null : row;
+  }
+
+  /** Sort and filter anew. */
+  apply() {
+    this.#indices = null;
+    if (this.isPlain) {
+      this.#rows = null;
+      return;
+    }
+    const rows = this.sheet.rowNumbers.filter((row) => this.sheet.isUsed(row) && this.#passes(row));
+    this.#used = rows.length;
+    if (this.sort) this.#sortRows(rows);
+    this.#rows = rows;
+    this.extend();
+  }
+
+  /** Keep blank rows at the end of the view, so that new ones can be typed there. */
+  extend() {
+    if (!this.#rows) return;
+    const last = this.sheet.lastRow;
+    const highest = this.#rows.reduce((high, row) => Math.max(high, row), 0);
+    for (let row = Math.max(last, highest) + 1; row <= this.#end; row++) this.#rows.push(row);
+    this.#indices = null;
+  }
+
+  /** Take rows into the view that were filled since, such as by a paste or by an undo. */
+  include(rows) {
+    if (!this.#rows) return;
+    for (const row of rows) if (this.indexOf(row) < 0 && this.sheet.isUsed(row)) (this.#rows.push(row), (this.#indices = null));
+  }
+
+  #passes(row) {
+    for (const { column, contains, values } of this.filters.values()) {
+      const text = cellText(this.store, this.sheet, row, column);
+      if (contains && !text.toLowerCase().includes(contains.toLowerCase())) return false;
+      if (values && !values.has(text)) return false;
+    }
+    return true;
+  }
+
+  #sortRows(rows) {
+    const { column, down } = this.sort;
+    const keys = new Map(rows.map((row) => [row, sortKey(this.store, this.sheet, row, column)]));
+    const turn = down ? -1 : 1;
+    rows.sort((one, other) => {
+      const [a, b] = [keys.get(one), keys.get(other)];
+      if (!isFilled(a) || !isFilled(b)) return isFilled(b) - isFilled(a) || one - other; // blank ones stand last
+      return turn * this.#compare(a, b) || one - other;
+    });
+  }
+
+  #compare(a, b) {
+    if (typeof a !== typeof b) return RANKS[typeof a] - RANKS[typeof b];
+    return typeof a === "number" ? a - b : this.collator.compare(String(a), String(b));
+  }
+
+  /** The different texts of a column with how often each occurs, sorted; of all used rows. */
+  texts(column) {
+    const counts = new Map();
+    for (const row of this.sheet.rowNumbers) {
+      if (!this.sheet.isUsed(row)) continue;
+      const text = cellText(this.store, this.sheet, row, column);
+      counts.set(text, (counts.get(text) ?? 0) + 1);
+    }
+    return [...counts].sort(([a], [b]) => this.collator.compare(a, b));
+  }
+}
