@@ -1,0 +1,54 @@
+// Requests to the server that this page came from. Nothing is asked of any other.
+
+const HEADERS = { "X-Assess": "1" };
+
+/** What the server refused, or status 0 where it did not answer; `body` is its answer. */
+export class ApiError extends Error {
+  constructor(status, body = {}) {
+    super([body.message, body.fix].filter(Boolean).join(" "));
+    this.name = "ApiError";
+    this.status = status;
+    this.message = this.message || "";
+    this.fix = body.fix ?? "";
+    this.body = body;
+  }
+}
+
+/** Tells `gone` when the server does not answer, and `back` when it does again. */
+export const connection = new EventTarget();
+let isGone = false;
+
+function tell(gone) {
+  if (gone === isGone) return;
+  isGone = gone;
+  connection.dispatchEvent(new Event(gone ? "gone" : "back"));
+}
+
+async function request(path, options = {}) {
+  let answer;
+  try {
+    answer = await fetch(path, { credentials: "same-origin", cache: "no-store", ...options });
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    tell(true);
+    throw new ApiError(0);
+  }
+  tell(false);
+  const body = await answer.json().catch(() => ({}));
+  if (!answer.ok) throw new ApiError(answer.status, body);
+  return body;
+}
+
+/** @returns {Promise<object>} the answer; rejects with ApiError, or AbortError where `signal` ended it */
+export const get = (path, signal) => request(path, { signal });
+
+export function post(path, body = {}, signal) {
+  const headers = { ...HEADERS, "Content-Type": "application/json" };
+  return request(path, { method: "POST", headers, body: JSON.stringify(body), signal });
+}
+
+/** Send the bytes of a file. */
+export function send(path, blob) {
+  const headers = { ...HEADERS, "Content-Type": "application/octet-stream" };
+  return request(path, { method: "POST", headers, body: blob });
+}

@@ -1,0 +1,64 @@
+// Makes elements. Text of users is set by textContent only, so that markup in it stays text.
+
+const SVG = "http://www.w3.org/2000/svg";
+const ATTRIBUTES = new Set(["list", "form", "role", "for", "type", "width", "height"]);
+
+/**
+ * An element with properties and children.
+ * @param {string} tag
+ * @param {object} [props] class, text, dataset {name: value}, style {property: value}, on {event: listener}; all others are
+ *   properties where the element has them, else attributes; null, undefined and (for attributes) false leave them out
+ * @param {...(Node|string|number|null|false|Array)} children
+ */
+export function el(tag, props, ...children) {
+  return fillIn(document.createElement(tag), props, children, false);
+}
+
+/** The same for SVG: every property is an attribute. */
+export function svg(tag, props, ...children) {
+  return fillIn(document.createElementNS(SVG, tag), props, children, true);
+}
+
+function fillIn(node, props, children, isSvg) {
+  for (const [name, value] of Object.entries(props ?? {})) {
+    if (value !== null && value !== undefined) setOne(node, name, value, isSvg);
+  }
+  append(node, children);
+  return node;
+}
+
+function setOne(node, name, value, isSvg) {
+  if (name === "class") node.setAttribute("class", value);
+  else if (name === "text") node.textContent = value;
+  else if (name === "dataset") Object.assign(node.dataset, value);
+  else if (name === "style") for (const [key, one] of Object.entries(value)) node.style.setProperty(key, one);
+  else if (name === "on") for (const [event, listener] of Object.entries(value)) node.addEventListener(event, listener);
+  else if (!isSvg && name in node && !ATTRIBUTES.has(name)) node[name] = value;
+  else if (value === false && !name.startsWith("aria-")) node.removeAttribute(name);
+  else node.setAttribute(name, value === true && !name.startsWith("aria-") ? "" : value);
+}
+
+function append(node, children) {
+  for (const child of children.flat(Infinity)) {
+    if (child === null || child === undefined || child === false) continue;
+    node.append(child instanceof Node ? child : String(child));
+  }
+}
+
+/** Take all children out. */
+export function clear(node) {
+  node.replaceChildren();
+  return node;
+}
+
+/** A label above its field. */
+export function labelled(label, field, help = "") {
+  return el("label", { class: "field" }, el("span", { class: "field-name", text: label }), field, help && el("span", { class: "hint", text: help }));
+}
+
+/** A drop-down of [value, label] pairs. */
+export function choose(options, value, props) {
+  const select = el("select", props, options.map(([key, label]) => el("option", { value: key, text: label })));
+  select.value = value ?? options[0]?.[0] ?? "";
+  return select;
+}

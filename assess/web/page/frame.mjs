@@ -1,0 +1,156 @@
+// The frame of the page: header, tabs, what they show.
+
+import { countBadges } from "./classes.mjs";
+import { choose, clear, el } from "./elements.mjs";
+import { acceptDrops, chooseWorkbook } from "./open_file.mjs";
+import { showFiles } from "./files_view.mjs";
+import { Tabs } from "./tabs.mjs";
+import { language, languages, loadTexts, t, tn } from "./texts.mjs";
+import { themeSwitch } from "./theme.mjs";
+import { Watch } from "./watch.mjs";
+
+/** The save state in words, and whether something has to be done about it. */
+export function saveState(store, isGone = false) {
+  const { book, state } = store;
+  if (!book) return ["", false];
+  const name = book.name;
+  if (isGone) return [t("Not connected: changes are kept in this page"), true];
+  if (state.changed_outside) return [t("Changed by another program, not saved"), true];
+  if (state.save_error) return [t("Not saved: {why}", { why: state.save_error }), true];
+  if (store.waiting || (book.mode === "disk" && state.unsaved)) return [t("Saving…"), false];
+  if (book.mode === "disk") return [t("All changes saved in {name}", { name }), false];
+  return [state.unsaved ? t("Not downloaded yet") : t("No changes since the last download"), false];
+}
+
+class Frame {
+  #store;
+  #parts = {};
+  #isReloading = false;
+
+  constructor(store) {
+    this.#store = store;
+    this.tabs = new Tabs(store);
+    this.watch = new Watch(store);
+    const notices = el("div", { id: "notices", role: "region", "aria-label": t("Notices") });
+    document.body.append(this.#skip(), this.#header(), this.tabs.nav, this.tabs.main, notices);
+    store.addEventListener("book", () => this.#showBook());
+    store.addEventListener("state", () => this.#showState());
+    for (const event of ["live", "simulated"]) store.addEventListener(event, () => this.#showCounts());
+    this.watch.addEventListener("connection", () => this.#showState());
+    addEventListener("keydown", (event) => this.#onKey(event));
+    addEventListener("beforeunload", (event) => this.#onLeaving(event));
+    acceptDrops(store);
+  }
+
+  async start() {
+    await this.#store.load();
+    this.tabs.update();
+    this.watch.start();
+  }
+
+  #skip() {
+    const onClick = (event) => (event.preventDefault(), this.tabs.main.focus());
+    return el("a", { class: "skip", href: "#view", text: t("Skip to the content"), on: { click: onClick } });
+  }
+
+  #header() {
+    const p = this.#parts;
+    p.name = el("h1", { text: "assess" });
+    p.state = el("div", { class: "save-state", role: "status" });
+    p.counts = el("ul", { class: "counts", "aria-label": t("Pieces by class") });
+    const button = (label, sign, run, more = {}) =>
+      el("button", { type: "button", "aria-label": label, title: label, on: { click: run }, ...more }, sign);
+    p.undo = button(t("Undo"), "↶", () => this.#store.undo(), { class: "editing-only" });
+    p.redo = button(t("Redo"), "↷", () => this.#store.redo(), { class: "editing-only" });
+    p.files = button(t("Missing files"), "", () => showFiles(this.#store));
+    p.download = el("a", { class: "button", href: "/api/download", text: t("Download"), download: "" });
+    p.download.addEventListener("click", (event) => this.#onDownload(event));
+    p.open = button(t("Open another workbook"), t("Open…"), () => chooseWorkbook(this.#store), { class: "editing-only" });
+    return el("header", { class: "top" },
+      el("div", { class: "book-name" }, p.name, p.state), p.counts,
+      (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
+      el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch()));
+  }
+
+  #languageSwitch() {
+    const label = t("Language of the page");
+    const select = choose(languages(), language(), { "aria-label": label, title: label });
+    select.addEventListener("change", async () => {
+      await loadTexts(select.value);
+      await this.#whenSent();
+      this.#isReloading = true; // what waits is sent, and the book is the server's: nothing is lost
+      location.reload();
+    });
+    return select;
+  }
+
+  /** Wait until every edit has reached the server. */
+  #whenSent() {
+    return new Promise((resolve) => {
+      const look = () => {
+        if (this.#store.waiting) return;
+        this.#store.removeEventListener("state", look);
+        resolve();
+      };
+      this.#store.addEventListener("state", look);
+      look();
+    });
+  }
+
+  async #onDownload(event) {
+    if (this.#store.waiting === 0) {
+      setTimeout(() => this.watch.look(), 500); // the server knows then that it was downloaded
+      return;
+    }
+    event.preventDefault();
+    await this.#whenSent();
+    this.#parts.download.click();
+  }
+
+  #onKey(event) {
+    if (event.defaultPrevented || !(event.ctrlKey || event.metaKey) || event.altKey || !this.#store.book) return;
+    if (event.target.closest?.("input, textarea, select, [contenteditable], dialog")) return;
+    const key = event.key.toLowerCase();
+    const run = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
+    if (!run) return;
+    event.preventDefault();
+    this.#store[run]();
+  }
+
+  #onLeaving(event) {
+    const { book, state, waiting } = this.#store;
+    const isLost = waiting || (book && (state.save_error || state.changed_outside || (book.mode === "held" && state.unsaved)));
+    if (isLost && !this.#isReloading) event.preventDefault();
+  }
+
+  #showBook() {
+    const { book } = this.#store;
+    this.#parts.name.textContent = book?.name ?? "assess";
+    this.#parts.tools.hidden = !book;
+    this.#parts.counts.hidden = !book;
+    this.#parts.download.textContent = book?.mode === "disk" ? t("Download a copy") : t("Download");
+    this.tabs.update();
+  }
+
+  #showState() {
+    const p = this.#parts;
+    const { book, state } = this.#store;
+    const [words, isBad] = saveState(this.#store, this.watch.isGone);
+    if (p.state.textContent !== words) p.state.textContent = words;
+    p.state.title = words;
+    p.state.classList.toggle("bad", isBad);
+    p.undo.disabled = !state.can_undo;
+    p.redo.disabled = !state.can_redo;
+    p.download.classList.toggle("primary", book?.mode === "held" && state.unsaved);
+    const n = book?.missing?.length ?? 0;
+    p.files.hidden = n === 0;
+    p.files.textContent = tn("{n} file missing", "{n} files missing", n);
+    p.files.setAttribute("aria-label", p.files.textContent);
+  }
+
+  #showCounts() {
+    clear(this.#parts.counts).append(...countBadges(this.#store.counts));
+  }
+}
+
+export const buildFrame = (store) => new Frame(store);

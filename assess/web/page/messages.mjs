@@ -1,0 +1,66 @@
+// Notices at the edge of the page, and questions that wait for an answer.
+
+import { clear, el } from "./elements.mjs";
+import { t } from "./texts.mjs";
+
+const SHOWN_MS = 8000;
+const MOST = 5;
+const shown = new Map();
+
+function place() {
+  return document.getElementById("notices") ?? document.body.appendChild(el("div", { id: "notices" }));
+}
+
+/**
+ * Show a notice. One with the same text, or the same key, takes the place of the earlier one.
+ * @param {string} text
+ * @param {{kind?: "info"|"error", actions?: Array<[string, Function]>, key?: string, lasting?: boolean}} [options] an info
+ *   without actions goes by itself, unless it is `lasting`
+ * @returns {{close: Function}}
+ */
+export function notice(text, { kind = "info", actions = [], key = text, lasting = false } = {}) {
+  shown.get(key)?.close();
+  const node = el("div", { class: `notice notice-${kind}`, role: kind === "error" ? "alert" : "status" });
+  const one = { close: () => (clearTimeout(one.timer), node.remove(), shown.get(key) === one && shown.delete(key)) };
+  const buttons = actions.map(([label, run]) => el("button", { type: "button", text: label, on: { click: () => (one.close(), run()) } }));
+  const close = el("button", { type: "button", class: "plain close", "aria-label": t("Close"), text: "×", on: { click: one.close } });
+  node.append(el("p", { text }), ...buttons, close);
+  place().append(node);
+  shown.set(key, one);
+  if (shown.size > MOST) [...shown.values()].find((other) => other.timer)?.close();
+  if (kind === "info" && !actions.length && !lasting) startTimer(one, node);
+  return one;
+}
+
+/** A notice goes after a while, but not while somebody reads it. */
+function startTimer(one, node) {
+  const start = () => (one.timer = setTimeout(one.close, SHOWN_MS));
+  node.addEventListener("pointerenter", () => clearTimeout(one.timer));
+  node.addEventListener("pointerleave", start);
+  start();
+}
+
+/**
+ * Ask a question and wait for one of the answers; the first is the proposed one.
+ * @param {string} question
+ * @param {Array<[string, *]>} choices label and value
+ * @returns {Promise<*>} the value, null where the question was closed
+ */
+export function ask(question, choices) {
+  return new Promise((resolve) => {
+    let answer = null;
+    const dialog = el("dialog", { class: "question", "aria-label": question });
+    const buttons = choices.map(([label, value], at) =>
+      el("button", { type: "button", class: at === 0 ? "primary" : "", text: label, on: { click: () => ((answer = value), dialog.close()) } }));
+    dialog.append(el("p", { text: question }), el("div", { class: "buttons" }, buttons));
+    dialog.addEventListener("close", () => (dialog.remove(), resolve(answer)));
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}
+
+/** Take all notices away. */
+export function clearNotices() {
+  for (const one of [...shown.values()]) one.close();
+  clear(place());
+}

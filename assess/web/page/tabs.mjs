@@ -1,0 +1,82 @@
+// The tabs of the page: which there are, which is shown, and their views, made when they are first asked for.
+
+import { clear, el } from "./elements.mjs";
+import { t } from "./texts.mjs";
+
+/** Key, label and module of every tab; each module exports createView(root, store) -> {show, hide}. */
+const TABS = [
+  ["sheet", () => t("Sheet"), () => import("./grid_view.mjs")],
+  ["plan", () => t("Plan"), () => import("./plan_view.mjs")],
+  ["what-if", () => t("What if"), () => import("./what_if_view.mjs")],
+  ["simulate", () => t("Simulate and report"), () => import("./simulate_view.mjs")],
+];
+const START = ["start", () => t("Start"), () => import("./start_view.mjs")];
+
+export class Tabs {
+  #store;
+  #views = new Map();
+  #shown = "";
+
+  constructor(store) {
+    this.#store = store;
+    const link = ([key, label]) => el("a", { href: `#${key}`, text: label(), dataset: { tab: key } });
+    this.nav = el("nav", { class: "tabs", "aria-label": t("Views") }, TABS.map(link));
+    this.main = el("main", { id: "view", tabIndex: -1 });
+    addEventListener("hashchange", () => this.update());
+  }
+
+  /** Show the tab of the address, or the start where no workbook is open. */
+  update() {
+    const wanted = location.hash.slice(1);
+    const found = TABS.find(([key]) => key === wanted) ?? TABS[0];
+    const tab = !this.#store.book || wanted === "start" ? START : found;
+    this.nav.hidden = !this.#store.book;
+    for (const link of this.nav.children) {
+      if (link.dataset.tab === tab[0]) link.setAttribute("aria-current", "page");
+      else link.removeAttribute("aria-current");
+    }
+    document.title = [tab[1](), this.#store.book?.name, "assess"].filter(Boolean).join(" – ");
+    if (tab[0] !== this.#shown) this.#change(tab);
+  }
+
+  async #change(tab) {
+    const [key] = tab;
+    const before = this.#views.get(this.#shown);
+    this.#shown = key;
+    if (before) {
+      before.view?.hide?.();
+      before.root.hidden = true;
+    }
+    const one = this.#views.get(key) ?? this.#add(tab);
+    one.root.hidden = false;
+    await one.ready;
+    if (this.#shown === key) one.view?.show?.();
+  }
+
+  #add(tab) {
+    const [key, label, load] = tab;
+    const root = el("section", { class: "view", id: `view-${key}`, "aria-label": label() });
+    this.main.append(root);
+    const one = { root, view: null };
+    this.#views.set(key, one);
+    one.ready = this.#make(one, load);
+    return one;
+  }
+
+  /** Make a view. One that fails says so in its place and leaves the rest of the page as it is. */
+  async #make(one, load) {
+    try {
+      const { createView } = await load();
+      one.view = createView(one.root, this.#store);
+    } catch (error) {
+      console.error(error);
+      this.#explain(one.root);
+    }
+  }
+
+  #explain(root) {
+    const again = el("button", { type: "button", text: t("Load the page again"), on: { click: () => location.reload() } });
+    const text = t("This view could not be shown. Nothing of the workbook is lost, and the other views work.");
+    clear(root).append(el("div", { class: "page-like" }, el("p", { role: "alert", text }), el("div", { class: "buttons" }, again)));
+  }
+}
