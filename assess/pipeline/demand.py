@@ -204,6 +204,16 @@ def build_demands(
     WorkbookError
         If a floor has no motion of the kind that `scenario` asks for; it names every such floor.
     """
+    demands, problems = serve_floors(inventory, scenario, ductility_reduction=ductility_reduction, progress=progress)
+    if problems:
+        raise WorkbookError(problems)
+    return demands
+
+
+def serve_floors(
+    inventory: Inventory, scenario: str, *, ductility_reduction: float = 1.0, progress: Progress = SILENT
+) -> tuple[dict[tuple[str, Axis], tuple[Demand, ...]], list[Problem]]:
+    """Return the demands of the floors that have any, and why the others have none; as `build_demands` takes them."""
     period, ground = inventory.building.period, find_ground(inventory)
     profile = DEFAULT if scenario == "as filled" else PROFILES.get(scenario)
     own = {floor.floor: own_demands(floor, scenario, period, ground.pgv, progress) for floor in inventory.floors}
@@ -217,9 +227,7 @@ def build_demands(
         if not served:
             problems += _missing(floor, scenario, ground)
         demands |= {(floor.floor, axis): served[axis] for axis in served}
-    if problems:
-        raise WorkbookError([inventory.place(problem) for problem in problems])
-    return demands
+    return demands, [inventory.place(problem) for problem in problems]
 
 
 def find_assumed(demands: Demands) -> tuple[Shaking, Profile] | None:

@@ -238,7 +238,7 @@ def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
 
 def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Path, progress: Progress) -> Results:
     inventory, example = assessment.inventory, choose_example(assessment)
-    routes = _evaluate_routes(assessment, progress)
+    routes = evaluate_route_tables(assessment, progress)
     results = Results(
         settings=assessment.settings,
         provenance=build_provenance(assessment),
@@ -258,7 +258,7 @@ def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Pat
         worked_item=example,
         series=Series(folder / SERIES),
     )
-    schedule = build_schedule(results, inventory, lambda held: _evaluate_routes(assessment, progress, held))
+    schedule = build_schedule(results, inventory, lambda held: evaluate_route_tables(assessment, progress, held))
     return replace(results, schedule=schedule)
 
 
@@ -359,7 +359,7 @@ def _find_obstructions(inventory: Inventory, progress: Progress) -> "Sequence[Ob
     return find_obstructions(inventory, progress)
 
 
-def _evaluate_routes(assessment: Assessment, progress: Progress, held: Collection[int] = ()) -> RouteTables:
+def evaluate_route_tables(assessment: Assessment, progress: Progress, held: Collection[int] = ()) -> RouteTables:
     """Return the routes, with further pieces (indices) held."""
     inventory, settings = assessment.inventory, assessment.settings
     if not inventory.routes:

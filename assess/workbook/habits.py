@@ -138,10 +138,15 @@ def group_problems(problems: Iterable[Problem]) -> list[Problem]:
     It stands where the first of them stood and names that cell; its message counts the cells and names the first
     three. Problems without a `group`, and those that name different things, stay apart.
     """
+    return [merged for merged, _ in list_groups(problems)]
+
+
+def list_groups(problems: Iterable[Problem]) -> list[tuple[Problem, list[Problem]]]:
+    """Return problems as `group_problems` does, each with those that it stands for."""
     grouped: dict[tuple[object, ...], list[Problem]] = {}
     for at, problem in enumerate(problems):
         grouped.setdefault(_kind(problem) if problem.group else (at,), []).append(problem)
-    return [_merge(alike) if len(alike) > 1 else alike[0] for alike in grouped.values()]
+    return [(_merge(alike) if len(alike) > 1 else alike[0], alike) for alike in grouped.values()]
 
 
 def _kind(problem: Problem) -> tuple[object, ...]:

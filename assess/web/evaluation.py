@@ -1,0 +1,83 @@
+"""One state of a workbook assessed by the formulas: what the page's classes, routes and plans are read from.
+
+A workbook that is being filled in is rarely whole. Rows with errors have been left out when it was read; floors of
+which the shaking is not known yet are left out here, with what stands on them, so that everything else has its class.
+"""
+
+from dataclasses import dataclass, replace
+
+from assess.errors import Problem
+from assess.model import Inventory
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.demand import serve_floors
+from assess.pipeline.run import compute
+from assess.progress import SILENT, Progress
+from assess.settings import SCENARIOS, Settings
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Evaluation:
+    """What is known of the pieces of a workbook by the formulas.
+
+    Parameters
+    ----------
+    assessment : Assessment, optional
+        That of the floors whose motion is known; None where there are none.
+    unserved : frozenset of str
+        The floors whose motion is not known.
+    problems : tuple of Problem
+        Why it is not, and what is to be said of the motions and the walls; not those of the reading.
+    """
+
+    assessment: Assessment | None
+    unserved: frozenset[str]
+    problems: tuple[Problem, ...]
+
+
+def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILENT) -> Evaluation:
+    """Assess the pieces of all floors whose motion is known.
+
+    Parameters
+    ----------
+    inventory : Inventory
+        As read with ``strict=False``.
+    settings : Settings
+        Nothing is simulated if `verify` is "none".
+
+    Raises
+    ------
+    InputError
+        If a setting does not fit the inventory, as an unknown piece that is to be anchored, or a record is gone.
+    """
+    kind = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
+    reduction = settings.ductility_reduction
+    demands, faults = serve_floors(inventory, kind, ductility_reduction=reduction, progress=progress)
+    served = {floor for floor, _axis in demands}
+    unserved = frozenset(one.floor for one in inventory.floors) - served
+    if not served:
+        return Evaluation(None, unserved, tuple(faults))
+    known = len(inventory.problems)
+    assessment = compute(_keep_floors(inventory, served) if unserved else inventory, settings, progress=progress)
+    return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
+
+
+def without_routes(inventory: Inventory) -> Inventory:
+    """Return an inventory without what takes time and no class by the formulas depends on: routes, annual chances."""
+    return replace(inventory, routes=(), hazard=None)
+
+
+def _keep_floors(inventory: Inventory, floors: set[str]) -> Inventory:
+    """Return an inventory with some floors alone; segments that have no floor of their own stay, if their places do."""
+    places = tuple(one for one in inventory.places if one.floor in floors)
+    named = {one.place for one in places}
+    return replace(
+        inventory,
+        floors=tuple(one for one in inventory.floors if one.floor in floors),
+        items=tuple(one for one in inventory.items if one.floor in floors),
+        places=places,
+        routes=tuple(
+            one
+            for one in inventory.routes
+            if (not one.floor or one.floor in floors) and {one.start, one.end} - {""} <= named
+        ),
+    )

@@ -1,0 +1,151 @@
+"""Classes and live values of every piece as one types, the problems of the workbook, and what of them has changed.
+
+All comes from the run by the formulas. In place of a class stands the word that the class column of the workbook shows,
+but that the run knows more: of a floor with a record, say, Excel shows ``run assess`` and the page the class.
+"""
+
+from collections import OrderedDict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+from assess.errors import AssessError
+from assess.i18n import gettext, load_catalogue, speaking
+from assess.model import AXES, Floor
+from assess.settings import Settings
+from assess.units import GRAVITY
+from assess.web.evaluation import Evaluation, evaluate, without_routes
+from assess.web.live_rows import LiveRow, count_classes, find_live_columns, list_quantities, list_rows
+from assess.web.problem_cells import describe_problems
+
+if TYPE_CHECKING:
+    from assess.web.book import Book, Snapshot
+
+BY_FORMULAS = Settings(verify="none")
+"""How the page assesses while one types."""
+MOST_VERSIONS = 4
+"""Versions of which it is known what was sent of them: an older page is answered whole."""
+MOST_PROBLEMS = 1000
+"""Problems in one answer; the rest are counted."""
+MOST_NAMED = 3
+"""Reasons that are given why nothing could be computed."""
+
+Rows = Mapping[int, LiveRow]
+
+
+@dataclass(frozen=True, slots=True)
+class _State:
+    """What is shown of one version: rows by number, the live columns, and all of the answer but the rows."""
+
+    version: int
+    rows: Rows = field(default_factory=dict)
+    columns: tuple[int, ...] = ()
+    rest: Mapping[str, Any] = field(default_factory=dict)
+
+
+class LiveView:
+    """What the page of one session is told of each version of its workbook."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._book: Book | None = None
+        self._states: OrderedDict[int, _State] = OrderedDict()
+
+    def answer(self, book: "Book", since: int | None) -> dict[str, Any]:
+        """Return the answer of `GET /api/live`: the rows that changed since a version, all where that is not known."""
+        with self._lock:
+            if book is not self._book:
+                self._book, self._states = book, OrderedDict()
+            snapshot = book.snapshot()
+            now = self._states.get(snapshot.version)
+            if now is None:
+                now = self._evaluate(snapshot)
+            before = None if since is None else self._states.get(since)
+            return _answer(now, before)
+
+    def _evaluate(self, snapshot: "Snapshot") -> _State:
+        latest = next(reversed(self._states.values()), None)
+        state = describe_state(snapshot)
+        if latest is not None:  # rows that are alike are held once
+            known = latest.rows
+            rows = {at: known[at] if known.get(at) == row else row for at, row in state.rows.items()}
+            state = _State(state.version, rows, state.columns, state.rest)
+        self._states[state.version] = state
+        while len(self._states) > MOST_VERSIONS:
+            self._states.popitem(last=False)
+        return state
+
+
+def _answer(now: _State, before: _State | None) -> dict[str, Any]:
+    is_whole = before is None or before.columns != now.columns
+    old: Rows = {} if is_whole or before is None else before.rows
+    changed = [(number, row) for number, row in now.rows.items() if old.get(number) != row]
+    return {
+        "version": now.version,
+        "whole": is_whole,
+        "items": describe_rows(changed, now.columns),
+        "gone": [number for number in old if number not in now.rows],
+        **now.rest,
+    }
+
+
+def describe_rows(rows: Iterable[tuple[int, LiveRow]], columns: Iterable[int] = ()) -> dict[str, Any]:
+    """Return rows as columns; without `columns`, the places of the live ones, what the page compares alone."""
+    numbers, shown = [], []
+    for number, row in rows:
+        numbers.append(number)
+        shown.append(row)
+    return {
+        "row": numbers,
+        "class": [row.risk for row in shown],
+        "word": [row.word for row in shown],
+        "chance": [row.chance for row in shown],
+        "outside": [row.outside for row in shown],
+        "values": {str(at): [row.values[place] for row in shown] for place, at in enumerate(columns)},
+    }
+
+
+# ---------------------------------------------------------------- one version
+
+
+def describe_state(snapshot: "Snapshot") -> _State:
+    """Return all that is shown of one version of a workbook, in its language."""
+    with speaking(load_catalogue(snapshot.inventory.language)):
+        inventory = snapshot.inventory
+        columns = find_live_columns(snapshot.cells["Items"].rows()) if "Items" in snapshot.cells else {}
+        try:
+            found = evaluate(without_routes(inventory), BY_FORMULAS)
+        except AssessError as error:
+            found = Evaluation(None, frozenset(one.floor for one in inventory.floors), ())
+            fault = gettext(error.message)
+        else:
+            fault = say_fault(found)
+        rows = list_rows(snapshot.tables, inventory, found, columns.values())
+        problems = describe_problems((*snapshot.problems, *found.problems), inventory.sheets)
+        rest = {
+            "problems": problems[:MOST_PROBLEMS],
+            "more": max(0, len(problems) - MOST_PROBLEMS),
+            "counts": count_classes(rows, list_quantities(snapshot.tables["Items"])),
+            "floors": [_describe_floor(one, found) for one in inventory.floors],
+            "error": fault,
+        }
+        return _State(snapshot.version, rows, tuple(columns), rest)
+
+
+def say_fault(found: Evaluation) -> str:
+    """Return why nothing could be computed, in the language in use; "" where something was."""
+    if found.assessment is not None:
+        return ""
+    return " ".join(gettext(one.message) for one in found.problems[:MOST_NAMED])
+
+
+def _describe_floor(floor: Floor, found: Evaluation) -> dict[str, Any]:
+    """Return the peaks of a floor [g], None where its motion is not known."""
+    demands = {} if found.assessment is None else found.assessment.demands
+    peaks = {axis: [one.pfa for one in demands.get((floor.floor, axis), ())] for axis in AXES}
+    return {
+        "row": floor.row,
+        "floor": floor.floor,
+        **{f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()},
+    }

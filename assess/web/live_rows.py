@@ -1,0 +1,192 @@
+"""What is shown of each row of Items: its class, or the word in its place, its chance and its live values."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from itertools import islice
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from assess.i18n import LANGUAGES, gettext, load_catalogue
+from assess.methods import adopted_formula
+from assess.model import Inventory, Item
+from assess.pipeline.assessment import Assessment
+from assess.risk import RiskClass
+from assess.units import GRAVITY, LENGTH, VELOCITY
+from assess.web.evaluation import Evaluation
+from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
+from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
+from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR
+from assess.workbook.names import key, plain, split_header
+from assess.workbook.open import HEADER_ROWS
+from assess.workbook.parse import Row, Table, Tables
+from assess.workbook.resolve import build_catalogue, defined, filled_sizes
+from assess.workbook.schema import LIVE, NO, WORKINGS, YES
+
+CLASSES = tuple(one.name.lower() for one in RiskClass)
+"""How the page calls the classes, in rising order."""
+DECIMALS = 9
+"""Decimals of the live values: what a sheet shows, with room to spare."""
+
+Values = tuple[float | str | None, ...]
+
+
+class LiveRow(NamedTuple):
+    """What is shown of a row: `values` are those of the columns that Excel computes, in their order in the sheet."""
+
+    risk: str
+    word: str
+    chance: float | None
+    outside: bool
+    values: Values
+
+
+def find_live_columns(rows: Iterable[tuple[int, Mapping[int, Any]]]) -> dict[int, str]:
+    """Return the columns of Items that Excel computes, by their place in the sheet, as `LIVE` and `WORKINGS` have them.
+
+    `rows` are the cells of the sheet from its top.
+    """
+    found: dict[int, str] = {}
+    for number, cells in islice(rows, HEADER_ROWS):
+        labels = _live_labels() if number <= HEADER_ROWS else {}
+        named = {at: split_header(value)[0] for at, value in cells.items() if isinstance(value, str)}
+        here = {at: labels[plain(label)] for at, label in named.items() if plain(label) in labels}
+        found = max(found, here, key=len)
+    return dict(sorted(found.items()))
+
+
+@cache
+def _live_labels() -> dict[str, str]:
+    names = {label: split_header(label)[0] for label in (*WORKINGS, *LIVE)}
+    return {plain(load_catalogue(code).find(name)): label for code in LANGUAGES for label, name in names.items()}
+
+
+def list_rows(
+    tables: Tables, inventory: Inventory, evaluation: Evaluation, columns: Iterable[str]
+) -> dict[int, LiveRow]:
+    """Return what is shown of each row of Items that holds anything, by its number, in the language in use."""
+    labels = tuple(columns)
+    known = {} if evaluation.assessment is None else _list_assessed(evaluation.assessment, labels)
+    unserved = {one.row: _describe_unserved(one, labels) for one in inventory.items if one.floor in evaluation.unserved}
+    found = known | unserved
+    words = _Words(tables)
+    return {
+        row.number: found.get(row.number) or _without_class(words.explain(row), labels) for row in tables["Items"].rows
+    }
+
+
+def count_classes(rows: Mapping[int, LiveRow], quantities: Mapping[int, int]) -> dict[str, int]:
+    """Return the number of pieces (not rows) of each class, "" for those without; `quantities` by row."""
+    counts = dict.fromkeys((*CLASSES, ""), 0)
+    for number, row in rows.items():
+        counts[row.risk] += quantities.get(number, 1)
+    return counts
+
+
+def list_quantities(table: Table) -> dict[int, int]:
+    """Return how many pieces each row of Items stands for, where that is filled in."""
+    return {row.number: row.get("quantity") for row in table.rows if row.get("quantity") is not None}
+
+
+# ---------------------------------------------------------------- pieces that were assessed
+
+
+def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, LiveRow]:
+    at, adoption = assessment.governing, assessment.adoption
+    outside = assessment.outcomes[adopted_formula().key].flags["extrapolated"][at].tolist()
+    words = {risk: say_class(risk) for risk in RiskClass}
+    anchored, texts = gettext(IS_ANCHORED), []
+    found = zip(
+        assessment.inventory.items, adoption.risk[at].tolist(), adoption.probability[at].tolist(), outside,
+        assessment.anchors.held.tolist(), strict=True,
+    )  # fmt: skip
+    rows: list[tuple[int, str, str, float | None, bool]] = []
+    for item, risk, chance, is_outside, is_held in found:
+        if is_held:
+            texts.append(anchored)
+            rows.append((item.row, "", anchored, None, False))
+        else:
+            texts.append(words[RiskClass(risk)] + OUTSIDE * is_outside)
+            rows.append((item.row, CLASSES[risk], "", chance, is_outside))
+    values = _list_values(assessment, labels, texts)
+    return {one[0]: LiveRow(*one[1:], shown) for one, shown in zip(rows, values, strict=True)}
+
+
+def _list_values(assessment: Assessment, labels: Sequence[str], classes: Sequence[str]) -> Iterator[Values]:
+    """Yield what the columns show of each piece under the motion that governs it."""
+    columns = _columns(assessment, classes)
+    blank = [None] * len(classes)
+    if not labels:
+        return iter([()] * len(classes))
+    return zip(*(columns.get(label, blank) for label in labels), strict=True)
+
+
+def _columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, Sequence[Any]]:
+    at, cases = assessment.governing, assessment.cases
+    yes, no = gettext(YES), gettext(NO)
+    ratio, pfa, *methods, risk, can_rock = LIVE
+    axis, pfv, breadth, height = WORKINGS[2:]
+    outcomes = (assessment.outcomes[method.key].value[at] for method in LIVE_METHODS)
+    return {
+        ratio: _plain_numbers(cases.breadth_to_height[at]),
+        pfa: _plain_numbers(cases.pfa[at] / GRAVITY),
+        **dict(zip(methods, map(_plain_numbers, outcomes), strict=True)),
+        risk: classes,
+        can_rock: [yes if one else no for one in assessment.adoption.can_rock[at].tolist()],
+        axis: [assessment.case_demand[case].axis for case in at.tolist()],
+        pfv: _plain_numbers(cases.pfv[at] / VELOCITY["cm/s"]),
+        breadth: _plain_numbers(cases.breadth[at] / LENGTH["cm"]),
+        height: _plain_numbers(cases.height[at] / LENGTH["cm"]),
+    }
+
+
+def _plain_numbers(values: Any) -> list[float | str]:
+    """Return numbers for JSON; "" for NaN, as a sheet shows it."""
+    return ["" if one != one else one for one in np.round(values, DECIMALS).tolist()]
+
+
+# ---------------------------------------------------------------- pieces without a class
+
+
+def _describe_unserved(item: Item, labels: Sequence[str]) -> LiveRow:
+    """Return the row of a piece on a floor whose motion is not known."""
+    hint = gettext(NO_SHAKING)
+    word = hint
+    if item.anchored == YES:
+        word = gettext(IS_ANCHORED if item.bracket_capacity is None else RUN_ASSESS)
+    return LiveRow("", word, None, False, _hint(labels, round(item.breadth / item.height, DECIMALS), hint, word))
+
+
+def _without_class(word: str, labels: Sequence[str]) -> LiveRow:
+    return LiveRow("", word, None, False, _hint(labels, word, word, word))
+
+
+def _hint(labels: Sequence[str], ratio: float | str, hint: str, word: str) -> Values:
+    """Return what the live columns show of a piece without a class; the workings are left blank."""
+    texts = dict.fromkeys(LIVE, hint) | {LIVE[0]: ratio, LIVE[-2]: word}
+    return tuple(texts.get(label) for label in labels)
+
+
+class _Words:
+    """Why rows that were left out have no class, in the words of the class column of the workbook."""
+
+    def __init__(self, tables: Tables) -> None:
+        self.table = tables["Items"]
+        self.types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+        self.floors = defined(tables["Floors"])
+
+    def explain(self, row: Row) -> str:
+        """Return the word; "" where the row is not filled in as far as its name and sizes."""
+        table = self.table
+        sizes = ("breadth", "height")
+        if table.lacks(row, "item"):
+            return ""
+        if any(name in table.blind for name in sizes):
+            return gettext(NO_UNIT)
+        if any(table.spoilt(name, row) for name in sizes):
+            return gettext(WRONG)
+        if len(filled_sizes(table, row, self.types).keys() & set(sizes)) < len(sizes):
+            return ""
+        if key(row.get("floor") or "") not in self.floors:
+            return gettext(NO_FLOOR)
+        return gettext(NO_AXIS if table.spoilt("axis", row) else WRONG)
