@@ -187,6 +187,11 @@ def placeholders(text: str) -> set[str]:
     return {name for _, name, _, _ in string.Formatter().parse(text) if name}
 
 
+def list_languages() -> Iterator[tuple[str, str]]:
+    """Yield the code of every language, and how it calls itself."""
+    yield from ((code, names[0]) for code, names in _NAMES.items())
+
+
 def find_language(name: str) -> str:
     """Return the code of a language by its code or name; raises InputError for one that is unknown."""
     wanted = name.strip().casefold()

@@ -1,4 +1,4 @@
-"""Opening a finished report in the browser or viewer of the user."""
+"""Opening a finished report, or a page, in the browser or viewer of the user."""
 
 import os
 import sys
@@ -15,15 +15,25 @@ def open_file(path: Path) -> str:
     str
         Empty where a program was started; else one line that says where the file is.
     """
-    import webbrowser
-
     if not _has_display():
         return f"There is no display here. The report is {path.resolve()}"
+    return "" if _start(path.resolve().as_uri()) else f"No browser could be started. The report is {path.resolve()}"
+
+
+def open_address(address: str) -> str:
+    """Open an address in the default browser; never an error. As `open_file`."""
+    if not _has_display():
+        return "There is no display here. Open the address in a browser of this machine."
+    return "" if _start(address) else "No browser could be started. Open the address in one."
+
+
+def _start(address: str) -> bool:
+    import webbrowser
+
     try:
-        is_open = webbrowser.open(path.resolve().as_uri())
+        return webbrowser.open(address)
     except (webbrowser.Error, OSError, ValueError):  # no program, one that does not start, a BROWSER that is garbled
-        is_open = False
-    return "" if is_open else f"No browser could be started. The report is {path.resolve()}"
+        return False
 
 
 def _has_display() -> bool:

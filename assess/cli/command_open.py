@@ -1,0 +1,129 @@
+"""``assess open``: the workbook as sheets and as a plan in the browser."""
+
+import sys
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from assess.cli import interrupts
+from assess.errors import AssessError, InputError
+
+if TYPE_CHECKING:
+    from assess.web.server import Ending, Place, Server
+
+ORDER = 2
+EXAMPLES = (
+    "assess open building.xlsx",
+    "assess open",
+    "assess open building.xlsx --port 8100 --no-browser",
+    "assess open --allowed-host assess.example.org --user-header X-Remote-User --port 8100",
+)
+PACKAGES = ("starlette", "uvicorn")
+
+
+def command(
+    path: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[WORKBOOK]",
+            help="The workbook to open, .xlsx; without it the page begins with a new one.",
+            show_default=False,
+        ),
+    ] = None,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any that is free.")] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address of the page.")] = False,
+    host: Annotated[
+        str, typer.Option(help="Address to listen at; other than this machine's only with the next two options.")
+    ] = "127.0.0.1",
+    allowed_host: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="For several users, behind a proxy: NAME or NAME:PORT by which browsers reach it; may be repeated.",
+            show_default=False,
+        ),
+    ] = None,
+    user_header: Annotated[
+        str | None,
+        typer.Option(help="Header in which that proxy, and nobody else, names the user.", show_default=False),
+    ] = None,
+) -> None:
+    """Open a workbook in the browser: sheets, plan, what if, simulation and reports.
+
+    Changes are saved in the workbook as you make them. Ctrl-C ends it. docs/hosting.md tells how to run it for others.
+    """
+    _check_packages()
+    from assess.web.folders import private_folder
+    from assess.web.server import Place, Server, bind
+
+    place = Place(host, port, tuple(allowed_host or ()), user_header or "")
+    _check_place(place, path)
+    book = None
+    if path is not None:
+        from assess.web.book import Book
+
+        book = Book.open_disk(path)
+    with bind(place) as listening, private_folder() as folder:
+        server = Server(listening, place, folder, Path.cwd())
+        if book is not None:
+            server.take(book)
+        ending = server.run(interrupts.NUMBERS, lambda: _welcome(server, place, no_browser))
+    _say_goodbye(ending)
+
+
+def _check_packages() -> None:
+    """Raise AssessError where the extra is not installed."""
+    from importlib.util import find_spec
+
+    missing = [name for name in PACKAGES if find_spec(name) is None]
+    if missing:
+        verb = "are" if len(missing) > 1 else "is"
+        raise AssessError(
+            f"the page needs {' and '.join(missing)}, which {verb} not installed. Install: pip install 'assess[web]'"
+        )
+
+
+def _check_place(place: "Place", path: Path | None) -> None:
+    from assess.web.server import is_loopback
+
+    if bool(place.allowed) != bool(place.user_header):
+        raise InputError("--allowed-host and --user-header belong together: the names of a proxy, and what it tells.")
+    if not is_loopback(place.host) and not place.is_hosted:
+        raise InputError(
+            f"--host {place.host} can be reached from other machines: add --allowed-host and --user-header of a proxy "
+            "that asks users who they are (docs/hosting.md), or leave out --host."
+        )
+    if place.is_hosted and path is not None:
+        raise InputError("each user of a hosted page opens a workbook of their own: leave out the workbook.")
+
+
+def _welcome(server: "Server", place: "Place", no_browser: bool) -> None:
+    """Print the address, open it in the browser, and do so again at each Enter."""
+    _show(server.issue_address(), no_browser or place.is_hosted)
+    if not place.is_hosted and sys.stdin is not None and sys.stdin.isatty():
+        typer.echo("Ctrl-C here ends it; Enter opens the page again.", err=True)
+        threading.Thread(target=_repeat, args=(server, no_browser), name="assess-enter", daemon=True).start()
+
+
+def _show(address: str, no_browser: bool) -> None:
+    typer.echo(address)
+    sys.stdout.flush()
+    if not no_browser:
+        from assess.cli.opening import open_address
+
+        threading.Thread(target=open_address, args=(address,), name="assess-browser", daemon=True).start()
+
+
+def _repeat(server: "Server", no_browser: bool) -> None:
+    for _ in sys.stdin:
+        _show(server.issue_address(), no_browser)
+
+
+def _say_goodbye(ending: "Ending") -> None:
+    for name, why in ending.unsaved:
+        typer.echo(f"Changes of {name} were not {'saved: ' + why if why else 'downloaded and are gone.'}", err=True)
+    if ending.saved:
+        typer.echo(f"Stopped. All changes are saved in {ending.saved}.", err=True)
+    else:
+        typer.echo("Stopped.", err=True)

@@ -1,0 +1,264 @@
+"""What is answered to each request of the page: see docs/page.md. Knows nothing of HTTP but the status of an error."""
+
+import mimetypes
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from assess.i18n import fill
+from assess.web.request_errors import CONFLICT, NOT_FOUND, UNUSABLE, RequestError
+from assess.web.sessions import Session
+
+if TYPE_CHECKING:
+    from assess.web.book import Book
+
+WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
+LOOK = 1.5
+"""Shortest time between two looks at whether the file was changed by another program [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A request: its session, the values of its address, its body, and what is to be done after an edit."""
+
+    session: Session
+    query: Mapping[str, str] = field(default_factory=dict)
+    body: Mapping[str, Any] = field(default_factory=dict)
+    data: bytes = b""
+    language: str = "en"
+    note_edit: Callable[[Session], None] = lambda _session: None
+
+    @property
+    def book(self) -> "Book":
+        """The open workbook; RequestError where there is none."""
+        if self.session.book is None:
+            from assess.web.starting import describe_start
+
+            start = describe_start(self.session.home)
+            raise RequestError(fill("No workbook is open."), NOT_FOUND, more=start)
+        return self.session.book
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """Bytes, or a file: its kind, the name under which a browser saves it, and headers of its own."""
+
+    data: bytes | Path
+    media_type: str
+    name: str = ""
+    headers: Mapping[str, str] = field(default_factory=dict)
+
+
+Answer = dict[str, Any] | Content
+
+
+# ---------------------------------------------------------------- the book
+
+
+def describe_book(asked: Asked) -> Answer:
+    """Answer with the whole workbook."""
+    return asked.book.describe()
+
+
+def describe_state(asked: Asked) -> Answer:
+    """Answer with the state of the workbook and of the job, after a look at the file now and then."""
+    session = asked.session
+    if session.book is not None and time.monotonic() - session.looked > LOOK:
+        session.looked = time.monotonic()
+        session.book.check_outside()
+    job = session.job.summarise() if session.job else None
+    return {"state": session.book.state() if session.book else None, "job": job}
+
+
+def edit(asked: Asked) -> Answer:
+    """Change cells."""
+    edits = asked.body.get("edits")
+    if not isinstance(edits, list):
+        raise RequestError(fill("The request cannot be read."), UNUSABLE)
+    change = asked.book.edit(_version(asked), edits, str(asked.body.get("label") or ""))
+    asked.note_edit(asked.session)
+    return change
+
+
+def undo(asked: Asked) -> Answer:
+    """Take back the last change."""
+    change = asked.book.undo(_version(asked))
+    asked.note_edit(asked.session)
+    return change
+
+
+def redo(asked: Asked) -> Answer:
+    """Make a change that was taken back once more."""
+    change = asked.book.redo(_version(asked))
+    asked.note_edit(asked.session)
+    return change
+
+
+def _version(asked: Asked) -> int:
+    version = asked.body.get("version")
+    if not isinstance(version, int) or isinstance(version, bool):
+        raise RequestError(fill("The request does not name the version of the workbook."), UNUSABLE)
+    return version
+
+
+def download(asked: Asked) -> Answer:
+    """Answer with the bytes of the workbook."""
+    book = asked.book
+    version = book.version
+    data = book.write()
+    asked.session.downloaded = version
+    return Content(data, WORKBOOK, book.name)
+
+
+def save(asked: Asked) -> Answer:
+    """Save the workbook to its file."""
+    asked.book.save()
+    return asked.book.state()
+
+
+def reload(asked: Asked) -> Answer:
+    """Read the file again."""
+    asked.book.reload()
+    return asked.book.describe()
+
+
+def close(asked: Asked) -> Answer:
+    """End with the workbook; what is on disk is saved first."""
+    session = asked.session
+    with session.lock:
+        if asked.book.mode == "disk" and asked.book.state()["unsaved"]:
+            asked.book.save()
+        session.drop_book()
+    return {}
+
+
+def upload(asked: Asked) -> Answer:
+    """Hold a workbook that was dropped in."""
+    return asked.session.hold(_name(asked), asked.data).describe()
+
+
+def add_file(asked: Asked) -> Answer:
+    """Take a file that the workbook names."""
+    asked.session.check_room(len(asked.data))
+    asked.book.add_file(_name(asked), asked.data)
+    return asked.book.describe()
+
+
+def _name(asked: Asked) -> str:
+    name = asked.query.get("name", "")
+    if not name.strip():
+        raise RequestError(fill("The request does not name the file."), UNUSABLE)
+    return name
+
+
+# ---------------------------------------------------------------- live values, the plan, what if
+
+
+def describe_live(asked: Asked) -> Answer:
+    """Answer with the classes and live values that changed."""
+    book, text = asked.book, asked.query.get("since", "")
+    return asked.session.view().answer(
+        book, int(text) if text.isascii() and text.isdigit() and len(text) < 10 else None
+    )
+
+
+def describe_routes(asked: Asked) -> Answer:
+    """Answer with the states of routes and rooms."""
+    from assess.web import route_states
+
+    return route_states.describe_routes(asked.book.snapshot())
+
+
+def describe_plan(asked: Asked) -> Answer:
+    """Answer with one floor."""
+    from assess.web import floor_plan
+
+    return floor_plan.describe_plan(asked.book.snapshot(), asked.query.get("floor"))
+
+
+def find_picture(asked: Asked) -> Answer:
+    """Answer with the picture of a floor; as an address of its own it could hold scripts, which are not run."""
+    from assess.web import floor_plan
+
+    found = floor_plan.find_picture(asked.book.snapshot(), asked.query.get("floor", ""))
+    if found is None:
+        raise RequestError(fill("This floor has no picture."), NOT_FOUND)
+    data, media_type = found
+    return Content(data, media_type, headers={"content-security-policy": PICTURE_POLICY})
+
+
+PICTURE_POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox"
+"""An SVG has styles and pictures of its own; nothing else of it counts."""
+
+
+def describe_catalogue(asked: Asked) -> Answer:
+    """Answer with the types of the catalogue."""
+    from assess.web import floor_plan
+
+    return floor_plan.describe_catalogue(asked.book.snapshot())
+
+
+def try_out(asked: Asked) -> Answer:
+    """Answer with classes before and after a change that is not saved."""
+    from assess.web import what_if
+
+    return what_if.try_out(asked.book.snapshot(), dict(asked.body))
+
+
+# ---------------------------------------------------------------- start and texts
+
+
+def describe_start(asked: Asked) -> Answer:
+    """Answer with what a new workbook can be made of."""
+    from assess.web import starting
+
+    return starting.describe_start(asked.session.home)
+
+
+def start(asked: Asked) -> Answer:
+    """Make a new workbook."""
+    return asked.session.start(asked.body).describe()
+
+
+def describe_texts(asked: Asked) -> Answer:
+    """Answer with the texts of the page in a language."""
+    from assess.web import texts
+
+    return texts.describe_texts(asked.query.get("language") or asked.language)
+
+
+# ---------------------------------------------------------------- files of the page
+
+
+PAGE = Path(__file__).with_name("page")
+TYPES = {
+    ".html": "text/html",
+    ".css": "text/css",
+    ".mjs": "text/javascript",
+    ".js": "text/javascript",
+    ".svg": "image/svg+xml",
+}
+"""Kinds of the files of the page, whatever the registry of the machine calls them."""
+
+
+def find_page_file(name: str) -> Content | None:
+    """Return a file of the page by its name; nothing outside its folder has one."""
+    files = {path.relative_to(PAGE).as_posix(): path for path in PAGE.rglob("*") if path.is_file()}
+    path = files.get(name or "index.html")
+    if path is None:
+        return None
+    kind = TYPES.get(path.suffix) or mimetypes.guess_type(path.name)[0] or "application/octet-stream"
+    return Content(path, kind)
+
+
+def check_conflict(session: Session) -> None:
+    """Raise RequestError where another workbook could not be opened without losing changes."""
+    book = session.book
+    if book is not None and book.mode == "held" and book.state()["unsaved"]:
+        raise RequestError(
+            fill("{name} has changes that were not downloaded.", name=book.name),
+            CONFLICT,
+            fill("Download it, or close it."),
+        )

@@ -1,0 +1,70 @@
+"""What happens by itself while the server runs: changes are saved, sessions that nobody uses end."""
+
+import threading
+import time
+from contextlib import suppress
+
+from assess.errors import AssessError
+from assess.web.sessions import Keys, Session
+
+SAVED_AFTER = 1.0
+"""Time from the last change of a workbook to its being saved [s]."""
+LOOKED_EVERY = 60.0
+"""Time between two looks for sessions that have ended [s]."""
+
+
+class Keeper:
+    """Saves workbooks of the disk a moment after their last change, and ends sessions, in a thread of its own."""
+
+    def __init__(self, keys: Keys) -> None:
+        self._keys, self._due = keys, dict[Session, float]()
+        self._woken, self._is_ended = threading.Condition(), False
+        self._next_look = time.monotonic() + LOOKED_EVERY
+        self._thread = threading.Thread(target=self._run, name="assess-keeper", daemon=True)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def note_edit(self, session: Session) -> None:
+        """Have a workbook be saved, once nothing more is changed for a moment."""
+        if session.book is not None and session.book.mode == "disk":
+            with self._woken:
+                self._due[session] = time.monotonic() + SAVED_AFTER
+                self._woken.notify()
+
+    def end(self) -> None:
+        """End, after what is being saved."""
+        with self._woken:
+            self._is_ended = True
+            self._woken.notify()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while (sessions := self._wait()) is not None:
+            for session in sessions:
+                save(session)
+            if time.monotonic() >= self._next_look:
+                self._next_look = time.monotonic() + LOOKED_EVERY
+                self._keys.expire(time.monotonic())
+
+    def _wait(self) -> list[Session] | None:
+        """Return the sessions to save, once there is something to do; None at the end."""
+        with self._woken:
+            while not self._is_ended:
+                now = time.monotonic()
+                due = [session for session, at in self._due.items() if at <= now]
+                if due or now >= self._next_look:
+                    for session in due:
+                        del self._due[session]
+                    return due
+                self._woken.wait(min(*self._due.values(), self._next_look, self._next_look) - now)
+        return None
+
+
+def save(session: Session) -> None:
+    """Save a workbook of the disk; what stands in the way is part of its state."""
+    book = session.book
+    with suppress(AssessError, OSError):
+        if book is not None and book.mode == "disk" and book.state()["unsaved"]:
+            book.save()

@@ -1,0 +1,210 @@
+"""Starting and ending: the socket, uvicorn, signals, folders, saving."""
+
+import ipaddress
+import os
+import secrets
+import signal
+import socket
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import uvicorn
+
+from assess.errors import InputError
+from assess.i18n import fill
+from assess.web.endpoints import build_application
+from assess.web.guard import Guard
+from assess.web.keeping import Keeper, save
+from assess.web.sessions import ENTRANCE, HOSTED, HostedKeys, Keys, Limits, LocalKeys, Session
+
+if TYPE_CHECKING:
+    from assess.web.book import Book
+
+LOOPBACK = "127.0.0.1"
+HTTP = 80
+GRACE = 2
+"""Time that requests have to end once the server is to end [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the server listens, and to which names it answers.
+
+    Attributes
+    ----------
+    host, port : str, int
+        The address; port 0 is any that is free.
+    allowed : tuple of str
+        Names by which browsers reach it through a proxy, with a port where that is not the usual one.
+    user_header : str
+        The header in which the proxy names the user; blank on the own machine.
+    """
+
+    host: str = LOOPBACK
+    port: int = 0
+    allowed: tuple[str, ...] = ()
+    user_header: str = ""
+
+    @property
+    def is_hosted(self) -> bool:
+        """Whether users come through a proxy."""
+        return bool(self.user_header)
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a server ended.
+
+    Attributes
+    ----------
+    saved : str
+        The workbook of the disk that holds all changes; blank without one.
+    unsaved : list of tuple of str
+        Workbooks whose changes are lost, and why.
+    """
+
+    saved: str = ""
+    unsaved: list[tuple[str, str]] = field(default_factory=list)
+
+
+def is_loopback(host: str) -> bool:
+    """Tell whether an address is of this machine alone."""
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def bind(place: Place) -> socket.socket:
+    """Return a socket that listens.
+
+    Raises
+    ------
+    InputError
+        If the port is taken, or the address is not one of this machine.
+    """
+    family = socket.AF_INET6 if ":" in place.host else socket.AF_INET
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        if os.name == "posix":  # on Windows this would let two servers share a port
+            listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind((place.host.strip("[]"), place.port))
+        listening.listen(128)
+    except OSError as error:
+        listening.close()
+        where = f"{place.host}:{place.port}"
+        raise InputError(
+            fill("port: {where} cannot be used: {why}. Choose another.", where=where, why=error.strerror or str(error))
+        ) from None
+    return listening
+
+
+class Server:
+    """The page of one workbook, or of several users, until it is stopped."""
+
+    def __init__(self, listening: socket.socket, place: Place, folder: Path, home: Path) -> None:
+        self._listening, self._place, self._folder, self._home = listening, place, folder, home
+        self.port = int(listening.getsockname()[1])
+        self._keys: Keys = self._make_keys()
+        self._keeper = Keeper(self._keys)
+        application = build_application(self._keeper.note_edit)
+        schemes = ("http", "https") if place.is_hosted else ("http",)
+        config = uvicorn.Config(
+            Guard(application, self._keys, self._list_hosts(), schemes), access_log=False, log_config=None,
+            log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio", server_header=False,
+            date_header=False, proxy_headers=False, timeout_graceful_shutdown=GRACE, timeout_keep_alive=30,
+        )  # fmt: skip
+        self._uvicorn = _Uvicorn(config)
+
+    def _make_keys(self) -> Keys:
+        if self._place.is_hosted:
+            return HostedKeys(self._place.user_header, self.port, lambda user: self._make_session(user, HOSTED))
+        return LocalKeys(self._make_session("", Limits(), self._home), self.port)
+
+    def _make_session(self, user: str, limits: Limits, home: Path | None = None) -> Session:
+        folder = Path(tempfile.mkdtemp(prefix="session-", dir=self._folder))
+        return Session(secrets.token_urlsafe(32), user, folder, home, limits)
+
+    def _list_hosts(self) -> list[str]:
+        if self._place.is_hosted:
+            return [name.lower() for name in self._place.allowed]
+        names = [f"{name}:{self.port}" for name in (LOOPBACK, "localhost", "[::1]")]
+        return [*names, LOOPBACK, "localhost"] if self.port == HTTP else names
+
+    def take(self, book: "Book") -> None:
+        """Open a workbook in the session of the own machine."""
+        self._keys.sessions()[0].take(book)
+
+    def issue_address(self) -> str:
+        """Return an address that opens the page once, in one browser; behind a proxy its first name."""
+        if not isinstance(self._keys, LocalKeys):
+            return f"https://{self._place.allowed[0]}/"
+        host = f"[{self._place.host}]" if ":" in self._place.host else self._place.host
+        return f"http://{host}:{self.port}{ENTRANCE}?t={self._keys.issue()}"
+
+    def run(self, signals: Sequence[int], started: Callable[[], None]) -> Ending:
+        """Answer requests until one of `signals` comes; save what there is to save."""
+        with _stopped_by(signals, self._uvicorn):
+            self._keeper.start()
+            self._uvicorn.started_by = started
+            try:
+                self._uvicorn.run(sockets=[self._listening])
+            finally:
+                self._keeper.end()
+                ending = self._save_all()
+                for session in self._keys.sessions():
+                    session.close()
+        return ending
+
+    def _save_all(self) -> Ending:
+        ending = Ending()
+        for session in self._keys.sessions():
+            if session.book is None:
+                continue
+            save(session)
+            state, name = session.book.state(), session.book.name
+            is_lost = state["unsaved"] and (session.book.mode == "disk" or session.downloaded != session.book.version)
+            if is_lost:
+                ending.unsaved.append((name, state["save_error"]))
+            elif session.book.mode == "disk":
+                ending = replace(ending, saved=name)
+        return ending
+
+
+class _Uvicorn(uvicorn.Server):
+    """A server that leaves signals to us, and tells when it listens."""
+
+    started_by: Callable[[], None] = staticmethod(lambda: None)
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals alone."""
+        yield
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Begin, and tell."""
+        await super().startup(sockets)
+        self.started_by()
+
+
+@contextmanager
+def _stopped_by(signals: Sequence[int], server: uvicorn.Server) -> Iterator[None]:
+    """Have the first signal end the server, and the next one no longer wait for requests."""
+
+    def stop(_number: int, _frame: object = None) -> None:
+        server.force_exit = server.should_exit
+        server.should_exit = True
+
+    before = {number: signal.getsignal(number) for number in signals}
+    taken = {number: handler for number, handler in before.items() if handler not in (signal.SIG_IGN, None)}
+    for number in taken:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number, handler in taken.items():
+            signal.signal(number, handler)

@@ -1,0 +1,254 @@
+"""Sessions: who may ask what, one workbook and one job each, a private folder, and when they end.
+
+On the own machine there is one session, and the address that was printed opens it once: its ticket becomes a cookie.
+Behind a proxy that authenticates, every user whom the proxy names has a session of their own.
+"""
+
+import hmac
+import secrets
+import shutil
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from assess.i18n import fill
+from assess.web.request_errors import TOO_MANY, RequestError
+
+if TYPE_CHECKING:
+    from assess.web.book import Book
+    from assess.web.jobs import Job
+    from assess.web.live import LiveView
+
+ENTRANCE = "/enter"
+"""The path to which the printed address leads."""
+COOKIE = "assess"
+"""Beginning of the name of the cookie; browsers send cookies of a host to all its ports, so its end is the port."""
+LONGEST_USER = 200
+"""Characters of a name that a proxy may give."""
+
+Headers = Mapping[bytes, Sequence[bytes]]
+"""What a request says in its headers, by their names in small letters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What one session and all of them may take.
+
+    Attributes
+    ----------
+    bytes : int
+        Of the files of one session: workbook, what it names, and results.
+    sessions : int
+        At once.
+    jobs : int
+        Simulations at once, of all sessions.
+    idle : float
+        Time without a request of its user after which a session ends [s].
+    """
+
+    bytes: int = 1_000_000_000
+    sessions: int = 1
+    jobs: int = 1
+    idle: float = float("inf")
+
+
+HOSTED = Limits(bytes=300_000_000, sessions=50, jobs=2, idle=12 * 3600.0)
+"""Limits of a server for several users."""
+
+
+@dataclass(slots=True, eq=False)
+class Session:
+    """What one user has open.
+
+    Attributes
+    ----------
+    key : str
+        Value of the cookie that belongs to it.
+    user : str
+        Who, as the proxy calls them; blank on the own machine.
+    folder : Path
+        A folder for this session alone, that is removed with it.
+    home : Path, optional
+        Where new workbooks are made: the folder in which the command was started; None: they are only held.
+    """
+
+    key: str
+    user: str
+    folder: Path
+    home: Path | None = None
+    limits: Limits = field(default_factory=Limits)
+    book: "Book | None" = None
+    live: "LiveView | None" = None
+    job: "Job | None" = None
+    seen: float = field(default_factory=time.monotonic)
+    looked: float = 0.0
+    downloaded: int = 0
+    lock: threading.RLock = field(default_factory=threading.RLock)
+
+    def check_room(self, size: int) -> None:
+        """Raise RequestError where so many bytes more are too many for one session."""
+        used = sum(path.stat().st_size for path in self.folder.rglob("*") if path.is_file())
+        if used + size > self.limits.bytes:
+            raise RequestError(
+                fill("The files of this session have more than {most:.0f} MB.", most=self.limits.bytes / 1e6), TOO_MANY
+            )
+
+    def view(self) -> "LiveView":
+        """Return what answers with live values."""
+        from assess.web.live import LiveView
+
+        with self.lock:
+            self.live = self.live or LiveView()
+            return self.live
+
+    def take(self, book: "Book") -> "Book":
+        """Have a workbook be the open one."""
+        with self.lock:
+            self.drop_book()
+            self.book, self.downloaded = book, book.version
+        return book
+
+    def hold(self, name: str, data: bytes) -> "Book":
+        """Open a workbook that was sent."""
+        from assess.web.book import Book
+
+        self.check_room(len(data))
+        with self.lock:
+            folder = Path(tempfile.mkdtemp(prefix="files-", dir=self.folder))
+            return self.take(Book.hold(name, data, folder))
+
+    def drop_book(self) -> None:
+        """End with the workbook and its job."""
+        if self.job is not None:
+            self.job.close()
+        self.job = self.book = self.live = None
+
+    def close(self) -> None:
+        """End its job and remove its folder."""
+        with self.lock:
+            self.drop_book()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Visit:
+    """What decides who a request is from."""
+
+    path: str
+    query: Mapping[str, str]
+    cookies: Mapping[str, str]
+    headers: Headers
+
+
+class Keys(Protocol):
+    """Who may come in."""
+
+    cookie: str
+
+    def find(self, visit: Visit) -> Session | None:
+        """Return the session of a request; None: it has none."""
+
+    def admit(self, visit: Visit) -> Session | None:
+        """Return the session of a request that comes in for the first time and may; None: it may not.
+
+        Raises
+        ------
+        RequestError
+            If there is no room for another session.
+        """
+
+    def sessions(self) -> Sequence[Session]:
+        """Return all sessions."""
+
+    def expire(self, now: float) -> None:
+        """End the sessions whose users have asked for nothing for too long."""
+
+
+def _is_same(one: str, other: str) -> bool:
+    return bool(other) and hmac.compare_digest(one.encode("utf-8", "replace"), other.encode())
+
+
+class LocalKeys:
+    """One session; whoever opens the address with a ticket first gets its cookie."""
+
+    def __init__(self, session: Session, port: int) -> None:
+        self.cookie = f"{COOKIE}-{port}"
+        self._session, self._ticket, self._lock = session, "", threading.Lock()
+
+    def issue(self) -> str:
+        """Return a new ticket; an earlier one is void."""
+        with self._lock:
+            self._ticket = secrets.token_urlsafe(32)
+            return self._ticket
+
+    def find(self, visit: Visit) -> Session | None:
+        """Return the session where the cookie is its own."""
+        found = visit.cookies.get(self.cookie, "")
+        return self._session if _is_same(found, self._session.key) else None
+
+    def admit(self, visit: Visit) -> Session | None:
+        """Return the session where the ticket is the one that was issued, which is void from then on."""
+        if visit.path != ENTRANCE:
+            return None
+        with self._lock:
+            if not _is_same(visit.query.get("t", ""), self._ticket):
+                return None
+            self._ticket = ""
+        return self._session
+
+    def sessions(self) -> Sequence[Session]:
+        """Return the one session."""
+        return (self._session,)
+
+    def expire(self, now: float) -> None:
+        """End nothing: the session is as long as the command."""
+
+
+class HostedKeys:
+    """A session for every user whom the proxy names in a header; the page gets its cookie at the entrance."""
+
+    def __init__(self, header: str, port: int, make: Callable[[str], Session], limits: Limits = HOSTED) -> None:
+        self.cookie = f"{COOKIE}-{port}"
+        self._header, self._make, self._limits = header.lower().encode("ascii"), make, limits
+        self._sessions: dict[str, Session] = {}
+        self._lock = threading.Lock()
+
+    def _name(self, visit: Visit) -> str:
+        """Return the user; blank where the header is missing, or there twice: then it is not the proxy's alone."""
+        values = visit.headers.get(self._header, ())
+        name = values[0].decode("utf-8", "replace").strip() if len(values) == 1 else ""
+        return name if len(name) <= LONGEST_USER else ""
+
+    def find(self, visit: Visit) -> Session | None:
+        """Return the session of the user where the cookie is its own."""
+        session = self._sessions.get(self._name(visit))
+        return session if session and _is_same(visit.cookies.get(self.cookie, ""), session.key) else None
+
+    def admit(self, visit: Visit) -> Session | None:
+        """Return the session of a user who opens the page; a new one where there is room."""
+        user = self._name(visit)
+        if visit.path != "/" or not user:
+            return None
+        with self._lock:
+            if user not in self._sessions:
+                if len(self._sessions) >= self._limits.sessions:
+                    raise RequestError(fill("Too many users have a workbook open. Try again later."), TOO_MANY)
+                self._sessions[user] = self._make(user)
+            return self._sessions[user]
+
+    def sessions(self) -> Sequence[Session]:
+        """Return all sessions."""
+        with self._lock:
+            return tuple(self._sessions.values())
+
+    def expire(self, now: float) -> None:
+        """End the sessions whose users have asked for nothing for too long; what they held is thrown away."""
+        with self._lock:
+            idle = [user for user, one in self._sessions.items() if now - one.seen > self._limits.idle]
+            ended = [self._sessions.pop(user) for user in idle]
+        for session in ended:
+            session.close()

@@ -1,0 +1,53 @@
+"""Raw bodies of requests, read up to a limit."""
+
+import json
+from typing import Any
+
+from starlette.requests import ClientDisconnect, Request
+
+from assess.i18n import fill
+from assess.web.request_errors import BAD_REQUEST, TOO_LARGE, RequestError
+
+
+async def read_body(request: Request, most: int) -> bytes:
+    """Return the body of a request.
+
+    Raises
+    ------
+    RequestError
+        If it has more than `most` bytes, or breaks off.
+    """
+    parts, size = [], 0
+    try:
+        async for part in request.stream():
+            size += len(part)
+            if size > most:
+                raise RequestError(fill("It is larger than {most:.0f} MB.", most=most / 2**20), TOO_LARGE)
+            parts.append(part)
+    except ClientDisconnect:
+        raise RequestError(fill("The request broke off."), BAD_REQUEST) from None
+    return b"".join(parts)
+
+
+def parse_body(data: bytes) -> dict[str, Any]:
+    """Return a JSON body, {} for an empty one.
+
+    Raises
+    ------
+    RequestError
+        If it is no JSON object, or holds what no workbook can: numbers that are not finite, halves of characters.
+    """
+    if not data:
+        return {}
+    try:
+        found = json.loads(data, parse_constant=_refuse_constant)
+        json.dumps(found, ensure_ascii=False, allow_nan=False).encode()
+    except (ValueError, RecursionError):  # also UnicodeError, and a number such as 1e999
+        found = None
+    if not isinstance(found, dict):
+        raise RequestError(fill("The request cannot be read."), BAD_REQUEST)
+    return found
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(name)
