@@ -61,6 +61,11 @@ def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILE
     return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
 
 
+def without_years(inventory: Inventory) -> Inventory:
+    """Return an inventory without annual chances, which the page does not show while one types."""
+    return replace(inventory, hazard=None)
+
+
 def without_routes(inventory: Inventory) -> Inventory:
     """Return an inventory without what takes time and no class by the formulas depends on: routes, annual chances."""
     return replace(inventory, routes=(), hazard=None)
