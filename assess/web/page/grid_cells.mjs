@@ -5,19 +5,12 @@ import { isFilled } from "./sheet.mjs";
 import { number, percent, t } from "./texts.mjs";
 
 export const SIMULATED = "simulated";
-const LEFT = new Set(["text", "choice", "flag", "date", "file", "records", "outline", "language", "own"]);
 const LIVE_DIGITS = 3;
-
-/** A number with all its digits and the decimal sign of the language; it can be typed back. */
-export function showNumber(value) {
-  const mark = number(0.5, 1).includes(",") ? "," : ".";
-  return String(Number(value.toPrecision(12))).replace(".", mark);
-}
 
 /** The text of a value, as shown and as edited. */
 export function showValue(value, column) {
   if (!isFilled(value)) return "";
-  if (typeof value === "number") return showNumber(value);
+  if (typeof value === "number") return number(value);
   if (typeof value === "boolean") return column?.choices?.length === 2 ? column.choices[value ? 0 : 1] : String(value).toUpperCase();
   return String(value);
 }
@@ -43,7 +36,7 @@ export function cellValue(store, sheet, row, column) {
 export function cellText(store, sheet, row, column) {
   if (column.kind === SIMULATED) return simulatedText(store.simulated.get(row));
   const value = cellValue(store, sheet, row, column);
-  if (column.kind === "live" && typeof value === "number") return showNumber(Number(value.toPrecision(LIVE_DIGITS)));
+  if (column.kind === "live" && typeof value === "number") return number(Number(value.toPrecision(LIVE_DIGITS)));
   return showValue(value, column);
 }
 
@@ -99,4 +92,3 @@ export function listChoices(store, column) {
 }
 
 export const hasChoices = (column) => Boolean(column.choices?.length || column.source || column.offered?.length);
-export const isLeft = (column) => LEFT.has(column.kind);

@@ -6,7 +6,7 @@ const TRAILING = /^(.*?)(\d+)$/s;
  * Values that continue some others.
  * @param {Array<*>} source values that were selected, in order away from which is filled
  * @param {number} count how many to make
- * @param {{copies: boolean, other: boolean}} how `copies`: one number alone is copied, `other`: Ctrl, the other of copy and series
+ * @param {{back?: boolean, other?: boolean}} [how] `back`: towards the first row; `other`: a series in place of copies, or copies in place of one
  */
 export function continueSeries(source, count, { back = false, other = false } = {}) {
   const from = back ? [...source].reverse() : source;

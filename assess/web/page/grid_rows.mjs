@@ -10,6 +10,7 @@ export class RowOrder {
   #rows = null;
   #indices = null;
   #used = 0;
+  #top = 0;
 
   constructor(store, sheet) {
     this.store = store;
@@ -25,8 +26,8 @@ export class RowOrder {
   }
 
   get #end() {
-    const { headerRow, capacity, lastRow } = this.sheet;
-    return Math.max(lastRow, Math.min(lastRow + BLANK, capacity ? headerRow + capacity : Infinity));
+    const { capacity, lastRow } = this.sheet;
+    return Math.max(lastRow, Math.min(lastRow + BLANK, capacity || Infinity));
   }
 
   get length() {
@@ -56,10 +57,9 @@ export class RowOrder {
   /** The row at an index, also past the end of the view, where rows are free; null where the sheet has no more. */
   rowOrFree(index) {
     if (index < this.length) return this.row(index);
-    const { headerRow, capacity } = this.sheet;
-    const last = Math.max(this.#end, this.length ? this.row(this.length - 1) : headerRow);
-    const row = last + 1 + index - this.length;
-    return capacity && row > headerRow + capacity ? null : row;
+    const { capacity } = this.sheet;
+    const row = (this.#rows ? this.#top : this.#end) + 1 + index - this.length;
+    return capacity && row > capacity ? null : row;
   }
 
   /** Sort and filter anew. */
@@ -73,22 +73,22 @@ export class RowOrder {
     this.#used = rows.length;
     if (this.sort) this.#sortRows(rows);
     this.#rows = rows;
+    this.#top = this.sheet.lastRow;
     this.extend();
   }
 
-  /** Keep blank rows at the end of the view, so that new ones can be typed there. */
+  /** Keep blank rows at the end of the view, and those that were filled there since. */
   extend() {
     if (!this.#rows) return;
-    const last = this.sheet.lastRow;
-    const highest = this.#rows.reduce((high, row) => Math.max(high, row), 0);
-    for (let row = Math.max(last, highest) + 1; row <= this.#end; row++) this.#rows.push(row);
+    while (this.#top < this.#end) this.#rows.push((this.#top += 1));
     this.#indices = null;
   }
 
-  /** Take rows into the view that were filled since, such as by a paste or by an undo. */
-  include(rows) {
-    if (!this.#rows) return;
-    for (const row of rows) if (this.indexOf(row) < 0 && this.sheet.isUsed(row)) (this.#rows.push(row), (this.#indices = null));
+  /** Take a row into the view that it leaves out. */
+  include(row) {
+    if (!this.#rows || this.indexOf(row) >= 0) return;
+    this.#rows.push(row);
+    this.#indices = null;
   }
 
   #passes(row) {

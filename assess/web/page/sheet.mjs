@@ -85,7 +85,7 @@ export class Sheet {
   /** The row below the last that is used; where the sheet ends there, the first that is blank, else null. */
   firstFreeRow() {
     const next = this.lastRow + 1;
-    const end = this.capacity ? this.headerRow + this.capacity : Infinity;
+    const end = this.capacity || Infinity;
     if (next <= end) return next;
     for (let row = this.headerRow + 1; row <= end; row++) if (!this.isUsed(row)) return row;
     return null;

@@ -1,7 +1,7 @@
 // The page's copy of the workbook. Edits show at once and reach the server one after the other; classes, live values and
 // problems come from the server after each change.
 
-import { get, post } from "./api.mjs";
+import { connection, get, post } from "./api.mjs";
 import { notice } from "./messages.mjs";
 import { Sheet, cellName } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
@@ -35,6 +35,11 @@ class Store extends EventTarget {
   #asking = null;
   #askAgain = false;
   #books = 0;
+
+  constructor() {
+    super();
+    connection.addEventListener("back", () => this.resend());
+  }
 
   // ---- the book
 
@@ -174,11 +179,12 @@ class Store extends EventTarget {
     const n = this.#queue.length;
     const why = error.message || t("The server does not answer.");
     const text = tn("{n} change has not been sent yet. {why}", "{n} changes have not been sent yet. {why}", n, { n, why });
-    return notice(text, { kind: "error", actions: [[t("Try again"), () => this.resend()]] });
+    return notice(text, { kind: "error", key: "unsent", actions: [[t("Try again"), () => this.resend()]] });
   }
 
   /** Send what waits once more, after the server did not answer. */
   resend() {
+    if (!this.#stopped) return;
     this.#stopped = false;
     this.#send();
   }

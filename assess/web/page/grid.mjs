@@ -1,0 +1,342 @@
+// The table of one sheet: only the rows and columns in sight are elements. It shows and selects; typing, pointer and keys
+// are in grid_editor.mjs, grid_pointer.mjs and grid_keys.mjs.
+
+import { clear, el } from "./elements.mjs";
+import { cellText, cellValue, describeCell, hasChoices, isComputed, problemText, simulatedColumn } from "./grid_cells.mjs";
+import { RowOrder } from "./grid_rows.mjs";
+import { Selection } from "./grid_selection.mjs";
+import { cellName, isFilled } from "./sheet.mjs";
+import { t } from "./texts.mjs";
+
+export const ROW_HEIGHT = 28;
+export const HEAD_HEIGHT = 46;
+const NUMBERS_WIDTH = 52;
+const MARGIN_ROWS = 6;
+const MARGIN_PX = 200;
+const CHARACTER = 7.2;
+const PADDING = 22;
+const NARROWEST = 44;
+const WIDEST = 340;
+const NARROW_PAGE = 600;
+const NARROW_COLUMN = 108;
+
+export class Grid extends EventTarget {
+  canEdit = true;
+  /** What the find bar looks for, in small letters. */
+  found = "";
+  /** The range over which the fill handle is dragged. */
+  fillTarget = null;
+  #rows = [];
+  #asked = false;
+  #orders = new Map();
+  #places = new Map();
+
+  constructor(store) {
+    super();
+    this.store = store;
+    this.columns = [];
+    this.head = el("div", { class: "grid-row grid-head", role: "row", "aria-rowindex": 1 });
+    this.table = el("div", { class: "grid-table", role: "grid", id: "grid", "aria-multiselectable": "true" }, this.head);
+    this.handle = el("div", { class: "grid-handle", title: t("Drag to fill") });
+    this.frame = el("div", { class: "grid-frame", "aria-hidden": "true" });
+    this.box = el("div", { class: "grid-box" }, this.table, this.frame, this.handle);
+    this.selection = new Selection({
+      rows: () => this.order?.length ?? 0,
+      columns: () => this.columns.length,
+      isFilled: (r, c) => isFilled(cellText(store, this.sheet, this.order.row(r), this.columns[c])),
+    }, () => this.#select());
+    this.box.addEventListener("scroll", () => this.ask(), { passive: true });
+    new ResizeObserver(() => (this.layOut(), this.ask())).observe(this.box);
+  }
+
+  // ---- what is shown
+
+  /** Show another sheet, where it was left. */
+  open(sheet) {
+    if (this.sheet) this.#places.set(this.sheet.name, { top: this.box.scrollTop, left: this.box.scrollLeft, anchor: this.selection.anchor, head: this.selection.head });
+    this.sheet = sheet;
+    this.order = this.#orders.get(sheet.name)?.sheet === sheet ? this.#orders.get(sheet.name) : new RowOrder(this.store, sheet);
+    this.#orders.set(sheet.name, this.order);
+    this.refreshColumns();
+    const place = this.#places.get(sheet.name) ?? { top: 0, left: 0, anchor: [0, 0], head: [0, 0] };
+    this.selection.setRange(place.anchor, place.head);
+    this.box.scrollTo(place.left, place.top);
+    this.table.setAttribute("aria-label", sheet.title);
+    this.draw();
+  }
+
+  /** Build the columns anew: after another sheet, or where a simulation has come or gone. */
+  refreshColumns() {
+    const shown = this.sheet.columns.filter((column) => !column.hidden);
+    const at = shown.findIndex((column) => column.field === "class" && column.kind === "live");
+    this.hasSimulated = this.store.simulated.size > 0 && this.sheet.name === "Items";
+    if (this.hasSimulated) shown.splice(at + 1, 0, simulatedColumn());
+    const isFrozen = (column) => (column.at ?? -1) < this.sheet.frozen && column.at !== null;
+    this.columns = shown.map((column) => ({ ...column, isFrozen: isFrozen(column) }));
+    this.columns.sort((one, other) => other.isFrozen - one.isFrozen);
+    this.layOut();
+    this.#drawHead();
+  }
+
+  #widthKey(column) {
+    return `assess-width:${this.sheet.name}:${column.label}`;
+  }
+
+  widthOf(column) {
+    const kept = Number(localStorage.getItem(this.#widthKey(column)));
+    const width = kept || Math.min(WIDEST, Math.max((column.width || 10) * CHARACTER, column.label.length * 4.2) + PADDING);
+    return this.isNarrow && column.isFrozen ? Math.min(width, NARROW_COLUMN) : Math.max(NARROWEST, Math.round(width));
+  }
+
+  setWidth(c, width) {
+    localStorage.setItem(this.#widthKey(this.columns[c]), String(Math.max(NARROWEST, Math.round(width))));
+    this.layOut();
+    this.#drawHead();
+    this.draw();
+  }
+
+  /** Make a column as wide as its longest text. */
+  fitWidth(c) {
+    const column = this.columns[c];
+    const texts = this.sheet.rowNumbers.map((row) => cellText(this.store, this.sheet, row, column)).sort((a, b) => b.length - a.length).slice(0, 50);
+    const pen = (this.pen ??= document.createElement("canvas").getContext("2d"));
+    pen.font = getComputedStyle(this.box).font;
+    const header = `${column.label} ${column.unit}`;
+    this.setWidth(c, Math.min(3 * WIDEST, Math.max(...[...texts, header].map((text) => pen.measureText(text).width)) + PADDING + 10));
+  }
+
+  layOut() {
+    if (!this.sheet) return;
+    this.isNarrow = this.box.clientWidth > 0 && this.box.clientWidth < NARROW_PAGE;
+    this.numbersWidth = this.isNarrow ? 0 : NUMBERS_WIDTH;
+    let x = this.numbersWidth;
+    this.frozenWidth = x;
+    for (const column of this.columns) {
+      column.x = x;
+      column.px = this.widthOf(column);
+      x += column.px;
+      if (column.isFrozen) this.frozenWidth = x;
+    }
+    this.width = x;
+    this.table.style.width = `${x}px`;
+    this.box.classList.toggle("narrow", this.isNarrow);
+    const isOther = this.drawnNarrow !== this.isNarrow;
+    this.drawnNarrow = this.isNarrow;
+    if (isOther && this.head.childElementCount) this.#drawHead();
+  }
+
+  get height() {
+    return HEAD_HEIGHT + this.order.length * ROW_HEIGHT;
+  }
+
+  // ---- drawing
+
+  /** Draw before the next frame. */
+  ask() {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      this.draw();
+    });
+  }
+
+  #place(node, column) {
+    node.style.width = `${column.px}px`;
+    node.style.left = `${column.x}px`;
+    node.classList.toggle("frozen", column.isFrozen);
+  }
+
+  #drawHead() {
+    const corner = el("div", { class: "grid-cell grid-number frozen", role: "columnheader", "aria-colindex": 1, "aria-label": t("Row") });
+    corner.hidden = this.isNarrow;
+    corner.style.width = `${this.numbersWidth}px`;
+    clear(this.head).append(corner, ...this.columns.map((column, c) => this.#headCell(column, c)));
+    this.head.style.width = `${this.width}px`;
+  }
+
+  #headCell(column, c) {
+    const rule = this.order.sort?.column.label === column.label ? (this.order.sort.down ? "descending" : "ascending") : null;
+    const label = el("span", { class: "grid-label" }, column.label, column.unit ? el("span", { class: "grid-unit", text: ` [${column.unit}]` }) : null);
+    const menu = el("button", { type: "button", class: "grid-menu-button", tabindex: "-1", "aria-label": t("Sort and filter {column}", { column: column.label }), text: rule === "ascending" ? "▲" : rule ? "▼" : "▾" });
+    menu.classList.toggle("used", Boolean(rule) || this.order.filters.has(column.label));
+    const edge = el("div", { class: "grid-edge", "aria-hidden": "true" });
+    const cell = el("div", { class: "grid-cell", role: "columnheader", title: [`${column.label}${column.unit ? ` [${column.unit}]` : ""}`, column.help].filter(Boolean).join("\n"), "aria-colindex": c + 2, "aria-sort": rule, dataset: { column: c } }, label, menu, edge);
+    if (column.required) cell.classList.add("required");
+    this.#place(cell, column);
+    return cell;
+  }
+
+  /** Rows and columns in sight, with a margin: first and one past the last. */
+  #window() {
+    const { scrollTop, scrollLeft, clientHeight, clientWidth } = this.box;
+    const first = Math.max(0, Math.floor(scrollTop / ROW_HEIGHT) - MARGIN_ROWS);
+    const last = Math.min(this.order.length, Math.ceil((scrollTop + clientHeight - HEAD_HEIGHT) / ROW_HEIGHT) + MARGIN_ROWS);
+    const inSight = (column) => column.isFrozen || (column.x + column.px > scrollLeft - MARGIN_PX && column.x < scrollLeft + clientWidth + MARGIN_PX);
+    return { first, last, columns: this.columns.flatMap((column, c) => (inSight(column) ? [c] : [])) };
+  }
+
+  draw() {
+    if (!this.sheet || !this.box.clientHeight) return;
+    if (this.hasSimulated !== (this.store.simulated.size > 0 && this.sheet.name === "Items")) this.refreshColumns();
+    this.table.style.height = `${this.height}px`;
+    this.table.setAttribute("aria-rowcount", this.order.length + 1);
+    this.table.setAttribute("aria-colcount", this.columns.length + 1);
+    const { first, last, columns } = this.#window();
+    this.#makeRows(last - first);
+    const [r0, , r1] = this.selection.range;
+    for (let r = first; r < last; r++) this.#drawRow(this.#rows[r % this.#rows.length], r, columns, r >= r0 && r <= r1);
+    for (const row of this.#rows) if (row.r < first || row.r >= last) this.#hide(row);
+    this.#drawFrame();
+    this.dispatchEvent(new Event("drawn"));
+  }
+
+  /** As many row elements as are needed; they are used again for other rows while scrolling. */
+  #makeRows(count) {
+    if (this.#rows.length >= count && this.#rows.length <= count + 4 * MARGIN_ROWS) return;
+    for (const row of this.#rows) row.node.remove();
+    this.#rows = Array.from({ length: count + 2 }, () => {
+      const number = el("div", { class: "grid-cell grid-number frozen", role: "rowheader", "aria-colindex": 1 });
+      const node = el("div", { class: "grid-row", role: "row", hidden: true }, number);
+      this.table.append(node);
+      return { node, number, cells: [], r: -1 };
+    });
+  }
+
+  #hide(row) {
+    row.node.hidden = true;
+    row.r = -1;
+  }
+
+  #drawRow(row, r, columns, isSelected) {
+    const number = this.order.row(r);
+    row.node.hidden = false;
+    if (row.r !== r) {
+      row.r = r;
+      row.node.style.transform = `translateY(${HEAD_HEIGHT + r * ROW_HEIGHT}px)`;
+      row.node.setAttribute("aria-rowindex", r + 2);
+    }
+    row.node.style.width = `${this.width}px`;
+    row.number.textContent = number;
+    row.number.hidden = this.isNarrow;
+    row.number.style.width = `${this.numbersWidth}px`;
+    row.number.classList.toggle("selected", isSelected);
+    while (row.cells.length > columns.length) row.cells.pop().remove();
+    while (row.cells.length < columns.length) {
+      row.cells.push(el("div", { class: "grid-cell", role: "gridcell" }));
+      row.node.append(row.cells.at(-1));
+    }
+    columns.forEach((c, i) => this.#drawCell(row.cells[i], r, c, number));
+  }
+
+  #drawCell(node, r, c, number) {
+    const column = this.columns[c];
+    const { text, css, problem } = describeCell(this.store, this.sheet, number, column);
+    if (node.textContent !== text) node.textContent = text;
+    const isActive = r === this.selection.anchor[0] && c === this.selection.anchor[1];
+    const isSelected = this.selection.has(r, c);
+    let look = `grid-cell${column.isFrozen ? " frozen" : ""}${css}${problem ? ` ${problem.severity}` : ""}`;
+    if (isSelected) look += isActive ? " active" : " selected";
+    if (isActive && this.canEdit && hasChoices(column) && !isComputed(column)) look += " choices";
+    if (this.found && text.toLowerCase().includes(this.found)) look += " found";
+    if (node.className !== look) node.className = look;
+    node.r = r;
+    node.c = c;
+    const where = `${column.x}|${column.px}`;
+    if (node.where !== where) {
+      node.where = where;
+      node.style.left = `${column.x}px`;
+      node.style.width = `${column.px}px`;
+    }
+    const states = `${c}|${isSelected}|${isActive}|${problem?.severity ?? ""}|${isComputed(column) || !this.canEdit}`;
+    if (node.states !== states) this.#setStates(node, states, { c, isSelected, isActive, problem, column });
+    const title = problem ? problemText(problem) : "";
+    if (node.title !== title) node.title = title;
+  }
+
+  #setStates(node, states, { c, isSelected, isActive, problem, column }) {
+    node.states = states;
+    node.setAttribute("aria-colindex", c + 2);
+    node.setAttribute("aria-selected", isSelected);
+    node.setAttribute("aria-readonly", isComputed(column) || !this.canEdit);
+    if (problem && problem.severity === "error") node.setAttribute("aria-invalid", "true");
+    else node.removeAttribute("aria-invalid");
+    if (isActive) node.id = "grid-active";
+    else node.removeAttribute("id");
+  }
+
+  /** Where cells stand inside the box: left, top, width and height; frozen columns follow the scroll. */
+  rectangle(r, c, r1 = r, c1 = c) {
+    const [first, last] = [this.columns[c], this.columns[c1]];
+    const shift = (column) => (column.isFrozen ? this.box.scrollLeft : 0);
+    const left = first.x + shift(first);
+    const right = Math.max(last.x + last.px + shift(last), left);
+    return { left, top: HEAD_HEIGHT + r * ROW_HEIGHT, width: right - left, height: (r1 - r + 1) * ROW_HEIGHT, isFrozen: first.isFrozen };
+  }
+
+  #drawFrame() {
+    const [r0, c0, r1, c1] = this.fillTarget ?? this.selection.range;
+    const isShown = this.columns.length > 0 && this.order.length > 0;
+    this.frame.hidden = !isShown;
+    this.handle.hidden = !isShown || !this.canEdit;
+    if (!isShown) return;
+    const { left, top, width, height, isFrozen } = this.rectangle(r0, c0, r1, c1);
+    const end = this.columns[c1].isFrozen;
+    Object.assign(this.frame.style, { transform: `translate(${left}px, ${top}px)`, width: `${width}px`, height: `${height}px` });
+    this.frame.classList.toggle("over", isFrozen);
+    this.frame.classList.toggle("filling", Boolean(this.fillTarget));
+    this.handle.style.transform = `translate(${left + width - 4}px, ${top + height - 4}px)`;
+    this.handle.classList.toggle("over", end);
+  }
+
+  // ---- selection
+
+  #select() {
+    this.dispatchEvent(new Event("select"));
+    this.ask();
+  }
+
+  /** The active cell: its row of the sheet, its column and its name. */
+  get active() {
+    const [r, c] = this.selection.anchor;
+    const row = this.order?.row(r);
+    const column = this.columns[c];
+    return column && row ? { r, c, row, column, name: cellName(this.sheet, row, column.at ?? 0) } : null;
+  }
+
+  /** Scroll so that a cell is in sight. */
+  show([r, c] = this.selection.head) {
+    const column = this.columns[c];
+    if (!column) return;
+    const { box } = this;
+    const top = r * ROW_HEIGHT;
+    if (top < box.scrollTop) box.scrollTop = top;
+    else if (top + ROW_HEIGHT + HEAD_HEIGHT > box.scrollTop + box.clientHeight) box.scrollTop = top + ROW_HEIGHT + HEAD_HEIGHT - box.clientHeight;
+    if (column.isFrozen) return;
+    if (column.x < box.scrollLeft + this.frozenWidth) box.scrollLeft = column.x - this.frozenWidth;
+    else if (column.x + column.px > box.scrollLeft + box.clientWidth) box.scrollLeft = Math.min(column.x - this.frozenWidth, column.x + column.px - box.clientWidth);
+  }
+
+  /** Select a cell by its row of the sheet and its column, and scroll to it; false where a filter hides it. */
+  goTo(row, at) {
+    const c = Math.max(0, this.columns.findIndex((column) => column.at === at));
+    let r = this.order.indexOf(row);
+    if (r < 0 && !this.order.isPlain) {
+      this.order.include(row);
+      r = this.order.indexOf(row);
+    }
+    if (r < 0) return false;
+    this.table.style.height = `${this.height}px`;
+    this.selection.set([r, c]);
+    this.show();
+    return true;
+  }
+
+  value(r, c) {
+    return cellValue(this.store, this.sheet, this.order.row(r), this.columns[c]);
+  }
+
+  text(r, c) {
+    return cellText(this.store, this.sheet, this.order.row(r), this.columns[c]);
+  }
+}
