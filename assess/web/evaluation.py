@@ -4,7 +4,11 @@ A workbook that is being filled in is rarely whole. Rows with errors have been l
 which the shaking is not known yet are left out here, with what stands on them, so that everything else has its class.
 """
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
+from threading import RLock
+from typing import TYPE_CHECKING, TypeVar
+from weakref import WeakKeyDictionary
 
 from assess.errors import Problem
 from assess.model import Inventory
@@ -13,6 +17,14 @@ from assess.pipeline.demand import serve_floors
 from assess.pipeline.run import compute
 from assess.progress import SILENT, Progress
 from assess.settings import SCENARIOS, Settings
+
+if TYPE_CHECKING:
+    from assess.web.snapshot import Snapshot
+
+BY_FORMULAS = Settings(verify="none")
+"""How the page assesses while one types."""
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,14 +73,39 @@ def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILE
     return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
 
 
-def without_years(inventory: Inventory) -> Inventory:
-    """Return an inventory without annual chances, which the page does not show while one types."""
-    return replace(inventory, hazard=None)
+def evaluate_once(snapshot: "Snapshot", settings: Settings, *, routes: bool = False) -> Evaluation:
+    """Return the evaluation of a snapshot, as `evaluate` does, once for all who ask.
+
+    Annual chances are left out, which nobody sees while typing; and where they are not asked for, the routes, which no
+    class by the formulas depends on.
+    """
+    inventory = snapshot.inventory
+    if not routes or not inventory.routes:
+        lean = replace(inventory, routes=(), hazard=None)
+        return keep(snapshot, settings, lambda: evaluate(lean, settings))
+    return keep(snapshot, (settings, "routes"), lambda: evaluate(replace(inventory, hazard=None), settings))
 
 
-def without_routes(inventory: Inventory) -> Inventory:
-    """Return an inventory without what takes time and no class by the formulas depends on: routes, annual chances."""
-    return replace(inventory, routes=(), hazard=None)
+class _Kept:
+    """What was worked out from one snapshot, by what it is."""
+
+    def __init__(self) -> None:
+        self.lock = RLock()
+        self.found: dict[Hashable, object] = {}
+
+
+_LOCK = RLock()
+_OF_SNAPSHOTS: "WeakKeyDictionary[Snapshot, _Kept]" = WeakKeyDictionary()
+
+
+def keep(snapshot: "Snapshot", name: Hashable, make: Callable[[], T]) -> T:
+    """Return what `make` works out from a snapshot, once for as long as there is the snapshot."""
+    with _LOCK:
+        kept = _OF_SNAPSHOTS.setdefault(snapshot, _Kept())
+    with kept.lock:
+        if name not in kept.found:
+            kept.found[name] = make()
+        return kept.found[name]  # type: ignore[return-value]
 
 
 def _keep_floors(inventory: Inventory, floors: set[str]) -> Inventory:

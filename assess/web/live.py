@@ -13,17 +13,14 @@ from typing import TYPE_CHECKING, Any
 from assess.errors import AssessError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.model import AXES, Floor
-from assess.settings import Settings
 from assess.units import GRAVITY
-from assess.web.evaluation import Evaluation, evaluate, without_routes
+from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once
 from assess.web.live_rows import LiveRow, count_classes, find_live_columns, list_quantities, list_rows
 from assess.web.problem_cells import describe_problems
 
 if TYPE_CHECKING:
     from assess.web.book import Book, Snapshot
 
-BY_FORMULAS = Settings(verify="none")
-"""How the page assesses while one types."""
 MOST_VERSIONS = 4
 """Versions of which it is known what was sent of them: an older page is answered whole."""
 MOST_PROBLEMS = 1000
@@ -113,9 +110,9 @@ def describe_state(snapshot: "Snapshot") -> _State:
     """Return all that is shown of one version of a workbook, in its language."""
     with speaking(load_catalogue(snapshot.inventory.language)):
         inventory = snapshot.inventory
-        columns = find_live_columns(snapshot.cells["Items"].rows()) if "Items" in snapshot.cells else {}
+        columns = find_live_columns(snapshot.sheets["Items"])
         try:
-            found = evaluate(without_routes(inventory), BY_FORMULAS)
+            found = evaluate_once(snapshot, BY_FORMULAS)
         except AssessError as error:
             found = Evaluation(None, frozenset(one.floor for one in inventory.floors), ())
             fault = gettext(error.message)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,18 +12,20 @@ from assess.model import Inventory, Item
 from assess.pipeline.assessment import Assessment
 from assess.risk import RiskClass
 from assess.units import GRAVITY, LENGTH, VELOCITY
+from assess.web.columns import PageSheet
 from assess.web.evaluation import Evaluation
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
 from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR
 from assess.workbook.names import key, plain, split_header
-from assess.workbook.open import HEADER_ROWS
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes
 from assess.workbook.schema import LIVE, NO, WORKINGS, YES
 
 CLASSES = tuple(one.name.lower() for one in RiskClass)
 """How the page calls the classes, in rising order."""
+SHOWN_WORKINGS = WORKINGS[2:]
+"""Columns from which the live ones are computed: the axis, PFV and sizes that were used."""
 DECIMALS = 9
 """Decimals of the live values: what a sheet shows, with room to spare."""
 
@@ -41,23 +42,18 @@ class LiveRow(NamedTuple):
     values: Values
 
 
-def find_live_columns(rows: Iterable[tuple[int, Mapping[int, Any]]]) -> dict[int, str]:
+def find_live_columns(sheet: PageSheet) -> dict[int, str]:
     """Return the columns of Items that Excel computes, by their place in the sheet, as `LIVE` and `WORKINGS` have them.
 
-    `rows` are the cells of the sheet from its top.
+    Those of which nothing is shown, as the row of Floors, are left out.
     """
-    found: dict[int, str] = {}
-    for number, cells in islice(rows, HEADER_ROWS):
-        labels = _live_labels() if number <= HEADER_ROWS else {}
-        named = {at: split_header(value)[0] for at, value in cells.items() if isinstance(value, str)}
-        here = {at: labels[plain(label)] for at, label in named.items() if plain(label) in labels}
-        found = max(found, here, key=len)
-    return dict(sorted(found.items()))
+    labels = {at: _live_labels().get(plain(one.label)) for at, one in sheet.columns.items() if one.is_live}
+    return {at: label for at, label in sorted(labels.items()) if label is not None}
 
 
 @cache
 def _live_labels() -> dict[str, str]:
-    names = {label: split_header(label)[0] for label in (*WORKINGS, *LIVE)}
+    names = {label: split_header(label)[0] for label in (*SHOWN_WORKINGS, *LIVE)}
     return {plain(load_catalogue(code).find(name)): label for code in LANGUAGES for label, name in names.items()}
 
 
@@ -125,7 +121,7 @@ def _columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, Sequen
     at, cases = assessment.governing, assessment.cases
     yes, no = gettext(YES), gettext(NO)
     ratio, pfa, *methods, risk, can_rock = LIVE
-    axis, pfv, breadth, height = WORKINGS[2:]
+    axis, pfv, breadth, height = SHOWN_WORKINGS
     outcomes = (assessment.outcomes[method.key].value[at] for method in LIVE_METHODS)
     return {
         ratio: _plain_numbers(cases.breadth_to_height[at]),

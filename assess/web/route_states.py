@@ -25,8 +25,7 @@ from assess.report.findings.route_words import (
 )
 from assess.route_results import Chance, RoomRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.obstructions import find_route_problems
-from assess.settings import Settings
-from assess.web.evaluation import Evaluation, evaluate, without_years
+from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once
 from assess.web.problem_cells import describe_problems
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
@@ -34,15 +33,13 @@ from assess.workbook.parse import Tables
 if TYPE_CHECKING:
     from assess.web.book import Snapshot
 
-BY_FORMULAS = Settings(verify="none")
-
 
 def describe_routes(snapshot: "Snapshot") -> dict[str, Any]:
     """Return the answer of `GET /api/routes`: all states by the formulas, in the language of the workbook."""
     inventory = snapshot.inventory
     with speaking(load_catalogue(inventory.language)):
         try:
-            found = evaluate(without_years(inventory), BY_FORMULAS)
+            found = evaluate_once(snapshot, BY_FORMULAS, routes=True)
             states = describe_states(snapshot.tables, inventory, found)
             problems = [] if found.assessment is None else list(_list_problems(inventory, found.assessment))
         except AssessError as error:
