@@ -96,17 +96,17 @@ def find_results(data: bytes, inventory: Inventory) -> dict[str, Values]:
     """
     with Book(data, inventory.source.name) as book:
         sheets = list(book.sheets)
-        lists = [name for name in sheets if _is_lists(name)]
+        lists = [name for name in sheets if is_lists(name)]
         items = inventory.sheets.get(ITEMS.name, ITEMS.name)
         columns = _find_columns(book, items, inventory.language) if items in sheets else {}
     results: dict[str, Values] = {name: dict.fromkeys(list_formulas(data, name)) for name in lists}
     if columns:
-        rows = _rows(inventory)
+        rows = find_live_rows(inventory)
         results[items] = dict(_results_of(list_formulas(data, items), columns, rows))
     return {sheet: values for sheet, values in results.items() if values}
 
 
-def _is_lists(name: str) -> bool:
+def is_lists(name: str) -> bool:
     """Tell whether a sheet is the one that holds what drop-downs and live columns refer to."""
     return plain(name) in {plain(load_catalogue(code).find(LISTS)) for code in LANGUAGES}
 
@@ -123,7 +123,7 @@ def _find_columns(book: Book, sheet: str, language: str) -> dict[str, int | None
     return best
 
 
-def _rows(inventory: Inventory) -> dict[int, list[float | str]]:
+def find_live_rows(inventory: Inventory) -> dict[int, list[float | str]]:
     """Return the results of the live columns by the row of the item; none where the building lacks its motion."""
     try:
         with speaking(load_catalogue(inventory.language)):

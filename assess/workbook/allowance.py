@@ -1,6 +1,7 @@
 """How much the files of one workbook may hold together: limits of single files say nothing of a hundred of them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
+from typing import Self
 
 from assess.i18n import Text, fill
 from assess.workbook.habits import CellError
@@ -35,6 +36,28 @@ class Allowance:
     drawing_bytes: int = 0
     photos: int = 0
     photo_bytes: int = 0
+
+    def copy(self) -> Self:
+        """Return what has been taken so far."""
+        return replace(self)
+
+    def less(self, before: "Allowance") -> "Allowance":
+        """Return what has been taken since a copy was made."""
+        return Allowance(*(getattr(self, one.name) - getattr(before, one.name) for one in fields(self)))
+
+    def add(self, taken: "Allowance") -> None:
+        """Take once more what was taken for a file; CellError where that is more than a workbook may name."""
+        if taken.record_bytes:
+            self.take_record(taken.record_bytes, is_archive=bool(taken.archives))
+            self.take_samples(taken.samples)
+        if taken.pixels:
+            self.take_pixels(taken.pixels)
+        if taken.drawings:
+            self.take_drawing(taken.drawing_bytes)
+        if taken.photos:
+            self.take_photo()
+        if taken.photo_bytes:
+            self.take_photo(taken.photo_bytes)
 
     def take_record(self, size: int, *, is_archive: bool) -> None:
         """Count a file of `size` bytes before it is read; CellError where that is more than a workbook may name."""

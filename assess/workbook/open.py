@@ -37,7 +37,8 @@ _MAIN = ("sheet.main+xml", "template.main+xml", "sheet.macroEnabled.main+xml", "
 _STRICT = "http://purl.oclc.org/ooxml/spreadsheetml/main"
 _SMALL, _STRINGS = (8 * 2**20, 300_000), (24 * 2**20, 1_000_000)
 """Bytes and tags of the parts that are kept in memory."""
-_TRUE = ("1", "true")
+TRUE = ("1", "true")
+"""How XML says yes."""
 _DATES = frozenset({*range(14, 23), 45, 46, 47})
 """Numbers of the built-in formats that show a number as a date or a time."""
 
@@ -45,7 +46,7 @@ DAMAGE = (ValueError, TypeError, LookupError, OSError, EOFError, ArithmeticError
           zipfile.BadZipFile, zlib.error, expat.ExpatError)  # fmt: skip
 """What zipfile, zlib and expat raise on a damaged file."""
 
-_ESCAPED = ("_x005F_", "_")
+ESCAPED = ("_x005F_", "_")
 """How programs write a text that has ``_x`` and four digits itself, and what it means."""
 
 UNSAVED = object()
@@ -276,7 +277,7 @@ class _Strings(Part):
         self.takes = False
         self.is_phonetic = self.is_phonetic and tag != "rPh"
         if tag == "si":
-            self.found.append("".join(self.parts).replace(*_ESCAPED))
+            self.found.append("".join(self.parts).replace(*ESCAPED))
 
 
 def _special_format(number: str, codes: Mapping[str, str]) -> str | None:
@@ -314,7 +315,7 @@ class SheetCells(Part):
     """
 
     limits = None
-    header_rows, top = HEADER_ROWS, "A1"
+    header_rows, top, kept = HEADER_ROWS, "A1", None
     title = ""
     """The sheet as the workbook calls it."""
 
@@ -360,8 +361,8 @@ class SheetCells(Part):
             self._open_row(attributes)
         elif tag == "mergeCell" and len(self.merged) < MAX_MERGED:
             self.merged.append(attributes.get("ref", ""))
-        elif tag == "col" and attributes.get("hidden") in _TRUE:
-            self._hide_columns(attributes)
+        elif tag == "col":
+            self._open_column(attributes)
         elif self._texts is not None:
             self._tags.add(tag)
             self._takes = tag == "v" or (tag == "t" and "rPh" not in self._tags)
@@ -394,14 +395,15 @@ class SheetCells(Part):
         self._number = previous + 1 if number is None else int(number)
         if not previous < self._number <= SHEET_ROWS:
             raise damaged(fill("the rows of {part} are out of order", part=self.path))
-        if attributes.get("hidden") in _TRUE and len(self.hidden_rows) < MAX_ROWS:
+        if attributes.get("hidden") in TRUE and len(self.hidden_rows) < MAX_ROWS:
             self.hidden_rows.append(self._number)
         self._row_start = self.parser.CurrentByteIndex
         self._cells, self._at, self._count = {}, 0, 0
 
-    def _hide_columns(self, attributes: dict[str, str]) -> None:
-        first, last = (min(int(attributes.get(name, "0")), MAX_COLUMNS) for name in ("min", "max"))
-        self.hidden_columns.update(range(first - 1, last))
+    def _open_column(self, attributes: dict[str, str]) -> None:
+        if attributes.get("hidden") in TRUE:
+            first, last = (min(int(attributes.get(name, "0")), MAX_COLUMNS) for name in ("min", "max"))
+            self.hidden_columns.update(range(first - 1, last))
 
     def _open_cell(self, attributes: dict[str, str]) -> None:
         self._address = attributes.get("r", "")
@@ -438,23 +440,31 @@ class SheetCells(Part):
             from openpyxl.utils.datetime import from_ISO8601
 
             return from_ISO8601(text)  # type: ignore[no-untyped-call]
-        return text.replace(*_ESCAPED)
+        return text.replace(*ESCAPED)
 
     def _number_or_date(self, number: float) -> Any:
-        style = int(self._style) if self._style.isdigit() else 0
-        code = self.shared.styles[style] if style < len(self.shared.styles) else None
-        if code is None:
-            return number
-        if code == "%":
-            return Percent(number)
-        from openpyxl.styles.numbers import is_timedelta_format
-        from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_excel
+        return read_number(number, self._format(self._style), is_1904=self.shared.is_1904)
 
-        try:
-            epoch = MAC_EPOCH if self.shared.is_1904 else WINDOWS_EPOCH
-            return from_excel(number, epoch, timedelta=is_timedelta_format(code))
-        except (OverflowError, ValueError):
-            return "#VALUE!"
+    def _format(self, style: str) -> str | None:
+        """Return the format of a style that shows a number otherwise, else None."""
+        number = int(style) if style.isdigit() else 0
+        return self.shared.styles[number] if number < len(self.shared.styles) else None
+
+
+def read_number(number: float, code: str | None, *, is_1904: bool) -> Any:
+    """Return what the number of a cell means: a date, a time or a percentage where its format shows it so."""
+    if code is None:
+        return number
+    if code == "%":
+        return Percent(number)
+    from openpyxl.styles.numbers import is_timedelta_format
+    from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_excel
+
+    try:
+        epoch = MAC_EPOCH if is_1904 else WINDOWS_EPOCH
+        return from_excel(number, epoch, timedelta=is_timedelta_format(code))
+    except (OverflowError, ValueError):
+        return "#VALUE!"
 
 
 @cache
@@ -492,6 +502,9 @@ def _list_formats(styles: Tree) -> list[str | None]:
     """Return, by the number of a style, the format of one that shows a number otherwise, else None."""
     codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
     return [_special_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
+
+
+_Cells = TypeVar("_Cells", bound=SheetCells)
 
 
 class Book:
@@ -536,7 +549,7 @@ class Book:
             self._shared = _Shared(
                 self.read(_Strings, kinds["sharedStrings"]).found if "sharedStrings" in kinds else [],
                 _list_formats(self.read(Tree, kinds["styles"])) if "styles" in kinds else [],
-                any(one.get("date1904") in _TRUE for one in book.find("workbookPr")),
+                any(one.get("date1904") in TRUE for one in book.find("workbookPr")),
             )
 
     def _links(self) -> dict[str, tuple[str, str]]:
@@ -563,6 +576,10 @@ class Book:
 
     def cells(self, sheet: str) -> SheetCells:
         """Return the cells of a sheet."""
-        cells = SheetCells(self.archive, self.sheets[sheet], self.name, self._shared, self.progress)
+        return self.cells_as(SheetCells, sheet)
+
+    def cells_as(self, kind: type[_Cells], sheet: str) -> _Cells:
+        """Return the cells of a sheet, as one kind of reader takes them."""
+        cells = kind(self.archive, self.sheets[sheet], self.name, self._shared, self.progress)
         cells.title = sheet
         return cells

@@ -15,6 +15,7 @@ from assess.errors import Correction, FurnitureGap, Gap, Problem, Severity
 from assess.i18n import Text, fill
 from assess.units import QUANTITIES, read_unit
 from assess.workbook.habits import CellError, Remark
+from assess.workbook.held import HeldCells
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
 from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells, column_letters
 from assess.workbook.places import split_range
@@ -39,7 +40,7 @@ _ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
 class CodeCells:
     """Rows given in code, as the cells of a sheet: keys are fields, in the units of an empty workbook, or headers."""
 
-    header_rows, top, title = 0, "", ""
+    header_rows, top, title, kept = 0, "", "", None
     last_row, far = 0, ""
     merged: Sequence[str] = ()
     hidden_rows: Sequence[int] = ()
@@ -78,7 +79,7 @@ def _native(value: Any) -> Any:
     return None if isinstance(value, float) and value != value else value
 
 
-Source = SheetCells | CodeCells
+Source = SheetCells | HeldCells | CodeCells
 """The cells of one sheet; `last_row`, `far` and `merged` are known once `rows` has ended."""
 
 
@@ -127,6 +128,10 @@ class Table:
         Cells that were understood although they are not typed as their column asks.
     source : Source, optional
         Knows how messages call a cell.
+    header : int
+        The row of the headers, 0 where none was found; of a form 0.
+    units : mapping of str to str
+        Of the numbers, by field, as the headers name them; "" where a field has none.
     """
 
     sheet: Sheet
@@ -139,6 +144,8 @@ class Table:
     failed: frozenset[str] = frozenset()
     corrections: tuple[Correction, ...] = ()
     source: Source | None = None
+    header: int = 0
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def cell(self, name: str, row: int) -> str:
         """Address of a field in a row; the first column where the sheet lacks the field, "" where a form does."""
@@ -261,6 +268,7 @@ def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tu
     sheet = replace(own, columns=tuple(named.get(column.name, column) for column in own.columns))
     table = replace(table, sheet=sheet, blind=frozenset(parser.blind), places=parser.places, rows=tuple(read))
     table = replace(table, extra=tuple(parser.others.values()), corrections=tuple(parser.corrections))
+    table = replace(table, header=parser.header, units=parser.units)
     return replace(table, failed=frozenset(parser.covered)).with_failed(parser.problems), parser.problems
 
 
@@ -286,6 +294,7 @@ class _Parser:
         self.units: dict[str, str] = {}
         self.blind: set[str] = set()
         self.covered: list[str] = []  # addresses of the cells that a reported merge hides
+        self.header = 0
 
     def report(self, cell: str, message: str, fix: str = "", severity: Severity = "error", group: str = "") -> None:
         self.problems.append(Problem(severity, self.own.name, cell, message, fix, group))
@@ -321,8 +330,11 @@ class _Parser:
             for _ in body:  # the rest is read for the bounds of the sheet
                 pass
             return []
-        number, cells = best
+        self.header, cells = best
+        number = self.header
         self._read_headers(number, cells)
+        if self.source.kept is not None:
+            self.source.kept.serve((self.columns, self.others, self.units, self.blind))
         found = self._read_rows(number, cells, body)
         self._check_merged([number, *(row.number for row in found)])
         self._note_hidden(found)
@@ -344,7 +356,7 @@ class _Parser:
             elif needed and cells.get(needed[0]) == headers[needed[0]] and _repeats(cells, headers, needed):
                 self.report(self.source.address(number, needed[0]), describe_repeated(), "", "note", "headers")
             else:
-                found[number] = self._row(number, cells)
+                found[number] = self._keep_row(number, cells)
         found |= self._read_lone(lone)
         return [row for _, row in sorted(found.items()) if row]
 
@@ -486,6 +498,22 @@ class _Parser:
         else:
             message = fill("the table has no rows.")
             self.problems.append(Gap("error", self.own.name, cell, message, fill("Fill in at least one.")))
+
+    def _keep_row(self, number: int, cells: Cells) -> Row | None:
+        """Return what `_row` does, from an earlier reading where the cells are held in memory and are the same."""
+        kept = self.source.kept
+        if kept is None:
+            return self._row(number, cells)
+        known = kept.rows.get(number)
+        if known is None or known[0] is not cells:
+            reported, corrected = len(self.problems), len(self.corrections)
+            row = self._row(number, cells)
+            kept.rows[number] = cells, row, self.problems[reported:], self.corrections[corrected:]
+            return row
+        self.problems += known[2]
+        self.corrections += known[3]
+        found: Row | None = known[1]
+        return found
 
     def _row(self, number: int, cells: Cells) -> Row | None:
         if all(is_blank(cells.get(at)) for at in self.columns):

@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 from xml.sax.saxutils import escape
 
 from assess.errors import Problem, WorkbookError
-from assess.i18n import fill
+from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
-from assess.workbook.open import SHEET_COLUMNS, SHEET_ROWS, Book, column_letters, unreadable
+from assess.workbook.open import ESCAPED, SHEET_COLUMNS, SHEET_ROWS, Book, column_letters, unreadable
 from assess.workbook.patch_parts import drop_from_chain, find_headings, set_recalculation
 from assess.workbook.places import (
     CellPlace,
@@ -34,6 +34,8 @@ from assess.workbook.places import (
 
 Value = float | str | bool | None
 """What a cell may hold; None leaves it blank."""
+Area = tuple[int, int, int, int]
+"""First and last column, first and last row of cells, from 1."""
 Values = Mapping[str, Value]
 """Values by the addresses of cells, ``{"H14": 45.0}``."""
 
@@ -42,6 +44,8 @@ LONGEST_TEXT = 32_767
 LARGEST_NUMBER = 9.99999999999999e307
 """The largest number that a cell holds."""
 _UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]|_(?=x[0-9A-Fa-f]{4}_)")
+_LOCKED = {"dataTable": fill("it belongs to a data table."), "array": fill("it belongs to an array formula.")}
+_HEADER = fill("it is a header of a table.")
 _CONTENT = frozenset({"f", "v", "is"})
 _LEVEL = 6
 
@@ -126,6 +130,25 @@ def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> di
         return book.read(SheetFormulas, book.sheets[sheet]).found
 
 
+def find_locked(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> list[tuple[Area, Text]]:
+    """Return the areas of a sheet whose cells `patch_workbook` refuses to change, with why: what it can tell early.
+
+    Single cells that it refuses, too, are those with the formula that others share.
+
+    Raises
+    ------
+    WorkbookError
+        If the workbook cannot be opened, or if the sheet cannot be changed at all.
+    """
+    with Book(data, name) as book:
+        _check_names(book, [sheet])
+        path = book.sheets[sheet]
+        places = SheetPlaces(book.archive, path, name, {}, SILENT).read()
+        _ = places.sheet_data  # raises where there is none
+        headings = [((left, right, top, top), _HEADER) for left, right, top in find_headings(book, path)]
+        return [*((area, _LOCKED[kind]) for area, kind in places.locked), *headings]
+
+
 def _check_names(book: Book, names: Sequence[str]) -> None:
     missing = [one for one in names if one not in book.sheets]
     if missing:
@@ -200,11 +223,9 @@ class _SheetPatch:
         address = f"{column_letters(column - 1)}{number}"
         for (left, right, top, bottom), kind in places.locked:
             if left <= column <= right and top <= number <= bottom:
-                is_table = kind == "dataTable"
-                table, array = fill("it belongs to a data table."), fill("it belongs to an array formula.")
-                self._refuse(address, table if is_table else array)
+                self._refuse(address, _LOCKED[kind])
         if any(left <= column <= right and number == top for left, right, top in headings):
-            self._refuse(address, fill("it is a header of a table."))
+            self._refuse(address, _HEADER)
 
     def _refuse_all(self, row: "_RowPatch") -> None:
         for column, why in row.refused:
@@ -332,8 +353,21 @@ def _write_number(value: float) -> str:
 
 def _write_text(value: str) -> bytes:
     """Return a text as XML; characters that XML lacks by their codes, as spreadsheet programs write them."""
-    coded = _UNWRITABLE.sub(lambda found: f"_x{ord(found[0]):04X}_", value)
-    return escape(coded, {"\r": "&#13;"}).encode()
+    return escape(_code(value), {"\r": "&#13;"}).encode()
+
+
+def _code(value: str) -> str:
+    return _UNWRITABLE.sub(lambda found: f"_x{ord(found[0]):04X}_", value)
+
+
+def read_back(value: Value) -> Value:
+    """Return what reading finds in a cell of the general format that a value was written into."""
+    if isinstance(value, str):
+        return _code(value).replace(*ESCAPED) or None
+    if value is None or isinstance(value, bool):
+        return value
+    text = _write_number(value)
+    return float(text) if any(sign in text for sign in ".e") else int(text)
 
 
 def _insert_rows(places: SheetPlaces, rows: Sequence[tuple[int, bytes]]) -> list[Edit]:

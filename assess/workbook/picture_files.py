@@ -3,7 +3,7 @@
 Only files inside one folder are touched, by the rules of `assess.workbook.records`.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -15,6 +15,7 @@ from assess.plans import MOST_FILE, Drawing, is_picture, read_plan
 from assess.progress import Progress
 from assess.workbook.allowance import Allowance
 from assess.workbook.habits import CellError
+from assess.workbook.kept_files import KeptFiles, find_key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.records import find_file
 from assess.workbook.values import shorten
@@ -40,6 +41,8 @@ class PictureReader:
         Where they are; None where the workbook was read without one.
     progress : Progress
         Checked before every picture.
+    kept : KeptFiles, optional
+        What earlier readings of the workbook made of its files.
 
     Attributes
     ----------
@@ -51,8 +54,8 @@ class PictureReader:
         The photos of the pieces as small JPEGs, by the text of their cell.
     """
 
-    def __init__(self, folder: Path | None, progress: Progress) -> None:
-        self.folder, self.progress = folder, progress
+    def __init__(self, folder: Path | None, progress: Progress, kept: KeptFiles | None = None) -> None:
+        self.folder, self.progress, self.kept = folder, progress, kept or KeptFiles()
         self.logo: Path | None = None
         self.plans: dict[int, FloorPlan] = {}
         self.photos: dict[str, bytes] = {}
@@ -65,7 +68,7 @@ class PictureReader:
         table = tables["Building"]
         for row in table.with_all("logo"):
             try:
-                self.logo, _data = self._read(row.get("logo"), self._take_logo)
+                self.logo, _data = self._read(row.get("logo"), self._take_logo, "logo")
             except CellError as error:
                 yield table.problem("logo", row, error.message, error.fix)
 
@@ -83,7 +86,7 @@ class PictureReader:
             if text not in self.photos and text not in self._useless:
                 self.progress.check()
                 try:
-                    _path, self.photos[text] = self._read(text, self._take_photo)
+                    _path, self.photos[text] = self._read(text, self._take_photo, "photo")
                 except CellError as error:
                     self._useless[text] = error
             if useless := self._useless.get(text):
@@ -127,6 +130,11 @@ class PictureReader:
             self.plans[row.number] = plan
             yield from _check_place(table, row, plan, items)
 
+    def find_drawing(self, text: str, width: float | None) -> Drawing | None:
+        """Return what is drawn of a plan, wherever it lies; None where its file cannot be used."""
+        found = self._draw(text, width)
+        return None if isinstance(found, CellError) else found[1]
+
     def _draw(self, text: str, width: float | None) -> tuple[Path, Drawing] | CellError:
         """Return where a plan is and what is drawn of it, once for all floors that name it.
 
@@ -135,7 +143,7 @@ class PictureReader:
         found = self._plans.get(text) or self._plans.get((text, width))
         if found is None:
             try:
-                found = self._read(text, lambda data: self._take_plan(data, width))
+                found = self._read(text, lambda data: self._take_plan(data, width), "plan", width)
             except CellError as error:
                 found = error
             is_scaled = not isinstance(found, CellError) and not found[1].is_lines
@@ -151,8 +159,8 @@ class PictureReader:
 
     # ------------------------------------------------------------ files
 
-    def _read(self, text: str, take: Callable[[bytes], Taken]) -> tuple[Path, Taken]:
-        """Return where a picture is, and what `take` makes of its bytes.
+    def _read(self, text: str, take: Callable[[bytes], Taken], *purpose: Hashable) -> tuple[Path, Taken]:
+        """Return where a picture is, and what `take` makes of its bytes for a purpose.
 
         Raises
         ------
@@ -164,16 +172,26 @@ class PictureReader:
             message = fill("the picture {name} cannot be used: the workbook was read without a folder.", name=name)
             raise CellError(message, fill("Pass the folder in `records`."))
         path = find_file(text, self.folder)
-        try:
-            with path.open("rb") as file:
-                data = file.read(MOST_FILE + 1)
-        except OSError as error:
-            message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
-            raise CellError(message, fill("Check its access rights.")) from None
-        try:
-            return path, take(data)
-        except PictureError as error:
-            raise CellError(fill("the picture {name} cannot be used: {why}.", name=name, why=error.message)) from None
+        key = find_key(path, *purpose)
+        found: Taken | PictureError = self.kept.take(key, self._allowance, lambda: _make(path, name, take))
+        if isinstance(found, PictureError):
+            message = fill("the picture {name} cannot be used: {why}.", name=name, why=found.message)
+            raise CellError(message)
+        return path, found
+
+
+def _make(path: Path, name: str, take: Callable[[bytes], Taken]) -> Taken | PictureError:
+    """Return what `take` makes of a file, or why it cannot be used; CellError where it cannot be opened."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(MOST_FILE + 1)
+    except OSError as error:
+        message = fill("the file {name} cannot be opened: {why}.", name=name, why=error.strerror)
+        raise CellError(message, fill("Check its access rights.")) from None
+    try:
+        return take(data)
+    except PictureError as error:
+        return error
 
 
 def _place_plan(row: Row, path: Path, drawing: Drawing) -> FloorPlan | None:

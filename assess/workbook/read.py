@@ -12,6 +12,8 @@ from assess.model import Cost, Inventory, Place, Segment
 from assess.progress import SILENT, Progress, Stage
 from assess.workbook import check, check_routes
 from assess.workbook.check import Check
+from assess.workbook.held import HeldSheets, hold_cells
+from assess.workbook.kept_files import KeptFiles
 from assess.workbook.names import ENGLISH, find_near, find_sheet, key, plain, translate, versions
 from assess.workbook.open import Book, read_file
 from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
@@ -89,13 +91,20 @@ def _read(source: str | Path | bytes | Rows, path: Path, files: Files, stage: St
     reader = FileReader(files, stage.progress)
     pictures = PictureReader(reader.folder, stage.progress)
     tables, problems = _check(tables, problems, _checks(reader, pictures), strict=strict)
+    return _make(path, hashlib.sha256(hashed).hexdigest(), data, tables, problems, reader, pictures)
+
+
+def _make(
+    path: Path, digest: str, data: bytes | None, tables: Tables, problems: Sequence[Problem], files: FileReader,
+    pictures: PictureReader,
+) -> Inventory:  # fmt: skip
     return Inventory(
         source=path,
-        sha256=hashlib.sha256(hashed).hexdigest(),
+        sha256=digest,
         data=data,
         problems=tuple(problems),
         corrections=tuple(one for table in tables.values() for one in table.corrections),
-        **_build(tables, reader, pictures),
+        **_build(tables, files, pictures),
     )
 
 
@@ -120,6 +129,61 @@ def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Ta
         found, language, problems = _find_sheets(list(book.sheets))
         problems += _note_hidden(found, book.hidden)
         return _parse({name: (book.cells(own), code) for name, (own, code) in found.items()}, language, problems)
+
+
+def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> HeldSheets:
+    """Read the cells of every sheet of a workbook and hold them in memory; see `read_held`.
+
+    Raises
+    ------
+    WorkbookError
+        If the file cannot be opened as a workbook at all.
+    """
+    with Book(data, name, progress) as book:
+        found, language, problems = _find_sheets(list(book.sheets))
+        problems += _note_hidden(found, book.hidden)
+        return HeldSheets(
+            name=name,
+            cells={sheet: hold_cells(book, own) for sheet, (own, _) in found.items()},
+            languages={sheet: code for sheet, (_, code) in found.items()},
+            language=language,
+            problems=tuple(problems),
+        )
+
+
+def parse_held(held: HeldSheets) -> tuple[Tables, list[Problem]]:
+    """Return the tables of sheets that are held in memory, and all problems, as `read_tables` does."""
+    found: dict[str, tuple[Source, str]] = {name: (one, held.languages[name]) for name, one in held.cells.items()}
+    return _parse(found, held.language, held.problems)
+
+
+def build_held(
+    tables: Tables,
+    problems: Sequence[Problem],
+    path: Path,
+    records: Files,
+    progress: Progress = SILENT,
+    kept: KeptFiles | None = None,
+) -> Inventory:
+    """Return the inventory of tables that `parse_held` returned, as ``read_inventory(strict=False)`` does.
+
+    Parameters
+    ----------
+    tables, problems
+        What `parse_held` returned.
+    path : Path
+        The workbook; it is not read.
+    records : mapping of str to bytes, or Path, optional
+        The files that it names, or the folder in which they are.
+    progress : Progress
+        Checked before every file.
+    kept : KeptFiles, optional
+        What earlier readings made of those files.
+    """
+    reader = FileReader(records, progress, kept)
+    pictures = PictureReader(reader.folder, progress, kept)
+    checked, found = _check(tables, [*problems], _checks(reader, pictures), strict=False)
+    return _make(path, "", None, checked, found, reader, pictures)
 
 
 def _parse(

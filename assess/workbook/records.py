@@ -22,6 +22,7 @@ from assess.motion.record import Record
 from assess.progress import Progress
 from assess.workbook.allowance import Allowance
 from assess.workbook.habits import CellError
+from assess.workbook.kept_files import KeptFiles, find_key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.values import shorten
 
@@ -42,6 +43,8 @@ class FileReader:
         The files by name, or the folder in which they are.
     progress : Progress
         Checked before every file, and every member of an archive.
+    kept : KeptFiles, optional
+        What earlier readings of the workbook made of its files.
 
     Attributes
     ----------
@@ -53,7 +56,8 @@ class FileReader:
         The recorded motions of the floors, by the number of their row and axis.
     """
 
-    def __init__(self, files: Files, progress: Progress) -> None:
+    def __init__(self, files: Files, progress: Progress, kept: KeptFiles | None = None) -> None:
+        self.kept = kept or KeptFiles()
         self.folder = files.resolve() if isinstance(files, Path) else None
         given = files if isinstance(files, Mapping) else {}
         self.given = {posixpath.normpath(_posix(name)): data for name, data in given.items()}
@@ -89,14 +93,12 @@ class FileReader:
 
     def _read_hazard(self, file: str, latitude: float | None, longitude: float | None) -> HazardCurve:
         content, address = self._find(file)
-        name = PurePosixPath(_posix(address)).name
-        try:
-            data = content if isinstance(content, bytes) else read_hazard_bytes(content)
-            curve = parse_hazard(data, name, latitude=latitude, longitude=longitude)
-        except InputError as error:
-            fix = fill("Correct the file, or give a CSV file with the columns pga_g,annual_rate.")
-            raise CellError(fill("the hazard curve cannot be used: {why}.", why=error.message), fix) from None
-        self.hashes[file] = hashlib.sha256(data).hexdigest()
+        key = find_key(content, "hazard", latitude, longitude)
+        found = self.kept.take(key, self._allowance, lambda: _parse_hazard(content, address, latitude, longitude))
+        if isinstance(found, CellError):
+            raise found
+        curve: HazardCurve
+        curve, self.hashes[file] = found
         return curve
 
     def check_records(self, tables: Tables) -> Iterator[Problem]:
@@ -147,10 +149,21 @@ class FileReader:
         content, address = self._find(file)
         if address not in self._read:
             self.progress.check()
-            found, digest = self._read[address] = _parse(content, address, self._allowance, self.progress)
+            found, digest = self._read[address] = self._take(content, address)
             if not isinstance(found, CellError):
                 self.hashes[file] = digest
         return self._read[address]
+
+    def _take(self, content: bytes | Path, address: str) -> tuple[tuple[Record, ...] | CellError, str]:
+        """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read."""
+        allowance, key = self._allowance, find_key(content, "record")
+        try:
+            found: tuple[tuple[Record, ...] | CellError, str] = self.kept.take(
+                key, allowance, lambda: _parse(content, address, allowance, self.progress)
+            )
+        except CellError as error:  # of the allowance
+            return error, ""
+        return found
 
     def _find(self, file: str) -> tuple[bytes | Path, str]:
         """Return the bytes of a file, or where it is, and its address."""
@@ -167,7 +180,13 @@ class FileReader:
 def _parse(
     data: bytes | Path, address: str, allowance: Allowance, progress: Progress
 ) -> tuple[tuple[Record, ...] | CellError, str]:
-    """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read."""
+    """Return the records of a file and the hash of its bytes; what is wrong where it cannot be read.
+
+    Raises
+    ------
+    CellError
+        If it is more than a workbook may name.
+    """
     try:
         read = data if isinstance(data, bytes) else read_bytes(data)
         allowance.take_record(len(read), is_archive=is_archive(read))
@@ -176,8 +195,20 @@ def _parse(
         return found, hashlib.sha256(read).hexdigest()
     except RecordError as error:
         return CellError(fill("the record cannot be read: {why}.", why=error.message)), ""
-    except CellError as error:
-        return error, ""
+
+
+def _parse_hazard(
+    content: bytes | Path, address: str, latitude: float | None, longitude: float | None
+) -> tuple[HazardCurve, str] | CellError:
+    """Return the curve of a file and the hash of its bytes; what is wrong where it cannot be used."""
+    try:
+        data = content if isinstance(content, bytes) else read_hazard_bytes(content)
+        name = PurePosixPath(_posix(address)).name
+        curve = parse_hazard(data, name, latitude=latitude, longitude=longitude)
+    except InputError as error:
+        fix = fill("Correct the file, or give a CSV file with the columns pga_g,annual_rate.")
+        return CellError(fill("the hazard curve cannot be used: {why}.", why=error.message), fix)
+    return curve, hashlib.sha256(data).hexdigest()
 
 
 def _check_direction(
@@ -207,6 +238,21 @@ def find_file(text: str, folder: Path) -> Path:
     CellError
         If the name leads outside the folder, or no such file is there.
     """
+    path = find_place(text, folder)
+    if not path.is_file():
+        message = fill("the file {name} was not found next to the workbook.", name=shorten(text))
+        raise CellError(message, fill("Check the name, or copy the file there."))
+    return path
+
+
+def find_place(text: str, folder: Path) -> Path:
+    """Return where the file that `text` names inside `folder` belongs, be it there or not.
+
+    Raises
+    ------
+    CellError
+        If the name leads outside the folder, or can be that of no file.
+    """
     name = shorten(text)
     if not _is_inside(text):
         raise CellError(
@@ -215,16 +261,13 @@ def find_file(text: str, folder: Path) -> Path:
         )
     try:
         path = (folder / _posix(text)).resolve()
-        is_file = path.is_file()
+        path.is_file()
     except (OSError, RuntimeError):  # a name that is too long; links that lead in a circle
         message = fill("the file {name} cannot be found under that name.", name=name)
         raise CellError(message, fill("Give it a shorter, simpler name.")) from None
     if not path.is_relative_to(folder):
         message = fill("the file {name} is a link that leads outside the workbook's folder.", name=name)
         raise CellError(message, fill("Copy it next to the workbook."))
-    if not is_file:
-        message = fill("the file {name} was not found next to the workbook.", name=name)
-        raise CellError(message, fill("Check the name, or copy the file there."))
     return path
 
 

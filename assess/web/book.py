@@ -1,0 +1,342 @@
+"""One open workbook: its bytes, its cells in memory, what was edited, and the file on the disk that is saved.
+
+The bytes that were opened are the base. Edits change the cells that are held in memory; `Book.write` writes those that
+differ from the base into its bytes, and after `Book.save` what was saved is the base. All methods may be called from
+any thread.
+"""
+
+from pathlib import Path
+from threading import Lock, RLock
+from typing import Any, Literal, Self
+
+from assess.errors import InputError, OutputError, WorkbookError
+from assess.i18n import fill
+from assess.web.cell_edits import EditsRefused, Locks, take_edits
+from assess.web.columns import PageSheet, find_sheets, find_units, show
+from assess.web.disk_file import ChangedOutsideError, DiskFile
+from assess.web.history import CellPlace, Contents, History, Step
+from assess.web.named_files import FILES, add_file, list_missing
+from assess.web.snapshot import Snapshot
+from assess.web.stored_values import LiveRows, find_live, write_changes
+from assess.workbook.held import HeldSheets
+from assess.workbook.kept_files import KeptFiles
+from assess.workbook.read import hold_sheets, parse_held
+
+__all__ = ["Book", "ChangedOutsideError", "EditsRefused", "Snapshot", "VersionError"]
+
+
+class VersionError(InputError):
+    """The book has another version than the one that was to be changed; `state` is its state."""
+
+    def __init__(self, state: dict[str, Any]) -> None:
+        self.state = state
+        super().__init__(fill("the workbook was changed meanwhile: its changes have to be read first."))
+
+
+class Book:
+    """One open workbook; made by `open_disk` or `hold`."""
+
+    def __init__(self, name: str, data: bytes, folder: Path, file: DiskFile | None) -> None:
+        self.name, self.folder, self._file = name, folder.resolve(), file
+        self.version = 1
+        self._lock, self._saving = RLock(), Lock()
+        self._kept = KeptFiles()
+        self._save_error, self._changed_outside = "", False
+        self._take_in(data)
+
+    @classmethod
+    def open_disk(cls, path: Path) -> Self:
+        """Open a workbook that is saved to its file; WorkbookError where it is none."""
+        file = DiskFile(path)
+        return cls(path.name, file.read(), path.resolve().parent, file)
+
+    @classmethod
+    def hold(cls, name: str, data: bytes, folder: Path) -> Self:
+        """Open the bytes of a workbook; files that it names are looked for in a folder of its own.
+
+        Raises
+        ------
+        WorkbookError
+            If they are no workbook.
+        """
+        return cls(name, data, folder, None)
+
+    def _take_in(self, data: bytes) -> None:
+        """Begin with the bytes of a workbook, and nothing edited."""
+        held = hold_sheets(data, self.name)
+        if not held.cells:
+            raise WorkbookError(held.problems)
+        tables, _ = parse_held(held)
+        self._data, self._locks = data, Locks(data, self.name)
+        self.sheets: dict[str, PageSheet] = find_sheets(held, tables)
+        self.language, self.units = held.language, find_units(self.sheets)
+        self._history, self._different = History(), set[CellPlace]()
+        self._now = self._base = self._snap(held)
+        self._base_live: LiveRows | None = None
+        self._written: tuple[int, bytes] = (self.version, data)
+        self._missing: list[dict[str, Any]] | None = None
+
+    def _snap(self, held: HeldSheets) -> Snapshot:
+        return Snapshot(self.version, held, self.sheets, self.path or Path(self.name), self.folder, self._kept)
+
+    # ------------------------------------------------------------ what it is
+
+    @property
+    def mode(self) -> Literal["disk", "held"]:
+        """Whether it is saved to its file, or downloaded."""
+        return "held" if self._file is None else "disk"
+
+    @property
+    def path(self) -> Path | None:
+        """The file on the disk."""
+        return None if self._file is None else self._file.path
+
+    def snapshot(self) -> Snapshot:
+        """Return the book as it is now; it does not change with the book."""
+        with self._lock:
+            return self._now
+
+    def state(self) -> dict[str, Any]:
+        """Return what the page shows of the book as a whole."""
+        with self._lock:
+            return {
+                "version": self.version,
+                "unsaved": bool(self._different),
+                "save_error": str(self._save_error),
+                "changed_outside": self._changed_outside,
+                "can_undo": self._history.at > 0,
+                "can_redo": self._history.at < len(self._history.steps),
+            }
+
+    def describe(self) -> dict[str, Any]:
+        """Return everything that the page shows of the cells and of the files."""
+        with self._lock:
+            now, found = self._now, {"name": self.name, "mode": self.mode, "language": self.language}
+            missing = self._find_missing(anew=True)
+            state = self.state()
+        cells = now.cells.cells
+        sheets = [one.describe(cells.get(name)) for name, one in now.sheets.items()]
+        return {
+            "version": now.version,
+            **found,
+            "units": self.units,
+            "state": state,
+            "missing": missing,
+            "sheets": sheets,
+        }
+
+    # ------------------------------------------------------------ edits
+
+    def edit(self, version: int, edits: object, label: str) -> dict[str, Any]:
+        """Change cells, all of them or none.
+
+        Parameters
+        ----------
+        version : int
+            That which the edits rest on.
+        edits : object
+            A list of ``[sheet, row, at, value]``.
+        label : str
+            What the step is, in a word.
+
+        Returns
+        -------
+        dict
+            CHANGE: every cell that was edited, as it is now.
+
+        Raises
+        ------
+        VersionError
+            If the book has another version.
+        EditsRefused
+            If any cell cannot be changed so.
+        InputError
+            If `edits` is no list of edits.
+        """
+        with self._lock:
+            self._check_version(version)
+            held = self._now.cells
+            wanted = take_edits(edits, self.sheets, held, self._locks)
+            new = {place: held.cells[place[0]].as_read(place[1:], value) for place, value in wanted.items()}
+            old = {place: held.cells[place[0]].value(place[1:]) for place in new}
+            changed = {place: value for place, value in new.items() if not _is_same(old[place], value)}
+            if changed:
+                self._apply(changed)
+                self._history.add(Step(label, {place: old[place] for place in changed}, changed))
+            return self._describe_change(new)
+
+    def undo(self, version: int) -> dict[str, Any]:
+        """Take the last step back; raises VersionError if the book has another version."""
+        with self._lock:
+            self._check_version(version)
+            step = self._history.back()
+            return self._go(step.before if step else {})
+
+    def redo(self, version: int) -> dict[str, Any]:
+        """Do the last step again that was taken back; raises VersionError if the book has another version."""
+        with self._lock:
+            self._check_version(version)
+            step = self._history.forward()
+            return self._go(step.after if step else {})
+
+    def _go(self, contents: Contents) -> dict[str, Any]:
+        if contents:
+            self._apply(contents)
+        return self._describe_change(contents)
+
+    def _check_version(self, version: int) -> None:
+        if version != self.version:
+            raise VersionError(self.state())
+
+    def _apply(self, contents: Contents) -> None:
+        by_sheet: dict[str, dict[tuple[int, int], Any]] = {}
+        for (sheet, row, at), value in contents.items():
+            by_sheet.setdefault(sheet, {})[row, at] = value
+        self.version += 1
+        self._now = self._snap(self._now.cells.replaced(by_sheet))
+        self._compare(contents)
+        if any(self._names_file(place) for place in contents):
+            self._missing = None
+
+    def _compare(self, places: Contents | set[CellPlace]) -> None:
+        """Note of some cells whether they differ from the base."""
+        now, base = self._now.cells.cells, self._base.cells.cells
+        for place in places:
+            sheet, *cell = place
+            if _is_same(now[sheet].value((cell[0], cell[1])), base[sheet].value((cell[0], cell[1]))):
+                self._different.discard(place)
+            else:
+                self._different.add(place)
+
+    def _names_file(self, place: CellPlace) -> bool:
+        column = self.sheets[place[0]].find(place[1], place[2])
+        return bool(column and column.column and (place[0], column.column.name) in FILES)
+
+    def _describe_change(self, places: Contents) -> dict[str, Any]:
+        cells = self._now.cells.cells
+        shown = [[sheet, row, at, show(cells[sheet].value((row, at)))] for sheet, row, at in places]
+        missing = self._find_missing()
+        return {"state": self.state(), "cells": shown, "language": self.language, "missing": missing}
+
+    # ------------------------------------------------------------ bytes and the disk
+
+    def write(self) -> bytes:
+        """Return the workbook with all changes and the live values that follow; its very bytes where nothing differs.
+
+        Raises
+        ------
+        WorkbookError
+            If something in it cannot be changed with certainty.
+        """
+        return self._write()[1]
+
+    def _write(self) -> tuple[Snapshot, bytes, list[CellPlace]]:
+        """Return the book as it is now, its bytes, and the cells that differ from the base."""
+        with self._saving:
+            with self._lock:
+                now, base, data, live = self._now, self._base, self._data, self._base_live
+                different, written = sorted(self._different), self._written
+            if not different:
+                return now, data, different
+            if written[0] == now.version:
+                return now, written[1], different
+            if live is None:
+                live = find_live(base)
+            patched = write_changes(data, base, now, different, live)
+            with self._lock:
+                if self._base is base:
+                    self._base_live, self._written = live, (now.version, patched)
+            return now, patched, different
+
+    def save(self) -> None:
+        """Save the changes to the file, whole or not at all.
+
+        A file that cannot be written (read-only, gone, no space) is told by ``state()["save_error"]``; nothing is lost.
+
+        Raises
+        ------
+        ChangedOutsideError
+            If another program has changed the file.
+        """
+        if self._file is None:
+            return
+        try:
+            found = self._write()
+            with self._saving:
+                self._replace(self._file, *found)
+        except ChangedOutsideError:
+            with self._lock:
+                self._changed_outside = True
+            raise
+        except (OutputError, WorkbookError) as error:
+            with self._lock:
+                self._save_error = error.message
+
+    def _replace(self, file: DiskFile, now: Snapshot, data: bytes, different: list[CellPlace]) -> None:
+        """Replace the file, and take what was saved for the base."""
+        if different:
+            file.replace(data)
+        with self._lock:
+            self._save_error, self._changed_outside = "", False
+            if different:
+                self._data, self._base, self._base_live = data, now, None
+                self._compare({*different, *self._different})  # more may have been edited meanwhile
+
+    def check_outside(self) -> bool:
+        """Return whether another program has changed the file since it was opened or saved."""
+        if self._file is None:
+            return False
+        with self._saving:
+            is_changed = self._file.is_changed()
+        with self._lock:
+            self._changed_outside = is_changed
+        return is_changed
+
+    def reload(self) -> None:
+        """Read the file again; what was not saved, and the history, are dropped.
+
+        Raises
+        ------
+        WorkbookError
+            If it is no longer a workbook; the book stays as it is.
+        """
+        if self._file is None:
+            return
+        with self._saving, self._lock:
+            file = DiskFile(self._file.path)
+            data = file.read()
+            self.version += 1
+            self._take_in(data)
+            self._file, self._save_error, self._changed_outside = file, "", False
+
+    # ------------------------------------------------------------ the files that it names
+
+    def missing(self) -> list[dict[str, Any]]:
+        """Return the files that it names and that are not there."""
+        with self._lock:
+            return self._find_missing(anew=True)
+
+    def _find_missing(self, *, anew: bool = False) -> list[dict[str, Any]]:
+        if self._missing is None or anew:
+            self._missing = list_missing(self._now.cells, self.sheets, self.folder)
+        return self._missing
+
+    def add_file(self, name: str, data: bytes) -> None:
+        """Write a file that it names and that is missing; the book gets a new version.
+
+        Raises
+        ------
+        InputError
+            If it names no such file, or the file is there.
+        OutputError
+            If it cannot be written.
+        """
+        with self._lock:
+            add_file(name, data, self._find_missing(anew=True), self.folder)
+            self.version += 1
+            self._now, self._missing = self._snap(self._now.cells), None
+
+
+def _is_same(one: Any, other: Any) -> bool:
+    """Tell whether two cells hold the same: TRUE is not 1."""
+    return isinstance(one, bool) == isinstance(other, bool) and bool(one == other)

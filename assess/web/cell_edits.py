@@ -1,0 +1,200 @@
+"""Edits of cells as they come from outside: each is taken as its column asks, or refused with the reason."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from assess.errors import InputError, WorkbookError
+from assess.i18n import Text, fill
+from assess.web.columns import PageColumn, PageSheet
+from assess.web.history import CellPlace
+from assess.workbook.habits import CellError
+from assess.workbook.held import HeldCells, HeldSheets
+from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
+from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Area, Value, find_locked, read_back
+from assess.workbook.places import split_range
+from assess.workbook.typed import is_free, understand
+from assess.workbook.values import is_blank, shorten
+
+MOST_EDITS = 500_000
+"""Cells of one edit."""
+
+Refused = list[list[Any]]
+"""Sheet, row, column of each cell that is refused, and why."""
+
+
+class EditsRefused(InputError):  # noqa: N818 - what happened, as callers say it
+    """Some cells cannot be edited as asked; nothing has changed. `refused` names each with the reason."""
+
+    def __init__(self, refused: Refused) -> None:
+        self.refused = refused
+        super().__init__(fill("{n:,} of the cells cannot be changed: {why}", n=len(refused), why=refused[0][3]))
+
+
+@dataclass(slots=True)
+class Locks:
+    """Cells of a workbook that no edit may change; found when a sheet is edited for the first time."""
+
+    data: bytes
+    name: str
+    _areas: dict[str, list[tuple[Area, Text]]] = field(default_factory=dict)
+    _faults: dict[str, str] = field(default_factory=dict)
+
+    def find(self, cells: HeldCells, row: int, at: int) -> str:
+        """Return why a cell of a sheet cannot be changed, "" where it can."""
+        place = (row, at)
+        if place in cells.marks.formulas:
+            return fill("it holds a formula: change it in your spreadsheet program.")
+        if place in cells.marks.unknown:
+            return fill("it holds something that is not known: change it in your spreadsheet program.")
+        areas = self._read(cells)
+        if cells.title in self._faults:
+            return self._faults[cells.title]
+        inside = (why for (left, right, top, bottom), why in areas if left <= at + 1 <= right and top <= row <= bottom)
+        return next(inside, "")
+
+    def _read(self, cells: HeldCells) -> Sequence[tuple[Area, Text]]:
+        """Return the areas of a sheet that cannot be changed."""
+        title = cells.title
+        if title not in self._areas:
+            self._areas[title] = list(_list_covered(cells.merged))
+            try:
+                self._areas[title] += find_locked(self.data, title, name=self.name)
+            except WorkbookError as error:
+                self._faults[title] = error.problems[0].message
+        return self._areas[title]
+
+
+def _list_covered(merged: Iterable[str]) -> Iterable[tuple[Area, Text]]:
+    """Yield the cells that merges cover: all of them but the first."""
+    why = fill("it is covered by merged cells.")
+    for reference in merged:
+        if (span := split_range(reference)) is not None:
+            left, right, top, bottom = span
+            yield (left + 1, right, top, top), why
+            yield (left, right, top + 1, bottom), why
+
+
+def take_edits(
+    edits: object, sheets: Mapping[str, PageSheet], held: HeldSheets, locks: Locks
+) -> dict[CellPlace, Value]:
+    """Return the values to write by their cells; of several for one cell the last.
+
+    Parameters
+    ----------
+    edits : object
+        A list of ``[sheet, row, at, value]``, as it came from outside.
+    sheets : mapping of str to PageSheet
+        The sheets by their English names.
+    held : HeldSheets
+        Their cells.
+    locks : Locks
+        What cannot be changed.
+
+    Raises
+    ------
+    InputError
+        If it is no such list.
+    EditsRefused
+        If any cell cannot be changed so.
+    """
+    if not isinstance(edits, list) or len(edits) > MOST_EDITS:
+        raise InputError(fill("edits have to be a list of at most {most:,} cells.", most=MOST_EDITS))
+    found: dict[CellPlace, Value] = {}
+    refused: Refused = []
+    for edit in edits:
+        sheet, row, at, value = _take_apart(edit)
+        column, why = _find_column(sheets.get(sheet), row, at)
+        if column is not None:
+            why = locks.find(held.cells[sheet], row, at) or _refuse_value(value)
+        if column is None or why:
+            refused.append([sheet, row, at, str(why)])
+            continue
+        found[sheet, row, at] = taken = take_value(column, value)
+        if isinstance(taken, str) and len(str(read_back(taken) or "")) > LONGEST_TEXT:
+            refused.append([sheet, row, at, str(_too_long())])
+    if refused:
+        raise EditsRefused(refused)
+    return found
+
+
+def _take_apart(edit: object) -> tuple[str, int, int, Value]:
+    """Return the four parts of an edit; raises InputError where it has others."""
+    if isinstance(edit, list) and len(edit) == 4:
+        sheet, row, at, value = edit
+        are_numbers = type(row) is int and type(at) is int
+        if isinstance(sheet, str) and are_numbers and (value is None or isinstance(value, bool | int | float | str)):
+            return sheet, row, at, value
+    raise InputError(fill("an edit has to be a list of sheet, row, column and value."))
+
+
+def _find_column(sheet: PageSheet | None, row: int, at: int) -> tuple[PageColumn | None, str]:
+    if sheet is None:
+        return None, fill("the sheet is not known.")
+    if not sheet.found:
+        return None, fill("the workbook lacks this sheet, or its headers.")
+    if not (1 <= row <= MAX_ROWS and 0 <= at < MAX_COLUMNS):
+        return None, fill("it lies outside the {rows:,} rows and {columns} columns that are read.",
+                          rows=MAX_ROWS, columns=MAX_COLUMNS)  # fmt: skip
+    column = sheet.find(row, at)
+    if column is None and sheet.sheet.layout == "form":
+        return None, fill("no line of the form has its value there.")
+    if column is None and row <= sheet.header:
+        return None, fill("it is a header, or lies above the headers: change it in your spreadsheet program.")
+    if column is None:
+        return None, fill("its column has no header.")
+    if column.is_live:
+        return None, fill("its column is computed.")
+    return column, ""
+
+
+def _too_long() -> Text:
+    return fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
+
+
+def _refuse_value(value: Value) -> str:
+    """Return why no cell can hold a value, "" where one can."""
+    if isinstance(value, str):
+        return _too_long() if len(value) > LONGEST_TEXT else ""
+    is_number = value is None or abs(value) <= LARGEST_NUMBER
+    return "" if is_number else fill("the value is not a number that a cell holds.")
+
+
+def take_value(column: PageColumn, value: Value) -> Value:
+    """Return what belongs into a cell for what was typed: a number in the unit of its header, a choice, a date.
+
+    A text that cannot be read so is returned as it is: reading reports it as a problem of the cell. A text is never
+    taken for a formula.
+    """
+    if not isinstance(value, str | bool):
+        return value
+    if is_blank(value):
+        return None
+    known = column.column
+    if known is None or column.is_blind:
+        return take_number(value) if isinstance(value, str) else value
+    if is_free(known) or (isinstance(value, bool) and known.kind not in ("choice", "flag")):
+        return value
+    try:
+        meant, remark = understand(known, value, column.unit, shorten)
+    except CellError:
+        return value
+    if known.kind in ("choice", "flag"):
+        word = None if remark is None else remark.value
+        return value if word is None else word
+    return meant.strip() if isinstance(meant, str) else meant if isinstance(meant, float | int) else value
+
+
+def take_number(text: str) -> Value:
+    """Return the number that a text is, where it is written as programs write numbers: not 007, not 1e5, not 1,5."""
+    try:
+        number = float(text)
+    except ValueError:
+        return text
+    shown = text.strip()
+    is_plain = shown.isascii() and len(shown) <= 15 and not set(shown) - set("-0123456789.")
+    digits = shown.lstrip("-")
+    is_plain = is_plain and digits[:1].isdigit() and (digits[0] != "0" or digits[1:2] in ("", "."))
+    if not is_plain:
+        return text
+    return int(shown) if number.is_integer() and "." not in shown else number

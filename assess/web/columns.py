@@ -1,0 +1,266 @@
+"""What the page knows of the sheets and their columns: labels, units, kinds, choices, as the workbook has them."""
+
+import datetime
+import math
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from assess.i18n import load_catalogue, speaking
+from assess.units import QUANTITIES
+from assess.workbook.held import HeldCells, HeldSheets
+from assess.workbook.layout import FROZEN, PLACES
+from assess.workbook.names import is_live, plain, say_choices, say_live, split_header, translate
+from assess.workbook.open import MAX_ROWS, UNSAVED, Percent, column_letters
+from assess.workbook.parse import Table, Tables
+from assess.workbook.schema import CLASS, ITEMS, LIVE, SHEETS, Column, Sheet
+from assess.workbook.template import describe
+from assess.workbook.values import is_blank, read_text
+
+IMPERIAL = frozenset({"in", "ft", "in/s", "lb", "lbf"})
+OWN_WIDTH = 14
+"""Width of a column of the user [characters]."""
+
+Shown = float | str | bool | None
+"""A cell as the page shows it."""
+
+
+@dataclass(frozen=True, slots=True)
+class PageColumn:
+    """One column of a table, or one line of a form.
+
+    Attributes
+    ----------
+    at : int
+        The column of its values, from 0.
+    row : int
+        Of a line its row; of a column 0.
+    label, unit : str
+        As the header says.
+    column : Column, optional
+        That of the schema, with its label in the workbook's language; None for a column of the user or a live one.
+    live : int, optional
+        Place among `assess.workbook.schema.LIVE` of what it shows.
+    is_live : bool
+        Whether Excel computes it.
+    is_blind : bool
+        Whether its header lacks a unit that is known, so that its numbers mean nothing.
+    is_hidden : bool
+        Whether the workbook hides it.
+    """
+
+    at: int
+    row: int
+    label: str
+    unit: str = ""
+    column: Column | None = None
+    live: int | None = None
+    is_live: bool = False
+    is_blind: bool = False
+    is_hidden: bool = False
+
+    @property
+    def kind(self) -> str:
+        """What a cell of it holds, as the page calls it."""
+        return self.column.kind if self.column else "live" if self.is_live else "own"
+
+    @property
+    def factor(self) -> float:
+        """Factor from its unit to SI; 1 where the unit is not known."""
+        return QUANTITIES.get(self.column.quantity, {}).get(self.unit, 1.0) if self.column else 1.0
+
+    def describe(self, language: str) -> dict[str, Any]:
+        """Return it as the page takes it, in the language of its sheet."""
+        is_class = self.live is not None and LIVE[self.live] == CLASS
+        found: dict[str, Any] = {
+            "at": self.at, "field": self.column.name if self.column else "class" if is_class else "",
+            "label": self.label, "unit": self.unit, "factor": self.factor, "kind": self.kind, "help": "",
+            "choices": [], "offered": [], "source": "", "required": False, "width": OWN_WIDTH, "hidden": self.is_hidden,
+        }  # fmt: skip
+        if self.column:
+            found |= _describe_known(self.column, language)
+        return {**found, "row": self.row} if self.row else found
+
+
+def _describe_known(column: Column, language: str) -> dict[str, Any]:
+    catalogue = load_catalogue(language)
+    with speaking(catalogue):
+        help_ = describe(column)
+    is_named = column.kind in ("choice", "flag")  # languages are called by their own names
+    return {
+        "help": help_,
+        "choices": list(say_choices(column.choices, language) if is_named else column.choices),
+        "offered": list(map(catalogue.find, column.offered)),
+        "source": column.source,
+        "required": column.required,
+        "width": column.width,
+    }
+
+
+@dataclass(frozen=True, slots=True)
+class PageSheet:
+    """One sheet of the schema in a workbook.
+
+    Attributes
+    ----------
+    sheet : Sheet
+        With its English name, by which the page calls it.
+    title, language : str
+        As the workbook calls it, and the language of that.
+    found : bool
+        Whether it can be read and edited: it is there, and so are the headers of a table.
+    header : int
+        The row of the headers, 0 for a form.
+    columns : mapping of int to PageColumn
+        By the column of a table, by the row of a form's line.
+    """
+
+    sheet: Sheet
+    title: str
+    language: str
+    found: bool = False
+    header: int = 0
+    columns: Mapping[int, PageColumn] = field(default_factory=dict)
+
+    @property
+    def live(self) -> frozenset[int]:
+        """The columns that Excel computes."""
+        return frozenset(at for at, one in self.columns.items() if one.is_live)
+
+    def find(self, row: int, at: int) -> PageColumn | None:
+        """Return the column of a cell, or the line of a form; None for a cell of neither, as headers are."""
+        if self.sheet.layout == "form":
+            return self.columns.get(row) if at == 1 else None
+        return self.columns.get(at) if row > self.header else None
+
+    def field(self, name: str) -> PageColumn | None:
+        """Return the column of a field; None where the workbook lacks it."""
+        return next((one for one in self.columns.values() if one.column and one.column.name == name), None)
+
+    def place(self, name: str, row: int) -> tuple[int, int] | None:
+        """Return the row and the column of a field of a row; of a form the row does not count."""
+        one = self.field(name)
+        return None if one is None else (one.row or row, one.at)
+
+    def describe(self, cells: HeldCells | None) -> dict[str, Any]:
+        """Return it as the page takes it, with its rows."""
+        rows = [] if cells is None or not self.found else list(self._rows(cells))
+        is_form = self.sheet.layout == "form"
+        last = max([self.header, *(one[0] for one in rows[-1:])])
+        return {
+            "name": self.sheet.name, "title": self.title, "layout": self.sheet.layout, "found": self.found,
+            "header_row": self.header, "last_row": last, "capacity": last if is_form else MAX_ROWS,
+            "frozen": 0 if is_form else self._count_frozen(),
+            "columns": [one.describe(self.language) for one in self.columns.values()], "rows": rows,
+        }  # fmt: skip
+
+    def _rows(self, cells: HeldCells) -> Iterator[list[Any]]:
+        live = self.live
+        for number, row in cells.cells.items():
+            if self.header < number <= MAX_ROWS and (shown := show_row(row, live)):
+                yield [number, shown]
+
+    def _count_frozen(self) -> int:
+        """Return how many columns at the left stay in view: as in an empty workbook where they stand as there."""
+        first = sorted(
+            PLACES[self.sheet.name, one.column.name] == one.at for one in self.columns.values() if one.column
+        )
+        return FROZEN.get(self.sheet.name, 1) if all(first) else 1
+
+
+# ---------------------------------------------------------------- cells as the page shows them
+
+
+def show(value: Any) -> Shown:
+    """Return a cell as the page shows it: a date as its text, a formula without result as nothing."""
+    if value is None or value is UNSAVED:
+        return None
+    if isinstance(value, datetime.datetime) and value.time() == datetime.time():
+        return value.date().isoformat()
+    if isinstance(value, bool | int | str):
+        return value
+    if isinstance(value, float) and math.isfinite(value):
+        return float(value) if isinstance(value, Percent) else value
+    return read_text(value)
+
+
+_PLAIN = frozenset({int, str, bool, type(None)})
+
+
+def show_row(cells: Mapping[int, Any], live: Collection[int]) -> list[Shown]:
+    """Return the cells of a row up to the last that is filled; those of live columns are left out."""
+    last = max((at for at in cells if at not in live), default=-1)
+    row = [None if at in live else cells.get(at) for at in range(last + 1)]
+    return [one if type(one) in _PLAIN else show(one) for one in row]
+
+
+# ---------------------------------------------------------------- finding them
+
+
+def find_sheets(held: HeldSheets, tables: Tables) -> dict[str, PageSheet]:
+    """Return the sheets of the schema with their columns, by their English names."""
+    return {sheet.name: _find_sheet(sheet, tables[sheet.name], held.cells.get(sheet.name)) for sheet in SHEETS}
+
+
+def find_units(sheets: Mapping[str, PageSheet]) -> str:
+    """Return in which units most headers of a workbook are: "si" or "imperial"."""
+    units = [one.unit for sheet in sheets.values() for one in sheet.columns.values() if one.column and one.unit]
+    lengths = [one for one in units if one in IMPERIAL or one in ("mm", "cm", "m", "cm/s", "m/s", "kg", "N", "kN")]
+    return "imperial" if 2 * sum(one in IMPERIAL for one in lengths) > len(lengths) else "si"
+
+
+def _find_sheet(sheet: Sheet, table: Table, cells: HeldCells | None) -> PageSheet:
+    language = table.language
+    if cells is None:
+        return PageSheet(sheet, translate(sheet, language).name, language, columns={})
+    if sheet.layout == "form":
+        lines = {one.row: one for one in _list_lines(table, cells)}
+        return PageSheet(sheet, cells.title, language, found=True, columns=lines)
+    columns = {one.at: one for one in _list_columns(sheet, table, cells)} if table.header else {}
+    found = bool(columns)
+    return PageSheet(sheet, cells.title, language, found=found, header=table.header, columns=columns)
+
+
+def _known(table: Table, name: str, at: int, row: int, label: str, *, is_hidden: bool = False) -> PageColumn:
+    unit = table.units.get(name, "")
+    written = split_header(label)[1] or ""
+    is_blind = name in table.blind
+    return PageColumn(
+        at, row, split_header(label)[0], written if is_blind else unit, table.sheet.column(name),
+        is_blind=is_blind, is_hidden=is_hidden,
+    )  # fmt: skip
+
+
+def _list_lines(table: Table, cells: HeldCells) -> Iterator[PageColumn]:
+    names = {row: name for name, row in table.places.items()}
+    for row, one in cells.cells.items():
+        label = one.get(0)
+        if row > MAX_ROWS or label is UNSAVED or is_blank(label):
+            continue
+        if row in names:
+            yield _known(table, names[row], 1, row, read_text(label))
+        else:
+            yield PageColumn(1, row, read_text(label))
+
+
+def _list_columns(sheet: Sheet, table: Table, cells: HeldCells) -> Iterator[PageColumn]:
+    names = {at: name for name, at in table.places.items()}
+    headers = {at: read_text(one) for at, one in cells.cells[table.header].items() if one is not UNSAVED}
+    filled = {at for number, row in cells.cells.items() if number > table.header for at in row}
+    live = _live_labels(table.language) if sheet is ITEMS else {}
+    for at in sorted({at for at, text in headers.items() if text} | filled):
+        label, is_hidden = headers.get(at, ""), at in cells.hidden_columns
+        if at in names:
+            yield _known(table, names[at], at, 0, label, is_hidden=is_hidden)
+            continue
+        text, unit = split_header(label)
+        if label and is_live(sheet, text):
+            yield PageColumn(at, 0, text, unit or "", live=live.get(plain(text)), is_live=True, is_hidden=is_hidden)
+        else:
+            yield PageColumn(at, 0, label or column_letters(at), is_hidden=is_hidden)
+
+
+def _live_labels(language: str) -> dict[str, int]:
+    """Return the place among `LIVE` of what a live column shows, by its label in English or in a language."""
+    with speaking(load_catalogue(language)):
+        return {plain(split_header(text)[0]): at for at, one in enumerate(LIVE) for text in (one, say_live(one))}

@@ -1,0 +1,118 @@
+"""The workbook's own file: read, watched for changes by other programs, and replaced as a whole."""
+
+import hashlib
+import os
+import stat
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from assess.delivery.disk import flush_folder
+from assess.errors import InputError, OutputError
+from assess.i18n import fill
+from assess.workbook.open import read_file
+
+
+class ChangedOutsideError(InputError):
+    """The file was changed by another program since it was read; it is left as it is."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(
+            fill("{name} was changed by another program: read it again, or download your changes.", name=path.name)
+        )
+
+
+def find_hash(data: bytes) -> str:
+    """Return the SHA-256 of bytes."""
+    return hashlib.sha256(data).hexdigest()
+
+
+@dataclass(slots=True)
+class DiskFile:
+    """A workbook on the disk, and what it held when it was last read or saved.
+
+    Where `path` is a link, the file that it leads to is replaced, and the link stays.
+    """
+
+    path: Path
+    digest: str = ""
+    signature: tuple[int, ...] = ()
+
+    def read(self) -> bytes:
+        """Return the bytes; raises WorkbookError where they cannot be read."""
+        self.signature = self._look()
+        data = read_file(self.path)
+        self.digest = find_hash(data)
+        return data
+
+    def is_changed(self) -> bool:
+        """Tell whether it holds other bytes than those last read or saved; a file that is gone has not changed."""
+        found = self._look()
+        if not found or found == self.signature:
+            return False
+        try:
+            is_same = find_hash(self.path.read_bytes()) == self.digest
+        except OSError:
+            return False
+        if is_same:
+            self.signature = found
+        return not is_same
+
+    def replace(self, data: bytes) -> None:
+        """Replace it by other bytes, whole or not at all; its access rights stay.
+
+        Raises
+        ------
+        ChangedOutsideError
+            If it holds other bytes than those last read or saved.
+        OutputError
+            If it cannot be written, with the reason.
+        """
+        try:
+            target = self.path.resolve(strict=True)
+            mode = stat.S_IMODE(target.stat().st_mode)
+        except (OSError, RuntimeError):
+            raise OutputError(
+                fill("{name} is no longer in its folder: your changes are kept here; download them.",
+                     name=self.path.name)
+            ) from None  # fmt: skip
+        if not mode & stat.S_IWUSR or not os.access(target, os.W_OK):
+            raise OutputError(
+                fill("{name} is read-only: allow writing, or download your changes.", name=self.path.name)
+            )
+        if self.is_changed():
+            raise ChangedOutsideError(self.path)
+        try:
+            self._swap(target, data, mode)
+        except OSError as error:
+            raise OutputError(
+                fill("{name} cannot be saved: {why}. Close it in other programs; your changes are kept here.",
+                     name=self.path.name, why=error.strerror or error)
+            ) from None  # fmt: skip
+        self.digest, self.signature = find_hash(data), self._look()
+
+    def _swap(self, target: Path, data: bytes, mode: int) -> None:
+        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".tmp", dir=target.parent)
+        staged = Path(name)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+            staged.chmod(mode)
+            if self.is_changed():  # while it was written
+                raise ChangedOutsideError(self.path)
+            staged.replace(target)
+        finally:
+            with suppress(OSError):
+                staged.unlink(missing_ok=True)
+        flush_folder(target.parent)
+
+    def _look(self) -> tuple[int, ...]:
+        """Return what tells a changed file without reading it, nothing where it is gone."""
+        try:
+            found = self.path.stat()
+        except OSError:
+            return ()
+        return found.st_mtime_ns, found.st_size, found.st_ino

@@ -1,0 +1,81 @@
+"""A book at one version: nothing of it changes, so that answers can be worked out while the book is edited."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from threading import Lock
+
+from assess.errors import Problem
+from assess.model import Inventory
+from assess.plans import Drawing
+from assess.progress import SILENT
+from assess.web.columns import PageSheet
+from assess.workbook.held import HeldSheets
+from assess.workbook.kept_files import KeptFiles
+from assess.workbook.parse import Tables
+from assess.workbook.picture_files import PictureReader
+from assess.workbook.read import build_held, parse_held
+
+
+class Snapshot:
+    """One version of a book.
+
+    Attributes
+    ----------
+    version : int
+        That of the book.
+    cells : HeldSheets
+        Its cells.
+    sheets : mapping of str to PageSheet
+        Its sheets with their columns, by their English names.
+    path : Path
+        The workbook, which may lie in no folder.
+    files : Path
+        The folder in which the files that it names are looked for.
+    """
+
+    def __init__(
+        self, version: int, cells: HeldSheets, sheets: Mapping[str, PageSheet], path: Path, files: Path,
+        kept: KeptFiles,
+    ) -> None:  # fmt: skip
+        self.version, self.cells, self.sheets, self.path, self.files = version, cells, sheets, path, files
+        self._kept = kept
+        self._lock = Lock()
+        self._read: tuple[Tables, Inventory] | None = None
+
+    @property
+    def tables(self) -> Tables:
+        """The typed rows of every sheet, those with errors among them."""
+        return self._reading()[0]
+
+    @property
+    def inventory(self) -> Inventory:
+        """What the workbook holds; rows with errors are left out. It has neither bytes nor their hash."""
+        return self._reading()[1]
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """All problems, errors among them."""
+        return self._reading()[1].problems
+
+    def find_drawing(self, text: str, width: float | None) -> Drawing | None:
+        """Return what is drawn of the plan of a floor, placed or not; None where its file cannot be used.
+
+        Parameters
+        ----------
+        text : str
+            The file as the floor names it.
+        width : float, optional
+            Width of the whole plan [m], where it is filled in.
+        """
+        with self._kept.more():
+            return PictureReader(self.files, SILENT, self._kept).find_drawing(text, width)
+
+    def _reading(self) -> tuple[Tables, Inventory]:
+        """Return what is read of the cells: once, by the first who asks."""
+        with self._lock:
+            if self._read is None:
+                tables, problems = parse_held(self.cells)
+                with self._kept:
+                    inventory = build_held(tables, problems, self.path, self.files, SILENT, self._kept)
+                self._read = tables, inventory
+            return self._read

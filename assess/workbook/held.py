@@ -1,0 +1,262 @@
+"""The cells of a workbook in memory: read once from its bytes, then changed without reading them again.
+
+A change makes a new form of the sheet and shares every row that it does not touch. Its cells hold what reading the
+bytes would find that `assess.workbook.patch` writes for the same values: a number in a cell that shows dates is a date.
+"""
+
+import datetime
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import islice
+from typing import Any, ClassVar
+
+from assess.errors import Problem
+from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, Percent, SheetCells, column_letters, read_number
+from assess.workbook.patch import Value, read_back
+
+Place = tuple[int, int]
+"""The row of a cell, from 1, and its column, from 0."""
+
+_TIMES = (datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
+_CONTENT = frozenset({"v", "f", "is", "t", "r", "rPh", "phoneticPr", "rPr", "rFont", "charset", "family", "b", "i",
+                      "strike", "outline", "shadow", "condense", "extend", "color", "sz", "u", "vertAlign",
+                      "scheme"})  # fmt: skip
+"""What a cell may hold: its value, its formula, a text in parts with their fonts (ECMA-376 Part 1, 18.3.1.4, 18.4)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Marks:
+    """What the values of a sheet's cells do not show; it stays while these change.
+
+    Attributes
+    ----------
+    formulas : set of Place
+        Cells that hold a formula.
+    unknown : set of Place
+        Cells that hold elements which no change understands.
+    formats : mapping of Place to str or None
+        The format of a cell that shows its number as a date, a time or a percentage; None for a cell that does not,
+        although its row or column does.
+    row_formats : mapping of int to str or None
+        That of the rows that have one.
+    column_formats : sequence of (int, int, str or None)
+        First and last column, from 0, and that of those columns.
+    low : int
+        Last row of a cell that holds something but no value that is read, such as a formula whose result is blank.
+    is_1904 : bool
+        Whether dates are counted from 1904.
+    """
+
+    formulas: frozenset[Place] = frozenset()
+    unknown: frozenset[Place] = frozenset()
+    formats: Mapping[Place, str | None] = field(default_factory=dict)
+    row_formats: Mapping[int, str | None] = field(default_factory=dict)
+    column_formats: Sequence[tuple[int, int, str | None]] = ()
+    low: int = 0
+    is_1904: bool = False
+
+    def format_at(self, place: Place) -> str | None:
+        """Return the format that a number in a cell gets: its own, else that of its row or column."""
+        row, at = place
+        if place in self.formats:
+            return self.formats[place]
+        if row in self.row_formats:
+            return self.row_formats[row]
+        return next((code for first, last, code in self.column_formats if first <= at <= last), None)
+
+
+@dataclass(slots=True)
+class KeptRows:
+    """Rows that `assess.workbook.parse` has read, by number: cells, the row, what was reported and corrected."""
+
+    headers: object = None
+    rows: dict[int, tuple[Cells, Any, Sequence[Any], Sequence[Any]]] = field(default_factory=dict)
+
+    def serve(self, headers: object) -> None:
+        """Forget all rows unless they were parsed by equal headers."""
+        if self.headers != headers:
+            self.headers, self.rows = headers, {}
+
+
+@dataclass(frozen=True, slots=True)
+class HeldCells:
+    """The cells of one sheet, for `assess.workbook.parse.parse_sheet` as `SheetCells` are.
+
+    `cells` holds the rows that hold any, in their order; nothing of it is ever changed. The other attributes are those
+    of `SheetCells`.
+    """
+
+    header_rows: ClassVar[int] = HEADER_ROWS
+    top: ClassVar[str] = "A1"
+
+    title: str
+    cells: dict[int, Cells]
+    marks: Marks = Marks()
+    far: str = ""
+    merged: Sequence[str] = ()
+    hidden_rows: Sequence[int] = ()
+    hidden_columns: frozenset[int] = frozenset()
+    kept: KeptRows = field(default_factory=KeptRows, compare=False)
+
+    def rows(self) -> Iterator[tuple[int, Cells]]:
+        """Yield the number and the cells of each row that holds any, from the top."""
+        return iter(self.cells.items())
+
+    @property
+    def last_row(self) -> int:
+        """The last row that holds a value or a formula, 0 in an empty sheet."""
+        return max(self.marks.low, *islice(reversed(self.cells), 1), 0)
+
+    @staticmethod
+    def address(row: int, at: int | None = None) -> str:
+        """Return how messages call a cell, ``C3``; that of the first column where no column is given."""
+        return f"{column_letters(at or 0)}{row}"
+
+    def value(self, place: Place) -> Any:
+        """Return what a cell holds, None where it is blank."""
+        return self.cells.get(place[0], {}).get(place[1])
+
+    def as_read(self, place: Place, value: Value) -> Any:
+        """Return what reading finds in a cell once `patch_workbook` has written a value into it."""
+        found = read_back(value)
+        if found is None or isinstance(found, bool | str):
+            return found
+        return read_number(found, self.marks.format_at(place), is_1904=self.marks.is_1904)
+
+    def as_written(self, value: Any) -> Value:
+        """Return the value to write, for a cell whose value was read."""
+        if isinstance(value, _TIMES):
+            from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, to_excel
+
+            serial: float = to_excel(value, MAC_EPOCH if self.marks.is_1904 else WINDOWS_EPOCH)  # type: ignore[no-untyped-call]
+            return serial
+        found: Value = float(value) if isinstance(value, Percent) else value
+        return found
+
+    def changed(self, edits: Mapping[Place, Value]) -> "HeldCells":
+        """Return the sheet with the values of some cells changed, as `patch_workbook` would write them."""
+        return self.replaced({place: self.as_read(place, value) for place, value in edits.items()})
+
+    def replaced(self, values: Mapping[Place, Any]) -> "HeldCells":
+        """Return the sheet with what reading finds in some cells replaced; None for a blank one."""
+        rows: dict[int, Cells] = {}
+        for (row, at), value in values.items():
+            if row not in rows:
+                rows[row] = dict(self.cells.get(row, {}))
+            if value is None:
+                rows[row].pop(at, None)
+            else:
+                rows[row][at] = value
+        cells = dict(self.cells) | {row: _in_order(found) for row, found in rows.items() if found}
+        for row in (row for row, found in rows.items() if not found):
+            cells.pop(row, None)
+        if any(row not in self.cells for row in rows):
+            cells = dict(sorted(cells.items()))
+        return replace(self, cells=cells)
+
+
+def _in_order(cells: Cells) -> Cells:
+    return dict(sorted(cells.items()))
+
+
+@dataclass(frozen=True, slots=True)
+class HeldSheets:
+    """The sheets of a workbook that are read, by their English names; those of one's own are left out.
+
+    Attributes
+    ----------
+    name : str
+        How messages call the workbook.
+    cells : mapping of str to HeldCells
+        The sheets that it has.
+    languages : mapping of str to str
+        Codes of the languages of their names.
+    language : str
+        That of the workbook.
+    problems : tuple of Problem
+        Sheets that are missing, there twice or hidden.
+    """
+
+    name: str
+    cells: Mapping[str, HeldCells]
+    languages: Mapping[str, str]
+    language: str
+    problems: tuple[Problem, ...] = ()
+
+    def changed(self, edits: Mapping[str, Mapping[Place, Value]]) -> "HeldSheets":
+        """Return the workbook with the values of some cells changed, as `patch_workbook` would write them."""
+        changed = {name: self.cells[name].changed(one) for name, one in edits.items()}
+        return replace(self, cells={**self.cells, **changed})
+
+    def replaced(self, values: Mapping[str, Mapping[Place, Any]]) -> "HeldSheets":
+        """Return the workbook with what reading finds in some cells replaced."""
+        changed = {name: self.cells[name].replaced(one) for name, one in values.items()}
+        return replace(self, cells={**self.cells, **changed})
+
+
+# ---------------------------------------------------------------- reading
+
+
+def hold_cells(book: Book, sheet: str) -> HeldCells:
+    """Return the cells of a sheet of an open workbook."""
+    found = book.cells_as(HoldingCells, sheet)
+    cells = dict(found.rows())
+    return HeldCells(
+        title=sheet,
+        cells=cells,
+        marks=found.marks(),
+        far=found.far,
+        merged=tuple(found.merged),
+        hidden_rows=tuple(found.hidden_rows),
+        hidden_columns=frozenset(found.hidden_columns),
+    )
+
+
+class HoldingCells(SheetCells):
+    """The cells of one sheet, and while they are read what `Marks` tells of them."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self._formulas, self._unknown = set[Place](), set[Place]()
+        self._formats: dict[Place, str | None] = {}
+        self._row_formats: dict[int, str | None] = {}
+        self._column_formats: list[tuple[int, int, str | None]] = []
+        self._low = 0
+
+    def marks(self) -> Marks:
+        """Return what was noted, once all rows have been read."""
+        return Marks(
+            formulas=frozenset(self._formulas),
+            unknown=frozenset(self._unknown),
+            formats=self._formats,
+            row_formats=self._row_formats,
+            column_formats=self._column_formats,
+            low=self._low,
+            is_1904=self.shared.is_1904,
+        )
+
+    def _open_column(self, attributes: dict[str, str]) -> None:
+        super()._open_column(attributes)
+        style = attributes.get("style", "")
+        if style.isdigit() and int(style):
+            first, last = int(attributes["min"]) - 1, int(attributes["max"]) - 1
+            self._column_formats.append((first, last, self._format(style)))
+
+    def _open_row(self, attributes: dict[str, str]) -> None:
+        super()._open_row(attributes)
+        style = attributes.get("s", "")
+        if attributes.get("customFormat") in TRUE and style.isdigit():
+            self._row_formats[self._number] = self._format(style)
+
+    def _close_cell(self, text: str) -> None:
+        super()._close_cell(text)
+        place, tags = (self._number, self._at - 1), self._tags
+        if "f" in tags:
+            self._formulas.add(place)
+        if not tags <= _CONTENT:
+            self._unknown.add(place)
+        if place[1] not in self._cells and not tags.isdisjoint(("v", "f", "is")):
+            self._low = self._number
+        code = self._format(self._style)
+        if code is not None or self._column_formats or self._row_formats:
+            self._formats[place] = code
