@@ -21,6 +21,18 @@ def record(name: str) -> Path:
     return next((folder / name for folder in folders if (folder / name).is_file()), inside / name)
 
 
+def example() -> Path:
+    """Return the workbook of the worked example: in a checkout beside the package, once installed inside it."""
+    inside = Path(__file__).with_name("examples") / "market-street.xlsx"
+    return inside if inside.is_file() else Path(__file__).parents[1] / "inventories" / "market-street.xlsx"
+
+
+def example_file(name: str) -> Path:
+    """Return a file that the worked example names: ``records/575-market/...``."""
+    beside = example().parent / name
+    return beside if beside.is_file() else Path(__file__).parent / name
+
+
 def fonts() -> dict[tuple[str, str], Path]:
     """Return the report's fonts by family and style.
 

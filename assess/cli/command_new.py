@@ -14,7 +14,7 @@ from assess.errors import InputError, OutputError
 from assess.i18n import LANGUAGES
 
 if TYPE_CHECKING:
-    from assess.workbook.template import Content, Units
+    from assess.workbook.template import Units
 
 ORDER = 1
 EXAMPLES = (
@@ -117,25 +117,12 @@ def write_new_workbook(
         raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
     from assess.delivery.deliver import saving
     from assess.i18n import ENGLISH, load_catalogue, speaking
+    from assess.pipeline.new_content import fill_content
     from assess.workbook.template import write_workbook
 
     catalogue = ENGLISH if language == ENGLISH.code else load_catalogue(language)
     try:
         with speaking(catalogue), saving(path) as part:
-            write_workbook(part, _fill(units, use, example), units)
+            write_workbook(part, fill_content(units, use, is_example=example), units)
     except OSError as error:
         raise OutputError(f"{path} could not be written: {error.strerror or error}.") from None
-
-
-def _fill(units: "Units", use: str, example: bool) -> "Content":
-    """Return what a new workbook holds, with the results of its live columns."""
-    from assess.pipeline.live_values import with_live, without_shaking
-    from assess.workbook.example import example_content
-    from assess.workbook.template import Content
-    from assess.workbook.uses import room_content
-
-    if use and not example:
-        return without_shaking(room_content(use, units), units)
-    if use or example:
-        return with_live(room_content(use, units, is_shaken=True) if use else example_content(units), units)
-    return Content()

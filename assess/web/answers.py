@@ -1,6 +1,8 @@
 """What is answered to each request of the page: see docs/page.md. Knows nothing of HTTP but the status of an error."""
 
-import mimetypes
+import base64
+import hashlib
+import re
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -8,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from assess.i18n import fill
-from assess.web.request_errors import CONFLICT, NOT_FOUND, UNUSABLE, RequestError
+from assess.web.jobs import REPORT, Job
+from assess.web.request_errors import NOT_FOUND, UNUSABLE, RequestError
 from assess.web.sessions import Session
 
 if TYPE_CHECKING:
@@ -207,6 +210,59 @@ def try_out(asked: Asked) -> Answer:
     return what_if.try_out(asked.book.snapshot(), dict(asked.body))
 
 
+# ---------------------------------------------------------------- the job
+
+
+def describe_job(asked: Asked) -> Answer:
+    """Answer with the simulation of this session."""
+    session = asked.session
+    return {"job": session.job.describe(session.book) if session.job else None}
+
+
+def simulate(asked: Asked) -> Answer:
+    """Start a simulation."""
+    asked.session.simulate(asked.body)
+    return describe_job(asked)
+
+
+def cancel(asked: Asked) -> Answer:
+    """End the simulation."""
+    if asked.session.job is not None:
+        asked.session.job.cancel()
+    return describe_job(asked)
+
+
+def find_job_file(asked: Asked) -> Answer:
+    """Answer with a file of the results, to be saved."""
+    name = asked.query.get("name", "")
+    return Content(_job(asked).find_file(name), "application/octet-stream", name)
+
+
+def find_report(asked: Asked) -> Answer:
+    """Answer with the report for a frame: its own script and styles count, and it belongs to no address."""
+    found = _job(asked).find_file(REPORT)
+    text = found.read_text(encoding="utf-8") if isinstance(found, Path) else ""
+    headers = {"content-security-policy": _frame_policy(text), "x-frame-options": "SAMEORIGIN"}
+    return Content(text.encode(), "text/html", headers=headers)
+
+
+def _frame_policy(html: str) -> str:
+    """Return what a report may do: run the one script that it brings along, and no other."""
+    scripts = re.findall(r"<script>(.*?)</script>", html, re.DOTALL)
+    hashes = (base64.b64encode(hashlib.sha256(one.encode()).digest()).decode() for one in scripts)
+    allowed = " ".join(f"'sha256-{one}'" for one in hashes) or "'none'"
+    return (
+        f"sandbox allow-scripts; default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; img-src data:; "
+        "font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
+    )
+
+
+def _job(asked: Asked) -> Job:
+    if asked.session.job is None:
+        raise RequestError(fill("Nothing has been simulated yet."), NOT_FOUND)
+    return asked.session.job
+
+
 # ---------------------------------------------------------------- start and texts
 
 
@@ -219,7 +275,7 @@ def describe_start(asked: Asked) -> Answer:
 
 def start(asked: Asked) -> Answer:
     """Make a new workbook."""
-    return asked.session.start(asked.body).describe()
+    return asked.session.begin(asked.body).describe()
 
 
 def describe_texts(asked: Asked) -> Answer:
@@ -249,16 +305,5 @@ def find_page_file(name: str) -> Content | None:
     path = files.get(name or "index.html")
     if path is None:
         return None
-    kind = TYPES.get(path.suffix) or mimetypes.guess_type(path.name)[0] or "application/octet-stream"
+    kind = TYPES.get(path.suffix, "application/octet-stream")
     return Content(path, kind)
-
-
-def check_conflict(session: Session) -> None:
-    """Raise RequestError where another workbook could not be opened without losing changes."""
-    book = session.book
-    if book is not None and book.mode == "held" and book.state()["unsaved"]:
-        raise RequestError(
-            fill("{name} has changes that were not downloaded.", name=book.name),
-            CONFLICT,
-            fill("Download it, or close it."),
-        )

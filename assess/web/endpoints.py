@@ -47,6 +47,9 @@ READ: dict[str, Handler] = {
     "/api/plan": answers.describe_plan,
     "/api/picture": answers.find_picture,
     "/api/catalogue": answers.describe_catalogue,
+    "/api/job": answers.describe_job,
+    "/api/job/file/{name:path}": answers.find_job_file,
+    "/api/job/report": answers.find_report,
     "/api/start": answers.describe_start,
     "/api/texts": answers.describe_texts,
 }
@@ -58,6 +61,8 @@ CHANGE: dict[str, Handler] = {
     "/api/reload": answers.reload,
     "/api/close": answers.close,
     "/api/what-if": answers.try_out,
+    "/api/job": answers.simulate,
+    "/api/job/cancel": answers.cancel,
     "/api/start": answers.start,
 }
 SEND: dict[str, Handler] = {"/api/upload": answers.upload, "/api/file": answers.add_file}
@@ -109,7 +114,7 @@ def _ask(request: Request, note_edit: NoteEdit) -> Asked:
     book_language = session.book.language if session.book else ""
     accepted = request.headers.get("accept-language", "")
     language = choose_language(request.cookies.get(COOKIE, ""), book_language, accepted)
-    return Asked(session, dict(request.query_params), language=language, note_edit=note_edit)
+    return Asked(session, {**request.query_params, **request.path_params}, language=language, note_edit=note_edit)
 
 
 def _carry_out(handler: Handler, asked: Asked) -> Response:

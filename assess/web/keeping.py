@@ -2,9 +2,7 @@
 
 import threading
 import time
-from contextlib import suppress
 
-from assess.errors import AssessError
 from assess.web.sessions import Keys, Session
 
 SAVED_AFTER = 1.0
@@ -43,7 +41,7 @@ class Keeper:
     def _run(self) -> None:
         while (sessions := self._wait()) is not None:
             for session in sessions:
-                save(session)
+                session.save()
             if time.monotonic() >= self._next_look:
                 self._next_look = time.monotonic() + LOOKED_EVERY
                 self._keys.expire(time.monotonic())
@@ -60,11 +58,3 @@ class Keeper:
                     return due
                 self._woken.wait(min(*self._due.values(), self._next_look, self._next_look) - now)
         return None
-
-
-def save(session: Session) -> None:
-    """Save a workbook of the disk; what stands in the way is part of its state."""
-    book = session.book
-    with suppress(AssessError, OSError):
-        if book is not None and book.mode == "disk" and book.state()["unsaved"]:
-            book.save()

@@ -18,7 +18,8 @@ from assess.errors import InputError
 from assess.i18n import fill
 from assess.web.endpoints import build_application
 from assess.web.guard import Guard
-from assess.web.keeping import Keeper, save
+from assess.web.jobs import Slots
+from assess.web.keeping import Keeper
 from assess.web.sessions import ENTRANCE, HOSTED, HostedKeys, Keys, Limits, LocalKeys, Session
 
 if TYPE_CHECKING:
@@ -109,6 +110,7 @@ class Server:
     def __init__(self, listening: socket.socket, place: Place, folder: Path, home: Path) -> None:
         self._listening, self._place, self._folder, self._home = listening, place, folder, home
         self.port = int(listening.getsockname()[1])
+        self._slots = Slots((HOSTED if place.is_hosted else Limits()).jobs)
         self._keys: Keys = self._make_keys()
         self._keeper = Keeper(self._keys)
         application = build_application(self._keeper.note_edit)
@@ -127,7 +129,7 @@ class Server:
 
     def _make_session(self, user: str, limits: Limits, home: Path | None = None) -> Session:
         folder = Path(tempfile.mkdtemp(prefix="session-", dir=self._folder))
-        return Session(secrets.token_urlsafe(32), user, folder, home, limits)
+        return Session(secrets.token_urlsafe(32), user, folder, home, limits, slots=self._slots)
 
     def _list_hosts(self) -> list[str]:
         if self._place.is_hosted:
@@ -165,7 +167,7 @@ class Server:
         for session in self._keys.sessions():
             if session.book is None:
                 continue
-            save(session)
+            session.save()
             state, name = session.book.state(), session.book.name
             is_lost = state["unsaved"] and (session.book.mode == "disk" or session.downloaded != session.book.version)
             if is_lost:

@@ -11,16 +11,19 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
+from assess.errors import AssessError
 from assess.i18n import fill
-from assess.web.request_errors import TOO_MANY, RequestError
+from assess.web.jobs import Job, Slots, check_free
+from assess.web.request_errors import NOT_FOUND, TOO_MANY, RequestError
+from assess.web.safe_names import make_safe
 
 if TYPE_CHECKING:
     from assess.web.book import Book
-    from assess.web.jobs import Job
     from assess.web.live import LiveView
 
 ENTRANCE = "/enter"
@@ -83,7 +86,8 @@ class Session:
     limits: Limits = field(default_factory=Limits)
     book: "Book | None" = None
     live: "LiveView | None" = None
-    job: "Job | None" = None
+    job: Job | None = None
+    slots: Slots = field(default_factory=lambda: Slots(1))
     seen: float = field(default_factory=time.monotonic)
     looked: float = 0.0
     downloaded: int = 0
@@ -106,8 +110,9 @@ class Session:
             return self.live
 
     def take(self, book: "Book") -> "Book":
-        """Have a workbook be the open one."""
+        """Have a workbook be the open one; the one before is saved, if it is on the disk."""
         with self.lock:
+            self.save()
             self.drop_book()
             self.book, self.downloaded = book, book.version
         return book
@@ -119,7 +124,39 @@ class Session:
         self.check_room(len(data))
         with self.lock:
             folder = Path(tempfile.mkdtemp(prefix="files-", dir=self.folder))
-            return self.take(Book.hold(name, data, folder))
+            return self.take(Book.hold(make_safe(name), data, folder))
+
+    def begin(self, body: Mapping[str, Any]) -> "Book":
+        """Open a new workbook: in the folder of new workbooks where there is one, else held."""
+        from assess.web.book import Book
+        from assess.web.starting import build_workbook, place_files, place_workbook
+
+        made = build_workbook(body)
+        if self.home is not None:
+            return self.take(Book.open_disk(place_workbook(made, self.home)))
+        self.check_room(len(made.data))
+        folder = Path(tempfile.mkdtemp(prefix="files-", dir=self.folder))
+        place_files(made, folder)
+        return self.take(Book.hold(made.name, made.data, folder))
+
+    def simulate(self, body: Mapping[str, Any]) -> Job:
+        """Start a simulation of the open workbook; the results of an earlier one are removed."""
+        with self.lock:
+            check_free(self.job)
+            if self.book is None:
+                raise RequestError(fill("No workbook is open."), NOT_FOUND)
+            new = Job(self.book, body, self.folder, self.slots)
+            if self.job is not None:
+                self.job.close()
+            self.job = new
+            return new
+
+    def save(self) -> None:
+        """Save a workbook of the disk; what stands in the way is part of its state."""
+        book = self.book
+        with suppress(AssessError, OSError):
+            if book is not None and book.mode == "disk" and book.state()["unsaved"]:
+                book.save()
 
     def drop_book(self) -> None:
         """End with the workbook and its job."""

@@ -1,9 +1,248 @@
 """New workbooks: what they can be made of, a template by use, the worked example."""
 
+import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, cast
+
+from assess import resources
+from assess.errors import OutputError
+from assess.i18n import LANGUAGES, Text, fill, gettext, list_languages, load_catalogue, speaking
+from assess.intensity import SHAKINGS
+from assess.web.request_errors import CONFLICT, UNUSABLE, RequestError
+from assess.web.safe_names import check_name
+from assess.workbook.names import key
+from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, ITEMS, USES
+
+EXAMPLE = "market-street.xlsx"
+MOST_PIECES = 200
+"""Pieces that a new workbook begins with."""
+LONGEST = 200
+"""Characters of a text that goes into a new workbook."""
+CENTIMETRES = 100.0
+ROOMS: Mapping[str, tuple[Text, ...]] = {
+    "Office": (fill("Open office"), fill("Meeting room"), fill("Archive"), fill("Kitchen")),
+    "Hospital": (fill("Ward"), fill("Pharmacy"), fill("Nurses' station"), fill("Store room")),
+    "School": (fill("Classroom"), fill("Library"), fill("Staff room"), fill("Store room")),
+    "Laboratory": (fill("Laboratory"), fill("Store room"), fill("Cold room"), fill("Office")),
+    "Library": (fill("Reading room"), fill("Stacks"), fill("Office"), fill("Entrance hall")),
+    "Home": (fill("Living room"), fill("Kitchen"), fill("Bedroom"), fill("Study")),
+    "Shop": (fill("Sales floor"), fill("Store room"), fill("Office")),
+}
+"""Names that are offered for the first room, by use."""
+GROUND = ("1", "0", "g", "gf", "t", "pt", "ground", "ground floor", "piano terra")
+"""Names of a floor that lies on the ground; of any other its elevation is asked for."""
+
+Units = Literal["si", "imperial"]
+
+
+# ---------------------------------------------------------------- what there is to choose
 
 
 def describe_start(home: Path | None) -> dict[str, Any]:
-    """Return what a new workbook can be made of."""
-    return {"start": True, "can_save": home is not None, "folder": home.name if home else ""}
+    """Return what a new workbook can be made of, in the language in use; `home` is the folder that it is made in."""
+    return {
+        "start": True,
+        "can_save": home is not None,
+        "folder": (home.name or str(home)) if home else "",
+        "uses": [[use, gettext(use)] for use in USES],
+        "shakings": [[one, gettext(one)] for one in SHAKINGS],
+        "languages": [list(pair) for pair in list_languages()],
+        "rooms": {use: [gettext(room) for room in ROOMS[use]] for use in USES},
+        "types": {use: list(_list_types(use)) for use in USES},
+    }
+
+
+def _list_types(use: str) -> Iterator[dict[str, Any]]:
+    from assess.workbook.catalogue import read_catalogue
+
+    for row in read_catalogue("si", use):
+        sizes = {name: row[name] / CENTIMETRES if name in row else None for name in ("breadth", "width", "height")}
+        yield {"type": row["type"], **sizes}
+
+
+# ---------------------------------------------------------------- what is asked for
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """A new workbook as the page asks for it: texts in any language, checked."""
+
+    kind: str
+    name: str
+    use: str = ""
+    building: str = ""
+    town: str = ""
+    shaking: str = ""
+    language: str = LANGUAGES[0]
+    units: Units = "si"
+    floor: str = "1"
+    room: str = ""
+    pieces: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A new workbook: its name, its bytes, and the files that it names."""
+
+    name: str
+    data: bytes
+    files: Mapping[str, Path] = field(default_factory=dict)
+
+
+def build_workbook(request: Mapping[str, Any]) -> Made:
+    """Return a new workbook.
+
+    Raises
+    ------
+    RequestError
+        If the request asks for something that there is not.
+    """
+    wanted = _read(request)
+    if wanted.kind == "example":
+        return _take_example(wanted.name)
+    from assess.workbook.template import write_workbook
+
+    catalogue = load_catalogue(wanted.language)
+    with speaking(catalogue), tempfile.TemporaryDirectory(prefix="assess-new-") as folder:
+        path = Path(folder) / wanted.name
+        write_workbook(path, _fill(wanted), wanted.units)
+        return Made(wanted.name, path.read_bytes())
+
+
+def _read(request: Mapping[str, Any]) -> Wanted:
+    kind = _choose(request, "kind", ("template", "blank", "example"))
+    name = request.get("name") or (EXAMPLE if kind == "example" else request.get("building") or gettext("building"))
+    units = _choose(request, "units", ("si", "imperial"))
+    return Wanted(
+        kind=kind,
+        name=check_name(name),
+        use=_choose(request, "use", ("", *USES)),
+        building=_text(request, "building"),
+        town=_text(request, "town"),
+        shaking=_choose(request, "shaking", ("", *SHAKINGS)),
+        language=_choose(request, "language", LANGUAGES),
+        units=cast(Units, units),
+        floor=_text(request, "floor") or "1",
+        room=_text(request, "room"),
+        pieces=tuple(_list_pieces(request.get("pieces") or [])),
+    )
+
+
+def _text(request: Mapping[str, Any], name: str) -> str:
+    value = request.get(name)
+    text = " ".join(str(value).split()) if isinstance(value, str | int) and not isinstance(value, bool) else ""
+    if len(text) > LONGEST:
+        raise RequestError(fill("{name} has more than {most} characters.", name=name, most=LONGEST), UNUSABLE)
+    return text
+
+
+def _choose(request: Mapping[str, Any], name: str, choices: tuple[str, ...]) -> str:
+    """Return one of `choices`, the first where nothing was chosen."""
+    value = _text(request, name) or choices[0]
+    if value not in choices:
+        known = ", ".join(filter(None, choices))
+        text = fill("{name} is {value!r}, expected one of: {known}", name=name, value=value[:40], known=known)
+        raise RequestError(text, UNUSABLE)
+    return value
+
+
+def _list_pieces(pieces: object) -> Iterator[str]:
+    """Yield the English name of the type of every piece."""
+    listed = pieces if isinstance(pieces, list) else [None]
+    total = 0
+    for piece in listed:
+        kind, count = (piece.get("type"), piece.get("count", 1)) if isinstance(piece, dict) else (None, 0)
+        english = _types().get(key(kind)) if isinstance(kind, str) else None
+        if english is None:
+            raise RequestError(fill("{type} is not a type of the catalogue.", type=repr(kind)[:LONGEST]), UNUSABLE)
+        if isinstance(count, bool) or not isinstance(count, int) or count < 0 or (total := total + count) > MOST_PIECES:
+            text = fill("The pieces are more than {most}: add others on the page.", most=MOST_PIECES)
+            raise RequestError(text, UNUSABLE)
+        yield from [english] * count
+
+
+@cache
+def _types() -> Mapping[str, str]:
+    """Return the English names of the types by their names in any language."""
+    from assess.workbook.catalogue import catalogue_rows
+
+    names = [line["type"] for line in catalogue_rows()]
+    return {key(load_catalogue(code).find(name)): name for code in LANGUAGES for name in names}
+
+
+# ---------------------------------------------------------------- what it holds
+
+
+def _fill(wanted: Wanted) -> Any:
+    """Return the rows of a new workbook, in the language in use."""
+    from assess.pipeline.new_content import store_live
+    from assess.workbook.catalogue import read_catalogue
+    from assess.workbook.template import Content
+
+    building = {"building": wanted.building, "address": wanted.town, "use": wanted.use, "shaking": wanted.shaking}
+    rows: dict[str, list[dict[str, Any]]] = {
+        CATALOGUE.name: read_catalogue(wanted.units, wanted.use),
+        BUILDING.name: [{name: value for name, value in building.items() if value}],
+        FLOORS.name: [],
+        ITEMS.name: [],
+    }
+    if wanted.kind == "template":
+        floor = {"floor": wanted.floor} | ({"elevation": 0} if wanted.floor.casefold() in GROUND else {})
+        rows[FLOORS.name].append(floor)
+        for at, piece in enumerate(wanted.pieces, 1):
+            row = {"item": f"A{at}", "floor": wanted.floor, "room": wanted.room, "type": gettext(piece)}
+            rows[ITEMS.name].append({name: value for name, value in row.items() if value})
+    return store_live(Content(rows), wanted.units)
+
+
+def _take_example(name: str) -> Made:
+    from assess.model import split_names
+    from assess.workbook.read import read_tables
+
+    data = resources.example().read_bytes()
+    tables, _ = read_tables(data, name)
+    cells = [row.get(f"record_{axis}") for row in tables[FLOORS.name].rows for axis in "xy"]
+    names = {one.partition("#")[0].strip() for cell in cells if cell for one in split_names(cell)}
+    return Made(name, data, {one: resources.example_file(one) for one in sorted(names)})
+
+
+# ---------------------------------------------------------------- where it goes
+
+
+def place_workbook(made: Made, folder: Path) -> Path:
+    """Write a new workbook and the files that it names into a folder, never over a file; return its path.
+
+    Raises
+    ------
+    RequestError
+        If there is a file of its name.
+    OutputError
+        If it cannot be written.
+    """
+    path = folder / made.name
+    if path.exists() or path.is_symlink():
+        raise RequestError(
+            fill("{name} exists already.", name=made.name), CONFLICT, fill("Choose another name, or open it.")
+        )
+    try:
+        place_files(made, folder)
+        with path.open("xb") as file:
+            file.write(made.data)
+    except OSError as error:
+        raise OutputError(
+            fill("{name} cannot be written: {why}.", name=made.name, why=error.strerror or str(error))
+        ) from None
+    return path
+
+
+def place_files(made: Made, folder: Path) -> None:
+    """Write the files that a new workbook names into a folder; one that is there stays as it is."""
+    for name, source in made.files.items():
+        target = folder / name
+        if not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with target.open("xb") as file:
+                file.write(source.read_bytes())

@@ -8,7 +8,8 @@ import signal
 import subprocess
 import sys
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from pathlib import Path
 from urllib.parse import quote, urlsplit
 
 import pytest
@@ -66,10 +67,10 @@ class Client:
 class Served:
     """A running `assess open`: the address that it printed, and a client that enters when it is first asked for."""
 
-    process: subprocess.Popen
+    process: subprocess.Popen[str]
     url: str
-    folder: object
-    _client: Client = field(default=None)
+    folder: Path
+    entered: Client | None = None
 
     @property
     def base(self):
@@ -77,9 +78,9 @@ class Served:
 
     @property
     def client(self):
-        if self._client is None:
-            self._client = enter(self.url)
-        return self._client
+        if self.entered is None:
+            self.entered = enter(self.url)
+        return self.entered
 
     def stop(self, number=signal.SIGTERM):
         """Send a signal, and return the exit status, what was printed, and the messages."""

@@ -1,0 +1,162 @@
+"""The process of one simulation: the very calls of `assess run` on a copy of the workbook, reported line by line.
+
+``python -m assess.web.job_process FOLDER``: FOLDER holds ``job.json`` and ``input/``; it gets ``out/`` with the reports
+and ``summary.json``. Each line of the output is a JSON object. The process ends at once when its input is closed, as
+that is when the server has ended, however it did; the folder is then removed.
+"""
+
+import json
+import os
+import shutil
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from assess.errors import AssessError, PdfUnavailableError, WorkbookError
+from assess.i18n import gettext, load_catalogue, speaking
+from assess.progress import Progress, Report
+from assess.results import Results
+from assess.risk import RiskClass
+from assess.schedule_results import State
+from assess.settings import Settings, count_processors
+
+ORDER, INPUT, OUT, SUMMARY = "job.json", "input", "out", "summary.json"
+PLAIN = frozenset(("json", "csv", "xlsx"))
+"""Formats that need no series of figures."""
+TOLD_EVERY = 0.1
+"""Shortest time between two reports of one stage [s]."""
+LOWER_PRIORITY = 5
+"""How far this process stands back for the server, which answers while it works."""
+
+Tell = Callable[[dict[str, Any]], None]
+
+
+def main() -> None:
+    """Do the job of the folder that is named."""
+    folder = Path(sys.argv[1])
+    tell = _take_output()
+    threading.Thread(target=_end_with_server, args=(folder,), name="assess-server", daemon=True).start()
+    if hasattr(os, "nice"):
+        os.nice(LOWER_PRIORITY)
+    order = json.loads((folder / ORDER).read_text(encoding="utf-8"))
+    with speaking(load_catalogue(order["language"])):
+        try:
+            tell({"state": "done", **assess_workbook(folder, order, tell)})
+        except AssessError as error:
+            tell({"state": "failed", "message": gettext(error.message), "problems": _list_problems(error)})
+        except OSError as error:
+            tell({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
+
+
+def _take_output() -> Tell:
+    """Return what writes to the server; whatever else is printed goes to the standard error."""
+    stream = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    lock = threading.Lock()
+
+    def tell(message: dict[str, Any]) -> None:
+        with lock:
+            stream.write(json.dumps(message) + "\n")
+            stream.flush()
+
+    return tell
+
+
+def _end_with_server(folder: Path) -> None:
+    sys.stdin.buffer.read()
+    shutil.rmtree(folder, ignore_errors=True)
+    os._exit(1)
+
+
+def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str, Any]:
+    """Assess the workbook, write its reports and the summary, and return what is to be said of them.
+
+    Raises
+    ------
+    AssessError
+        As `assess run`.
+    """
+    from assess.pipeline.run import run
+    from assess.report import write_reports
+    from assess.report.report_options import ReportOptions
+    from assess.workbook.read import read_inventory
+
+    progress, formats = Progress(_Listener(tell)), order["formats"]
+    settings = Settings(**order["settings"])
+    inventory = read_inventory(folder / INPUT / order["workbook"], progress=progress)
+    threads = max(1, count_processors() - 1)
+    results = run(inventory, settings, jobs=threads, figures=not set(formats) <= PLAIN, progress=progress)
+    message = ""
+    try:
+        write_reports(results, folder / OUT, formats, ReportOptions(), progress=progress)
+    except PdfUnavailableError as error:  # all other formats are there
+        message = gettext(error.message)
+    (folder / SUMMARY).write_text(json.dumps(summarise(results)), encoding="utf-8")
+    return {"message": message, "problems": [_describe(one) for one in results.problem_rows]}
+
+
+class _Listener:
+    """Sends reports of progress on, not more often than anyone looks."""
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell, self._latest, self._stage = tell, 0.0, ("", "")
+
+    def __call__(self, report: Report) -> None:
+        now, stage = time.monotonic(), (report.stage, report.detail)
+        if stage == self._stage and now - self._latest < TOLD_EVERY:
+            return
+        self._latest, self._stage = now, stage
+        self._tell(
+            {"stage": report.stage, "share": report.share, "detail": report.detail, "seconds_left": report.seconds_left}
+        )
+
+
+def _list_problems(error: AssessError) -> list[dict[str, str]]:
+    return [_describe(one) for one in error.problems] if isinstance(error, WorkbookError) else []
+
+
+def _describe(problem: Any) -> dict[str, str]:
+    words = {"message": gettext(problem.message), "fix": gettext(problem.fix)}
+    return {"severity": problem.severity, "sheet": problem.sheet, "cell": problem.cell, **words}
+
+
+# ---------------------------------------------------------------- what the page shows of the results
+
+
+def summarise(results: Results) -> dict[str, Any]:
+    """Return the rows of the furniture with their classes, and what is to be expected before and after."""
+    rows = list(results)
+    items = {
+        "row": [one.item.row for one in rows],
+        "class": ["" if one.is_anchored else key(one.adopted.risk) for one in rows],
+        "chance": [one.adopted.probability for one in rows],
+        "low": [one.adopted.low for one in rows],
+        "high": [one.adopted.high for one in rows],
+        "simulated": [one.adopted.is_simulated for one in rows],
+    }
+    schedule, anchor = results.schedule, results.settings.anchor
+    sums = {"before": _sum(schedule.before), "after": _sum(schedule.after), "cost": schedule.cost}
+    first = anchor if isinstance(anchor, int) else 0
+    return {"items": items, "before_after": {**sums, "entries": len(schedule.rows), "first": first}}
+
+
+def key(risk: RiskClass) -> str:
+    """Return what the page calls a class."""
+    return risk.name.lower()
+
+
+def _sum(state: State) -> dict[str, Any]:
+    return {
+        "counts": {key(risk): state.count(risk) for risk in RiskClass},
+        "falls": state.falls,
+        "anchored": state.anchored,
+        "blocked_routes": state.blocked_routes,
+        "cut_off_rooms": state.cut_off_rooms,
+    }
+
+
+if __name__ == "__main__":
+    main()
