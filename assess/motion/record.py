@@ -6,7 +6,9 @@ Seismological Society of America 95(2):745-750. doi:10.1785/0120040160
 
 import math
 from dataclasses import dataclass, field
+from threading import Lock
 from typing import Literal
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +55,11 @@ GAP = 0.1
 """Steps above this [s] are named as gaps."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+MOST_TREATED = 2_000_000
+"""Samples of the treated motions that are kept for as long as their records are in use: 48 MB."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, weakref_slot=True)
 class Record:
     """One channel as its file has it, evenly sampled and in SI, but untreated.
 
@@ -130,6 +136,11 @@ class Motion:
         object.__setattr__(self, "pfd", peak(self.displacement))
 
 
+_TREATED: WeakKeyDictionary[Record, Motion] = WeakKeyDictionary()
+"""Treated motions by their records: filtering takes most of a run by the formulas."""
+_LOCK = Lock()
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Series:
     """Evenly spaced `values` (n,), one every `time_step` [s], and what was done to make them so."""
@@ -161,6 +172,20 @@ def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress
         With as many samples as `record`. Velocity and displacement start from zero: at the first sample, or, where
         filtered, at the start of the zeros put before it, so that the pass backward in time leaves no false offset.
     """
+    if baseline != "standard":
+        return _treat(record, baseline, progress)
+    with _LOCK:
+        motion = _TREATED.get(record)
+    if motion is None:
+        motion = _treat(record, baseline, progress)
+        with _LOCK:
+            kept = sum(one.acceleration.size for one in _TREATED.values())
+            if kept + motion.acceleration.size <= MOST_TREATED:
+                _TREATED[record] = motion
+    return motion
+
+
+def _treat(record: Record, baseline: Baseline, progress: Progress) -> Motion:
     values, step = record.acceleration, record.time_step
     if not record.corrected:
         values = values - values.mean()

@@ -274,14 +274,24 @@ def test_the_filter_is_scipys(time_step: float) -> None:
 
 
 def test_filtering_a_long_record_can_be_cancelled(monkeypatch: pytest.MonkeyPatch) -> None:
-    record = make_record(sine(1.0, 30))
-    whole = treat(record).acceleration
+    samples = sine(1.0, 30)
+    whole = treat(make_record(samples)).acceleration
     monkeypatch.setattr("assess.motion.highpass.SLICE", 1000)
-    np.testing.assert_array_equal(treat(record).acceleration, whole)
+    np.testing.assert_array_equal(treat(make_record(samples)).acceleration, whole)
     cancel = Event()
     cancel.set()
     with pytest.raises(CancelledError):
-        treat(record, progress=Progress(cancel=cancel))
+        treat(make_record(samples), progress=Progress(cancel=cancel))
+
+
+def test_a_record_in_use_is_treated_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    one, other = make_record(sine(1.0, 30)), make_record(sine(1.0, 30))
+    assert treat(one) is treat(one)
+    assert treat(one) is not treat(other)
+    assert treat(one, "none").pfa != treat(one).pfa
+    monkeypatch.setattr("assess.motion.record.MOST_TREATED", 0)
+    late = make_record(sine(1.0, 30))
+    assert treat(late) is not treat(late)  # no more is kept than may be
 
 
 def test_reading_and_treating_records_needs_no_scipy() -> None:
