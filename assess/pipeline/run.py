@@ -24,7 +24,7 @@ from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand, Demands, build_demands, find_shaking, scale_demands
 from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.remarks import list_too_low, remark
-from assess.pipeline.schedule import build_schedule, hold
+from assess.pipeline.schedule import build_schedule, hold, list_entries
 from assess.pipeline.series import Arrays, build_series, write_series
 from assess.pipeline.tables import (
     add_annual,
@@ -237,9 +237,23 @@ def _find_folder(series_folder: "str | Path | None", figures: bool) -> Path:
 
 
 def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Path, progress: Progress) -> Results:
+    results = _build_rows(assessment, demands, folder, evaluate_route_tables(assessment, progress))
+    schedule = build_schedule(
+        results, assessment.inventory, lambda held: evaluate_route_tables(assessment, progress, held)
+    )
+    return replace(results, schedule=schedule)
+
+
+def list_first_fixes(assessment: Assessment, routes: RouteTables) -> list[list[int]]:
+    """Return the pieces (indices) of each entry of the schedule, in its order, without what comes of them."""
+    results = _build_rows(assessment, list_demands(assessment), Path("no-series"), routes)
+    return [[one.item.index for one in entry] for entry in list_entries(tuple(results), routes.routes)]
+
+
+def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, routes: RouteTables) -> Results:
+    """Return the results but for their schedule."""
     inventory, example = assessment.inventory, choose_example(assessment)
-    routes = evaluate_route_tables(assessment, progress)
-    results = Results(
+    return Results(
         settings=assessment.settings,
         provenance=build_provenance(assessment),
         building=inventory.building,
@@ -258,8 +272,6 @@ def _build_tables(assessment: Assessment, demands: Sequence[Demand], folder: Pat
         worked_item=example,
         series=Series(folder / SERIES),
     )
-    schedule = build_schedule(results, inventory, lambda held: evaluate_route_tables(assessment, progress, held))
-    return replace(results, schedule=schedule)
 
 
 def _write_series(path: Path, arrays: Arrays, progress: Progress) -> None:

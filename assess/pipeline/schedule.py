@@ -34,14 +34,13 @@ def build_schedule(
 ) -> Schedule:
     """Return the schedule of a run; `evaluate` returns its routes with further pieces (indices) held."""
     rows = tuple(results)
-    chosen = fix_first(rows, {fix.item_index for route in results.route_tables.routes for fix in route.fixes})
-    entries = group_fixes(chosen, results.route_tables.routes)
+    entries = list_entries(rows, results.route_tables.routes)
     avoided = [sum(map(count_falls, one)) for one in entries]
     total = sum(count_falls(one) for one in rows if not one.is_anchored)
     left = list(accumulate(avoided, _take_off, initial=total))[1:]
     costs = _find_costs(inventory.costs)
     together = _list_together(results.route_tables.routes)
-    held = {one.item.index for one in chosen}
+    held = {one.item.index for entry in entries for one in entry}
     return Schedule(
         rows=tuple(
             _describe(place, entry, costs, together, avoided[place - 1], left[place - 1])
@@ -64,6 +63,12 @@ def count_falls(one: ItemResult) -> float:
 
 
 # ---------------------------------------------------------------- order
+
+
+def list_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
+    """Return the pieces of each entry of the schedule, in its order."""
+    needed = {fix.item_index for route in routes for fix in route.fixes}
+    return group_fixes(fix_first(rows, needed), routes)
 
 
 def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:

@@ -69,21 +69,27 @@ def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILE
     if not served:
         return Evaluation(None, unserved, tuple(faults))
     known = len(inventory.problems)
-    assessment = compute(_keep_floors(inventory, served) if unserved else inventory, settings, progress=progress)
+    if unserved:
+        inventory, settings = _keep_floors(inventory, served), _keep_anchors(inventory, settings, served)
+    assessment = compute(inventory, settings, progress=progress)
     return Evaluation(assessment, unserved, (*faults, *assessment.problems[known:]))
+
+
+def without_years(inventory: Inventory) -> Inventory:
+    """Return an inventory without annual chances, which nobody sees while typing."""
+    return replace(inventory, hazard=None)
 
 
 def evaluate_once(snapshot: "Snapshot", settings: Settings, *, routes: bool = False) -> Evaluation:
     """Return the evaluation of a snapshot, as `evaluate` does, once for all who ask.
 
-    Annual chances are left out, which nobody sees while typing; and where they are not asked for, the routes, which no
-    class by the formulas depends on.
+    Annual chances are left out; where they are not asked for the routes, too, which no class by the formulas needs.
     """
     inventory = snapshot.inventory
     if not routes or not inventory.routes:
         lean = replace(inventory, routes=(), hazard=None)
         return keep(snapshot, settings, lambda: evaluate(lean, settings))
-    return keep(snapshot, (settings, "routes"), lambda: evaluate(replace(inventory, hazard=None), settings))
+    return keep(snapshot, (settings, "routes"), lambda: evaluate(without_years(inventory), settings))
 
 
 class _Kept:
@@ -123,3 +129,11 @@ def _keep_floors(inventory: Inventory, floors: set[str]) -> Inventory:
             if (not one.floor or one.floor in floors) and {one.start, one.end} - {""} <= named
         ),
     )
+
+
+def _keep_anchors(inventory: Inventory, settings: Settings, floors: set[str]) -> Settings:
+    """Return settings in which the pieces of some floors alone are anchored."""
+    if not isinstance(settings.anchor, tuple):
+        return settings
+    on = {one.item: one.floor for one in inventory.items}
+    return replace(settings, anchor=tuple(one for one in settings.anchor if on.get(one) in floors))
