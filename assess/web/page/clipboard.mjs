@@ -36,7 +36,7 @@ function isClosed(text, at) {
 
 /** Cells of the first table in an HTML text, null without one. Nothing in it is run or loaded. */
 export function parseHtml(html) {
-  const table = new DOMParser().parseFromString(html, "text/html").querySelector("table");
+  const table = new DOMParser().parseFromString(withoutStyles(html), "text/html").querySelector("table");
   if (!table) return null;
   const block = [];
   const taken = new Set();
@@ -53,6 +53,12 @@ export function parseHtml(html) {
   });
   const width = Math.max(0, ...block.map((row) => row.length));
   return block.length && width ? block.map((row) => Array.from({ length: width }, (_, c) => row[c] ?? null)) : null;
+}
+
+/** The policy of the page refuses styles in a text, also in one that is only read. */
+function withoutStyles(html) {
+  const plain = html.replace(/<style\b[\s\S]*?<\/style\s*>/gi, "");
+  return plain.replace(/<[a-z](?:"[^"]*"|'[^']*'|[^'">])*>/gi, (tag) => tag.replace(/\sstyle\s*=\s*(?:"[^"]*"|'[^']*'|[^\s>]+)/gi, ""));
 }
 
 function reserve(taken, r, c, cell) {

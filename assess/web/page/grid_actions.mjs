@@ -132,15 +132,15 @@ export class Actions {
     const [r0, c0, r1, c1] = this.range();
     const height = block.length;
     const width = Math.max(...block.map((row) => row.length));
-    const isMultiple = (r1 - r0 + 1) % height === 0 && (c1 - c0 + 1) % width === 0;
-    const end = isMultiple ? [r1, c1] : [r0 + height - 1, c0 + width - 1];
+    const reach = (first, last, size) => ((last - first + 1) % size === 0 ? last : first + size - 1);
+    const end = [reach(r0, r1, height), reach(c0, c1, width)];
     const value = (r, c) => {
       const row = block[(r - r0) % height];
       const one = row[(c - c0) % width] ?? null;
       return one === "" ? null : one;
     };
     const edits = this.#edits([r0, c0, ...end], value);
-    this.#tellCut(r0, end, c0 + width);
+    this.#tellCut(r0, end);
     const done = this.edit(edits, t("paste"));
     this.grid.order.extend();
     this.grid.selection.setRange([r0, c0], [Math.min(end[0], this.grid.order.length - 1), Math.min(end[1], this.grid.columns.length - 1)]);
@@ -148,12 +148,12 @@ export class Actions {
     return done;
   }
 
-  #tellCut(r0, [r1], width) {
+  #tellCut(r0, [r1, c1]) {
     const { order, columns } = this.grid;
     let lost = 0;
     for (let r = r1; r >= r0 && order.rowOrFree(r) === null; r--) lost += 1;
     if (lost) notice(tn("{n:,} row does not fit into this sheet and was left out.", "{n:,} rows do not fit into this sheet and were left out.", lost), { kind: "error" });
-    const over = width - columns.length;
+    const over = c1 + 1 - columns.length;
     if (over > 0) notice(tn("{n} column right of the last was left out.", "{n} columns right of the last were left out.", over), { kind: "error" });
   }
 

@@ -2,7 +2,7 @@
 
 import { clear, el } from "./elements.mjs";
 import { cellName } from "./sheet.mjs";
-import { number, t, tn } from "./texts.mjs";
+import { t, tn } from "./texts.mjs";
 
 const MOST = 100;
 const SEVERITIES = ["error", "warning", "note"];
@@ -45,7 +45,8 @@ export class ProblemsList {
     const shown = problems.filter((one) => !this.#hidden.has(one.severity));
     shown.sort((one, other) => SEVERITIES.indexOf(one.severity) - SEVERITIES.indexOf(other.severity));
     clear(this.list).append(...(liveError ? [el("li", { class: "error", text: liveError })] : []), ...shown.slice(0, MOST).map((one) => this.#row(one)));
-    if (shown.length > MOST) this.list.append(el("li", { text: tn("{n:,} more", "{n:,} more", shown.length - MOST) }));
+    const rest = Math.max(0, shown.length - MOST) + this.store.moreProblems;
+    if (rest) this.list.append(el("li", { text: tn("{n:,} more", "{n:,} more", rest) }));
   }
 
   #filter(severity) {
@@ -64,8 +65,7 @@ export class ProblemsList {
     const { severity, sheet, row, at, cell, message, fix } = problem;
     const isCell = row !== null && row !== undefined && at !== null && at !== undefined;
     const where = isCell ? cellName(this.store.sheet(sheet), row, at) : [this.store.sheet(sheet)?.title ?? sheet, cell].filter(Boolean).join(" ");
-    const times = problem.count > 1 ? ` (${number(problem.count)} ×)` : "";
-    const text = [el("span", { class: "problems-sign", "aria-hidden": "true", text: SIGNS[severity] }), el("b", { text: where }), ` ${message}${times} `, fix ? el("span", { class: "problems-fix", text: fix }) : null];
+    const text = [el("span", { class: "problems-sign", "aria-hidden": "true", text: SIGNS[severity] }), el("b", { text: where }), ` ${message} `, fix ? el("span", { class: "problems-fix", text: fix }) : null];
     const line = isCell || row ? el("button", { type: "button", on: { click: () => this.store.reveal([sheet, row, at ?? 0]) } }, text) : el("p", null, text);
     return el("li", { class: severity }, line);
   }

@@ -21,6 +21,8 @@ class Store extends EventTarget {
   state = { version: 0, unsaved: false, save_error: "", changed_outside: false, can_undo: false, can_redo: false };
   live = new Map();
   problems = [];
+  /** How many problems there are besides those. */
+  moreProblems = 0;
   counts = {};
   floors = [];
   liveError = "";
@@ -176,9 +178,9 @@ class Store extends EventTarget {
     this.#stopped = true;
     group.isSent = false;
     this.#tell("state");
+    if (error.status === 0) return null; // the frame tells that the server is gone, and when it is back
     const n = this.#queue.length;
-    const why = error.message || t("The server does not answer.");
-    const text = tn("{n} change has not been sent yet. {why}", "{n} changes have not been sent yet. {why}", n, { n, why });
+    const text = tn("{n} change has not been sent yet. {why}", "{n} changes have not been sent yet. {why}", n, { why: error.message });
     return notice(text, { kind: "error", key: "unsent", actions: [[t("Try again"), () => this.resend()]] });
   }
 
@@ -334,6 +336,7 @@ class Store extends EventTarget {
     this.counts = answer.counts ?? {};
     this.floors = answer.floors ?? [];
     this.liveError = answer.error ?? "";
+    this.moreProblems = answer.more ?? 0;
     this.#takeProblems(answer.problems ?? []);
     this.#tell("live");
     this.#tell("problems");
@@ -343,10 +346,12 @@ class Store extends EventTarget {
     this.problems = problems;
     this.#byCell = new Map();
     for (const problem of problems) {
-      if (problem.row === null || problem.at === null || problem.row === undefined) continue;
-      const cell = key(problem.sheet, problem.row, problem.at);
-      const worst = this.#byCell.get(cell);
-      if (!worst || SEVERITIES.indexOf(problem.severity) < SEVERITIES.indexOf(worst.severity)) this.#byCell.set(cell, problem);
+      const isOne = problem.row !== null && problem.row !== undefined && problem.at !== null;
+      for (const [row, at] of problem.cells ?? (isOne ? [[problem.row, problem.at]] : [])) {
+        const cell = key(problem.sheet, row, at);
+        const worst = this.#byCell.get(cell);
+        if (!worst || SEVERITIES.indexOf(problem.severity) < SEVERITIES.indexOf(worst.severity)) this.#byCell.set(cell, problem);
+      }
     }
   }
 
