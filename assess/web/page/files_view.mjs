@@ -5,6 +5,7 @@ import { clear, el } from "./elements.mjs";
 import { notice } from "./messages.mjs";
 import { cellName } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
+import { whenSent } from "./watch.mjs";
 
 const NAMED = 3;
 const USES = {
@@ -77,6 +78,7 @@ function dropArea(store) {
 /** Send files that the workbook names; says which were taken and why others were not. */
 export async function addFiles(store, files) {
   const taken = [];
+  await whenSent(store); // the answer is the whole book, with all that was edited
   for (const file of files) {
     try {
       const wanted = nameAsWanted(store, file.name);

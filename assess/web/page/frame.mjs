@@ -2,12 +2,13 @@
 
 import { countBadges } from "./classes.mjs";
 import { choose, clear, el } from "./elements.mjs";
-import { acceptDrops, chooseWorkbook } from "./open_file.mjs";
+import { countAll, jobs } from "./job.mjs";
+import { acceptDrops } from "./open_file.mjs";
 import { showFiles } from "./files_view.mjs";
 import { Tabs } from "./tabs.mjs";
 import { language, languages, loadTexts, t, tn } from "./texts.mjs";
 import { themeSwitch } from "./theme.mjs";
-import { Watch } from "./watch.mjs";
+import { Watch, whenSent } from "./watch.mjs";
 
 /** The save state in words, and whether something has to be done about it. */
 export function saveState(store, isGone = false) {
@@ -39,11 +40,13 @@ class Frame {
     this.watch.addEventListener("connection", () => this.#showState());
     addEventListener("keydown", (event) => this.#onKey(event));
     addEventListener("beforeunload", (event) => this.#onLeaving(event));
+    this.watch.addEventListener("job", (event) => jobs.compare(event.detail));
     acceptDrops(store);
   }
 
   async start() {
     await this.#store.load();
+    jobs.attach(this.#store);
     this.tabs.update();
     this.watch.start();
   }
@@ -65,7 +68,7 @@ class Frame {
     p.files = button(t("Missing files"), "", () => showFiles(this.#store));
     p.download = el("a", { class: "button", href: "/api/download", text: t("Download"), download: "" });
     p.download.addEventListener("click", (event) => this.#onDownload(event));
-    p.open = button(t("Open another workbook"), t("Open…"), () => chooseWorkbook(this.#store), { class: "editing-only" });
+    p.open = el("a", { class: "button editing-only", href: "#start", text: t("New or open…"), title: t("Make a new workbook, or open another") });
     return el("header", { class: "top" },
       el("div", { class: "book-name" }, p.name, p.state), p.counts,
       (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
@@ -77,24 +80,11 @@ class Frame {
     const select = choose(languages(), language(), { "aria-label": label, title: label });
     select.addEventListener("change", async () => {
       await loadTexts(select.value);
-      await this.#whenSent();
+      await whenSent(this.#store);
       this.#isReloading = true; // what waits is sent, and the book is the server's: nothing is lost
       location.reload();
     });
     return select;
-  }
-
-  /** Wait until every edit has reached the server. */
-  #whenSent() {
-    return new Promise((resolve) => {
-      const look = () => {
-        if (this.#store.waiting) return;
-        this.#store.removeEventListener("state", look);
-        resolve();
-      };
-      this.#store.addEventListener("state", look);
-      look();
-    });
   }
 
   async #onDownload(event) {
@@ -103,7 +93,7 @@ class Frame {
       return;
     }
     event.preventDefault();
-    await this.#whenSent();
+    await whenSent(this.#store);
     this.#parts.download.click();
   }
 
@@ -149,7 +139,7 @@ class Frame {
   }
 
   #showCounts() {
-    clear(this.#parts.counts).append(...countBadges(this.#store.counts));
+    clear(this.#parts.counts).append(...countBadges(countAll(this.#store)));
   }
 }
 

@@ -1,7 +1,113 @@
-// Simulation and reports.
-import { el } from "./elements.mjs";
-import { t } from "./texts.mjs";
-export function createView(root) {
-  root.append(el("div", { class: "page-like" }, el("h2", { text: t("Simulate and report") })));
-  return { show() {}, hide() {} };
+// Simulate and report: what to simulate and to write, how far it is, and what came out.
+
+import { el, clear } from "./elements.mjs";
+import { jobs } from "./job.mjs";
+import { describeOptions } from "./simulate_options.mjs";
+import { ResultsView } from "./simulate_results.mjs";
+import { t, tn } from "./texts.mjs";
+import { notice } from "./messages.mjs";
+
+const MINUTE_S = 60;
+
+class SimulateView {
+  #root;
+  #store;
+  #shown = "";
+
+  constructor(root, store) {
+    this.#store = store;
+    this.form = describeOptions((request) => this.#start(request));
+    this.progress = this.#progressCard();
+    this.fault = el("div", { role: "alert" });
+    this.results = new ResultsView(store, (cell) => this.#reveal(cell));
+    this.#root = el("div", { class: "page-like simulate" }, el("h2", { text: t("Simulate and report") }),
+      el("p", { class: "muted", text: t("Risk classes of the sheet come from a formula. A simulation shakes every piece by many motions of its floor, and confirms or corrects its class. You may go on working meanwhile.") }),
+      this.form.node, this.progress.node, this.fault, this.results.node);
+    root.append(this.#root);
+    jobs.addEventListener("change", () => this.#update());
+    store.addEventListener("live", () => jobs.current?.state === "done" && this.results.update(jobs.current));
+  }
+
+  show() {
+    this.#update();
+  }
+
+  hide() {}
+
+  #progressCard() {
+    const bar = el("progress", { max: 1, value: 0, "aria-label": t("Progress") });
+    const words = el("p", { role: "status" });
+    const cancel = el("button", { type: "button", text: t("Cancel"), on: { click: () => this.#cancel() } });
+    const node = el("section", { class: "card", "aria-label": t("Progress") }, words, bar, el("div", { class: "buttons" }, cancel));
+    return { node, bar, words, cancel };
+  }
+
+  async #start(request) {
+    clear(this.fault);
+    this.form.button.disabled = true;
+    try {
+      await jobs.start(request);
+    } catch (error) {
+      this.#complain(error.message || t("The server does not answer."), error.body?.problems ?? []);
+    }
+    this.#update();
+  }
+
+  async #cancel() {
+    this.progress.cancel.disabled = true;
+    try {
+      await jobs.cancel();
+    } catch (error) {
+      notice(error.message || t("The server does not answer."), { kind: "error" });
+    }
+    this.progress.cancel.disabled = false;
+  }
+
+  #update() {
+    const job = jobs.current;
+    const state = job?.state ?? "";
+    this.progress.node.hidden = state !== "running";
+    this.form.button.disabled = state === "running";
+    this.form.button.textContent = job?.state === "done" ? t("Simulate again") : t("Start");
+    if (state === "running") this.#showProgress(job);
+    this.results.node.hidden = state !== "done";
+    const key = `${job?.id} ${state}`;
+    if (state === "done") this.results.update(job);
+    if (key === this.#shown) return;
+    this.#shown = key;
+    clear(this.fault);
+    if (state === "failed") this.#complain(job.message || t("The simulation failed."), job.problems ?? []);
+    if (state === "cancelled") this.fault.append(el("p", { text: t("The simulation was cancelled. Nothing was written.") }));
+  }
+
+  #showProgress(job) {
+    const { bar, words } = this.progress;
+    bar.value = job.share;
+    const text = t("{stage} {detail}: {share} %", { stage: job.label || job.stage, detail: job.detail ?? "", share: Math.floor(100 * job.share) });
+    const shown = [text.replace(/\s+:/, ":"), job.seconds_left === null || job.seconds_left === undefined ? "" : timeLeft(job.seconds_left)].filter(Boolean).join(", ");
+    if (words.textContent !== shown) words.textContent = shown;
+  }
+
+  #complain(message, problems) {
+    const line = (one) => {
+      const text = [one.message, one.fix].filter(Boolean).join(" ");
+      const cell = one.row && one.at !== null && one.at !== undefined ? [one.sheet, one.row, one.at] : null;
+      const name = one.cell ? `${this.#store.sheet(one.sheet)?.title ?? one.sheet}!${one.cell}` : "";
+      return el("li", null, cell && [el("button", { type: "button", class: "plain", text: name, on: { click: () => this.#reveal(cell) } }), " "], text);
+    };
+    clear(this.fault).append(el("section", { class: "card" }, el("h3", { class: "error-text", text: t("Not simulated") }),
+      el("p", { text: message }), problems.length > 0 && el("ul", null, problems.slice(0, 20).map(line))));
+  }
+
+  #reveal(cell) {
+    location.hash = "#sheet";
+    this.#store.reveal(cell);
+  }
 }
+
+function timeLeft(seconds) {
+  if (seconds < MINUTE_S) return tn("about {n} s left", "about {n} s left", Math.max(1, Math.round(seconds)));
+  return tn("about {n} min left", "about {n} min left", Math.round(seconds / MINUTE_S));
+}
+
+export const createView = (root, store) => new SimulateView(root, store);

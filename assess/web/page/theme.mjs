@@ -24,7 +24,7 @@ function setTheme(theme) {
 }
 
 export function themeSwitch() {
-  const options = [["", t("As the system")], ["light", t("Light")], ["dark", t("Dark")]];
+  const options = [["", t("Automatic")], ["light", t("Light")], ["dark", t("Dark")]];
   const select = choose(options, read(), { "aria-label": t("Colours"), title: t("Colours") });
   select.addEventListener("change", () => {
     setTheme(select.value);

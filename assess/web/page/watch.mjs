@@ -104,6 +104,19 @@ export class Watch extends EventTarget {
   }
 }
 
+/** Wait until every edit has reached the server. */
+export function whenSent(store) {
+  return new Promise((resolve) => {
+    const look = () => {
+      if (store.waiting) return;
+      store.removeEventListener("state", look);
+      resolve();
+    };
+    store.addEventListener("state", look);
+    look();
+  });
+}
+
 function download() {
   const link = Object.assign(document.createElement("a"), { href: "/api/download", download: "" });
   document.body.append(link);

@@ -1,0 +1,127 @@
+// The results of a simulation: counts before and after, classes that changed, files, the report.
+
+import { CLASSES, badge, describe } from "./classes.mjs";
+import { clear, el } from "./elements.mjs";
+import { quantityOf } from "./job.mjs";
+import { bytes, number, percent, t, tn } from "./texts.mjs";
+
+const ARCHIVE = "report.zip";
+const MOST_CHANGED = 200;
+const LABELS = {
+  "report.html": () => t("Report as a page"),
+  "report.pdf": () => t("Report for the client (PDF)"),
+  "annex.pdf": () => t("Annex with all details (PDF)"),
+  "report.xlsx": () => t("Report with live formulas (Excel)"),
+  "report.docx": () => t("Report for the client (Word)"),
+  "results.json": () => t("All results, for other programs (JSON)"),
+  "items.csv": () => t("Table of the pieces (CSV)"),
+};
+const address = (name) => `/api/job/file/${encodeURIComponent(name)}`;
+
+export class ResultsView {
+  #store;
+  #reveal;
+  #framed = "";
+
+  constructor(store, reveal) {
+    this.#store = store;
+    this.#reveal = reveal;
+    this.top = el("div", { class: "results" });
+    this.frame = el("div", { class: "report" });
+    this.node = el("section", { class: "results", "aria-label": t("Results"), hidden: true }, this.top, this.frame);
+  }
+
+  update(job) {
+    const rows = this.#rows(job);
+    clear(this.top).append(...[
+      el("h2", { text: t("Results") }), this.#stale(job), this.#files(job), this.#counts(job, rows), this.#changed(rows), fixing(job),
+    ].filter(Boolean));
+    this.#showReport(job);
+  }
+
+  /** Every piece with its class by the formula and the one that the run adopted. */
+  #rows(job) {
+    const { row, chance, low, high, simulated } = job.items;
+    const stale = new Set(job.stale);
+    return row.map((one, at) => ({
+      row: one, before: this.#store.live.get(one)?.class ?? "", after: job.items.class[at], chance: chance[at], low: low[at], high: high[at],
+      isSimulated: simulated[at], isStale: stale.has(one), n: quantityOf(this.#store, one),
+    }));
+  }
+
+  #stale(job) {
+    const n = job.stale.length;
+    if (!n) return null;
+    const text = tn("Inputs changed since this run: {n:,} piece. Its simulated class is shown in grey.", "Inputs changed since this run: {n:,} pieces. Their simulated classes are shown in grey.", n);
+    return el("p", { class: "warning-text stale-note", role: "status", text });
+  }
+
+  #files(job) {
+    const one = ({ name, bytes: size }) =>
+      el("li", null, el("a", { href: address(name), download: name, text: LABELS[name]?.() ?? name }), " ", el("span", { class: "hint", text: `${name}, ${bytes(size)}` }));
+    const files = job.files.filter(({ name }) => name !== ARCHIVE);
+    const hasAll = job.files.some(({ name }) => name === ARCHIVE);
+    return el("section", { class: "card" }, el("h3", { text: t("Files") }), el("ul", { class: "file-list" }, files.map(one)),
+      hasAll && el("div", { class: "buttons" }, el("a", { class: "button primary", href: address(ARCHIVE), download: ARCHIVE, text: t("Download all in one file (ZIP)") })));
+  }
+
+  #counts(job, rows) {
+    if (!rows.some((one) => one.isSimulated)) return el("p", { text: t("Nothing was simulated: all classes are those of the formula.") });
+    const count = (key, name) => rows.filter((one) => !one.isStale && one[name] === key).reduce((sum, one) => sum + one.n, 0);
+    const line = (key) => el("tr", null, el("th", { scope: "row" }, badge(key)),
+      el("td", { class: "num", text: number(count(key, "before"), 0, true) }), el("td", { class: "num", text: number(count(key, "after"), 0, true) }));
+    return el("section", { class: "card" }, el("h3", { text: t("Pieces by class") }), table([t("Class"), t("By the formula"), t("Simulated")], CLASSES.map(line)));
+  }
+
+  #changed(rows) {
+    if (!rows.some((one) => one.isSimulated)) return null;
+    const order = (one) => CLASSES.indexOf(one.after) * 10 - (one.chance ?? 0);
+    const changed = rows.filter((one) => one.before !== one.after && one.isSimulated && (one.before || one.isStale)).sort((a, b) => order(a) - order(b));
+    const title = el("h3", { text: tn("{n:,} class changed by the simulation", "{n:,} classes changed by the simulation", changed.length) });
+    if (!changed.length) return el("section", { class: "card" }, title, el("p", { text: t("Every simulated piece keeps the class of the formula.") }));
+    const more = changed.length - MOST_CHANGED;
+    return el("section", { class: "card" }, title,
+      table([t("Item"), t("By the formula"), t("Simulated"), t("Chance"), ""], changed.slice(0, MOST_CHANGED).map((one) => this.#line(one))),
+      more > 0 && el("p", { text: tn("and {n:,} more: see the sheet", "and {n:,} more: see the sheet", more) }));
+  }
+
+  #line(one) {
+    const items = this.#store.sheet("Items");
+    const at = items?.column("item")?.at ?? 0;
+    const name = String(items?.value(one.row, at) ?? t("row {n}", { n: one.row }));
+    const range = one.low === null ? "" : ` ${t("({low} to {high})", { low: percent(one.low), high: percent(one.high) })}`;
+    const isHigher = CLASSES.indexOf(one.after) < CLASSES.indexOf(one.before);
+    const change = one.isStale ? t("inputs changed") : isHigher ? t("↑ raised") : t("↓ lowered");
+    const link = el("button", { type: "button", class: "plain", text: name, on: { click: () => this.#reveal(["Items", one.row, at]) } });
+    return el("tr", { class: one.isStale ? "stale" : "" }, el("th", { scope: "row" }, link), el("td", null, badge(one.before)), el("td", null, badge(one.after)),
+      el("td", { text: percent(one.chance) + range }), el("td", { text: change }));
+  }
+
+  /** The report in a frame that can do nothing but show it; made once a run, so that it does not jump. */
+  #showReport(job) {
+    if (this.#framed === job.id) return;
+    this.#framed = job.id;
+    clear(this.frame);
+    if (!job.files.some(({ name }) => name === "report.html")) return;
+    const frame = el("iframe", { src: `/api/job/report?id=${encodeURIComponent(job.id)}`, title: t("Report"), loading: "lazy" });
+    frame.setAttribute("sandbox", "allow-scripts");
+    this.frame.append(el("h2", { text: t("Report") }), frame);
+  }
+}
+
+function table(heads, rows) {
+  const head = el("tr", null, heads.map((text) => (text ? el("th", { scope: "col", text }) : el("td"))));
+  return el("div", { class: "scroll-x", tabIndex: 0, role: "group", "aria-label": heads[0] }, el("table", { class: "plain" }, el("thead", null, head), el("tbody", null, rows)));
+}
+
+/** What fixing everything on the list would change. */
+function fixing(job) {
+  const sums = job.before_after;
+  if (!sums?.entries) return null;
+  const pair = (label, one, other) => el("tr", null, el("th", { scope: "row", text: label }), el("td", { class: "num", text: one }), el("td", { class: "num", text: other }));
+  const { before, after } = sums;
+  const rows = CLASSES.map((key) => pair(`${describe(key).sign} ${describe(key).word}`, number(before.counts[key] ?? 0, 0, true), number(after.counts[key] ?? 0, 0, true)));
+  rows.push(pair(t("Pieces expected to overturn"), number(before.falls, 1), number(after.falls, 1)));
+  const title = tn("If the {n:,} entry of the list of fixes is done", "If all {n:,} entries of the list of fixes are done", sums.entries);
+  return el("section", { class: "card" }, el("h3", { text: title }), table([t("Pieces"), t("Now"), t("Once fixed")], rows));
+}
