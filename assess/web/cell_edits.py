@@ -11,7 +11,7 @@ from assess.web.history import CellPlace
 from assess.workbook.habits import CellError
 from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
-from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Area, Value, find_locked, read_back
+from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Area, Value, find_headers, read_back
 from assess.workbook.places import split_range
 from assess.workbook.typed import is_free, understand
 from assess.workbook.values import is_blank, shorten
@@ -33,7 +33,7 @@ class EditsRefused(InputError):  # noqa: N818 - what happened, as callers say it
 
 @dataclass(slots=True)
 class Locks:
-    """Cells of a workbook that no edit may change; found when a sheet is edited for the first time."""
+    """Cells of a workbook that no edit may change; those of a sheet are listed when it is edited for the first time."""
 
     data: bytes
     name: str
@@ -57,9 +57,9 @@ class Locks:
         """Return the areas of a sheet that cannot be changed."""
         title = cells.title
         if title not in self._areas:
-            self._areas[title] = list(_list_covered(cells.merged))
+            self._areas[title] = [*cells.marks.locked, *_list_covered(cells.merged)]
             try:
-                self._areas[title] += find_locked(self.data, title, name=self.name)
+                self._areas[title] += find_headers(self.data, title, name=self.name)
             except WorkbookError as error:
                 self._faults[title] = error.problems[0].message
         return self._areas[title]

@@ -11,8 +11,10 @@ from itertools import islice
 from typing import Any, ClassVar
 
 from assess.errors import Problem
+from assess.i18n import Text
 from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, Percent, SheetCells, column_letters, read_number
-from assess.workbook.patch import Value, read_back
+from assess.workbook.patch import LOCKED, Area, Value, read_back
+from assess.workbook.places import split_range
 
 Place = tuple[int, int]
 """The row of a cell, from 1, and its column, from 0."""
@@ -34,6 +36,8 @@ class Marks:
         Cells that hold a formula.
     unknown : set of Place
         Cells that hold elements which no change understands.
+    locked : sequence of (Area, Text)
+        Areas of formulas of several cells, and what they are.
     formats : mapping of Place to str or None
         The format of a cell that shows its number as a date, a time or a percentage; None for a cell that does not,
         although its row or column does.
@@ -49,6 +53,7 @@ class Marks:
 
     formulas: frozenset[Place] = frozenset()
     unknown: frozenset[Place] = frozenset()
+    locked: Sequence[tuple[Area, Text]] = ()
     formats: Mapping[Place, str | None] = field(default_factory=dict)
     row_formats: Mapping[int, str | None] = field(default_factory=dict)
     column_formats: Sequence[tuple[int, int, str | None]] = ()
@@ -221,6 +226,7 @@ class HoldingCells(SheetCells):
         self._formats: dict[Place, str | None] = {}
         self._row_formats: dict[int, str | None] = {}
         self._column_formats: list[tuple[int, int, str | None]] = []
+        self._locked: list[tuple[Area, Text]] = []
         self._low = 0
 
     def marks(self) -> Marks:
@@ -228,6 +234,7 @@ class HoldingCells(SheetCells):
         return Marks(
             formulas=frozenset(self._formulas),
             unknown=frozenset(self._unknown),
+            locked=tuple(self._locked),
             formats=self._formats,
             row_formats=self._row_formats,
             column_formats=self._column_formats,
@@ -247,6 +254,11 @@ class HoldingCells(SheetCells):
         style = attributes.get("s", "")
         if attributes.get("customFormat") in TRUE and style.isdigit():
             self._row_formats[self._number] = self._format(style)
+
+    def _open_formula(self, attributes: dict[str, str]) -> None:
+        why, area = LOCKED.get(attributes.get("t", "")), split_range(attributes.get("ref", ""))
+        if why and area:
+            self._locked.append((area, why))
 
     def _close_cell(self, text: str) -> None:
         super()._close_cell(text)

@@ -366,6 +366,8 @@ class SheetCells(Part):
         elif self._texts is not None:
             self._tags.add(tag)
             self._takes = tag == "v" or (tag == "t" and "rPh" not in self._tags)
+            if tag == "f":
+                self._open_formula(attributes)
 
     def leave(self, tag: str) -> None:
         """Close a row or a cell."""
@@ -415,6 +417,9 @@ class SheetCells(Part):
             )
         self._kind, self._style = attributes.get("t", "n"), attributes.get("s", "")
         self._texts, self._tags = [], set()
+
+    def _open_formula(self, attributes: dict[str, str]) -> None:
+        """Take in the beginning of a formula."""
 
     def _close_cell(self, text: str) -> None:
         if self._tags.isdisjoint(("v", "f", "is")):

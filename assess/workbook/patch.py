@@ -43,8 +43,11 @@ LONGEST_TEXT = 32_767
 """Characters that a cell of a spreadsheet program holds."""
 LARGEST_NUMBER = 9.99999999999999e307
 """The largest number that a cell holds."""
+MOST_CHECKED = 4 * 2**20
+"""Bytes up to which a sheet is read, before it is changed, to see whether it can be."""
 _UNWRITABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]|_(?=x[0-9A-Fa-f]{4}_)")
-_LOCKED = {"dataTable": fill("it belongs to a data table."), "array": fill("it belongs to an array formula.")}
+LOCKED = {"dataTable": fill("it belongs to a data table."), "array": fill("it belongs to an array formula.")}
+"""Why no cell of a formula of several cells is changed by itself."""
 _HEADER = fill("it is a header of a table.")
 _CONTENT = frozenset({"f", "v", "is"})
 _LEVEL = 6
@@ -130,23 +133,21 @@ def list_formulas(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> di
         return book.read(SheetFormulas, book.sheets[sheet]).found
 
 
-def find_locked(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> list[tuple[Area, Text]]:
-    """Return the areas of a sheet whose cells `patch_workbook` refuses to change, with why: what it can tell early.
-
-    Single cells that it refuses, too, are those with the formula that others share.
+def find_headers(data: bytes, sheet: str, *, name: str = "workbook.xlsx") -> list[tuple[Area, Text]]:
+    """Return the cells of a sheet that `patch_workbook` refuses to change since they are headers of tables, with why.
 
     Raises
     ------
     WorkbookError
-        If the workbook cannot be opened, or if the sheet cannot be changed at all.
+        If the workbook cannot be opened, or if the sheet cannot be changed at all. Of a large sheet this shows only
+        when it is changed.
     """
     with Book(data, name) as book:
         _check_names(book, [sheet])
         path = book.sheets[sheet]
-        places = SheetPlaces(book.archive, path, name, {}, SILENT).read()
-        _ = places.sheet_data  # raises where there is none
-        headings = [((left, right, top, top), _HEADER) for left, right, top in find_headings(book, path)]
-        return [*((area, _LOCKED[kind]) for area, kind in places.locked), *headings]
+        if book.archive.getinfo(path).file_size <= MOST_CHECKED:
+            _ = SheetPlaces(book.archive, path, name, {}, SILENT).read().sheet_data
+        return [((left, right, top, top), _HEADER) for left, right, top in find_headings(book, path)]
 
 
 def _check_names(book: Book, names: Sequence[str]) -> None:
@@ -223,7 +224,7 @@ class _SheetPatch:
         address = f"{column_letters(column - 1)}{number}"
         for (left, right, top, bottom), kind in places.locked:
             if left <= column <= right and top <= number <= bottom:
-                self._refuse(address, _LOCKED[kind])
+                self._refuse(address, LOCKED[kind])
         if any(left <= column <= right and number == top for left, right, top in headings):
             self._refuse(address, _HEADER)
 

@@ -16,6 +16,8 @@ from assess.workbook.open import Part, column_letters, damaged, unreadable
 
 _TAG = re.compile(rb"""<[^>"']*(?:(?:"[^"]*"|'[^']*')[^>"']*)*>""")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s=/>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
+MOST_NESTED = 100
+"""Elements in one another; a sheet has a dozen."""
 _ENCODINGS = ("utf-8", "us-ascii", "ascii")
 
 Edit = tuple[int, int, bytes]
@@ -76,7 +78,7 @@ class LocatedPart(Part):
     def enter(self, tag: str, attributes: dict[str, str]) -> None:
         """Note where an element begins, if it is wanted."""
         self.depth = len(self._open) + 1
-        if self.depth > 100:
+        if self.depth > MOST_NESTED:
             raise self.not_understood(fill("it nests its elements too deep"))
         kept = None
         if self.wants(tag, attributes):
@@ -294,6 +296,9 @@ class SheetPlaces(LocatedPart):
 
     def enter(self, tag: str, attributes: dict[str, str]) -> None:
         """Note where an element begins, and the cell that it begins."""
+        if self._row is None and self._is_inside and len(self._open) > 2:
+            self._pass_over(tag, attributes)
+            return
         super().enter(tag, attributes)
         one = self._open[-1]
         if one is None or not self._is_inside:
@@ -304,6 +309,17 @@ class SheetPlaces(LocatedPart):
             self._cell = self._row.cells[self._column] = CellPlace(self._column, one)
         elif self.depth == 5 and self._cell is not None:
             self._cell.parts.append(one)
+
+    def _pass_over(self, tag: str, attributes: dict[str, str]) -> None:
+        """Take in an element of a row that is not wanted, of which there may be a million."""
+        self._open.append(None)
+        depth = len(self._open)
+        if depth == 4:
+            self._expect(tag, "c")
+        elif depth == 5 and "t" in attributes:
+            self._start_content(tag, attributes)
+        elif depth > MOST_NESTED:
+            raise self.not_understood(fill("it nests its elements too deep"))
 
     def found(self, one: Element) -> None:
         """Keep the element that holds the rows, and the one that says how far they reach."""
