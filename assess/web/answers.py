@@ -62,7 +62,14 @@ Answer = dict[str, Any] | Content
 
 def describe_book(asked: Asked) -> Answer:
     """Answer with the whole workbook."""
-    return asked.book.describe()
+    return _note_download(asked, asked.book.describe())
+
+
+def _note_download(asked: Asked, answer: dict[str, Any]) -> dict[str, Any]:
+    """Return an answer with a state in which changes of a held workbook that were downloaded are not called unsaved."""
+    session, state = asked.session, answer["state"]
+    is_downloaded = asked.book.mode == "held" and session.downloaded == state["version"]
+    return {**answer, "state": {**state, "unsaved": False}} if is_downloaded else answer
 
 
 def describe_state(asked: Asked) -> Answer:
@@ -72,7 +79,9 @@ def describe_state(asked: Asked) -> Answer:
         session.looked = time.monotonic()
         session.book.check_outside()
     job = session.job.summarise() if session.job else None
-    return {"state": session.book.state() if session.book else None, "job": job}
+    if session.book is None:
+        return {"state": None, "job": job}
+    return _note_download(asked, {"state": session.book.state(), "job": job})
 
 
 def edit(asked: Asked) -> Answer:
@@ -82,21 +91,21 @@ def edit(asked: Asked) -> Answer:
         raise RequestError(fill("The request cannot be read."), UNUSABLE)
     change = asked.book.edit(_version(asked), edits, str(asked.body.get("label") or ""))
     asked.note_edit(asked.session)
-    return change
+    return _note_download(asked, change)
 
 
 def undo(asked: Asked) -> Answer:
     """Take back the last change."""
     change = asked.book.undo(_version(asked))
     asked.note_edit(asked.session)
-    return change
+    return _note_download(asked, change)
 
 
 def redo(asked: Asked) -> Answer:
     """Make a change that was taken back once more."""
     change = asked.book.redo(_version(asked))
     asked.note_edit(asked.session)
-    return change
+    return _note_download(asked, change)
 
 
 def _version(asked: Asked) -> int:

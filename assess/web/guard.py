@@ -18,6 +18,8 @@ from assess.web.sessions import ENTRANCE, Headers, Keys, Session, Visit
 
 MOST_BODY = 64 * 2**20
 """Bytes of the largest body that any request may have; most may have less."""
+MOST_SKIPPED = 4 * MOST_BODY
+"""Bytes of a body that is too large which are still read, so that the browser gets to the answer."""
 COOKIE_AGE = 30 * 24 * 3600
 """Time that a browser keeps the cookie [s]; its key is void once the server has ended."""
 POLICY = (
@@ -69,6 +71,7 @@ class Guard:
         elif not self._is_ours(scope["method"], visit):
             await _refuse(scope, send, FORBIDDEN, fill("The request does not come from this page."))
         elif _read_length(headers) > MOST_BODY:
+            await _skip_body(receive)
             await _refuse(scope, send, TOO_LARGE, fill("The file is too large."))
         else:
             await self._app({**scope, SESSION: session}, receive, send)
@@ -123,6 +126,15 @@ def _read_cookies(headers: Headers) -> dict[str, str]:
 def _read_length(headers: Headers) -> int:
     text = headers.get(b"content-length", [b"0"])[0]
     return int(text) if text.isdigit() and len(text) < 20 else MOST_BODY + 1
+
+
+async def _skip_body(receive: Receive) -> None:
+    """Read what is sent: a browser that is still sending when the connection ends shows no answer."""
+    size, is_more = 0, True
+    while is_more and size < MOST_SKIPPED:
+        message = await receive()
+        size += len(message.get("body", b""))
+        is_more = message.get("more_body", False)
 
 
 def _make_cookie(name: str, value: str, is_secure: bool) -> bytes:

@@ -234,10 +234,8 @@ def check_free(job: Job | None) -> None:
         raise RequestError(fill("A simulation is running already."), CONFLICT)
 
 
-if sys.platform == "win32":
-    _OWN_GROUP: Mapping[str, Any] = {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-else:
-    _OWN_GROUP = {"process_group": 0}
+_OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
+"""Windows only; elsewhere the process gets a session of its own."""
 
 
 def _start(folder: Path) -> "subprocess.Popen[bytes]":
@@ -250,7 +248,7 @@ def _start(folder: Path) -> "subprocess.Popen[bytes]":
     return subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
         [sys.executable, "-m", "assess.web.job_process", str(folder)],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=folder,
-        env={**os.environ, **{name: str(value) for name, value in variables.items()}}, **_OWN_GROUP,
+        env={**os.environ, **{name: str(value) for name, value in variables.items()}}, creationflags=_OWN_GROUP, start_new_session=True,
     )  # fmt: skip
 
 

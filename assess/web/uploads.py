@@ -6,11 +6,12 @@ from typing import Any
 from starlette.requests import ClientDisconnect, Request
 
 from assess.i18n import fill
+from assess.web.guard import MOST_SKIPPED
 from assess.web.request_errors import BAD_REQUEST, TOO_LARGE, RequestError
 
 
 async def read_body(request: Request, most: int) -> bytes:
-    """Return the body of a request.
+    """Return the body of a request; what is too large is read to its end, so that the browser gets to the answer.
 
     Raises
     ------
@@ -21,11 +22,14 @@ async def read_body(request: Request, most: int) -> bytes:
     try:
         async for part in request.stream():
             size += len(part)
-            if size > most:
-                raise RequestError(fill("It is larger than {most:.0f} MB.", most=most / 2**20), TOO_LARGE)
-            parts.append(part)
+            if size > MOST_SKIPPED:
+                break
+            if size <= most:
+                parts.append(part)
     except ClientDisconnect:
         raise RequestError(fill("The request broke off."), BAD_REQUEST) from None
+    if size > most:
+        raise RequestError(fill("It is larger than {most:.0f} MB.", most=most / 2**20), TOO_LARGE)
     return b"".join(parts)
 
 

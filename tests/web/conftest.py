@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -162,3 +163,17 @@ def page(browser, served, request):
 def _is_fault(said):
     """Whether a line of the console is an error of the page: a script, the policy; not the status of an answer."""
     return said.type == "error" and "Failed to load resource" not in said.text
+
+
+def wait_until(ask, is_so):
+    """Ask again and again until an answer is so, and return it."""
+    latest = time.monotonic() + PATIENCE
+    while not is_so(answer := ask()):
+        assert time.monotonic() < latest, answer
+        time.sleep(0.02)
+    return answer
+
+
+def wait_for_job(client):
+    """Return the job once it has ended."""
+    return wait_until(lambda: client.get("/api/job").json()["job"], lambda job: job["state"] != "running")

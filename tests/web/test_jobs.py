@@ -1,0 +1,194 @@
+"""The simulation of a session, on a running server: its results, its end, and what is left of it."""
+
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from assess.web.job_inputs import list_stale
+from tests.web.conftest import start, wait_for_job, wait_until
+from tests.workbooks import ITEMS, write
+
+LONG = {"verify": "all", "runs": 100_000, "formats": ["json"]}
+"""A job that takes minutes."""
+linux = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="processes are found in /proc")
+
+
+@pytest.fixture(scope="module")
+def running(tmp_path_factory):
+    """A server with a workbook of five rows, and the date of its reports fixed."""
+    folder = tmp_path_factory.mktemp("jobs")
+    (folder / "tmp").mkdir()
+    (folder / "home").mkdir()
+    path = write(folder / "home" / "office.xlsx")
+    server = start(
+        path, "--no-browser", cwd=folder / "home", temporary=folder / "tmp", environment={"SOURCE_DATE_EPOCH": "0"}
+    )
+    yield server
+    server.stop()
+
+
+def _list_left(server):
+    """Return the files of jobs below the folders of the server."""
+    return sorted(path.name for path in (server.folder.parent / "tmp").rglob("job-*"))
+
+
+def _find_worker(server):
+    pid = server.process.pid
+    children = "".join(path.read_text() for path in Path(f"/proc/{pid}/task").glob("*/children")).split()
+    return next((int(child) for child in children if b"job_process" in Path(f"/proc/{child}/cmdline").read_bytes()), 0)
+
+
+def _is_gone(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().split(")")[1].split()[0] == "Z"
+    except FileNotFoundError:
+        return True
+
+
+@pytest.mark.slow
+def test_results_are_those_of_the_command(running, tmp_path):
+    """Byte for byte: the same calls on a copy of the same bytes."""
+    formats = ["html", "xlsx", "json", "csv"]
+    asked = {"verify": "high", "runs": 40, "seed": 3, "first": 1, "formats": formats}
+    assert running.client.post("/api/job", asked).status == 200
+    words = ["run", "office.xlsx", "--verify", "high", "--runs", "40", "--seed", "3", "--anchor", "first:1"]
+    subprocess.run(
+        [sys.executable, "-m", "assess", *words, "--formats", ",".join(formats), "--out", str(tmp_path)],
+        cwd=running.folder, env=os.environ | {"SOURCE_DATE_EPOCH": "0"}, check=True, capture_output=True,
+    )  # fmt: skip
+    job = wait_for_job(running.client)
+    assert (job["state"], job["message"], job["is_old"], job["stale"]) == ("done", "", False, [])
+    names = [one["name"] for one in job["files"]]
+    assert names == ["items.csv", "report.html", "report.xlsx", "results.json", "report.zip"]
+    files = {name: running.client.get(f"/api/job/file/{name}").data for name in names}
+    assert {name for name in names[:-1] if files[name] != (tmp_path / name).read_bytes()} == set()
+    with zipfile.ZipFile(io.BytesIO(files["report.zip"])) as archive:
+        assert {name: archive.read(name) for name in archive.namelist()} == {name: files[name] for name in names[:-1]}
+
+    found = json.loads(files["results.json"])
+    rows = {one["row"]: one for one in found["items"]}
+    assert job["items"]["row"] == sorted(rows)
+    assert any(job["items"]["simulated"])
+    for row, chance, low in zip(job["items"]["row"], job["items"]["chance"], job["items"]["low"], strict=True):
+        adopted = rows[row]["adopted"] if "adopted" in rows[row] else rows[row]
+        assert chance == pytest.approx(adopted["probability"], abs=1e-9)
+        assert low is None or low <= chance
+    assert job["before_after"]["before"]["falls"] > job["before_after"]["after"]["falls"]
+
+
+def test_a_job_ends_with_its_files_and_is_found_again(running):
+    """Also by another tab of the browser; a report is shown in a frame that belongs to no address."""
+    asked = {"verify": "none", "formats": ["html"]}
+    assert running.client.post("/api/job", asked).json()["job"]["state"] == "running"
+    assert running.client.post("/api/job", asked).status == 409
+    job = wait_for_job(running.client)
+    assert job["state"] == "done"
+    assert running.client.get("/api/state").json()["job"]["id"] == job["id"]
+    report = running.client.get("/api/job/report")
+    policy = report.headers["content-security-policy"]
+    assert policy.startswith("sandbox allow-scripts; default-src 'none'; script-src 'sha256-")
+    assert "frame-ancestors 'self'" in policy
+    assert report.headers["x-frame-options"] == "SAMEORIGIN"
+    assert running.client.get("/api/job/file/report.html").headers["content-disposition"].startswith("attachment")
+    assert running.client.get("/api/job/file/report.pdf").status == 404
+
+
+def test_rows_that_changed_since_are_stale(running):
+    running.client.post("/api/job", {"verify": "none", "formats": ["json"]})
+    job = wait_for_job(running.client)
+    book = running.client.get("/api/book").json()
+    columns = {one["field"]: one["at"] for one in book["sheets"][2]["columns"]}
+    edits = [["Items", 2, columns["breadth"], 31], ["Items", 3, columns["notes"], "by the door"]]
+    version = running.client.post("/api/edit", {"version": book["version"], "edits": edits}).json()["state"]["version"]
+    now = running.client.get("/api/job").json()["job"]
+    assert (now["id"], now["is_old"], now["stale"]) == (job["id"], True, [2])
+    running.client.post("/api/undo", {"version": version})
+    assert running.client.get("/api/job").json()["job"]["stale"] == []
+
+
+def test_floors_and_the_building_make_all_rows_stale(example_inventory):
+    from dataclasses import replace
+
+    def change_floor(**changes):
+        first, *others = example_inventory.floors
+        return replace(example_inventory, floors=(replace(first, **changes), *others))
+
+    rows = [one.row for one in example_inventory.items]
+    building = example_inventory.building
+    assert list_stale(example_inventory, example_inventory) == []
+    assert list_stale(example_inventory, change_floor(name="Attic")) == []
+    assert list_stale(example_inventory, change_floor(pfa={"X": 1.0})) == rows
+    assert list_stale(example_inventory, replace(example_inventory, building=replace(building, client="B"))) == []
+    assert list_stale(example_inventory, replace(example_inventory, building=replace(building, friction=0.2))) == rows
+
+
+def test_what_cannot_be_asked_for_is_refused(running):
+    """Among it what runs code: fitted models and templates come from the command line alone."""
+    for asked in ({"verify": "some"}, {"runs": 0}, {"runs": "many"}, {"seed": -1}, {"scale": 0}, {"first": -1},
+                  {"first": True}, {"formats": []}, {"formats": ["npz"]}, {"formats": "../x"}, {"scenario": "x"}):  # fmt: skip
+        reply = running.client.post("/api/job", asked)
+        assert (reply.status, bool(reply.json()["message"])) == (422, True), asked
+    left = wait_for_job(running.client)["id"] if running.client.get("/api/job").json()["job"] else ""
+    assert _list_left(running) == [f"job-{left}"] * bool(left)
+    asked = {"formats": ["json"], "verify": "none", "method": "/tmp/own.toml", "template": "/tmp", "out": "/tmp/out"}
+    assert running.client.post("/api/job", asked).status == 200
+    assert wait_for_job(running.client)["settings"] == {"verify": "none"}
+
+
+def test_a_workbook_with_errors_is_not_simulated(served, tmp_path):
+    server = served(write(tmp_path / "faulty.xlsx", [*ITEMS, {"item": "B1", "floor": "1", "height": "tall"}]))
+    reply = server.client.post("/api/job", {"verify": "none"})
+    assert reply.status == 422
+    assert any("tall" in one["message"] for one in reply.json()["problems"])
+    assert _list_left(server) == []
+
+
+def test_cancelling_ends_the_process_and_leaves_nothing(served, tmp_path):
+    server = served(write(tmp_path / "w.xlsx"))
+    server.client.post("/api/job", LONG)
+    wait_until(lambda: server.client.get("/api/job").json()["job"]["stage"], bool)
+    job = server.client.post("/api/job/cancel").json()["job"]
+    assert (job["state"], job["files"]) == ("cancelled", [])
+    wait_until(lambda: _list_left(server), lambda left: left == [])
+    if Path("/proc/self/task").is_dir():
+        assert _find_worker(server) == 0
+    server.client.post("/api/job", LONG)  # another one can begin, which ends with the server
+    status, _, err = server.stop()
+    assert (status, err) == (0, "Stopped. All changes are saved in w.xlsx.\n")
+    assert list((tmp_path / "tmp").iterdir()) == []
+
+
+@linux
+def test_a_process_that_is_killed_is_a_job_that_failed(served, tmp_path):
+    server = served(write(tmp_path / "w.xlsx"))
+    server.client.post("/api/job", LONG)
+    os.kill(wait_until(lambda: _find_worker(server), bool), signal.SIGKILL)
+    job = wait_for_job(server.client)
+    assert job["state"] == "failed"
+    assert "ended unexpectedly" in job["message"]
+    assert _list_left(server) == []
+
+
+@linux
+def test_a_job_ends_with_a_server_that_is_killed_and_the_next_one_sweeps_up(served, tmp_path):
+    path = write(tmp_path / "w.xlsx")
+    server = served(path)
+    server.client.post("/api/job", LONG)
+    worker = wait_until(lambda: _find_worker(server), bool)
+    wait_until(lambda: server.client.get("/api/job").json()["job"]["stage"], bool)
+    server.process.kill()
+    server.process.wait()
+    wait_until(lambda: _is_gone(worker), bool)
+    assert _list_left(server) == []
+    assert [one.name[:12] for one in (tmp_path / "tmp").iterdir()] == ["assess-open-"]
+    other = served(path)
+    assert len(list((tmp_path / "tmp").iterdir())) == 1
+    other.stop()
+    assert list((tmp_path / "tmp").iterdir()) == []
