@@ -12,6 +12,7 @@ Association International: double-faced library shelving of 21 in by 7.5 ft, boo
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, NamedTuple
 
 from assess.i18n import Text, fill
@@ -66,13 +67,21 @@ def find_weight(item: Item, language: str = "en") -> Weight:
     """Return the weight of a piece with its contents; `language` is that of the workbook, in which it names types."""
     if item.weight is not None:
         is_type = "weight" in item.assumed
-        words = fill("as its Type in the Catalogue has it") if is_type else fill("as the workbook gives it")
+        words = _FROM_TYPE if is_type else _GIVEN
         return Weight(item.weight * GRAVITY, "type" if is_type else "given", words, is_assumed=False)
     contents = find_contents(item.type, language)
-    density = DENSITIES[contents or UNKNOWN]
+    density, words = DENSITIES[contents or UNKNOWN].value, _describe_estimate(contents)
     volume = item.breadth * (item.width or WIDTH) * item.height
+    return Weight(density * volume * GRAVITY, "estimate", words, is_assumed=True, is_per_metre=item.width is None)
+
+
+_FROM_TYPE, _GIVEN = fill("as its Type in the Catalogue has it"), fill("as the workbook gives it")
+
+
+@cache  # the same few sentences for every row
+def _describe_estimate(contents: str) -> Text:
+    density = DENSITIES[contents or UNKNOWN]
     filled: dict[str, Any] = {"density": density.value, "meaning": density.meaning, "source": density.source}
-    words = fill("estimated: {density:g} kg/m³, {meaning} ({source})", **filled)
     if not contents:
-        words = fill("estimated: {density:g} kg/m³, assumed to be full of {meaning} ({source})", **filled)
-    return Weight(density.value * volume * GRAVITY, "estimate", words, is_assumed=True, is_per_metre=item.width is None)
+        return fill("estimated: {density:g} kg/m³, assumed to be full of {meaning} ({source})", **filled)
+    return fill("estimated: {density:g} kg/m³, {meaning} ({source})", **filled)

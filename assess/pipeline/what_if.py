@@ -26,7 +26,7 @@ def spell_names(inventory: Inventory, names: Sequence[str]) -> tuple[str, ...]:
     SettingsError
         If there is no item of a name, or a name is meant as ``first:N`` and is not.
     """
-    known = {key(one.item): one.item for one in inventory.items}
+    known = {key(one.item): one.item for one in inventory.items} if names else {}
     return tuple(dict.fromkeys(known[key(name)] if key(name) in known else _refuse(inventory, name) for name in names))
 
 
@@ -52,6 +52,8 @@ def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
     SettingsError
         If there is no item of a name.
     """
+    if not names:
+        return inventory
     wanted = set(spell_names(inventory, names))
     indices = {at for at, one in enumerate(inventory.items) if one.item in wanted}
     notes = [_note_anchored(inventory.items[at]) for at in sorted(indices) if inventory.items[at].anchored == "yes"]

@@ -214,9 +214,9 @@ def describe_catalogue(asked: Asked) -> Answer:
 
 def try_out(asked: Asked) -> Answer:
     """Answer with classes before and after a change that is not saved."""
-    from assess.web import what_if
+    from assess.web.what_if_answer import try_out
 
-    return what_if.try_out(asked.book.snapshot(), dict(asked.body))
+    return try_out(asked.book.snapshot(), dict(asked.body))
 
 
 # ---------------------------------------------------------------- the job

@@ -115,7 +115,7 @@ def cut_all(pieces: Sequence[PlacedPiece], edge: "BaseGeometry | None") -> list[
 
     shapely.prepare(edge)
     rings = np.array([ring for one in pieces for ring in one.falls])
-    is_inside = iter(shapely.covers(edge, shapely.polygons(rings)).tolist())
+    is_inside = iter(np.asarray(shapely.covers(edge, shapely.polygons(rings)), dtype=np.bool_).tolist())
     return [replace(one, falls=tuple(_cut(one.falls, edge, is_inside))) for one in pieces]
 
 
