@@ -153,6 +153,8 @@ def page(browser, served, request):
             found.goto(server.url)
             found.wait_for_url(f"{server.base}/**")
             found.wait_for_url(lambda address: "/enter" not in address)
+            cookies = "; ".join(f"{one['name']}={one['value']}" for one in context.cookies())
+            server.entered = server.entered or Client(server.base, cookies)  # the same session: a ticket serves once
             return found
 
         yield open_page
