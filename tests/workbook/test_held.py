@@ -1,0 +1,199 @@
+"""Cells held in memory: what is read of them is what would be read of the bytes, and files are read once."""
+
+import io
+import shutil
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xlsxwriter
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from assess.model import Inventory
+from assess.workbook.held import HeldSheets, Place
+from assess.workbook.kept_files import KeptFiles
+from assess.workbook.open import column_letters
+from assess.workbook.patch import Value, patch_workbook
+from assess.workbook.read import build_held, hold_sheets, parse_held, read_inventory
+from assess.workbook.template import Content, write_workbook
+from tests.pictures import picture
+
+RECORD = "891018_1.cra-1.0210a.smc"
+RECORDS = Path(__file__).parents[2] / "inventories" / "records" / "575-market"
+
+
+def _odd_book() -> bytes:
+    """A workbook with what changes how cells are read: formats of cells, rows and columns, merges, hidden rows."""
+    packed = io.BytesIO()
+    with xlsxwriter.Workbook(packed, {"strings_to_formulas": False}) as book:
+        percent, date = book.add_format({"num_format": "0.0%"}), book.add_format({"num_format": "yyyy-mm-dd"})
+        plain, hours = book.add_format({"bold": True}), book.add_format({"num_format": "[h]:mm"})
+        floors, items, form = book.add_worksheet("Floors"), book.add_worksheet("Items"), book.add_worksheet("Building")
+        floors.write_row(0, 0, ["A title above the table"])
+        floors.write_row(2, 0, ["Floor", "PFA X [g]", "Elevation [m]", "Record X", "Plan"])
+        floors.write_row(3, 0, ["1", 0.5, 3])
+        floors.write_row(4, 0, ["2", None, 6], plain)
+        items.write_row(0, 0, ["Item", "Floor", "Breadth [cm]", "Height [m]", "Mine", "Centre of gravity [%]",
+                               "Quantity", "Anchored", "Class (formula)", "B/H", "Notes"])  # fmt: skip
+        items.set_column(5, 5, None, percent)
+        items.set_row(6, None, date)
+        items.set_row(7, None, None, {"hidden": True})
+        for row in range(1, 8):
+            items.write_row(row, 0, [f"A{row}", "1" if row % 2 else "2", 40 + row, 1.8], plain if row < 3 else None)
+            items.write_formula(row, 8, f"=C{row + 1}", None, "" if row > 4 else "low")
+        items.write(2, 4, 45000.25, date)
+        items.write(3, 5, 0.45, percent)
+        items.write(4, 6, 2, hours)
+        items.write(5, 5, 40, plain)
+        items.write_formula(6, 10, "=1+1", None, 2)
+        items.merge_range("A12:C12", "Heading")
+        for row, line in enumerate((["Building", "Town hall"], ["Report date", 45000], ["Ground PGA [g]", 0.2])):
+            form.write_row(row, 0, line, date if row == 1 else None)
+    return packed.getvalue()
+
+
+ODD = _odd_book()
+FIXED = {"Items": {(row, at) for row in range(2, 9) for at in (8, 10)}}
+"""Cells that hold formulas; the page edits none of them."""
+
+VALUES = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(-3, 200),
+    st.floats(-1e6, 1e6),
+    st.sampled_from([1e15, 123456789012345678, -0.0, 45000.5, 0.3, 5e-324, 9e307]),
+    st.sampled_from(["", " ", "1", "2", "A1", "45 cm", "1,80 m", "yes", "no", "42%", "2024-05-01", "Floor", "Item",
+                     "a.png", "_x0041_", "_x005F_", "a\x00b", "\r\nline\r", "\ud800", "=1+1", "<b>&", "\t", "è"]),
+)  # fmt: skip
+CELLS = st.tuples(st.sampled_from(["Items", "Floors", "Building"]), st.integers(1, 14), st.integers(0, 11))
+
+
+def _by_sheet(edits: Mapping[tuple[str, int, int], Value]) -> dict[str, dict[Place, Value]]:
+    found: dict[str, dict[Place, Value]] = {}
+    for (sheet, row, at), value in edits.items():
+        if (row, at) not in FIXED.get(sheet, ()):
+            found.setdefault(sheet, {})[row, at] = value
+    return found
+
+
+def _addressed(edits: Mapping[str, Mapping[Place, Value]]) -> dict[str, dict[str, Value]]:
+    return {name: {f"{column_letters(at)}{row}": value for (row, at), value in one.items()}
+            for name, one in edits.items()}  # fmt: skip
+
+
+def _read(held: HeldSheets, folder: Path | None = None, kept: KeptFiles | None = None) -> Inventory:
+    tables, problems = parse_held(held)
+    return build_held(tables, problems, Path("inventory.xlsx"), folder, kept=kept)
+
+
+def _read_bytes(data: bytes, folder: Path | None = None) -> Inventory:
+    return replace(read_inventory(data, records=folder, strict=False), sha256="")
+
+
+@given(first=st.dictionaries(CELLS, VALUES, max_size=30), second=st.dictionaries(CELLS, VALUES, max_size=8))
+@settings(max_examples=40, deadline=None)
+def test_what_is_held_reads_as_the_bytes_do(first: dict[Any, Any], second: dict[Any, Any]) -> None:
+    held = hold_sheets(ODD, "inventory.xlsx")
+    assert _read(held) == _read_bytes(ODD)
+    data = ODD
+    for edits in map(_by_sheet, (first, second)):
+        held, data = held.changed(edits), patch_workbook(data, _addressed(edits)).data
+        anew = hold_sheets(data, "inventory.xlsx")
+        assert {name: one.cells for name, one in held.cells.items()} == {
+            name: one.cells for name, one in anew.cells.items()
+        }
+        assert _read(held) == _read_bytes(data)
+
+
+def test_what_was_held_stays() -> None:
+    held = hold_sheets(ODD, "inventory.xlsx")
+    before = _read(held)
+    changed = held.changed({"Items": {(2, 2): 50, (30, 0): "new", (3, 0): None}})
+    assert changed.cells["Items"].value((2, 2)) == 50
+    assert changed.cells["Floors"] is held.cells["Floors"]
+    assert changed.cells["Items"].cells[5] is held.cells["Items"].cells[5]  # rows that no edit touches are shared
+    assert list(changed.cells["Items"].cells) == sorted(changed.cells["Items"].cells)
+    assert _read(changed) != before
+    assert _read(held) == before
+
+
+def test_a_value_that_was_read_is_written_back() -> None:
+    """A date that an edit replaced returns as the number that its cell shows as a date."""
+    held = hold_sheets(ODD, "inventory.xlsx")
+    cells = held.cells["Items"]
+    places = [(3, 4), (4, 5), (5, 6), (2, 0), (6, 5)]
+    old = {place: cells.value(place) for place in places}
+    gone = patch_workbook(ODD, _addressed({"Items": dict.fromkeys(places)})).data
+    back = {place: cells.as_written(value) for place, value in old.items()}
+    again = hold_sheets(patch_workbook(gone, _addressed({"Items": back})).data, "inventory.xlsx").cells["Items"]
+    assert {place: again.value(place) for place in places} == old
+
+
+# ---------------------------------------------------------------- the files that it names
+
+
+@pytest.fixture
+def named(tmp_path: Path) -> Path:
+    """The folder of a workbook that names a record, two photos, a logo and a plan."""
+    shutil.copy(RECORDS / RECORD, tmp_path / "a.smc")
+    for name in ("p1.png", "p2.png", "logo.png", "plan.png"):
+        (tmp_path / name).write_bytes(picture("PNG"))
+    (tmp_path / "hazard.csv").write_text("pga_g,annual_rate\n0.1,0.01\n0.2,0.004\n0.4,0.0008\n")
+    rows = {
+        "Building": [{"logo": "logo.png", "hazard": "hazard.csv", "ground_pga": 0.2}],
+        "Floors": [{"floor": "1", "record_x": "a.smc", "plan": "plan.png", "plan_left": 0, "plan_bottom": 0,
+                    "plan_width": 10}],
+        "Items": [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180, "photo": f"p{at}.png"}
+                  for at in (1, 2)],
+    }  # fmt: skip
+    write_workbook(tmp_path / "book.xlsx", Content(rows))
+    return tmp_path
+
+
+def _read_kept(folder: Path, kept: KeptFiles) -> Inventory:
+    held = hold_sheets((folder / "book.xlsx").read_bytes(), "inventory.xlsx")
+    with kept:
+        return _read(held, folder, kept)
+
+
+def test_files_that_have_not_changed_are_read_once(named: Path) -> None:
+    kept, data = KeptFiles(), (named / "book.xlsx").read_bytes()
+    one, two = _read_kept(named, kept), _read_kept(named, kept)
+    assert two == _read_bytes(data, named)
+    assert one.floors[0].records["X"][0].record is two.floors[0].records["X"][0].record
+    assert one.photos["p1.png"] is two.photos["p1.png"]
+    assert one.hazard is not None
+    assert one.hazard is two.hazard
+
+    shutil.copy(RECORDS / RECORD.replace("a.smc", "b.smc"), named / "a.smc")
+    (named / "p1.png").write_bytes(b"no picture")
+    (named / "p2.png").unlink()
+    three = _read_kept(named, kept)
+    fresh = _read_bytes(data, named)
+    assert three.problems == fresh.problems
+    assert three.files == fresh.files != one.files
+    assert [one.severity for one in three.problems] == ["error", "error"]
+    (named / "p1.png").write_bytes(picture("PNG"))
+    (named / "p2.png").write_bytes(picture("PNG"))
+    assert not _read_kept(named, kept).problems
+
+
+@pytest.mark.parametrize(
+    ("limit", "most"),
+    [("MOST_PHOTOS", 1), ("MOST_PHOTO_BYTES", 700), ("MOST_PICTURE_PIXELS", 2000), ("MOST_RECORD_BYTES", 1000),
+     ("MOST_RECORD_SAMPLES", 10)],
+)  # fmt: skip
+def test_limits_hold_for_files_that_were_kept(
+    named: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int
+) -> None:
+    kept, data = KeptFiles(), (named / "book.xlsx").read_bytes()
+    assert not _read_kept(named, kept).problems
+    monkeypatch.setattr(f"assess.workbook.allowance.{limit}", most)
+    expected = _read_bytes(data, named).problems
+    assert expected
+    assert _read_kept(named, kept).problems == expected
+    monkeypatch.undo()
+    assert not _read_kept(named, kept).problems
