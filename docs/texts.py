@@ -1,7 +1,8 @@
-"""Collect every text of the reports and the workbook into the catalogues: ``make texts``.
+"""Collect every text of the reports, the workbook and the page into the catalogues: ``make texts``.
 
-Texts are the arguments of `_`, `gettext`, `ngettext`, `fill` and `nfill` in the code and in the templates, and the
-texts of methods, profiles, flags and columns. Translations are kept; texts that are no longer used are removed.
+Texts are the arguments of `_`, `gettext`, `ngettext`, `fill` and `nfill` in the code and in the templates, of `t` and
+`tn` in the modules of the page, and the texts of methods, profiles, flags and columns. Translations are kept; texts
+that are no longer used are removed.
 """
 
 import sys
@@ -15,6 +16,7 @@ from babel.messages.pofile import read_po, write_po
 
 from assess import resources
 from assess.i18n import LANGUAGES
+from assess.web.texts import list_texts
 
 ROOT = Path(__file__).parents[1]
 KEYWORDS = {"_": None, "gettext": None, "fill": None, "ngettext": (1, 2), "nfill": (1, 2)}
@@ -45,6 +47,8 @@ def collect() -> Catalog:
             folder, rules, keywords=KEYWORDS, options_map={"**.j2": {"trimmed": "true", "silent": "false"}}
         ):
             catalogue.add(message, locations=[(f"{folder.name}/{name}", 0)], auto_comments=comments)
+    for one, many, name in list_texts():
+        catalogue.add((one, many) if many else one, locations=[(f"assess/web/page/{name}", 0)])
     for text, where in _of_themselves():
         catalogue.add(text, locations=[(where, 0)])
     return catalogue

@@ -9,7 +9,7 @@ const AUTO = "auto";
 
 const VERIFY = () => [
   ["all", t("All pieces"), t("The most reliable, and the longest.")],
-  ["high", t("Pieces at risk"), t("High and very high by a formula, outside its checked range, or on an escape route.")],
+  ["high", t("Pieces at risk"), t("High and very high by a formula, outside its checked range, or on an evacuation route.")],
   ["none", t("None: reports by the formula only"), t("Takes seconds.")],
 ];
 const FORMATS = () => [
@@ -28,7 +28,7 @@ export function describeOptions(begin) {
   const formats = FORMATS().map(([value, label, checked]) => option("checkbox", { name: "format", value, checked }, label));
   const runs = choose([...RUNS.map((n) => [String(n), runsLabel(n)]), [AUTO, t("as many as every class needs, up to 5,000")]], String(USUAL_RUNS));
   const seed = el("input", { type: "number", min: 0, step: 1, value: "1" });
-  const button = el("button", { type: "submit", class: "primary", text: t("Start") });
+  const button = el("button", { type: "submit", class: "primary", text: t("Start the run") });
   const node = el("form", { class: "card options", noValidate: true },
     el("div", { class: "columns" },
       el("fieldset", null, el("legend", { text: t("Which pieces") }), verify),

@@ -17,12 +17,13 @@ class SimulateView {
   constructor(root, store) {
     this.#store = store;
     this.form = describeOptions((request) => this.#start(request));
+    this.options = el("details", { class: "fold", open: true }, el("summary", { text: t("What to simulate and what to write") }), this.form.node);
     this.progress = this.#progressCard();
     this.fault = el("div", { role: "alert" });
     this.results = new ResultsView(store, (cell) => this.#reveal(cell));
     this.#root = el("div", { class: "page-like simulate" }, el("h2", { text: t("Simulate and report") }),
       el("p", { class: "muted", text: t("Risk classes of the sheet come from a formula. A simulation shakes every piece by many motions of its floor, and confirms or corrects its class. You may go on working meanwhile.") }),
-      this.form.node, this.progress.node, this.fault, this.results.node);
+      this.options, this.progress.node, this.fault, this.results.node);
     root.append(this.#root);
     jobs.addEventListener("change", () => this.#update());
     store.addEventListener("live", () => jobs.current?.state === "done" && this.results.update(jobs.current));
@@ -68,13 +69,14 @@ class SimulateView {
     const state = job?.state ?? "";
     this.progress.node.hidden = state !== "running";
     this.form.button.disabled = state === "running";
-    this.form.button.textContent = job?.state === "done" ? t("Simulate again") : t("Start");
+    this.form.button.textContent = job?.state === "done" ? t("Simulate again") : t("Start the run");
     if (state === "running") this.#showProgress(job);
     this.results.node.hidden = state !== "done";
     const key = `${job?.id} ${state}`;
     if (state === "done") this.results.update(job);
     if (key === this.#shown) return;
     this.#shown = key;
+    this.options.open = state !== "done";
     clear(this.fault);
     if (state === "failed") this.#complain(job.message || t("The simulation failed."), job.problems ?? []);
     if (state === "cancelled") this.fault.append(el("p", { text: t("The simulation was cancelled. Nothing was written.") }));

@@ -129,7 +129,7 @@ export class StartForm {
   #addPiece() {
     const types = this.#offers.types[this.#fields.use.value] ?? [];
     if (!types.length) return;
-    const next = types[Math.min(this.#pieces.length * MANY, types.length - 1)].type;
+    const next = types[Math.min((this.#pieces.length + 1) * MANY, types.length - 1)].type;
     const piece = {
       type: choose(types.map((one) => [one.type, one.label ?? one.type]), next, { "aria-label": t("Type of furniture") }),
       count: el("input", { type: "number", min: 1, max: MOST_COUNT, value: "1", "aria-label": t("How many") }),
