@@ -10,13 +10,15 @@ from threading import RLock
 from typing import TYPE_CHECKING, TypeVar
 from weakref import WeakKeyDictionary
 
-from assess.errors import Problem
+from assess.errors import Gap, Problem
 from assess.model import Inventory
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import serve_floors
 from assess.pipeline.run import compute
 from assess.progress import SILENT, Progress
 from assess.settings import SCENARIOS, Settings
+from assess.workbook.names import key
+from assess.workbook.parse import Row, Tables, first_row
 
 if TYPE_CHECKING:
     from assess.web.snapshot import Snapshot
@@ -36,7 +38,7 @@ class Evaluation:
     assessment : Assessment, optional
         That of the floors whose motion is known; None where there are none.
     unserved : frozenset of str
-        The floors whose motion is not known.
+        The floors whose motion is not known, as names are compared.
     problems : tuple of Problem
         Why it is not, and what is to be said of the motions and the walls; not those of the reading.
     """
@@ -65,7 +67,7 @@ def evaluate(inventory: Inventory, settings: Settings, progress: Progress = SILE
     reduction = settings.ductility_reduction
     demands, faults = serve_floors(inventory, kind, ductility_reduction=reduction, progress=progress)
     served = {floor for floor, _axis in demands}
-    unserved = frozenset(one.floor for one in inventory.floors) - served
+    unserved = frozenset(key(one.floor) for one in inventory.floors if one.floor not in served)
     if not served:
         return Evaluation(None, unserved, tuple(faults))
     known = len(inventory.problems)
@@ -88,8 +90,31 @@ def evaluate_once(snapshot: "Snapshot", settings: Settings, *, routes: bool = Fa
     inventory = snapshot.inventory
     if not routes or not inventory.routes:
         lean = replace(inventory, routes=(), hazard=None)
-        return keep(snapshot, settings, lambda: evaluate(lean, settings))
-    return keep(snapshot, (settings, "routes"), lambda: evaluate(without_years(inventory), settings))
+        return keep(snapshot, settings, lambda: _evaluate(snapshot, lean, settings))
+    return keep(snapshot, (settings, "routes"), lambda: _evaluate(snapshot, without_years(inventory), settings))
+
+
+def evaluate_other(snapshot: "Snapshot", settings: Settings) -> Evaluation:
+    """Return an evaluation with settings of its own, routes among it, which is not kept."""
+    return _evaluate(snapshot, without_years(snapshot.inventory), settings)
+
+
+def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) -> Evaluation:
+    """Return the evaluation of an inventory; floors that were left out as nothing tells how they shake are noted."""
+    found = evaluate(inventory, settings)
+    cells = {one.cell for one in snapshot.problems if isinstance(one, Gap) and one.severity == "error"}
+    table = snapshot.tables["Floors"]
+    gaps = {row.number: key(row.get("floor")) for row in list_floors(snapshot.tables)}
+    rows = {number for cell in cells for number in (first_row(cell),) if number in gaps} if table.found else set()
+    return replace(found, unserved=found.unserved | {gaps[number] for number in rows})
+
+
+def list_floors(tables: Tables) -> list[Row]:
+    """Return the rows of Floors that have a name, the first of each name, whatever errors they have."""
+    found: dict[str, Row] = {}
+    for row in tables["Floors"].with_all("floor"):
+        found.setdefault(key(row.get("floor")), row)
+    return list(found.values())
 
 
 class _Kept:

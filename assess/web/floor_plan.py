@@ -8,6 +8,7 @@ from assess.report.figures.labels import Bounds, Point
 from assess.report.figures.plan import BORDER
 from assess.report.figures.underlay import find_edge, list_rooms, widen
 from assess.routes.geometry import Band, build_bands
+from assess.web.evaluation import list_floors
 from assess.web.floor_picture import FloorPicture, find_floor_picture
 from assess.web.floor_pieces import DECIMALS, PlacedPiece, cut_all, find_away, place_pieces, round_points
 from assess.workbook.names import key
@@ -53,14 +54,6 @@ def describe_plan(snapshot: "Snapshot", floor: str | None) -> dict[str, Any]:
     }
     picture = None if row is None else find_floor_picture(snapshot, row)
     return answer | _draw(snapshot.tables, snapshot.inventory, row.get("floor") if row else "", picture)
-
-
-def list_floors(tables: Tables) -> list[Row]:
-    """Return the rows of Floors that have a name, the first of each name."""
-    found: dict[str, Row] = {}
-    for row in tables["Floors"].with_all("floor"):
-        found.setdefault(key(row.get("floor")), row)
-    return list(found.values())
 
 
 def find_floor(floors: Sequence[Row], name: str | None) -> Row | None:

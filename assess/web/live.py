@@ -5,18 +5,20 @@ but that the run knows more: of a floor with a record, say, Excel shows ``run as
 """
 
 from collections import OrderedDict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from assess.errors import AssessError
+from assess.errors import AssessError, Gap, Problem
 from assess.i18n import gettext, load_catalogue, speaking
-from assess.model import AXES, Floor
+from assess.model import AXES
 from assess.units import GRAVITY
-from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once
+from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, list_floors
 from assess.web.live_rows import LiveRow, count_classes, find_live_columns, list_quantities, list_rows
 from assess.web.problem_cells import describe_problems
+from assess.workbook.names import key
+from assess.workbook.parse import Row
 
 if TYPE_CHECKING:
     from assess.web.book import Book, Snapshot
@@ -55,11 +57,9 @@ class LiveView:
             if book is not self._book:
                 self._book, self._states = book, OrderedDict()
             snapshot = book.snapshot()
-            now = self._states.get(snapshot.version)
-            if now is None:
-                now = self._evaluate(snapshot)
             before = None if since is None else self._states.get(since)
-            return _answer(now, before)
+            now = self._states.get(snapshot.version)
+            return _answer(now or self._evaluate(snapshot), before)
 
     def _evaluate(self, snapshot: "Snapshot") -> _State:
         latest = next(reversed(self._states.values()), None)
@@ -111,38 +111,47 @@ def describe_state(snapshot: "Snapshot") -> _State:
     with speaking(load_catalogue(snapshot.inventory.language)):
         inventory = snapshot.inventory
         columns = find_live_columns(snapshot.sheets["Items"])
-        try:
-            found = evaluate_once(snapshot, BY_FORMULAS)
-        except AssessError as error:
-            found = Evaluation(None, frozenset(one.floor for one in inventory.floors), ())
-            fault = gettext(error.message)
-        else:
-            fault = say_fault(found)
+        found, fault = _evaluate(snapshot)
         rows = list_rows(snapshot.tables, inventory, found, columns.values())
         problems = describe_problems((*snapshot.problems, *found.problems), inventory.sheets)
         rest = {
             "problems": problems[:MOST_PROBLEMS],
             "more": max(0, len(problems) - MOST_PROBLEMS),
             "counts": count_classes(rows, list_quantities(snapshot.tables["Items"])),
-            "floors": [_describe_floor(one, found) for one in inventory.floors],
+            "floors": [_describe_floor(row, found) for row in list_floors(snapshot.tables)],
             "error": fault,
         }
         return _State(snapshot.version, rows, tuple(columns), rest)
 
 
-def say_fault(found: Evaluation) -> str:
-    """Return why nothing could be computed, in the language in use; "" where something was."""
+def _evaluate(snapshot: "Snapshot") -> tuple[Evaluation, str]:
+    """Return what is known of the pieces, and why nothing could be computed; "" where something was."""
+    try:
+        found = evaluate_once(snapshot, BY_FORMULAS)
+    except AssessError as error:
+        floors = frozenset(key(one.floor) for one in snapshot.inventory.floors)
+        return Evaluation(None, floors, ()), gettext(error.message)
+    return found, say_fault(snapshot.problems, found)
+
+
+def say_fault(problems: Sequence[Problem], found: Evaluation) -> str:
+    """Return why nothing could be computed, in the language in use; "" where something was.
+
+    `problems` are those of the reading, which count where it found that nothing tells how the floors shake.
+    """
     if found.assessment is not None:
         return ""
-    return " ".join(gettext(one.message) for one in found.problems[:MOST_NAMED])
+    why = [*found.problems, *(one for one in problems if isinstance(one, Gap) and one.severity == "error")]
+    return " ".join(gettext(one.message) for one in dict.fromkeys(why[:MOST_NAMED]))
 
 
-def _describe_floor(floor: Floor, found: Evaluation) -> dict[str, Any]:
+def _describe_floor(row: Row, found: Evaluation) -> dict[str, Any]:
     """Return the peaks of a floor [g], None where its motion is not known."""
+    name = row.get("floor")
     demands = {} if found.assessment is None else found.assessment.demands
-    peaks = {axis: [one.pfa for one in demands.get((floor.floor, axis), ())] for axis in AXES}
+    peaks = {axis: [one.pfa for one in demands.get((name, axis), ())] for axis in AXES}
     return {
-        "row": floor.row,
-        "floor": floor.floor,
+        "row": row.number,
+        "floor": name,
         **{f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()},
     }

@@ -1,6 +1,6 @@
 """What is shown of each row of Items: its class, or the word in its place, its chance and its live values."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from assess.i18n import LANGUAGES, gettext, load_catalogue
 from assess.methods import adopted_formula
-from assess.model import Inventory, Item
+from assess.model import Inventory
 from assess.pipeline.assessment import Assessment
 from assess.risk import RiskClass
 from assess.units import GRAVITY, LENGTH, VELOCITY
@@ -20,7 +20,7 @@ from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR
 from assess.workbook.names import key, plain, split_header
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes
-from assess.workbook.schema import LIVE, NO, WORKINGS, YES
+from assess.workbook.schema import CLASS, LIVE, NO, WORKINGS, YES
 
 CLASSES = tuple(one.name.lower() for one in RiskClass)
 """How the page calls the classes, in rising order."""
@@ -63,11 +63,10 @@ def list_rows(
     """Return what is shown of each row of Items that holds anything, by its number, in the language in use."""
     labels = tuple(columns)
     known = {} if evaluation.assessment is None else _list_assessed(evaluation.assessment, labels)
-    unserved = {one.row: _describe_unserved(one, labels) for one in inventory.items if one.floor in evaluation.unserved}
-    found = known | unserved
-    words = _Words(tables)
+    words, anchored = _Words(tables, evaluation.unserved), {one.row: one.anchored for one in inventory.items}
     return {
-        row.number: found.get(row.number) or _without_class(words.explain(row), labels) for row in tables["Items"].rows
+        row.number: known.get(row.number) or words.describe(row, labels, anchored.get(row.number))
+        for row in tables["Items"].rows
     }
 
 
@@ -144,38 +143,33 @@ def _plain_numbers(values: Any) -> list[float | str]:
 # ---------------------------------------------------------------- pieces without a class
 
 
-def _describe_unserved(item: Item, labels: Sequence[str]) -> LiveRow:
-    """Return the row of a piece on a floor whose motion is not known."""
-    hint = gettext(NO_SHAKING)
-    word = hint
-    if item.anchored == YES:
-        word = gettext(IS_ANCHORED if item.bracket_capacity is None else RUN_ASSESS)
-    return LiveRow("", word, None, False, _hint(labels, round(item.breadth / item.height, DECIMALS), hint, word))
-
-
-def _without_class(word: str, labels: Sequence[str]) -> LiveRow:
-    return LiveRow("", word, None, False, _hint(labels, word, word, word))
-
-
-def _hint(labels: Sequence[str], ratio: float | str, hint: str, word: str) -> Values:
-    """Return what the live columns show of a piece without a class; the workings are left blank."""
-    texts = dict.fromkeys(LIVE, hint) | {LIVE[0]: ratio, LIVE[-2]: word}
-    return tuple(texts.get(label) for label in labels)
-
-
 class _Words:
-    """Why rows that were left out have no class, in the words of the class column of the workbook."""
+    """Why rows have no class, in the words of the class column of the workbook.
 
-    def __init__(self, tables: Tables) -> None:
-        self.table = tables["Items"]
+    `unserved` are the floors whose motion is not known, as names are compared.
+    """
+
+    def __init__(self, tables: Tables, unserved: Collection[str]) -> None:
+        self.table, self.unserved = tables["Items"], unserved
         self.types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
         self.floors = defined(tables["Floors"])
+
+    def describe(self, row: Row, labels: Sequence[str], anchored: str | None) -> LiveRow:
+        """Return what is shown of a row; `anchored` is what counts in place of its own cell, if anything does."""
+        sizes, word = filled_sizes(self.table, row, self.types), self.explain(row)
+        shown = dict.fromkeys(LIVE, word)
+        if word == gettext(NO_SHAKING):
+            shown[LIVE[0]] = round(sizes["breadth"] / sizes["height"], DECIMALS)
+            if (anchored or row.get("anchored")) == YES:
+                is_known = row.get("bracket_capacity") is not None and row.get("anchored") == YES
+                word = shown[CLASS] = gettext(RUN_ASSESS if is_known else IS_ANCHORED)
+        return LiveRow("", word, None, False, tuple(shown.get(label) for label in labels))
 
     def explain(self, row: Row) -> str:
         """Return the word; "" where the row is not filled in as far as its name and sizes."""
         table = self.table
         sizes = ("breadth", "height")
-        if table.lacks(row, "item"):
+        if row.get("item") is None:
             return ""
         if any(name in table.blind for name in sizes):
             return gettext(NO_UNIT)
@@ -183,6 +177,12 @@ class _Words:
             return gettext(WRONG)
         if len(filled_sizes(table, row, self.types).keys() & set(sizes)) < len(sizes):
             return ""
-        if key(row.get("floor") or "") not in self.floors:
-            return gettext(NO_FLOOR)
-        return gettext(NO_AXIS if table.spoilt("axis", row) else WRONG)
+        return gettext(self._explain_motion(row))
+
+    def _explain_motion(self, row: Row) -> str:
+        floor = key(row.get("floor") or "")
+        if floor not in self.floors:
+            return NO_FLOOR
+        if self.table.spoilt("axis", row):
+            return NO_AXIS
+        return NO_SHAKING if floor in self.unserved else WRONG

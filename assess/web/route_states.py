@@ -1,6 +1,6 @@
 """States of routes, rooms and segments as the reports word them, for the page."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import AssessError
@@ -25,10 +25,11 @@ from assess.report.findings.route_words import (
 )
 from assess.route_results import Chance, RoomRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.obstructions import find_route_problems
-from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once
+from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, list_floors
 from assess.web.problem_cells import describe_problems
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
+from assess.workbook.resolve import places_by_name
 
 if TYPE_CHECKING:
     from assess.web.book import Snapshot
@@ -43,7 +44,7 @@ def describe_routes(snapshot: "Snapshot") -> dict[str, Any]:
             states = describe_states(snapshot.tables, inventory, found)
             problems = [] if found.assessment is None else list(_list_problems(inventory, found.assessment))
         except AssessError as error:
-            states, problems = describe_unknown(inventory, gettext(error.message)), []
+            states, problems = describe_unknown(snapshot.tables, gettext(error.message)), []
     return {"version": snapshot.version, **states, "problems": problems}
 
 
@@ -59,11 +60,11 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
     Where the shaking of a floor with a segment is not known nothing is known of routes. Those with a segment that was
     left out for an error are not known either.
     """
-    crossed = sorted(found.unserved & {one.floor for one in inventory.routes})
-    if inventory.routes and (found.assessment is None or crossed):
-        floors = name_few(crossed or sorted(found.unserved))
-        text = gettext("Routes are not evaluated, as it is not known how these floors shake: {floors}.", floors=floors)
-        return describe_unknown(inventory, text)
+    crossed = _find_crossed(tables, found.unserved)
+    if tables["Routes"].rows and (found.assessment is None or crossed):
+        text = gettext("Routes are not evaluated, as it is not known how these floors shake: {floors}.",
+                       floors=name_few(crossed or _list_floors(tables)))  # fmt: skip
+        return describe_unknown(tables, text)
     left_out = _find_left_out(tables, inventory)
     routes = RouteTables(risk=0.0)
     if found.assessment is not None and inventory.routes:
@@ -77,20 +78,38 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
     }
 
 
-def describe_unknown(inventory: Inventory, why: str) -> dict[str, Any]:
-    """Return every route and room as not known."""
-    segments = [
-        {"row": one.row, "route": one.route, "segment": one.segment, **_unknown("")} for one in inventory.routes
-    ]
-    names = dict.fromkeys(one.route for one in inventory.routes)
-    rooms = [one for one in inventory.places if one.kind == "room"]
+def describe_unknown(tables: Tables, why: str) -> dict[str, Any]:
+    """Return every route, room and segment as not known."""
+    routes, places = tables["Routes"].with_all("route"), tables["Places"].with_all("place")
+    rooms = [row for row in places if row.get("kind") == "room"]
     return {
-        "routes": [{"route": name, **_unknown("")} for name in names],
-        "rooms": [{"room": one.place, "floor": one.floor, "place_row": one.row, **_unknown("")} for one in rooms],
-        "segments": segments,
+        "routes": [{"route": name, **_unknown("")} for name in dict.fromkeys(row.get("route") for row in routes)],
+        "rooms": [
+            {"room": row.get("place"), "floor": row.get("floor") or "", "place_row": row.number, **_unknown("")}
+            for row in rooms
+        ],
+        "segments": [
+            {"row": row.number, "route": row.get("route"), "segment": row.get("segment") or "", **_unknown("")}
+            for row in routes
+        ],
         "remarks": [],
         "error": why,
     }
+
+
+def _find_crossed(tables: Tables, unserved: Collection[str]) -> list[str]:
+    """Return the floors of segments, and of their places, whose motion is not known."""
+    places, found = places_by_name(tables["Places"]), dict[str, str]()
+    for row in tables["Routes"].rows:
+        ends = [places.get(key(row.get(name) or "")) for name in ("start", "end")]
+        for name in (row.get("floor"), *(end.get("floor") for end in ends if end)):
+            if name and key(name) in unserved:
+                found.setdefault(key(name), name)
+    return list(found.values())
+
+
+def _list_floors(tables: Tables) -> list[str]:
+    return [row.get("floor") for row in list_floors(tables)]
 
 
 # ---------------------------------------------------------------- states

@@ -14,7 +14,7 @@ from assess.pipeline.run import evaluate_route_tables, list_first_fixes
 from assess.pipeline.what_if import anchor_named, spell_names
 from assess.progress import SILENT
 from assess.settings import SCENARIOS, Settings
-from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate, evaluate_once, keep, without_years
+from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other, keep
 from assess.web.live import describe_rows, say_fault
 from assess.web.live_rows import count_classes, list_quantities, list_rows
 from assess.web.route_states import describe_states, describe_unknown
@@ -60,10 +60,10 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
         wanted = read_request(inventory, snapshot.tables, request)
         before = keep(snapshot, "before", lambda: describe_present(snapshot))
         present = keep(snapshot, "entries", lambda: list_present_entries(snapshot))
-        entries = present if wanted.settings == BY_FORMULAS or not wanted.first else _list_entries(inventory, wanted)
+        entries = present if wanted.settings == BY_FORMULAS or not wanted.first else _list_entries(snapshot, wanted)
         first = entries[: wanted.first]
         settings = replace(wanted.settings, anchor=_join_names(wanted.settings, first))
-        after = before if settings == BY_FORMULAS else describe_side(snapshot.tables, inventory, settings)
+        after = before if settings == BY_FORMULAS else describe_side(snapshot, settings)
         scenarios = _list_scenarios(inventory)
     return {
         "version": snapshot.version,
@@ -143,8 +143,8 @@ def list_present_entries(snapshot: "Snapshot") -> list[list[str]]:
     return _name_entries(evaluate_once(snapshot, BY_FORMULAS, routes=True))
 
 
-def _list_entries(inventory: Inventory, wanted: Wanted) -> list[list[str]]:
-    return _name_entries(evaluate(without_years(inventory), wanted.settings))
+def _list_entries(snapshot: "Snapshot", wanted: Wanted) -> list[list[str]]:
+    return _name_entries(evaluate_other(snapshot, wanted.settings))
 
 
 def _name_entries(found: Evaluation) -> list[list[str]]:
@@ -165,31 +165,31 @@ def _join_names(settings: Settings, entries: Iterable[Iterable[str]]) -> tuple[s
 
 def describe_present(snapshot: "Snapshot") -> dict[str, Any]:
     """Return the side "before", which is the same for every request."""
-    return _describe_side(snapshot.tables, snapshot.inventory, evaluate_once(snapshot, BY_FORMULAS, routes=True))
+    return _describe_side(snapshot, snapshot.inventory, evaluate_once(snapshot, BY_FORMULAS, routes=True))
 
 
-def describe_side(tables: Tables, inventory: Inventory, settings: Settings) -> dict[str, Any]:
+def describe_side(snapshot: "Snapshot", settings: Settings) -> dict[str, Any]:
     """Return classes, counts and routes with other settings, and the error where nothing can be computed."""
-    found = evaluate(without_years(inventory), settings)
     named = settings.anchor if isinstance(settings.anchor, tuple) else ()
-    return _describe_side(tables, anchor_named(inventory, named), found)
+    return _describe_side(snapshot, anchor_named(snapshot.inventory, named), evaluate_other(snapshot, settings))
 
 
-def _describe_side(tables: Tables, inventory: Inventory, found: Evaluation) -> dict[str, Any]:
+def _describe_side(snapshot: "Snapshot", inventory: Inventory, found: Evaluation) -> dict[str, Any]:
+    tables = snapshot.tables
     rows = list_rows(tables, inventory, found, ())
     items = describe_rows(rows.items())
     del items["values"]
     try:
         routes = describe_states(tables, inventory, found)
     except AssessError as error:
-        routes = describe_unknown(inventory, gettext(error.message))
+        routes = describe_unknown(tables, gettext(error.message))
     side = {
         "counts": count_classes(rows, list_quantities(tables["Items"])),
         "items": items,
         "routes": routes["routes"],
         "rooms": routes["rooms"],
     }
-    return {"side": side, "error": say_fault(found) or routes["error"]}
+    return {"side": side, "error": say_fault(snapshot.problems, found) or routes["error"]}
 
 
 def _list_anchored(inventory: Inventory, settings: Settings) -> list[int]:

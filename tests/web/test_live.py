@@ -1,0 +1,257 @@
+"""Classes, words, problems and what of them changed, as the page is told while one types."""
+
+import json
+
+import formualizer
+import pytest
+
+import assess
+from assess.i18n import load_catalogue, speaking
+from assess.pipeline.live_values import live_values
+from assess.report.counts import count
+from assess.risk import RiskClass
+from assess.web.live import LiveView
+from assess.workbook.schema import LIVE
+from assess.workbook.template import Content, write_workbook
+from tests.web.opened import MARKET, edit, hold
+from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, write
+
+HERE = ("class", "word", "chance", "outside")
+
+
+def _answer(book, view=None, since=None):
+    return json.loads(json.dumps(view.answer(book, since) if view else LiveView().answer(book, since)))
+
+
+def _by_row(answer):
+    """Return class, word, chance, whether outside, and live values of each row of an answer."""
+    items = answer["items"]
+    columns = [items[name] for name in HERE] + [items["values"][at] for at in sorted(items["values"], key=int)]
+    return dict(zip(items["row"], zip(*columns, strict=True), strict=True))
+
+
+def _expect(results):
+    """Return class, word and chance of each row of a run."""
+    return {
+        one.item.row: ("", "anchored", None)
+        if one.is_anchored
+        else (one.adopted.risk.name.lower(), "", one.adopted.probability)
+        for one in results
+    }
+
+
+def _classes(answer):
+    return {row: shown[:3] for row, shown in _by_row(answer).items()}
+
+
+def _write(path, rows, language="en"):
+    with speaking(load_catalogue(language)):
+        write_workbook(path, Content({"Floors": FLOORS, "Items": ITEMS, **rows}))
+    return path
+
+
+# ---------------------------------------------------------------- classes
+
+
+def test_classes_and_chances_are_those_of_the_run(example):
+    """Floors with records, for which the sheet's own formulas ask for a run, among them."""
+    answer = _answer(hold(MARKET))
+    assert _classes(answer) == _expect(example)
+    counts = count("", tuple(example))
+    expected = {risk.name.lower(): counts.by_class[risk] for risk in RiskClass}
+    assert answer["counts"] == expected | {"": counts.anchored}
+    assert answer["error"] == ""
+    assert answer["whole"]
+    pfa = {one["floor"]: (one["pfa_x"], one["pfa_y"]) for one in answer["floors"]}
+    assert pfa["42"] == pytest.approx((0.2224, 0.1359), abs=1e-4)
+
+
+def test_live_columns_show_what_the_formulas_of_the_sheet_show(tmp_path):
+    book = hold(write(tmp_path / "w.xlsx"))
+    items = _answer(book)["items"]
+    found = {one.label: items["values"][str(at)] for at, one in book.sheets["Items"].columns.items()
+             if one.live is not None}  # fmt: skip
+    assert len(found) == len(LIVE)
+    rows = zip(*found.values(), strict=True)
+    order = [one.live for one in book.sheets["Items"].columns.values() if one.live is not None]
+    for shown, expected in zip(rows, live_values(book.snapshot().inventory), strict=True):
+        for place, value in zip(order, shown, strict=True):
+            assert value == (pytest.approx(expected[place]) if isinstance(expected[place], float) else expected[place])
+
+
+# ---------------------------------------------------------------- words in place of a class
+
+SLIPS = [
+    ("item", "A1"),  # duplicate
+    ("item", None),
+    ("floor", "9"),
+    ("floor", None),
+    ("axis", "Z"),
+    ("height", None),
+    ("height", "tall"),
+    ("breadth", 4),
+    ("anchored", "yes"),
+]
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, language):
+    """What a spreadsheet program shows for the same cells; it knows nothing of a name that is there twice."""
+    row = {"floor": "1", "breadth": 40, "height": 180}
+    items = [{"item": f"A{at}", **row} for at in range(1, len(SLIPS) + 2)] + [{**row, "item": "last", "floor": "3"}]
+    floors = [*FLOORS, {"floor": "3"}]
+    path = _write(tmp_path / "w.xlsx", {"Items": items, "Floors": floors}, language)
+    book = hold(path)
+    edit(book, *(("Items", at, field, value) for at, (field, value) in enumerate(SLIPS, 3)))
+    answer = _answer(book)
+    words = {at: (risk, word) for at, (risk, word, *_) in _by_row(answer).items()}
+    path.write_bytes(book.write())
+    calculated = formualizer.load_workbook(str(path))
+    calculated.evaluate_all()
+    title = book.sheets["Items"].title
+    shown = {at: calculated.get_value(title, at, 2) or "" for at in words}
+    assert words.pop(3)[1] == {"en": "check", "it": "controllare"}[language]
+    for at, (risk, word) in words.items():
+        assert (word if not risk else shown[at]) == shown[at], (at, SLIPS[at - 3] if 2 < at < 12 else "")
+    assert (words[2][0], shown[2]) == ("high", {"en": "▲ high*", "it": "▲ alta*"}[language])
+    assert words[max(words)][1] == {"en": "shaking?", "it": "scossa?"}[language]
+
+
+def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):
+    book = hold(write(tmp_path / "w.xlsx"))
+    whole = _classes(_answer(book))
+    edit(book, ("Floors", 3, "pfa_x", None))
+    answer = _answer(book)
+    found = _classes(answer)
+    assert {row: found[row] for row in (2, 3)} == {row: whole[row] for row in (2, 3)}
+    assert [found[row][1] for row in (4, 5, 6)] == ["shaking?", "anchored", "shaking?"]
+    assert answer["error"] == ""
+    assert [one["lacks"] for one in answer["problems"] if one["severity"] == "error"] == ["shaking"]
+    edit(book, ("Floors", 2, "pfa_x", None), ("Floors", 2, "pfa_y", None), ("Floors", 2, "pfv_x", None),
+         ("Floors", 2, "pfv_y", None))  # fmt: skip
+    answer = _answer(book)
+    assert "floor '1'" in answer["error"]
+    assert answer["counts"] == {"low": 0, "medium": 0, "high": 0, "very_high": 0, "": 7}
+
+
+def test_one_bad_row_leaves_all_others_as_they_were(example):
+    book = hold(MARKET)
+    edit(book, ("Items", 7, "height", "tall"), ("Items", 9, "quantity", -3), ("Building", 0, "ground_pga", "a lot"))
+    answer = _answer(book)
+    expected = _expect(example) | {7: ("", "check", None), 9: ("", "check", None)}
+    assert _classes(answer) == expected
+    cells = {(one["sheet"], *cell) for one in answer["problems"] if one["severity"] == "error" for cell in one["cells"]}
+    wanted = [("Items", "height", 7), ("Items", "quantity", 9), ("Building", "ground_pga", 0)]
+    assert cells == {(sheet, *book.sheets[sheet].place(field, row)) for sheet, field, row in wanted}
+
+
+# ---------------------------------------------------------------- what changed
+
+STEPS = [
+    [("Items", 3, "height", 90)],
+    [("Items", 4, "anchored", "yes"), ("Items", 5, "anchored", "no")],
+    [("Floors", 3, "pfa_x", 0.1)],
+    [("Items", 2, field, None) for field in ("item", "floor", "room", "description", "breadth", "width", "height")],
+    [("Items", 9, "item", "B1"), ("Items", 9, "floor", "2"), ("Items", 9, "breadth", 20), ("Items", 9, "height", 200)],
+    [("Items", 9, "height", "high")],
+    [("Floors", 2, "floor", "ground")],
+]
+
+
+def test_the_changes_make_up_the_whole(tmp_path):
+    book, view = hold(write(tmp_path / "w.xlsx")), LiveView()
+    first = _answer(book, view)
+    held, version = _by_row(first), first["version"]
+    for step in [*STEPS, "undo", "undo", "redo"]:
+        getattr(book, step)(book.version) if isinstance(step, str) else edit(book, *step)
+        change = _answer(book, view, version)
+        assert not change["whole"]
+        held |= _by_row(change)
+        for row in change["gone"]:
+            del held[row]
+        whole = _answer(book)
+        assert held == _by_row(whole)
+        assert {name: change[name] for name in ("problems", "counts", "floors", "error")} == {
+            name: whole[name] for name in ("problems", "counts", "floors", "error")
+        }
+        version = change["version"]
+
+
+def test_one_edit_is_answered_by_one_row():
+    book, view = hold(MARKET), LiveView()
+    version = _answer(book, view)["version"]
+    edit(book, ("Items", 5, "height", 90))
+    assert _answer(book, view, version)["items"]["row"] == [5]
+    assert _answer(book, view, version)["items"]["row"] == [5], "asked again, it is the same"
+    assert _answer(book, view, book.version)["items"]["row"] == []
+
+
+def test_a_page_that_is_too_old_is_told_all(tmp_path):
+    path = write(tmp_path / "w.xlsx")
+    book, view = hold(path), LiveView()
+    version = _answer(book, view)["version"]
+    assert _answer(book, view, 99)["whole"]
+    assert _answer(hold(path), view, version)["whole"], "another workbook with the same versions"
+    for height in range(100, 120):
+        edit(book, ("Items", 2, "height", height))
+        _answer(book, view, None)
+    assert _answer(book, view, version)["whole"]
+
+
+# ---------------------------------------------------------------- problems
+
+
+def test_problems_of_one_habit_are_one_with_every_cell(tmp_path):
+    items = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180} for at in range(12)]
+    book = hold(write(tmp_path / "w.xlsx", items=items))
+    edit(book, *(("Items", row, "quantity", "some") for row in range(3, 11)))
+    (found,) = [one for one in _answer(book)["problems"] if one["severity"] == "error"]
+    at = book.sheets["Items"].field("quantity").at
+    assert found["cells"] == [[row, at] for row in range(3, 11)]
+    assert (found["count"], found["row"], found["at"], found["sheet"]) == (8, 3, at, "Items")
+    assert found["cell"] == f"{chr(ord('A') + at)}3"
+
+
+def test_problems_are_in_the_language_of_the_workbook(tmp_path):
+    path = _write(tmp_path / "w.xlsx", {"Building": [{"height": 12}]}, "it")
+    book = hold(path)
+    edit(book, ("Items", 2, "height", "alto"), ("Items", 3, "anchored", None), ("Building", 0, "height", "alto"))
+    answer = _answer(book)
+    errors = [one for one in answer["problems"] if one["severity"] == "error"]
+    height, line = [one for one in errors if "Altezza" in one["message"]]
+    height, line = sorted((height, line), key=lambda one: one["sheet"] == "Building")
+    assert (height["sheet"], line["sheet"]) == ("Items", "Building"), "sheets are named in English"
+    assert (line["row"], line["at"]) == book.sheets["Building"].place("height", 0), "a form's values are in column 1"
+    assert _by_row(answer)[2][1] == "controllare"
+    assert _by_row(answer)[5][1] == "ancorato"
+
+
+@pytest.mark.parametrize("sheet", ["Items", "Floors"])
+def test_a_workbook_without_a_sheet_is_answered(tmp_path, sheet):
+    import io
+    import zipfile
+
+    path = write(tmp_path / "w.xlsx")
+    renamed = io.BytesIO()
+    with zipfile.ZipFile(path) as old, zipfile.ZipFile(renamed, "w") as new:
+        for name in old.namelist():
+            data = old.read(name)
+            if name == "xl/workbook.xml":
+                data = data.replace(f'name="{sheet}"'.encode(), b'name="Mine"')
+            new.writestr(name, data)
+    path.write_bytes(renamed.getvalue())
+    answer = _answer(hold(path))
+    assert any(one["sheet"] == sheet and one["row"] is None for one in answer["problems"])
+    assert not any(answer["items"]["class"])
+
+
+def test_the_run_and_the_page_agree_on_a_faulty_workbook(tmp_path):
+    """Whatever is left out, what stays is assessed as the command does."""
+    book = hold(MARKET)
+    edit(book, ("Floors", 3, "pfa_x", "strong"), ("Items", 7, "height", None), ("Items", 8, "axis", "Z"))
+    (tmp_path / "w.xlsx").write_bytes(book.write())
+    inventory = assess.read_inventory(tmp_path / "w.xlsx", records=MARKET.parent, strict=False)
+    expected = _expect(assess.run(inventory, UNVERIFIED))
+    found = _classes(_answer(book))
+    assert {row: found[row] for row in expected} == expected
+    assert all(found[row][0] == "" for row in found.keys() - expected.keys())
