@@ -48,6 +48,15 @@ def test_import_assess_loads_next_to_nothing():
     assert loaded.strip() == "[]"
 
 
+def test_the_page_is_imported_by_its_own_command_alone():
+    loaded = _child(
+        "import sys\nimport assess.cli.app\nassess.cli.app.build_app()\n"
+        "print([name for name in sys.modules if name.split('.')[0] in ('starlette', 'uvicorn', 'anyio')])\n"
+        "print([name for name in sys.modules if name.startswith('assess.web')])"
+    )
+    assert loaded.split() == ["[]", "[]"]
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="peak memory is read from /proc")
 def test_20000_items_fit_in_300_mb(tmp_path):

@@ -1,5 +1,6 @@
 """``assess open``: the workbook as sheets and as a plan in the browser."""
 
+import re
 import sys
 import threading
 from pathlib import Path
@@ -8,7 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from assess.cli import interrupts
+from assess.cli.completion import one_of
 from assess.errors import AssessError, InputError
+from assess.i18n import LANGUAGES, find_language
 
 if TYPE_CHECKING:
     from assess.web.server import Ending, Place, Server
@@ -21,6 +24,13 @@ EXAMPLES = (
     "assess open --allowed-host assess.example.org --user-header X-Remote-User --port 8100",
 )
 PACKAGES = ("starlette", "uvicorn")
+HOST = re.compile(r"(?:[A-Za-z0-9](?:[A-Za-z0-9.-]{0,252})|\[[0-9A-Fa-f:.]{2,45}\])(?::\d{1,5})?")
+"""A name that browsers reach a proxy by, as they send it."""
+HEADER = re.compile(r"[A-Za-z0-9-]{1,60}")
+TAKEN = frozenset(
+    ("cookie", "host", "origin", "x-assess", "content-length", "content-type", "accept", "user-agent", "connection")
+)
+"""Headers that browsers send by themselves."""
 
 
 def command(
@@ -34,6 +44,14 @@ def command(
     ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="Port of the page; 0: any that is free.")] = 0,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address of the page.")] = False,
+    language: Annotated[
+        str | None,
+        typer.Option(
+            help="Language of the page: en, it.",
+            show_default="the workbook's, else the browser's",
+            autocompletion=one_of(LANGUAGES),
+        ),
+    ] = None,
     host: Annotated[
         str, typer.Option(help="Address to listen at; other than this machine's only with the next two options.")
     ] = "127.0.0.1",
@@ -53,11 +71,12 @@ def command(
 
     Changes are saved in the workbook as you make them. Ctrl-C ends it. docs/hosting.md tells how to run it for others.
     """
+    code = find_language(language) if language else ""
     _check_packages()
     from assess.web.folders import private_folder
     from assess.web.server import Place, Server, bind
 
-    place = Place(host, port, tuple(allowed_host or ()), user_header or "")
+    place = Place(host, port, tuple(allowed_host or ()), user_header or "", code)
     _check_place(place, path)
     book = None
     if path is not None:
@@ -78,21 +97,25 @@ def _check_packages() -> None:
 
     missing = [name for name in PACKAGES if find_spec(name) is None]
     if missing:
-        verb = "are" if len(missing) > 1 else "is"
-        raise AssessError(
-            f"the page needs {' and '.join(missing)}, which {verb} not installed. Install: pip install 'assess[web]'"
-        )
+        names = ", ".join(missing)
+        raise AssessError(f"the page needs {names}, which is not installed. Install it: pip install 'assess[web]'")
 
 
 def _check_place(place: "Place", path: Path | None) -> None:
+    """Raise InputError where others than the user could come in."""
     from assess.web.server import is_loopback
 
+    for name in place.allowed:
+        if not HOST.fullmatch(name):
+            raise InputError(f"--allowed-host {name!r} is no NAME or NAME:PORT, such as assess.example.org.")
+    if place.user_header and (not HEADER.fullmatch(place.user_header) or place.user_header.lower() in TAKEN):
+        raise InputError(f"--user-header {place.user_header!r} is no header for the user, such as X-Remote-User.")
     if bool(place.allowed) != bool(place.user_header):
-        raise InputError("--allowed-host and --user-header belong together: the names of a proxy, and what it tells.")
+        raise InputError("--allowed-host and --user-header belong together: the proxy's names, and how it names users.")
     if not is_loopback(place.host) and not place.is_hosted:
         raise InputError(
             f"--host {place.host} can be reached from other machines: add --allowed-host and --user-header of a proxy "
-            "that asks users who they are (docs/hosting.md), or leave out --host."
+            "that authenticates users (docs/hosting.md), or leave out --host."
         )
     if place.is_hosted and path is not None:
         raise InputError("each user of a hosted page opens a workbook of their own: leave out the workbook.")
@@ -101,7 +124,9 @@ def _check_place(place: "Place", path: Path | None) -> None:
 def _welcome(server: "Server", place: "Place", no_browser: bool) -> None:
     """Print the address, open it in the browser, and do so again at each Enter."""
     _show(server.issue_address(), no_browser or place.is_hosted)
-    if not place.is_hosted and sys.stdin is not None and sys.stdin.isatty():
+    if place.is_hosted:
+        typer.echo(f"Behind the proxy of {', '.join(place.allowed)}. Ctrl-C or SIGTERM ends it.", err=True)
+    elif sys.stdin is not None and sys.stdin.isatty():
         typer.echo("Ctrl-C here ends it; Enter opens the page again.", err=True)
         threading.Thread(target=_repeat, args=(server, no_browser), name="assess-enter", daemon=True).start()
 
@@ -121,8 +146,10 @@ def _repeat(server: "Server", no_browser: bool) -> None:
 
 
 def _say_goodbye(ending: "Ending") -> None:
-    for name, why in ending.unsaved:
-        typer.echo(f"Changes of {name} were not {'saved: ' + why if why else 'downloaded and are gone.'}", err=True)
+    for name in ending.lost:
+        typer.echo(f"Changes of {name} were not downloaded and are gone.", err=True)
+    for name, path in ending.kept:
+        typer.echo(f"Changes of {name} that were not saved in it are kept in {path}.", err=True)
     if ending.saved:
         typer.echo(f"Stopped. All changes are saved in {ending.saved}.", err=True)
     else:

@@ -111,9 +111,9 @@ def _ask(request: Request, note_edit: NoteEdit) -> Asked:
     session: Session = request.scope[SESSION]
     if request.url.path not in POLLED:
         session.seen = time.monotonic()
-    book_language = session.book.language if session.book else ""
+    language = session.language or (session.book.language if session.book else "")
     accepted = request.headers.get("accept-language", "")
-    language = choose_language(request.cookies.get(COOKIE, ""), book_language, accepted)
+    language = choose_language(request.cookies.get(COOKIE, ""), language, accepted)
     return Asked(session, {**request.query_params, **request.path_params}, language=language, note_edit=note_edit)
 
 

@@ -49,6 +49,7 @@ def main() -> None:
             tell({"state": "failed", "message": gettext(error.message), "problems": _list_problems(error)})
         except OSError as error:
             tell({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
+    os._exit(0)  # without waiting for anything that is still computed aside
 
 
 def _take_output() -> Tell:

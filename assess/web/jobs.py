@@ -2,6 +2,7 @@
 
 import io
 import json
+import logging
 import os
 import secrets
 import shutil
@@ -10,13 +11,14 @@ import sys
 import threading
 import zipfile
 from collections.abc import Mapping, Sequence
+from contextvars import copy_context
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from assess.i18n import Text, fill, gettext
 from assess.web.job_inputs import list_stale, prepare
-from assess.web.job_process import OUT, SUMMARY
+from assess.web.job_process import INPUT, OUT, SUMMARY
 from assess.web.request_errors import CONFLICT, NOT_FOUND, TOO_MANY, RequestError
 
 if TYPE_CHECKING:
@@ -28,6 +30,10 @@ PATIENCE = 0.5
 ARCHIVE = "report.zip"
 """The name under which all files are given at once."""
 REPORT = "report.html"
+TEMPORARY, ERRORS = "tmp", "errors.txt"
+MOST_SHOWN = 4000
+"""Characters of what a process that broke down has written."""
+LOG = logging.getLogger("assess.web")
 STAGES: Mapping[str, Text] = {
     "": fill("Starting"),
     "reading": fill("Reading"),
@@ -111,7 +117,7 @@ class Job:
             slots.leave(self)
             shutil.rmtree(self._folder, ignore_errors=True)
             raise
-        self._reader = threading.Thread(target=self._listen, name="assess-job", daemon=True)
+        self._reader = threading.Thread(target=copy_context().run, args=(self._listen,), name="assess-job", daemon=True)
         self._reader.start()
 
     @property
@@ -123,19 +129,34 @@ class Job:
 
     def _listen(self) -> None:
         """Follow the process until it ends."""
+        lost = fill("The simulation ended unexpectedly; memory may have run out. Nothing was written.")
+        last: dict[str, Any] = {"state": "failed", "message": gettext(lost)}
         for line in _output(self._process):
-            with self._lock:
-                if self.is_running:
-                    self._progress.take(json.loads(line))
+            said = json.loads(line)
+            if "state" in said:
+                last = said
+            elif self.is_running:
+                self._progress.take(said)
         self._process.wait()
         _close(self._process)
+        self._slots.leave(self)
         with self._lock:
             if self.is_running:
-                lost = fill("The simulation ended unexpectedly; memory may have run out. Nothing was written.")
-                self._progress.take({"state": "failed", "message": gettext(lost)})
-            if self._progress.state != "done":
-                shutil.rmtree(self._folder, ignore_errors=True)
-        self._slots.leave(self)
+                self._progress.take(last)
+            self._clean(is_done=self._progress.state == "done")
+
+    def _clean(self, *, is_done: bool) -> None:
+        """Remove all that is no result; what a process wrote that broke down is shown in the window of the server."""
+        if self._progress.state == "failed" and not self._progress.problems and (said := self._read_errors()):
+            LOG.error("a simulation ended with:\n%s", said)
+        for name in (TEMPORARY, INPUT) if is_done else ("",):
+            shutil.rmtree(self._folder / name, ignore_errors=True)
+
+    def _read_errors(self) -> str:
+        try:
+            return (self._folder / ERRORS).read_text(encoding="utf-8", errors="replace")[-MOST_SHOWN:]
+        except OSError:
+            return ""
 
     def cancel(self) -> None:
         """End it at once and remove what it has written."""
@@ -240,16 +261,17 @@ _OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
 
 def _start(folder: Path) -> "subprocess.Popen[bytes]":
     """Start the process: with temporary files in its own folder, and out of the reach of a Ctrl-C in the terminal."""
-    temporary = folder / "tmp"
+    temporary = folder / TEMPORARY
     temporary.mkdir()
     root = str(Path(__file__).parents[2])
     paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
     variables = {"TMPDIR": temporary, "TEMP": temporary, "TMP": temporary, "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"}
-    return subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
-        [sys.executable, "-m", "assess.web.job_process", str(folder)],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=folder,
-        env={**os.environ, **{name: str(value) for name, value in variables.items()}}, creationflags=_OWN_GROUP, start_new_session=True,
-    )  # fmt: skip
+    with (folder / ERRORS).open("wb") as errors:
+        return subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
+            [sys.executable, "-m", "assess.web.job_process", str(folder)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, cwd=folder, creationflags=_OWN_GROUP,
+            env={**os.environ, **{name: str(value) for name, value in variables.items()}}, start_new_session=True,
+        )  # fmt: skip
 
 
 def _output(process: "subprocess.Popen[bytes]") -> IO[bytes]:

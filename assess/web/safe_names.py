@@ -16,7 +16,7 @@ _FORBIDDEN = frozenset('<>:"/\\|?*')
 def make_safe(name: str) -> str:
     """Return the name of a workbook without folders, and without signs that file systems refuse."""
     last = PureWindowsPath(PurePosixPath(name).name).name
-    shown = "".join(one for one in last if one not in _FORBIDDEN and unicodedata.category(one)[0] != "C").strip(". ")
+    shown = "".join(one for one in last if one not in _FORBIDDEN and unicodedata.category(one)[0] != "C").rstrip(". ")
     stem, ending = (shown[:-5], shown[-5:]) if shown.lower().endswith(ENDINGS) else (shown, ENDINGS[0])
     stem = stem.strip(". ")[: LONGEST - len(ending)]
     return f"{stem}{ending}" if stem and not _RESERVED.match(stem) else f"workbook{ending}"

@@ -20,6 +20,7 @@ from assess.web.endpoints import build_application
 from assess.web.guard import Guard
 from assess.web.jobs import Slots
 from assess.web.keeping import Keeper
+from assess.web.rescue import keep_changes
 from assess.web.sessions import ENTRANCE, HOSTED, HostedKeys, Keys, Limits, LocalKeys, Session
 
 if TYPE_CHECKING:
@@ -43,12 +44,15 @@ class Place:
         Names by which browsers reach it through a proxy, with a port where that is not the usual one.
     user_header : str
         The header in which the proxy names the user; blank on the own machine.
+    language : str
+        Code of the language of the page; blank: the workbook's, else the browser's.
     """
 
     host: str = LOOPBACK
     port: int = 0
     allowed: tuple[str, ...] = ()
     user_header: str = ""
+    language: str = ""
 
     @property
     def is_hosted(self) -> bool:
@@ -64,12 +68,15 @@ class Ending:
     ----------
     saved : str
         The workbook of the disk that holds all changes; blank without one.
-    unsaved : list of tuple of str
-        Workbooks whose changes are lost, and why.
+    kept : list of (str, str)
+        Workbooks whose changes could not be saved in them, and the files in which they are kept.
+    lost : list of str
+        Workbooks whose changes are lost.
     """
 
     saved: str = ""
-    unsaved: list[tuple[str, str]] = field(default_factory=list)
+    kept: list[tuple[str, str]] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)
 
 
 def is_loopback(host: str) -> bool:
@@ -129,7 +136,9 @@ class Server:
 
     def _make_session(self, user: str, limits: Limits, home: Path | None = None) -> Session:
         folder = Path(tempfile.mkdtemp(prefix="session-", dir=self._folder))
-        return Session(secrets.token_urlsafe(32), user, folder, home, limits, slots=self._slots)
+        return Session(
+            secrets.token_urlsafe(32), user, folder, home, limits, slots=self._slots, language=self._place.language
+        )
 
     def _list_hosts(self) -> list[str]:
         if self._place.is_hosted:
@@ -142,11 +151,10 @@ class Server:
         self._keys.sessions()[0].take(book)
 
     def issue_address(self) -> str:
-        """Return an address that opens the page once, in one browser; behind a proxy its first name."""
-        if not isinstance(self._keys, LocalKeys):
-            return f"https://{self._place.allowed[0]}/"
+        """Return an address that opens the page once, in one browser; where a proxy is in front, its way in."""
         host = f"[{self._place.host}]" if ":" in self._place.host else self._place.host
-        return f"http://{host}:{self.port}{ENTRANCE}?t={self._keys.issue()}"
+        ticket = f"{ENTRANCE}?t={self._keys.issue()}" if isinstance(self._keys, LocalKeys) else "/"
+        return f"http://{host}:{self.port}{ticket}"
 
     def run(self, signals: Sequence[int], started: Callable[[], None]) -> Ending:
         """Answer requests until one of `signals` comes; save what there is to save."""
@@ -165,15 +173,18 @@ class Server:
     def _save_all(self) -> Ending:
         ending = Ending()
         for session in self._keys.sessions():
-            if session.book is None:
+            book = session.book
+            if book is None:
                 continue
             session.save()
-            state, name = session.book.state(), session.book.name
-            is_lost = state["unsaved"] and (session.book.mode == "disk" or session.downloaded != session.book.version)
-            if is_lost:
-                ending.unsaved.append((name, state["save_error"]))
-            elif session.book.mode == "disk":
-                ending = replace(ending, saved=name)
+            is_unsaved = book.state()["unsaved"] and (book.mode == "disk" or session.downloaded != book.version)
+            path = keep_changes(session) if is_unsaved and not self._place.is_hosted else None
+            if path is not None:
+                ending.kept.append((book.name, str(path)))
+            elif is_unsaved:
+                ending.lost.append(book.name)
+            elif book.mode == "disk":
+                ending = replace(ending, saved=book.name)
         return ending
 
 

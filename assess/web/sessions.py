@@ -77,6 +77,8 @@ class Session:
         A folder for this session alone, that is removed with it.
     home : Path, optional
         Where new workbooks are made: the folder in which the command was started; None: they are only held.
+    language : str
+        Code of the language of the page; blank: see `assess.web.texts.choose_language`.
     """
 
     key: str
@@ -88,6 +90,7 @@ class Session:
     live: "LiveView | None" = None
     job: Job | None = None
     slots: Slots = field(default_factory=lambda: Slots(1))
+    language: str = ""
     seen: float = field(default_factory=time.monotonic)
     looked: float = 0.0
     downloaded: int = 0

@@ -8,8 +8,10 @@ import pytest
 
 from tests.web.conftest import Client, start
 
-PATHS = ("/", "/main.mjs", "/api/book", "/api/live?since=1", "/nothing", "/../etc/passwd", "/%2e%2e/guard.py",
-         "/api/job/file/results.json", "//", "/%ff%fe", "/" + "a" * 4000, "/enter", "/enter?t=", "/enter?t=%00")  # fmt: skip
+PATHS = (
+    "/", "/main.mjs", "/api/book", "/api/live?since=1", "/nothing", "/../etc/passwd", "/%2e%2e/guard.py",
+    "/api/job/file/results.json", "//", "/%ff%fe", "/" + "a" * 4000, "/enter", "/enter?t=", "/enter?t=%00",
+)  # fmt: skip
 METHODS = ("GET", "HEAD", "POST", "PUT", "DELETE", "OPTIONS", "TRACE", "PATCH", "PROPFIND")
 
 

@@ -72,14 +72,14 @@ def test_results_are_those_of_the_command(running, tmp_path):
     with zipfile.ZipFile(io.BytesIO(files["report.zip"])) as archive:
         assert {name: archive.read(name) for name in archive.namelist()} == {name: files[name] for name in names[:-1]}
 
-    found = json.loads(files["results.json"])
-    rows = {one["row"]: one for one in found["items"]}
-    assert job["items"]["row"] == sorted(rows)
+    rows = json.loads(files["results.json"])["items"]
+    assert job["items"]["row"] == [2, 3, 4, 5, 6]
     assert any(job["items"]["simulated"])
-    for row, chance, low in zip(job["items"]["row"], job["items"]["chance"], job["items"]["low"], strict=True):
-        adopted = rows[row]["adopted"] if "adopted" in rows[row] else rows[row]
-        assert chance == pytest.approx(adopted["probability"], abs=1e-9)
-        assert low is None or low <= chance
+    for key in ("low", "high"):
+        assert job["items"][key] == [row["adopted"][key] for row in rows]
+    assert job["items"]["chance"] == pytest.approx([row["adopted"]["probability"] for row in rows])
+    classes = [one.replace("_", " ") for one in job["items"]["class"]]
+    assert classes == ["" if row["anchor"]["counts_as_anchored"] else row["adopted"]["class"] for row in rows]
     assert job["before_after"]["before"]["falls"] > job["before_after"]["after"]["falls"]
 
 
@@ -132,7 +132,8 @@ def test_floors_and_the_building_make_all_rows_stale(example_inventory):
 def test_what_cannot_be_asked_for_is_refused(running):
     """Among it what runs code: fitted models and templates come from the command line alone."""
     for asked in ({"verify": "some"}, {"runs": 0}, {"runs": "many"}, {"seed": -1}, {"scale": 0}, {"first": -1},
-                  {"first": True}, {"formats": []}, {"formats": ["npz"]}, {"formats": "../x"}, {"scenario": "x"}):  # fmt: skip
+                  {"first": True}, {"formats": []}, {"formats": ["npz"]}, {"formats": "../x"},
+                  {"scenario": "x"}):  # fmt: skip
         reply = running.client.post("/api/job", asked)
         assert (reply.status, bool(reply.json()["message"])) == (422, True), asked
     left = wait_for_job(running.client)["id"] if running.client.get("/api/job").json()["job"] else ""

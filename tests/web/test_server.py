@@ -1,0 +1,128 @@
+"""A server from its start to its end: what it saves, what it says, what it leaves."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+
+import openpyxl
+import pytest
+
+from tests.web.conftest import wait_until
+from tests.workbooks import write
+
+posix = pytest.mark.skipif(os.name == "nt", reason="signals")
+
+
+def _edit(client, value=77):
+    book = client.get("/api/book").json()
+    at = next(one["at"] for one in book["sheets"][2]["columns"] if one["field"] == "breadth")
+    reply = client.post("/api/edit", {"version": book["version"], "edits": [["Items", 2, at, value]], "label": "edit"})
+    assert reply.status == 200, reply.data
+    return at
+
+
+def _read(path, at):
+    return openpyxl.load_workbook(path)["Items"].cell(2, at + 1).value
+
+
+@posix
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_it_after_the_last_edit_is_saved(served, tmp_path, number):
+    path = write(tmp_path / "office.xlsx")
+    server = served(path)
+    at = _edit(server.client)
+    assert server.stop(number) == (0, "", "Stopped. All changes are saved in office.xlsx.\n")
+    assert _read(path, at) == 77
+    assert list((tmp_path / "tmp").iterdir()) == []
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["home", "office.xlsx", "tmp"]
+
+
+def test_edits_are_saved_by_themselves(served, tmp_path):
+    path = write(tmp_path / "office.xlsx")
+    server = served(path)
+    before = path.read_bytes()
+    assert server.client.get("/api/download").data == before
+    at = _edit(server.client)
+    state = wait_until(lambda: server.client.get("/api/state").json()["state"], lambda state: not state["unsaved"])
+    assert (state["save_error"], state["changed_outside"]) == ("", False)
+    assert _read(path, at) == 77
+
+
+def test_a_file_that_another_program_changed_is_not_overwritten(served, tmp_path):
+    path = write(tmp_path / "office.xlsx")
+    server = served(path)
+    _edit(server.client)
+    wait_until(lambda: server.client.get("/api/state").json()["state"]["unsaved"], lambda unsaved: not unsaved)
+    write(path, [])
+    theirs = path.read_bytes()
+    wait_until(lambda: server.client.get("/api/state").json()["state"]["changed_outside"], bool)
+    at = _edit(server.client, 78)
+    assert server.client.post("/api/save").status == 409
+    assert path.read_bytes() == theirs
+    kept = tmp_path / "office-changes.xlsx"
+    assert server.stop() == (0, "", f"Changes of office.xlsx that were not saved in it are kept in {kept}.\nStopped.\n")
+    assert path.read_bytes() == theirs
+    assert _read(kept, at) == 78
+
+
+def test_changes_of_a_held_workbook_that_are_not_downloaded_are_kept_at_the_end(served, tmp_path):
+    data = write(tmp_path / "mine.xlsx").read_bytes()
+    for is_downloaded in (False, True):
+        server = served()
+        assert server.client.send("/api/upload", "C:\\folder\\mine.xlsx", data).json()["name"] == "mine.xlsx"
+        at = _edit(server.client)
+        if is_downloaded:
+            assert server.client.get("/api/download").headers["content-disposition"].endswith("''mine.xlsx")
+            assert not server.client.get("/api/state").json()["state"]["unsaved"]
+        _, _, err = server.stop()
+        kept = tmp_path / "home" / "mine-changes.xlsx"
+        if is_downloaded:
+            assert err == "Stopped.\n"
+            assert not kept.exists()
+        else:
+            assert err == f"Changes of mine.xlsx that were not saved in it are kept in {kept}.\nStopped.\n"
+            assert _read(kept, at) == 77
+            kept.unlink()
+
+
+def test_stopping_does_not_wait_for_a_browser_that_is_silent(served):
+    server = served()
+    line = socket.create_connection((server.client.host, server.client.port))
+    line.sendall(b"POST /api/edit HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 1000\r\n\r\n{")
+    status, _, err = server.stop()
+    line.close()
+    assert (status, err) == (0, "Stopped.\n")
+
+
+def test_a_port_that_is_taken_is_named(served, tmp_path):
+    port = str(served().client.port)
+    words = [sys.executable, "-m", "assess", "open", "--no-browser", "--port", port]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"error  --port: 127.0.0.1:{port} cannot be used: ")
+
+
+@posix
+def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
+    """With a new ticket, for those who closed the browser, or use another one."""
+    import pty
+
+    leader, follower = pty.openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "assess", "open", "--no-browser"],
+        cwd=tmp_path, stdin=follower, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+    )  # fmt: skip
+    try:
+        first = process.stdout.readline()
+        os.write(leader, b"\n")
+        second = process.stdout.readline()
+        assert first.split("=")[0] == second.split("=")[0]
+        assert first != second
+    finally:
+        process.terminate()
+        process.communicate(timeout=60)
+        os.close(leader)
+        os.close(follower)

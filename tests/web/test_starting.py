@@ -1,0 +1,104 @@
+"""New workbooks made from the page, and the texts that it asks for."""
+
+import re
+
+import assess
+from assess.web import texts
+from assess.web.safe_names import make_safe
+from assess.web.starting import ROOMS
+from assess.workbook.schema import USES
+
+ASKED = {
+    "kind": "template", "name": "ufficio", "use": "Office", "building": "Sede", "town": "Avellino", "language": "it",
+    "shaking": "MMI VIII, severe", "floor": "1", "room": "Archivio", "units": "imperial",
+    "pieces": [{"type": "Bookcase 5 shelves", "count": 2}],
+}  # fmt: skip
+"""A type in English: the page may speak another language than the workbook."""
+
+
+def test_a_template_has_classes_at_once(served):
+    server = served()
+    offers = server.client.get("/api/book")
+    assert (offers.status, offers.json()["can_save"], offers.json()["folder"]) == (404, True, "home")
+    types = server.client.get("/api/start", Cookie=_speak(server, "it")).json()["types"]["Office"]
+    asked = {**ASKED, "pieces": [*ASKED["pieces"], {"type": types[0]["type"], "count": 1}]}
+    book = server.client.post("/api/start", asked).json()
+    assert (book["name"], book["mode"], book["language"], book["units"]) == ("ufficio.xlsx", "disk", "it", "imperial")
+    live = server.client.get("/api/live").json()
+    assert live["error"] == ""
+    assert all(live["items"]["class"])
+    inventory = assess.read_inventory(server.folder / "ufficio.xlsx")
+    assert [one.item for one in inventory.items] == ["A1", "A2", "A3"]
+    assert {one.room for one in inventory.items} == {"Archivio"}
+    assert (inventory.building.address, inventory.building.use) == ("Avellino", "Office")
+    assert inventory.language == "it"
+
+
+def _speak(server, language):
+    return f"{server.client.headers['Cookie']}; assess-language={language}"
+
+
+def test_a_new_workbook_replaces_no_file_and_leaves_its_folder_by_no_name(served):
+    server = served()
+    taken = server.folder / "taken.xlsx"
+    taken.write_bytes(b"mine")
+    assert server.client.post("/api/start", {"kind": "blank", "name": "taken.xlsx"}).status == 409
+    for name in ("../a.xlsx", "a/b.xlsx", "a\\b.xlsx", "C:\\a.xlsx", "/tmp/a.xlsx", "CON.xlsx", ".xlsx", ".a.xlsx",
+                 "a\n.xlsx", "a\u202e.xlsx", "x" * 300, "-rf.xlsx", "a:b.xlsx", 5, ["a"]):  # fmt: skip
+        assert server.client.post("/api/start", {"kind": "blank", "name": name}).status == 422, name
+    for wrong in ({"kind": "x"}, {"use": "Castle"}, {"shaking": "strong"}, {"units": "feet"}, {"language": "tlh"},
+                  {"pieces": [{"type": "Throne", "count": 1}]}, {"pieces": [{"type": "Desk", "count": 10**9}]},
+                  {"pieces": [3]}, {"pieces": "Desk"}, {"building": "x" * 1000}):  # fmt: skip
+        assert server.client.post("/api/start", {"kind": "template", "name": "n", **wrong}).status == 422, wrong
+    assert [one.name for one in server.folder.iterdir()] == ["taken.xlsx"]
+    assert taken.read_bytes() == b"mine"
+    assert server.client.get("/api/state").json()["state"] is None
+
+
+def test_names_that_were_sent_are_made_safe():
+    assert make_safe("office.xlsx") == "office.xlsx"
+    assert make_safe("../../etc/Büro 2.XLSM") == "Büro 2.XLSM"
+    assert make_safe("C:\\Users\\a\\b?.xlsx") == "b.xlsx"
+    assert {make_safe(name) for name in ("", "..", "\0", "con.xlsx", ".xlsx")} == {"workbook.xlsx"}
+
+
+def test_the_worked_example_comes_with_its_records(served):
+    server = served()
+    book = server.client.post("/api/start", {"kind": "example"}).json()
+    assert (book["name"], book["missing"]) == ("market-street.xlsx", [])
+    inventory = assess.read_inventory(server.folder / "market-street.xlsx")
+    assert sum(one.records != {} for one in inventory.floors) >= 3
+    assert server.client.post("/api/start", {"kind": "example"}).status == 409
+    assert server.client.post("/api/start", {"kind": "example", "name": "market-street-2.xlsx"}).status == 200
+
+
+def test_every_use_offers_rooms_and_types(served):
+    found = served().client.get("/api/start").json()
+    assert [use for use, _ in found["uses"]] == list(USES) == list(ROOMS)
+    assert all(found["rooms"][use] and len(found["types"][use]) > 5 for use in USES)
+    assert all(one["breadth"] < 3 for use in USES for one in found["types"][use])
+
+
+def test_every_text_of_the_page_is_found_where_its_modules_name_it(served):
+    """A call of `t` or `tn` with anything but plain literals would stay English in every language."""
+    called = sum(
+        len(re.findall(r"(?<![\w$.])(?<!function )tn?\(", path.read_text(encoding="utf-8")))
+        for path in texts.PAGE.rglob("*.mjs")
+    )
+    found = [found for path in texts.PAGE.rglob("*.mjs") for found in texts._scan(path)]
+    assert len(found) == called > 100
+    italian = served().client.get("/api/texts?language=it").json()
+    assert (italian["decimal"], italian["group"], italian["texts"]["low"]) == (",", ".", "basso")
+    many = [one for one, other, _ in found if other]
+    assert all(len(italian["texts"][one]) == 2 for one in many)
+
+
+def test_literals_of_javascript_are_read_as_it_reads_them():
+    source = r"""t("a \"b\" é"), t('it\'s'), tn("{n} x", '{n} ' + "xs", n), t(`c`), set("no"), x.t("no"), t("long " +
+        "text")"""
+    found = [
+        [texts._evaluate(one[name] or "") for name in ("text", "one", "many")] for one in texts._CALL.finditer(source)
+    ]
+    assert found == [
+        ['a "b" é', "", ""], ["it's", "", ""], ["", "{n} x", "{n} xs"], ["c", "", ""], ["long text", "", ""]
+    ]  # fmt: skip
