@@ -178,7 +178,7 @@ class Store extends EventTarget {
     this.#stopped = true;
     group.isSent = false;
     this.#tell("state");
-    if (error.status === 0) return null; // the frame tells that the server is gone, and when it is back
+    if (error.status === 0 || error.status === 401) return null; // the frame tells that the server is gone, and when it is back
     const n = this.#queue.length;
     const text = tn("{n} change has not been sent yet. {why}", "{n} changes have not been sent yet. {why}", n, { why: error.message });
     return notice(text, { kind: "error", key: "unsent", actions: [[t("Try again"), () => this.resend()]] });

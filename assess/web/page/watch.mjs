@@ -12,6 +12,7 @@ export class Watch extends EventTarget {
   #notices = {};
   #timer = 0;
   #isLooking = false;
+  #isStranger = false;
 
   constructor(store) {
     super();
@@ -41,7 +42,8 @@ export class Watch extends EventTarget {
 
   #take(answer) {
     const store = this.#store;
-    const state = answer.state ?? answer;
+    const state = answer.state ?? {};
+    if (this.#isStranger) this.#onBack();
     this.dispatchEvent(new CustomEvent("job", { detail: answer.job }));
     if (!store.book || store.waiting || typeof state.version !== "number") return;
     if (state.version > store.state.version) {
@@ -86,21 +88,26 @@ export class Watch extends EventTarget {
   #onGone() {
     this.isGone = true;
     this.dispatchEvent(new Event("connection"));
-    const text = t("The program behind this page does not answer. Start it again with: assess open. What you change meanwhile is kept in this page, and sent when it answers.");
+    const name = this.#store.book?.mode === "disk" ? this.#store.book.name : "";
+    const command = `assess open ${name.includes(" ") ? `"${name}"` : name} --port ${location.port || 80}`.replace("  ", " ");
+    const text = t("The program behind this page does not answer. Start it again: {command}. What you change meanwhile is kept in this page, and sent when it answers.", { command });
     this.#notices.gone = notice(text, { kind: "error", key: "gone" });
   }
 
   #onBack() {
-    this.isGone = false;
+    this.isGone = this.#isStranger = false;
     this.#notices.gone?.close();
     this.dispatchEvent(new Event("connection"));
-    if (this.#store.waiting) this.#store.resend();
+    this.#store.resend();
   }
 
   /** The program was started anew, and does not know this window. */
   #onStranger() {
+    if (this.#isStranger) return;
+    this.isGone = this.#isStranger = true;
+    this.dispatchEvent(new Event("connection"));
     const text = t("This window is no longer connected, as the program was started again. Use the window that it opened, or open the address that it printed.");
-    notice(text, { kind: "error", key: "gone" });
+    this.#notices.gone = notice(text, { kind: "error", key: "gone" });
   }
 }
 
