@@ -55,10 +55,13 @@ export function parseHtml(html) {
   return block.length && width ? block.map((row) => Array.from({ length: width }, (_, c) => row[c] ?? null)) : null;
 }
 
-/** The policy of the page refuses styles in a text, also in one that is only read. */
+/** Tags with what is read of them only: the policy of the page refuses styles and handlers, also in a text that is only read. */
 function withoutStyles(html) {
-  const plain = html.replace(/<style\b[\s\S]*?<\/style\s*>/gi, "");
-  return plain.replace(/<[a-z](?:"[^"]*"|'[^']*'|[^'">])*>/gi, (tag) => tag.replace(/\sstyle\s*=\s*(?:"[^"]*"|'[^']*'|[^\s>]+)/gi, ""));
+  const plain = html.replace(/<(style|script)\b[\s\S]*?<\/\1\s*>/gi, "");
+  return plain.replace(/<([a-z][\w:]*)((?:"[^"]*"|'[^']*'|[^'">])*)>/gi, (_, tag, rest) => {
+    const kept = [...rest.matchAll(/\s(x:num|sdval|data-sheets-value|colspan|rowspan)\s*=\s*("[^"]*"|'[^']*'|[^\s"'>]+)/gi)];
+    return `<${tag}${kept.map((one) => one[0]).join("")}>`;
+  });
 }
 
 function reserve(taken, r, c, cell) {
@@ -71,9 +74,7 @@ function reserve(taken, r, c, cell) {
 function readCell(cell) {
   const exact = cell.getAttribute("sdval") || cell.getAttribute("x:num") || readSheetsValue(cell);
   if (exact !== null && exact !== "" && Number.isFinite(Number(exact))) return Number(exact);
-  const copy = cell.cloneNode(true);
-  for (const line of copy.querySelectorAll("style, script")) line.remove();
-  const text = readText(copy).split("\n").map((line) => line.trim()).join("\n");
+  const text = readText(cell).split("\n").map((line) => line.trim()).join("\n");
   return text.replaceAll("\u00a0", " ").trim() || null;
 }
 

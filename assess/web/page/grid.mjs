@@ -161,7 +161,7 @@ export class Grid extends EventTarget {
     const menu = el("button", { type: "button", class: "grid-menu-button", tabindex: "-1", "aria-label": t("Sort and filter {column}", { column: column.label }), text: rule === "ascending" ? "▲" : rule ? "▼" : "▾" });
     menu.classList.toggle("used", Boolean(rule) || this.order.filters.has(column.label));
     const edge = el("div", { class: "grid-edge", "aria-hidden": "true" });
-    const cell = el("div", { class: "grid-cell", role: "columnheader", title: [`${column.label}${column.unit ? ` [${column.unit}]` : ""}`, column.help].filter(Boolean).join("\n"), "aria-colindex": c + 2, "aria-sort": rule, dataset: { column: c } }, label, menu, edge);
+    const cell = el("div", { class: "grid-cell", role: "columnheader", title: [`${column.label}${column.unit ? ` [${column.unit}]` : ""}`, column.help].filter(Boolean).join("\n"), "aria-colindex": c + 2, "aria-sort": rule, dataset: { column: c, label: column.label } }, label, menu, edge);
     if (column.required) cell.classList.add("required");
     this.#place(cell, column);
     return cell;

@@ -1,0 +1,101 @@
+"""The sheet of the page as a user handles it: cells by the header of their column and the row of the spreadsheet."""
+
+import json
+
+from playwright.sync_api import expect
+
+CLASS = "Class (formula)"
+
+
+SCROLL_TO = """async (head) => {
+    const box = head.closest(".grid-box").getBoundingClientRect();
+    const { left, right } = head.getBoundingClientRect();
+    if (left < box.left + 260 || right > box.right) head.scrollIntoView({ inline: "center", block: "nearest" });
+    for (let frame = 0; frame < 2; frame++) await new Promise(requestAnimationFrame);
+}"""
+
+
+class SheetPage:
+    """A page that shows the sheets; `server` is the running `assess open`."""
+
+    def __init__(self, page, server):
+        self.page, self.server = page, server
+        self.keyboard = page.keyboard
+        self.grid = page.get_by_role("grid")
+        self.options = page.locator(".grid-choices [role=option]")
+
+    def open(self, name):
+        """Show a sheet by its English name."""
+        self.page.locator(f".sheet-tabs [data-sheet={name}]").click()
+        return self
+
+    def column(self, label):
+        """Return the place of a column among those shown, from 1, as the grid counts them."""
+        return self.head(label).get_attribute("aria-colindex")
+
+    def cell(self, label, row):
+        """Return a cell by its header and its row in the spreadsheet, which the number at its left tells."""
+        line = self.grid.locator(".grid-row:not([hidden])").filter(has=self.page.locator(f".grid-number:text-is('{row}')"))
+        return line.locator(f"[aria-colindex='{self.column(label)}']")
+
+    def shown(self, label, row):
+        """Return a cell after its column was scrolled to and drawn: only those in sight are elements."""
+        self.head(label).evaluate(SCROLL_TO)
+        return self.cell(label, row)
+
+    def head(self, label):
+        return self.grid.locator(f"[data-label='{label}']")
+
+    def select(self, label, row, last=None, last_row=None):
+        """Select a cell, or a range with Shift."""
+        self.shown(label, row).click()
+        if last:
+            self.shown(last, last_row).click(modifiers=["Shift"])
+        return self
+
+    def type(self, *keys):
+        """Type texts; a word in angle brackets is a key: "<Enter>"."""
+        for one in keys:
+            if one.startswith("<") and one.endswith(">"):
+                self.keyboard.press(one[1:-1])
+            else:
+                self.keyboard.type(one)
+        return self
+
+    def settle(self):
+        """Wait until the server has all changes and the page all answers."""
+        self.page.evaluate("""async () => {
+            const { store } = await import("/store.mjs");
+            while (store.waiting) await new Promise((done) => store.addEventListener("state", done, { once: true }));
+            await store.refreshLive();
+        }""")
+        return self
+
+    def cells(self, sheet, row):
+        """Return the values of a row as the server has them."""
+        book = json.loads(self.server.client.get("/api/book").data)
+        rows = next(one for one in book["sheets"] if one["name"] == sheet)["rows"]
+        return dict(map(tuple, rows)).get(row, [])
+
+    def values(self, sheet, field):
+        """Return the values of a column as the server has them: by rows."""
+        book = json.loads(self.server.client.get("/api/book").data)
+        found = next(one for one in book["sheets"] if one["name"] == sheet)
+        at = next(one["at"] for one in found["columns"] if one["field"] == field)
+        return {row: cells[at] for row, cells in found["rows"] if at < len(cells) and cells[at] is not None}
+
+    def copy_text(self, text, html=None):
+        """Put a text, and a table, on the clipboard as another program does."""
+        self.page.evaluate("""async ([text, html]) => {
+            const items = { "text/plain": new Blob([text], { type: "text/plain" }) };
+            if (html) items["text/html"] = new Blob([html], { type: "text/html" });
+            await navigator.clipboard.write([new ClipboardItem(items)]);
+        }""", [text, html])
+        return self
+
+
+def opened(page, server, **options):
+    """Open the page of a server at its sheets."""
+    found = page(server, permissions=["clipboard-read", "clipboard-write"], **options)
+    expect(found.get_by_role("tab").first).to_be_visible()
+    return SheetPage(found, server)

@@ -1,0 +1,210 @@
+"""Typing into the sheets: classes that follow, lists, problems in their cells, keys alone, undo."""
+
+import re
+import shutil
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.conftest import EXAMPLE
+from tests.web.sheet_page import CLASS, opened
+from tests.workbooks import ITEMS, write
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+BLANK = EXAMPLE.with_name("blank.xlsx")
+MARKUP = '<img src=x onerror="document.title=1">'
+TIME_TO_CLASS = """async () => {
+    const started = performance.now();
+    const shown = () => document.querySelector(".grid-cell.risk:not(.class-none)");
+    while (!shown()) await new Promise(requestAnimationFrame);
+    return performance.now() - started;
+}"""
+
+
+@pytest.fixture
+def small(page, served, tmp_path):
+    """Return the sheet Items of a small workbook."""
+    return opened(page, served(write(tmp_path / "office.xlsx"))).open("Items")
+
+
+def tab_to(sheet, selector, key="Tab"):
+    """Press Tab until an element has the focus."""
+    for _ in range(30):
+        if sheet.page.locator(f"{selector}:focus").count():
+            return
+        sheet.keyboard.press(key)
+    raise AssertionError(f"{selector} cannot be reached by {key}")
+
+
+def test_a_first_piece_by_keyboard_alone(page, served, tmp_path):
+    shutil.copy(BLANK, tmp_path / "new.xlsx")
+    sheet = opened(page, served(tmp_path / "new.xlsx"))
+    tab_to(sheet, "[role=tab]", "Shift+Tab")
+    for _ in range(7):
+        if sheet.page.locator("[data-sheet=Floors]:focus").count():
+            break
+        sheet.type("<ArrowRight>")
+    tab_to(sheet, ".grid-input")
+    sheet.type("1", "<Tab>", "Ground", "<Tab>", "<Tab>", "0.4", "<Tab>", "0.4", "<Tab>", "40", "<Enter>")
+    sheet.type("<Escape>")
+    tab_to(sheet, "[role=tab]", "Shift+Tab")
+    sheet.type("<ArrowRight>")
+    tab_to(sheet, ".grid-input")
+    sheet.type("A1", "<Tab>", "<Tab>", "1", "<Tab>", "<Tab>", "<Tab>", "bookcase t")
+    expect(sheet.options).to_have_text(["Bookcase tall", "Bookcase tall narrow"])
+    sheet.type("<ArrowDown>", "<Tab>")
+    print(f"class shown {sheet.page.evaluate(TIME_TO_CLASS):.0f} ms after the type was entered")
+    expect(sheet.cell(CLASS, 2)).to_contain_text(re.compile("low|medium|high"))
+    assert sheet.settle().cells("Items", 2)[:6] == ["A1", None, "1", None, None, "Bookcase tall"]
+    assert sheet.cells("Floors", 2)[:6] == ["1", "Ground", None, 0.4, 0.4, 40]
+
+
+def test_a_bad_value_is_marked_in_its_cell_and_other_rows_keep_their_classes(small):
+    expect(small.cell(CLASS, 2)).to_contain_text("high")
+    others = [small.cell(CLASS, row).inner_text() for row in (2, 4)]
+    small.select("Height", 3).type("tall", "<Enter>")
+    expect(small.cell("Height", 3)).to_have_attribute("aria-invalid", "true")
+    expect(small.cell("Height", 3)).to_have_attribute("title", re.compile("'tall'.*number"))
+    expect(small.cell(CLASS, 3)).to_have_text("check")
+    assert [small.cell(CLASS, row).inner_text() for row in (2, 4)] == others
+    small.select("Item", 2)
+    small.page.get_by_role("button", name=re.compile("Items!J3")).click()
+    expect(small.page.locator("#grid-active")).to_have_text("tall")
+    expect(small.page.locator(".sheet-about")).to_contain_text("'tall'")
+    expect(small.page.get_by_role("status").filter(has_text="Items!J3")).to_contain_text("tall")
+    small.page.get_by_role("button", name="1 error").click()
+    expect(small.page.get_by_role("button", name=re.compile("Items!J3"))).to_have_count(0)
+    small.select("Height", 3).type("190", "<Enter>")
+    expect(small.cell("Height", 3)).not_to_have_attribute("aria-invalid", "true")
+    expect(small.cell(CLASS, 3)).to_contain_text(re.compile("low|medium|high"))
+
+
+def test_lists_filter_while_one_types(small):
+    small.select("Axis", 2).type("<Alt+ArrowDown>")
+    options = small.options
+    expect(options).to_have_text(["X", "Y"])
+    small.type("<ArrowDown>", "<Enter>")
+    assert small.settle().values("Items", "axis")[2] == "X"
+    small.select("Anchored", 2).type("n")
+    expect(options).to_have_text(["no", "unknown"])
+    small.type("<Enter>")
+    small.select("Floor", 3).type("<Alt+ArrowDown>")
+    expect(options).to_have_text(["1", "2"])
+    options.nth(1).click()
+    small.select("Type", 4).type("bookcase 5", "<Escape>", "<Enter>")  # the list closes, what is typed stays
+    small.settle()
+    assert small.values("Items", "anchored")[2] == "no"
+    assert small.values("Items", "floor")[3] in ("2", 2)
+    assert small.values("Items", "type")[4] == "bookcase 5"
+    box = small.select("Importance", 2).cell("Importance", 2).bounding_box()
+    small.page.mouse.click(box["x"] + box["width"] - 8, box["y"] + box["height"] / 2)
+    expect(options.first).to_be_visible()
+    small.type("<Escape>", "<Escape>")
+    assert 2 not in small.settle().values("Items", "importance")
+
+
+def test_keys_of_a_spreadsheet(small):
+    active, frame = small.page.locator("#grid-active"), small.page.locator(".sheet-cell")
+    small.select("Item", 2).type("<Control+ArrowDown>")
+    expect(active).to_have_text(ITEMS[-1]["item"])
+    small.type("<Control+Home>", "<End>", "<Home>")
+    expect(frame).to_have_text("Items!A2")
+    small.type("<Control+End>")
+    expect(frame).to_contain_text(f"{len(ITEMS) + 1}")
+    small.type("<Control+Home>", "<F2>", "x", "<Escape>")
+    expect(active).to_have_text("A1")
+    small.type("<F2>", "x", "<Enter>")
+    expect(frame).to_have_text("Items!A3")
+    small.select("Room", 2, "Room", 5).type("Store", "<Control+Enter>")
+    small.select("Notes", 2).type("one", "<Alt+Enter>", "two", "<Enter>")
+    small.select("Description", 2, "Description", 4).type("<Control+d>")
+    small.select("Anchored", 5).type("<Delete>")
+    small.settle()
+    assert small.values("Items", "item")[2] == "A1x"
+    assert [small.values("Items", "room").get(row) for row in range(2, 7)] == ["Store"] * 4 + [None]
+    assert small.values("Items", "notes")[2] == "one\ntwo"
+    assert [small.values("Items", "description").get(row) for row in (2, 3, 4)] == ["Bookcase"] * 3
+    assert 5 not in small.values("Items", "anchored")
+    small.select("Width", 2, "Height", 3)
+    expect(small.grid.locator("[role=gridcell][aria-selected=true]")).to_have_count(4)
+    small.type("<Shift+Space>")
+    assert small.grid.locator("[role=gridcell][aria-selected=true]").count() > 4
+
+
+def test_an_input_method_composes_into_a_cell(small):
+    client = small.page.context.new_cdp_session(small.page)
+    small.select("Room", 3)
+    for text in ("k", "か", "会議"):
+        client.send("Input.imeSetComposition", {"text": text, "selectionStart": len(text), "selectionEnd": len(text)})
+    client.send("Input.insertText", {"text": "会議室"})
+    small.type("<Enter>")
+    assert small.settle().values("Items", "room")[3] == "会議室"
+
+
+def test_markup_in_a_cell_is_text(page, served, tmp_path):
+    items = [ITEMS[0] | {"room": MARKUP, "description": MARKUP}, ITEMS[1] | {"item": MARKUP, "axis": MARKUP}]
+    sheet = opened(page, served(write(tmp_path / "office.xlsx", items))).open("Items")
+    expect(sheet.cell("Room", 2)).to_have_text(MARKUP)
+    expect(sheet.page.locator(".problems")).to_contain_text("<img")
+    sheet.head("Room").get_by_role("button").click()
+    sheet.page.keyboard.press("Escape")
+    sheet.copy_text(MARKUP, f"<table><tr><td>{MARKUP}</td></tr></table>").select("Notes", 3).type("<Control+v>")
+    sheet.select("Type", 3).type("<img", "<Enter>").settle()
+    assert sheet.values("Items", "notes")[3] == MARKUP
+    assert sheet.page.locator("img").count() == 0
+    assert sheet.page.title() != "1"
+
+
+def test_undo_goes_back_across_sheets_in_order(small):
+    small.select("Room", 3).type("Hall", "<Enter>")
+    small.open("Floors").select("Name", 2).type("Ground", "<Enter>")
+    small.open("Items").select("Room", 4).type("Store", "<Enter>").settle()
+    small.type("<Control+z>", "<Control+z>")
+    expect(small.page.locator("[data-sheet=Floors]")).to_have_attribute("aria-selected", "true")
+    small.settle()
+    assert (small.values("Floors", "name"), small.values("Items", "room")) == ({}, {2: "Hall", 3: "Hall"})
+    small.type("<Control+y>", "<Control+Shift+Z>").settle()
+    assert small.values("Floors", "name") == {2: "Ground"}
+    assert small.values("Items", "room") == {2: "Hall", 3: "Hall", 4: "Store"}
+
+
+def test_quick_edits_reach_the_server_in_order_and_each_is_one_step_back(small):
+    client = small.page.context.new_cdp_session(small.page)
+    slow = {"offline": False, "latency": 150, "downloadThroughput": -1, "uploadThroughput": -1}
+    client.send("Network.emulateNetworkConditions", slow)
+    small.select("Quantity", 2).type(*(part for n in range(2, 6) for part in (str(n), "<Enter>")))
+    small.select("Quantity", 2).type("7", "<Enter>", "8", "<Enter>", "<Control+z>").settle()
+    assert small.values("Items", "quantity") == {2: 7, 3: 3, 4: 4, 5: 5}
+    expect(small.cell("Quantity", 3)).to_have_text("3")
+
+
+def test_an_edit_meets_a_change_from_elsewhere(small):
+    version = small.server.client.get("/api/book").json()["version"]
+    other = small.server.client.post("/api/edit", {"version": version, "edits": [["Items", 2, 3, "Attic"]], "label": ""})
+    assert other.status == 200, other.data
+    small.select("Description", 3).type("Desk", "<Enter>")
+    expect(small.cell("Room", 2)).to_have_text("Attic")
+    small.settle()
+    assert small.values("Items", "description")[3] == "Desk"
+    assert small.values("Items", "room")[2] == "Attic"
+    expect(small.cell("Description", 3)).to_have_text("Desk")
+
+
+def test_a_cell_that_cannot_be_changed_goes_back_and_is_named(page, served, tmp_path):
+    from openpyxl import load_workbook
+
+    path = write(tmp_path / "office.xlsx")
+    book = load_workbook(path)
+    column = book["Items"].max_column + 1
+    book["Items"].cell(1, column, "Our number")
+    book["Items"].cell(2, column, "=1+1")
+    book.save(path)
+    sheet = opened(page, served(path)).open("Items")
+    sheet.type("<End>")
+    sheet.select("Our number", 2).type("5", "<Enter>")
+    name = sheet.cell("Our number", 2)
+    expect(sheet.page.get_by_role("alert")).to_contain_text(re.compile(r"Items!A\w2"))
+    expect(name).not_to_have_text("5")
+    sheet.select("Our number", 3).type("6", "<Enter>").settle()
+    expect(sheet.cell("Our number", 3)).to_have_text("6")
