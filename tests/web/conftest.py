@@ -1,117 +1,10 @@
-"""The page as users have it: the command in a process of its own, a client of its requests, and a browser in it."""
+"""Fixtures: a server of the page, and a browser in it."""
 
-import http.client
-import json
-import os
-import re
-import signal
-import subprocess
-import sys
-import time
 from contextlib import ExitStack
-from dataclasses import dataclass
-from pathlib import Path
-from urllib.parse import quote, urlsplit
 
 import pytest
 
-ADDRESS = re.compile(r"https?://\S+")
-PATIENCE = 60
-"""Time after which a process that does not end is taken to hang [s]."""
-
-
-@dataclass
-class Reply:
-    """An answer of the server."""
-
-    status: int
-    headers: http.client.HTTPMessage
-    data: bytes
-
-    def json(self):
-        return json.loads(self.data)
-
-
-class Client:
-    """Sends requests as the page does: with the cookie and what a browser says of itself; each can be overwritten."""
-
-    def __init__(self, base, cookie=""):
-        parts = urlsplit(base)
-        self.base, self.host, self.port = base, parts.hostname, parts.port
-        self.headers = {"Origin": base, "Sec-Fetch-Site": "same-origin", "X-Assess": "1"}
-        if cookie:
-            self.headers["Cookie"] = cookie
-
-    def request(self, method, path, body=None, headers=None):
-        """Send a request; a header that is None is left out."""
-        said = {name: value for name, value in (self.headers | (headers or {})).items() if value is not None}
-        connection = http.client.HTTPConnection(self.host, self.port, timeout=PATIENCE)
-        try:
-            connection.request(method, path, body, said)
-            answer = connection.getresponse()
-            return Reply(answer.status, answer.headers, answer.read())
-        finally:
-            connection.close()
-
-    def get(self, path, **headers):
-        return self.request("GET", path, headers=headers)
-
-    def post(self, path, body=None, **headers):
-        return self.request("POST", path, json.dumps(body or {}), headers)
-
-    def send(self, path, name, data):
-        """Send a file."""
-        return self.request("POST", f"{path}?name={quote(name)}", data)
-
-
-@dataclass
-class Served:
-    """A running `assess open`: the address that it printed, and a client that enters when it is first asked for."""
-
-    process: subprocess.Popen[str]
-    url: str
-    folder: Path
-    entered: Client | None = None
-
-    @property
-    def base(self):
-        return "{0.scheme}://{0.netloc}".format(urlsplit(self.url))
-
-    @property
-    def client(self):
-        if self.entered is None:
-            self.entered = enter(self.url)
-        return self.entered
-
-    def stop(self, number=signal.SIGTERM):
-        """Send a signal, and return the exit status, what was printed, and the messages."""
-        if self.process.poll() is None:
-            self.process.send_signal(number)
-        out, err = self.process.communicate(timeout=PATIENCE)
-        return self.process.returncode, out, err
-
-
-def enter(url):
-    """Open an address with a ticket; return a client with the cookie."""
-    parts = urlsplit(url)
-    client = Client(f"{parts.scheme}://{parts.netloc}")
-    reply = client.get(f"{parts.path}?{parts.query}")
-    assert reply.status == 200, reply.data
-    return Client(client.base, reply.headers["set-cookie"].split(";")[0])
-
-
-def start(*words, cwd, temporary=None, environment=None):
-    """Start `assess open` in a folder and wait for its address."""
-    variables = os.environ | ({"TMPDIR": str(temporary)} if temporary else {}) | (environment or {})
-    process = subprocess.Popen(
-        [sys.executable, "-m", "assess", "open", *map(str, words)],
-        cwd=cwd, env=variables, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
-    for line in process.stdout:
-        if found := ADDRESS.fullmatch(line.strip()):
-            return Served(process, found[0], cwd)
-    _, err = process.communicate(timeout=PATIENCE)
-    raise AssertionError(f"no address was printed, exit status {process.returncode}: {err}")
+from tests.web.serving import start
 
 
 @pytest.fixture
@@ -165,17 +58,3 @@ def page(browser, served, request):
 def _is_fault(said):
     """Whether a line of the console is an error of the page: a script, the policy; not the status of an answer."""
     return said.type == "error" and "Failed to load resource" not in said.text
-
-
-def wait_until(ask, is_so):
-    """Ask again and again until an answer is so, and return it."""
-    latest = time.monotonic() + PATIENCE
-    while not is_so(answer := ask()):
-        assert time.monotonic() < latest, answer
-        time.sleep(0.02)
-    return answer
-
-
-def wait_for_job(client):
-    """Return the job once it has ended."""
-    return wait_until(lambda: client.get("/api/job").json()["job"], lambda job: job["state"] != "running")

@@ -6,7 +6,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.web.conftest import Client, start
+from tests.web.serving import Client, start
 
 PATHS = (
     "/", "/main.mjs", "/api/book", "/api/live?since=1", "/nothing", "/../etc/passwd", "/%2e%2e/guard.py",

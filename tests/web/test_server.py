@@ -9,7 +9,7 @@ import sys
 import openpyxl
 import pytest
 
-from tests.web.conftest import wait_until
+from tests.web.serving import wait_until
 from tests.workbooks import write
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals")

@@ -5,7 +5,7 @@ import pytest
 from assess.errors import InputError
 from assess.web.request_errors import RequestError
 from assess.web.sessions import HostedKeys, Limits, Session, Visit
-from tests.web.conftest import Client, wait_for_job
+from tests.web.serving import Client, wait_for_job
 from tests.workbooks import write
 
 NAME = "assess.test"
