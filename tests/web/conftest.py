@@ -4,7 +4,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from tests.web.serving import start
+from tests.web.serving import Client, start
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def served(tmp_path):
 
 
 @pytest.fixture
-def page(browser, served, request):
+def page(browser):
     """Return a function that opens a page of a server: `page(served(path))`; it fails on errors in the console.
 
     `page(server, width=390, height=844, locale="it-IT")`: other options of a Playwright context.
@@ -43,11 +43,15 @@ def page(browser, served, request):
             found.on("pageerror", lambda error: found.errors.append(str(error)))
             found.on("console", lambda said: found.errors.append(said.text) if _is_fault(said) else None)
             opened.append(found)
-            found.goto(server.url)
-            found.wait_for_url(f"{server.base}/**")
-            found.wait_for_url(lambda address: "/enter" not in address)
-            cookies = "; ".join(f"{one['name']}={one['value']}" for one in context.cookies())
-            server.entered = server.entered or Client(server.base, cookies)  # the same session: a ticket serves once
+            if server.entered is None:
+                found.goto(server.url)
+                found.wait_for_url(lambda address: "/enter" not in address)
+                cookies = "; ".join(f"{one['name']}={one['value']}" for one in context.cookies())
+                server.entered = Client(server.base, cookies)  # the same session: a ticket serves once
+            else:
+                name, value = server.entered.headers["Cookie"].split("=", 1)
+                context.add_cookies([{"name": name, "value": value, "url": server.base}])
+                found.goto(f"{server.base}/")
             return found
 
         yield open_page
