@@ -62,7 +62,7 @@ def _list_named(held: HeldSheets, sheets: Mapping[str, PageSheet]) -> Iterator[t
                 continue
             text = read_text(value)
             names = [one.partition("#")[0].strip() for one in split_names(text)] if kind == "record" else [text]
-            yield from ((one, kind, [sheet, row, column.at]) for one in names if one)
+            yield from ((one, kind, [sheet, row, column.at]) for one in dict.fromkeys(names) if one)
 
 
 def _is_missing(name: str, folder: Path) -> bool:

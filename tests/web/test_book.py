@@ -1,0 +1,350 @@
+"""One open workbook: what an edit changes in memory and in the bytes, what is refused, and what can be undone."""
+
+import io
+import re
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
+
+import openpyxl
+import pytest
+
+from assess.errors import InputError, WorkbookError
+from assess.pipeline.live_values import with_live
+from assess.web.book import Book, EditsRefused, VersionError
+from assess.web.history import MOST_STEPS
+from assess.workbook.layout import LETTERS, PLACES
+from assess.workbook.read import read_inventory
+from assess.workbook.schema import LIVE
+from assess.workbook.template import Content, write_workbook
+from tests.workbook.books import change_parts, replace, write_shared
+from tests.workbooks import FLOORS, ITEMS
+
+ROWS = {"Building": [{"building": "Hall", "ground_pga": 0.2, "period": 0.8}], "Floors": FLOORS, "Items": ITEMS}
+ITEMS_PART = "xl/worksheets/sheet4.xml"
+
+
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory) -> bytes:
+    """The bytes of a small workbook with live formulas and their results."""
+    path = tmp_path_factory.mktemp("filled") / "office.xlsx"
+    write_workbook(path, with_live(Content(ROWS)))
+    return path.read_bytes()
+
+
+@pytest.fixture
+def book(filled, tmp_path) -> Book:
+    return Book.hold("office.xlsx", filled, tmp_path)
+
+
+def at(field, sheet="Items"):
+    """The column of a field, from 0."""
+    return PLACES[sheet, field]
+
+
+def edit(book, *edits):
+    return book.edit(book.version, [list(one) for one in edits], "test")
+
+
+def stored(data, sheet="Items"):
+    """What the cells of a sheet store, by address; of formulas their results."""
+    page = openpyxl.load_workbook(io.BytesIO(data), data_only=True)[sheet]
+    return {cell.coordinate: cell.value for row in page.iter_rows() for cell in row if cell.value is not None}
+
+
+def parts_of(data):
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def cells_of(part):
+    """The cells of a sheet as they stand in its XML, by address, and all the rest of it."""
+    found = {one[1].decode(): one[0] for one in re.finditer(rb'<c r="([A-Z]+\d+)"[^>]*?(?:/>|>.*?</c>)', part)}
+    return found, re.sub(rb'<c r="[A-Z]+\d+"[^>]*?(?:/>|>.*?</c>)', b"", part)
+
+
+def refusals(book, *edits):
+    """Why edits are refused, by cell; nothing may have changed."""
+    before, cells = book.state(), book.snapshot().cells
+    with pytest.raises(EditsRefused) as caught:
+        edit(book, *edits)
+    assert book.state() == before
+    assert book.snapshot().cells is cells
+    return {tuple(one[:3]): one[3] for one in caught.value.refused}
+
+
+# ---------------------------------------------------------------- bytes
+
+
+def test_without_a_difference_the_very_bytes(book, filled):
+    assert book.write() is filled
+    edit(book, ("Items", 2, at("height"), 150), ("Floors", 2, at("pfa_x", "Floors"), None))
+    assert book.write() != filled
+    edit(book, ("Items", 2, at("height"), "200 cm"))
+    book.undo(book.version)
+    book.undo(book.version)
+    assert book.write() is filled
+    assert not book.state()["unsaved"]
+    edit(book, ("Items", 2, at("height"), 150))
+    edit(book, ("Items", 2, at("height"), 200))  # typed back, not undone
+    assert book.write() is filled
+
+
+def test_one_edit_changes_its_cell_and_the_live_values_of_its_row(book, filled, tmp_path):
+    edit(book, ("Items", 3, at("height"), 120))
+    after = book.write()
+    before, now = parts_of(filled), parts_of(after)
+    assert list(before) == list(now)
+    assert {name for name in before if before[name] != now[name]} == {ITEMS_PART}
+    (old, rest), (new, rest_now) = cells_of(before[ITEMS_PART]), cells_of(now[ITEMS_PART])
+    assert rest == rest_now
+    changed = {cell for cell in old.keys() | new.keys() if old.get(cell) != new.get(cell)}
+    live = {f"{LETTERS['Items', label]}3" for label in LIVE}
+    own = f"{LETTERS['Items', 'height']}3"
+    assert {own, f"{LETTERS['Items', 'B/H']}3"} <= changed <= live | {own}
+    rows = {**ROWS, "Items": [ITEMS[0], {**ITEMS[1], "height": 120}, *ITEMS[2:]]}
+    write_workbook(tmp_path / "anew.xlsx", with_live(Content(rows)))
+    anew = stored((tmp_path / "anew.xlsx").read_bytes())
+    found = stored(after)
+    assert {cell: found.get(cell) for cell in live} == {cell: anew.get(cell) for cell in live}
+
+
+def test_an_edit_of_a_floor_reaches_every_live_value(book, tmp_path):
+    edit(book, ("Floors", 3, at("pfa_x", "Floors"), 0.9))
+    found = stored(book.write())
+    rows = {**ROWS, "Floors": [FLOORS[0], {**FLOORS[1], "pfa_x": 0.9}]}
+    write_workbook(tmp_path / "anew.xlsx", with_live(Content(rows)))
+    anew = stored((tmp_path / "anew.xlsx").read_bytes())
+    live = {f"{LETTERS['Items', label]}{row}" for label in LIVE for row in range(2, 7)}
+    assert {cell: found.get(cell) for cell in live} == {cell: anew.get(cell) for cell in live}
+
+
+def test_what_is_held_is_what_is_written(book, tmp_path):
+    """The snapshot of a book with edits of every kind equals the reading of the bytes that it writes."""
+    edit(
+        book,
+        *(("Items", 300, at(name), value) for name, value in
+          {"item": "Z1", "floor": "2", "breadth": "0,5 m", "height": 190, "anchored": "y", "x": 3}.items()),
+        ("Items", 2, at("item"), None), ("Items", 4, at("quantity"), 2.5), ("Places", 2, 0, "Door"),
+        ("Places", 2, 1, "1"), ("Building", 1, 1, "<b>Hall</b>"), ("Floors", 4, 0, "3"),
+    )  # fmt: skip
+    (tmp_path / "after.xlsx").write_bytes(book.write())
+    after = read_inventory(tmp_path / "after.xlsx", strict=False)
+    held = book.snapshot().inventory
+    assert held.items == after.items
+    assert held.problems == after.problems
+    assert (held.building, held.floors, held.places) == (after.building, after.floors, after.places)
+    assert any(item.row == 300 for item in held.items)
+
+
+# ---------------------------------------------------------------- typed texts
+
+
+@pytest.mark.parametrize(
+    ("field", "typed", "kept"),
+    [("breadth", "45 cm", 45), ("breadth", "1,80 m", 180), ("breadth", "45,5", 45.5), ("breadth", "18 in", 45.72),
+     ("breadth", "wide", "wide"), ("breadth", True, True), ("breadth", " ", None), ("breadth", "", None),
+     ("anchored", "Y", "yes"), ("anchored", "YES", "YES"), ("anchored", "maybe", "maybe"), ("anchored", True, "yes"),
+     ("axis", "x", "x"), ("item", "  A  9 ", "A 9"), ("item", "007", "007"), ("item", 7, 7),
+     ("description", "  as typed ", "  as typed "), ("description", "=1+1", "=1+1"), ("description", "1,8 m", "1,8 m"),
+     ("quantity", "2", 2), ("friction", "0,35", 0.35), ("height", "1.234", "1.234"), ("notes", "12", "12")],
+)  # fmt: skip
+def test_texts_are_taken_as_their_column_asks(book, field, typed, kept):
+    found = edit(book, ("Items", 2, at(field), typed))["cells"]
+    assert found == [["Items", 2, at(field), kept]]
+    assert type(found[0][3]) is type(kept)
+
+
+def test_texts_of_a_form(book):
+    lines = {one["field"]: one["row"] for one in book.describe()["sheets"][0]["columns"]}
+    typed = {"period": "0,8 s", "report_date": "1 May 2024", "shaking": "mmi 7", "piece_uncertainty": "n",
+             "building": " My hall ", "ground_pga": "25 %g"}  # fmt: skip
+    kept = {
+        one[1]: one[3]
+        for one in edit(book, *(("Building", lines[name], 1, text) for name, text in typed.items()))["cells"]
+    }
+    expected = {"period": 0.8, "report_date": "2024-05-01", "shaking": "MMI VII, very strong",
+                "piece_uncertainty": "no", "building": " My hall ", "ground_pga": 0.25}  # fmt: skip
+    assert kept == {lines[name]: value for name, value in expected.items()}
+
+
+@pytest.mark.parametrize(
+    ("typed", "kept"),
+    [("12", 12), ("-0.5", -0.5), ("007", "007"), ("1e5", "1e5"), ("1,5", "1,5"), ("nan", "nan"), ("٣", "٣"),
+     (3.5, 3.5), ("x", "x"), (True, True)],
+)  # fmt: skip
+def test_columns_of_the_user(tmp_path, typed, kept):
+    path = write_shared(tmp_path / "own.xlsx", {"Items": [["Item", "Floor", "Mine"], ["A1", "1", "mine"]]})
+    book = Book.open_disk(path)
+    assert edit(book, ("Items", 2, 2, typed))["cells"] == [["Items", 2, 2, kept]]
+    assert stored(book.write())["C2"] == kept
+
+
+def test_the_last_of_several_edits_of_a_cell_counts(book):
+    found = edit(book, ("Items", 2, at("breadth"), 10), ("Items", 2, at("breadth"), 11))["cells"]
+    assert found == [["Items", 2, at("breadth"), 11]]
+    book.undo(book.version)
+    assert book.snapshot().cells.cells["Items"].value((2, at("breadth"))) == 30
+
+
+# ---------------------------------------------------------------- what is refused
+
+
+def test_cells_that_cannot_be_edited(book):
+    good = ("Items", 2, at("breadth"), 50)
+    found = refusals(
+        book, good, ("Items", 1, 0, "Name"), ("Items", 2, at("B/H"), 1), ("Items", 100_001, 0, "x"),
+        ("Items", 2, 256, "x"), ("Items", 2, 200, "x"), ("Items", 0, 0, "x"), ("Items", -3, 0, "x"),
+        ("Items", 2, -1, "x"), ("Nowhere", 2, 0, "x"), ("Help", 2, 0, "x"), ("Building", 1, 0, "x"),
+        ("Building", 500, 1, "x"), ("Items", 2, 0, "x" * 32_768), ("Items", 3, at("breadth"), float("nan")),
+        ("Items", 4, at("breadth"), float("inf")), ("Items", 5, at("breadth"), 10**400),
+    )  # fmt: skip
+    assert len(found) == 16
+    assert tuple(good[:3]) not in found
+    assert all(found.values())
+
+
+def test_formulas_merges_arrays_and_tables(tmp_path):
+    """What a change of the bytes would refuse is refused as it is typed."""
+    rows = [
+        ["Item", "Floor", "Mine", "Sum"],
+        ["A1", "1", 1, 2],
+        ["A2", "1", 1, 2],
+        ["A3", "1", 1, 2],
+        ["A4", "1", 1, 2],
+    ]
+    path = write_shared(tmp_path / "own.xlsx", {"Items": rows, "Floors": [["Floor"], ["1"]]})
+    change_parts(path, {
+        "xl/worksheets/sheet1.xml": replace('<c r="D2"><v>2</v></c>', '<c r="D2"><f>C2+1</f><v>2</v></c>'),
+    })  # fmt: skip
+    change_parts(path, {
+        "xl/worksheets/sheet1.xml": lambda data: data.replace(
+            b'<c r="D3"><v>2</v></c>', b'<c r="D3"><f t="array" ref="D3:D4">C3:C4+1</f><v>2</v></c>').replace(
+            b"</sheetData>", b'</sheetData><mergeCells count="1"><mergeCell ref="A5:B5"/></mergeCells>').replace(
+            b'<c r="C4"><v>1</v></c>', b'<c r="C4"><v>1</v><odd/></c>'),
+    })  # fmt: skip
+    book = Book.open_disk(path)
+    found = refusals(book, *(("Items", row, at, 9) for row, at in [(2, 3), (3, 3), (4, 3), (5, 1), (4, 2), (5, 2)]))
+    assert {cell[1:] for cell in found} == {(2, 3), (3, 3), (4, 3), (5, 1), (4, 2)}
+    edit(book, ("Items", 5, 0, "first of the merged"), ("Items", 5, 3, 8))
+    assert stored(book.write())["D5"] == 8
+
+
+def test_a_workbook_that_cannot_be_changed_at_all(tmp_path, filled):
+    path = tmp_path / "signed.xlsx"
+    path.write_bytes(filled)
+    book = Book.open_disk(change_parts(path, {"_xmlsignatures/sig1.xml": b"<a/>"}))
+    assert "signature" in refusals(book, ("Items", 2, at("breadth"), 50))["Items", 2, at("breadth")]
+    assert book.write() == path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "edits",
+    [None, {}, "x", [1], [["Items", 2, 0]], [["Items", "2", 0, 1]], [["Items", 2.0, 0, 1]], [["Items", True, 0, 1]],
+     [[None, 2, 0, 1]], [["Items", 2, 0, [1]]], [["Items", 2, 0, {"a": 1}]], [["Items", 2, None, 1]]],
+)  # fmt: skip
+def test_what_is_no_edit(book, edits):
+    with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
+        book.edit(book.version, edits, "x")
+    assert book.version == 1
+
+
+def test_hostile_texts_stay_texts(book, tmp_path):
+    """No text becomes a formula, markup or broken XML, and each comes back as it was sent."""
+    texts = ["=cmd|' /C calc'!A0", "+1+1", "-1+1", "@SUM(1)", "<script>alert(1)</script>", "a\x00\x07b", "]]>", "&lt;",
+             "_x0041_", "\ud800x", "\u202eabc", "x" * 32_767, "=HYPERLINK(\"http://x\")", "\r\n\t", "{=1}"]  # fmt: skip
+    edit(book, *(("Items", 10 + row, at("description"), text) for row, text in enumerate(texts)))
+    data = book.write()
+    letters = LETTERS["Items", "description"]
+    page = openpyxl.load_workbook(io.BytesIO(data))["Items"]
+    assert not any(page[f"{letters}{10 + row}"].data_type == "f" for row in range(len(texts)))
+    shown = {row: value for _, row, _, value in edit(
+        book, *(("Items", 10 + row, at("description"), text) for row, text in enumerate(texts)))["cells"]}  # fmt: skip
+    for row, text in enumerate(texts):
+        if text.isprintable():
+            assert shown[10 + row] == text
+    again = Book.hold("again.xlsx", data, tmp_path).snapshot().cells.cells["Items"]
+    held = book.snapshot().cells.cells["Items"]
+    places = [(10 + row, at("description")) for row in range(len(texts))]
+    assert [again.value(place) for place in places] == [held.value(place) for place in places]
+
+
+# ---------------------------------------------------------------- history, versions
+
+
+def test_undo_and_redo_across_sheets(book):
+    first = book.snapshot().cells
+    edit(book, ("Items", 2, at("breadth"), 50), ("Floors", 2, at("pfa_x", "Floors"), 0.7))
+    second = book.snapshot().cells
+    edit(book, ("Items", 2, at("breadth"), None))
+    assert book.undo(book.version)["cells"] == [["Items", 2, at("breadth"), 50]]
+    assert book.snapshot().cells == second
+    found = book.undo(book.version)
+    assert sorted(found["cells"]) == [["Floors", 2, at("pfa_x", "Floors"), 0.3], ["Items", 2, at("breadth"), 30]]
+    assert book.snapshot().cells == first
+    assert not book.state()["can_undo"]
+    assert book.undo(book.version)["cells"] == []
+    book.redo(book.version)
+    assert book.snapshot().cells == second
+    edit(book, ("Items", 3, at("breadth"), 50))
+    assert not book.state()["can_redo"]
+    assert book.redo(book.version)["cells"] == []
+
+
+def test_old_steps_are_forgotten(book):
+    for step in range(MOST_STEPS + 5):
+        edit(book, ("Items", 2, at("breadth"), 50 + step))
+    for _ in range(MOST_STEPS):
+        book.undo(book.version)
+    assert not book.state()["can_undo"]
+    assert book.snapshot().cells.cells["Items"].value((2, at("breadth"))) == 54
+
+
+def test_another_version_is_refused(book):
+    edit(book, ("Items", 2, at("breadth"), 50))
+    for ask in (lambda: book.edit(1, [["Items", 2, 0, "x"]], "x"), lambda: book.undo(1), lambda: book.redo(99)):
+        with pytest.raises(VersionError) as caught:
+            ask()
+        assert caught.value.state["version"] == 2
+    assert edit(book, ("Items", 2, at("breadth"), 50))["state"]["version"] == 2  # nothing changes, no new version
+
+
+def test_edits_from_many_threads(book):
+    """Each edit that is answered is there, and no other."""
+
+    def add(row):
+        while True:
+            try:
+                return book.edit(book.version, [["Items", row, 0, f"T{row}"]], "x")["cells"]
+            except VersionError:
+                continue
+
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(add, range(50, 90)))
+    assert found == [[["Items", row, 0, f"T{row}"]] for row in range(50, 90)]
+    cells = book.snapshot().cells.cells["Items"]
+    assert [cells.value((row, 0)) for row in range(50, 90)] == [f"T{row}" for row in range(50, 90)]
+    assert book.version == 41
+
+
+def test_a_snapshot_stays_as_it_is(book):
+    now = book.snapshot()
+    edit(book, ("Items", 2, at("breadth"), "wrong"))
+    assert book.snapshot() is not now
+    assert now.inventory.items[0].breadth == 0.3
+    assert [item.row for item in book.snapshot().inventory.items] == [3, 4, 5, 6]
+    assert [one.cell for one in book.snapshot().problems if one.severity == "error"] == [
+        f"{LETTERS['Items', 'breadth']}2"
+    ]
+    assert [row.number for row in book.snapshot().tables["Items"].rows] == [2, 3, 4, 5, 6]
+
+
+@pytest.mark.parametrize("data", [b"", b"hello", b"PK\x03\x04rest"])
+def test_what_is_no_workbook(tmp_path, data):
+    with pytest.raises(WorkbookError):
+        Book.hold("x.xlsx", data, tmp_path)
+
+
+def test_a_workbook_without_any_of_the_sheets(tmp_path):
+    path = write_shared(tmp_path / "other.xlsx", {"Sheet1": [["a"]]})
+    with pytest.raises(WorkbookError, match="the sheet is missing"):
+        Book.open_disk(path)
