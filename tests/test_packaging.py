@@ -40,6 +40,9 @@ def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
         "assess/fonts/LICENSE.txt",
         "assess/studies/facts/table1_buildings.csv",
         "assess/templates/studies/table3.md.j2",
+        "assess/examples/market-street.xlsx",
+        "assess/web/page/index.html",
+        "assess/web/page/main.mjs",
     } <= names
     assert {name.split("/")[2] for name in names if name.startswith("assess/records/")} == {
         "575-market", "berkeley-1103", "others"

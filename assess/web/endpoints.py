@@ -88,7 +88,7 @@ async def _change(note_edit: NoteEdit, handler: Handler, request: Request) -> Re
     try:
         body = parse_body(await read_body(request, MOST_JSON))
     except RequestError as error:
-        return _refuse(error)
+        return await run_in_threadpool(_carry_out, _fail(error), _ask(request, note_edit))
     return await run_in_threadpool(_carry_out, handler, replace(_ask(request, note_edit), body=body))
 
 
@@ -96,8 +96,17 @@ async def _send(note_edit: NoteEdit, handler: Handler, request: Request) -> Resp
     try:
         data = await read_body(request, MOST_FILE)
     except RequestError as error:
-        return _refuse(error)
+        return await run_in_threadpool(_carry_out, _fail(error), _ask(request, note_edit))
     return await run_in_threadpool(_carry_out, handler, replace(_ask(request, note_edit), data=data))
+
+
+def _fail(error: RequestError) -> Handler:
+    """Return a handler that refuses, so that it is said in the language of the page."""
+
+    def refuse(_asked: Asked) -> Answer:
+        raise error
+
+    return refuse
 
 
 async def _give_file(request: Request) -> Response:

@@ -12,9 +12,10 @@ from urllib.parse import parse_qsl
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from assess.i18n import Text, fill, gettext
+from assess.i18n import Text, fill, gettext, load_catalogue, speaking
 from assess.web.request_errors import FORBIDDEN, NO_SESSION, TOO_LARGE, WRONG_HOST, RequestError
 from assess.web.sessions import ENTRANCE, Headers, Keys, Session, Visit
+from assess.web.texts import COOKIE, choose_language
 
 MOST_BODY = 64 * 2**20
 """Bytes of the largest body that any request may have; most may have less."""
@@ -166,14 +167,22 @@ async def _lead_in(send: Send, cookies: Collection[bytes]) -> None:
 
 async def _refuse(scope: Scope, send: Send, status: int, message: Text, fix: Text | str = "") -> None:
     """Answer with a short page to a browser that wanted one, else as every request of the page is answered."""
-    said, mended = gettext(message), gettext(fix)
+    code = _find_language(scope)
+    with speaking(load_catalogue(code)):
+        said, mended = gettext(message), gettext(fix)
     if any(name == b"accept" and b"text/html" in value for name, value in scope["headers"]):
         kind = b"text/html; charset=utf-8"
         text = f"<p>{escape(said)}</p><p>{escape(mended)}</p>"
-        body = f'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>assess</title>{text}</html>'
+        body = f'<!DOCTYPE html><html lang="{code}"><meta charset="utf-8"><title>assess</title>{text}</html>'
     else:
         kind, body = b"application/json", json.dumps({"message": said, "fix": mended, "problems": []})
     await _send(send, status, [(b"content-type", kind)], b"" if scope["method"] == "HEAD" else body.encode())
+
+
+def _find_language(scope: Scope) -> str:
+    headers = _read_headers(scope)
+    accepted = headers.get(b"accept-language", [b""])[0].decode("latin-1")
+    return choose_language(_read_cookies(headers).get(COOKIE, ""), "", accepted)
 
 
 async def _send(send: Send, status: int, headers: list[tuple[bytes, bytes]], body: bytes) -> None:

@@ -33,13 +33,13 @@ def describe_fault(error: Exception) -> tuple[int, dict[str, Any]]:
 
 def _find_book_error(error: Exception) -> tuple[int, dict[str, Any]] | None:
     """Return the answer to an edit that is refused, another version, or a file that another program changed."""
-    from assess.web import book
+    from assess.web.book import ChangedOutsideError, EditsRefused, VersionError
 
-    if isinstance(error, book.EditsRefused):
+    if isinstance(error, EditsRefused):
         return UNUSABLE, {**_say(str(error)), "refused": error.refused}
-    if isinstance(error, book.VersionError):
+    if isinstance(error, VersionError):
         return CONFLICT, {**_say(fill("The workbook was changed elsewhere.")), "state": error.state}
-    if isinstance(error, book.ChangedOutsideError):
+    if isinstance(error, ChangedOutsideError):
         return CONFLICT, _say(str(error))
     return None
 

@@ -116,7 +116,7 @@ class Session:
         """Have a workbook be the open one; the one before is saved, if it is on the disk."""
         with self.lock:
             self.save()
-            self.drop_book()
+            self.drop_book(kept=book.folder)
             self.book, self.downloaded = book, book.version
         return book
 
@@ -148,6 +148,7 @@ class Session:
             check_free(self.job)
             if self.book is None:
                 raise RequestError(fill("No workbook is open."), NOT_FOUND)
+            self.check_room(0)
             new = Job(self.book, body, self.folder, self.slots)
             if self.job is not None:
                 self.job.close()
@@ -161,11 +162,14 @@ class Session:
             if book is not None and book.mode == "disk" and book.state()["unsaved"]:
                 book.save()
 
-    def drop_book(self) -> None:
-        """End with the workbook and its job."""
+    def drop_book(self, kept: Path | None = None) -> None:
+        """End with the workbook and its job, and remove the files of one that was held."""
         if self.job is not None:
             self.job.close()
         self.job = self.book = self.live = None
+        for folder in self.folder.glob("files-*"):
+            if folder.resolve() != kept:
+                shutil.rmtree(folder, ignore_errors=True)
 
     def close(self) -> None:
         """End its job and remove its folder."""

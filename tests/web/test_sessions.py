@@ -2,7 +2,6 @@
 
 import pytest
 
-from assess.errors import InputError
 from assess.web.request_errors import RequestError
 from assess.web.sessions import HostedKeys, Limits, Session, Visit
 from tests.web.serving import Client, wait_for_job
@@ -114,8 +113,11 @@ def test_files_of_a_session_are_limited(make, tmp_path):
     data = write(tmp_path / "w.xlsx").read_bytes()
     session = make("ann", Limits(bytes=3 * len(data)))
     session.hold("w.xlsx", data)
-    (session.folder / "more").write_bytes(data * 2)
-    with pytest.raises(InputError, match="have more than") as found:
+    (session.folder / "more").write_bytes(data)
+    (session.book.folder / "plan.png").write_bytes(data)
+    with pytest.raises(RequestError, match="have more than") as found:
         session.hold("other.xlsx", data * 2)
     assert found.value.status == 429
     assert session.book.name == "w.xlsx"
+    session.hold("again.xlsx", data)  # in place of the first, whose folder is removed
+    assert len(list(session.folder.glob("files-*"))) == 1
