@@ -148,7 +148,7 @@ def test_a_picture_is_drawn_anew(path):
     assert {name: given[name] for name in ("left", "bottom", "width", "height", "turn", "placed", "aspect")} == {
         "left": 0, "bottom": 0, "width": 16, "height": 12, "turn": 0, "placed": True, "aspect": 0.75,
     }  # fmt: skip
-    data, kind = find_picture(book.snapshot(), "1")
+    data, kind = find_picture(book.snapshot(), "1") or (b"", "")
     shown = Image.open(io.BytesIO(data))
     assert (kind, shown.format, shown.mode, shown.size) == ("image/jpeg", "JPEG", "L", (1600, 1200))
     assert given["url"].startswith("/api/picture?floor=1&v=")
@@ -159,7 +159,7 @@ def test_a_drawing_is_shown_before_it_is_placed(path):
     plan = _plan(book, "2")
     given = plan["picture"]
     assert (given["placed"], given["left"], given["width"], given["height"]) == (False, None, None, None)
-    data, kind = find_picture(book.snapshot(), "2")
+    data, kind = find_picture(book.snapshot(), "2") or (b"", "")
     root = ElementTree.fromstring(data)
     assert (kind, {child.tag.rpartition("}")[2] for child in root}) == ("image/svg+xml", {"path"})
     _, _, wide, tall = map(float, root.get("viewBox").split())

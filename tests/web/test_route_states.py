@@ -1,6 +1,7 @@
 """States of routes and rooms, as the page is told them."""
 
 import json
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,7 @@ from assess.workbook.template import Content, write_workbook
 from tests.web.opened import MARKET, edit, hold
 from tests.workbooks import UNVERIFIED
 
-HALL = {
+HALL: dict[str, list[dict[str, Any]]] = {
     "Floors": [{"floor": "1", "pfa_x": 0.5, "elevation": 0}, {"floor": "2", "pfa_x": 0.2, "elevation": 4}],
     "Items": [
         {"item": "A1", "floor": "1", "breadth": 30, "width": 90, "height": 200, "x": 2, "y": 1.2, "angle_deg": 90},
