@@ -56,8 +56,7 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
         If it is none of these, is too large, is damaged, or cannot be read here; the message says how to fix it.
     """
     if is_picture(data):
-        most = MOST if width is None else round(min(max(DOTS * width, LEAST), MOST))
-        content, aspect = prepare_plan(data, most)
+        content, aspect = prepare_plan(data, count_side(width))
         return Drawing(content, aspect)
     if data.startswith(b"AC10"):
         raise PictureError(fill("it is a DWG drawing, which cannot be read. Save it as DXF"))
@@ -72,6 +71,11 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
 
         return _of_lines(*read_svg(data), None)
     raise PictureError(fill("it is no PNG, JPEG, SVG or DXF file. Save it as one of them"))
+
+
+def count_side(width: float | None) -> int:
+    """Return how many pixels the longer side of a picture has at most, by the width of the plan [m]."""
+    return MOST if width is None else round(min(max(DOTS * width, LEAST), MOST))
 
 
 def _of_lines(content: bytes, aspect: float, left_out: tuple[str, ...], width: float | None) -> Drawing:

@@ -11,7 +11,7 @@ from typing import Any, Literal, Self
 
 from assess.errors import InputError, OutputError, WorkbookError
 from assess.i18n import fill
-from assess.web.cell_edits import EditsRefused, Locks, take_edits
+from assess.web.cell_edits import EditsRefused, Locks, say, take_edits
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile
 from assess.web.history import CellPlace, Contents, History, Step
@@ -102,7 +102,7 @@ class Book:
             return {
                 "version": self.version,
                 "unsaved": bool(self._different),
-                "save_error": str(self._save_error),
+                "save_error": say(self._save_error),
                 "changed_outside": self._changed_outside,
                 "can_undo": self._history.at > 0,
                 "can_redo": self._history.at < len(self._history.steps),

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from assess.errors import InputError, WorkbookError
-from assess.i18n import Text, fill
+from assess.i18n import Text, fill, gettext, nfill
 from assess.web.columns import PageColumn, PageSheet
 from assess.web.history import CellPlace
 from assess.workbook.habits import CellError
@@ -28,7 +28,11 @@ class EditsRefused(InputError):  # noqa: N818 - what happened, as callers say it
 
     def __init__(self, refused: Refused) -> None:
         self.refused = refused
-        super().__init__(fill("{n:,} of the cells cannot be changed: {why}", n=len(refused), why=refused[0][3]))
+        message = nfill(
+            "{n:,} cell cannot be changed: {why}", "{n:,} cells cannot be changed: {why}",
+            len(refused), why=refused[0][3],
+        )  # fmt: skip
+        super().__init__(message)
 
 
 @dataclass(slots=True)
@@ -108,14 +112,19 @@ def take_edits(
         if column is not None:
             why = locks.find(held.cells[sheet], row, at) or _refuse_value(value)
         if column is None or why:
-            refused.append([sheet, row, at, str(why)])
+            refused.append([sheet, row, at, say(why)])
             continue
         found[sheet, row, at] = taken = take_value(column, value)
         if isinstance(taken, str) and len(str(read_back(taken) or "")) > LONGEST_TEXT:
-            refused.append([sheet, row, at, str(_too_long())])
+            refused.append([sheet, row, at, say(_too_long())])
     if refused:
         raise EditsRefused(refused)
     return found
+
+
+def say(text: str) -> str:
+    """Return a text in the language in use; nothing stays nothing."""
+    return gettext(text) if text else ""
 
 
 def _take_apart(edit: object) -> tuple[str, int, int, Value]:

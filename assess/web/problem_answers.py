@@ -36,11 +36,11 @@ def _find_book_error(error: Exception) -> tuple[int, dict[str, Any]] | None:
     from assess.web.book import ChangedOutsideError, EditsRefused, VersionError
 
     if isinstance(error, EditsRefused):
-        return UNUSABLE, {**_say(str(error)), "refused": error.refused}
+        return UNUSABLE, {**_say(error.message), "refused": error.refused}
     if isinstance(error, VersionError):
         return CONFLICT, {**_say(fill("The workbook was changed elsewhere.")), "state": error.state}
     if isinstance(error, ChangedOutsideError):
-        return CONFLICT, _say(str(error))
+        return CONFLICT, _say(error.message)
     return None
 
 

@@ -3,7 +3,7 @@
 Only files inside one folder are touched, by the rules of `assess.workbook.records`.
 """
 
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -11,7 +11,7 @@ from assess.errors import Problem
 from assess.i18n import fill, join, nfill
 from assess.model import FloorPlan
 from assess.pictures import PictureError, check_picture, count_pixels, prepare_photo
-from assess.plans import MOST_FILE, Drawing, is_picture, read_plan
+from assess.plans import MOST_FILE, Drawing, count_side, is_picture, read_plan
 from assess.progress import Progress
 from assess.workbook.allowance import Allowance
 from assess.workbook.habits import CellError
@@ -143,7 +143,7 @@ class PictureReader:
         found = self._plans.get(text) or self._plans.get((text, width))
         if found is None:
             try:
-                found = self._read(text, lambda data: self._take_plan(data, width), "plan", width)
+                found = self._read(text, lambda data: self._take_plan(data, width), "plan", count_side(width))
             except CellError as error:
                 found = error
             is_scaled = not isinstance(found, CellError) and not found[1].is_lines
@@ -159,8 +159,8 @@ class PictureReader:
 
     # ------------------------------------------------------------ files
 
-    def _read(self, text: str, take: Callable[[bytes], Taken], *purpose: Hashable) -> tuple[Path, Taken]:
-        """Return where a picture is, and what `take` makes of its bytes for a purpose.
+    def _read(self, text: str, take: Callable[[bytes], Taken], purpose: str, side: int = 0) -> tuple[Path, Taken]:
+        """Return where a picture is, and what `take` makes of its bytes for a purpose; `side` counts for pixels alone.
 
         Raises
         ------
@@ -172,12 +172,20 @@ class PictureReader:
             message = fill("the picture {name} cannot be used: the workbook was read without a folder.", name=name)
             raise CellError(message, fill("Pass the folder in `records`."))
         path = find_file(text, self.folder)
-        key = find_key(path, *purpose)
+        key = find_key(path, purpose, side if side and _is_of_pixels(path) else 0)
         found: Taken | PictureError = self.kept.take(key, self._allowance, lambda: _make(path, name, take))
         if isinstance(found, PictureError):
             message = fill("the picture {name} cannot be used: {why}.", name=name, why=found.message)
             raise CellError(message)
         return path, found
+
+
+def _is_of_pixels(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return is_picture(file.read(16))
+    except OSError:
+        return False
 
 
 def _make(path: Path, name: str, take: Callable[[bytes], Taken]) -> Taken | PictureError:

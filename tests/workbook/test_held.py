@@ -13,8 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.model import Inventory
+from assess.plans import Drawing, read_plan
 from assess.workbook.held import HeldSheets, Place
 from assess.workbook.kept_files import KeptFiles
+from assess.workbook.layout import PLACES
 from assess.workbook.open import column_letters
 from assess.workbook.patch import Value, patch_workbook
 from assess.workbook.read import build_held, hold_sheets, parse_held, read_inventory
@@ -179,6 +181,33 @@ def test_files_that_have_not_changed_are_read_once(named: Path) -> None:
     (named / "p1.png").write_bytes(picture("PNG"))
     (named / "p2.png").write_bytes(picture("PNG"))
     assert not _read_kept(named, kept).problems
+
+
+def test_a_drawing_is_read_once_whatever_the_width_of_the_plan(named: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One at its limits takes ten seconds, and the width changes with every step of placing it."""
+    (named / "plan.png").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M0 0 L9 9"/></svg>'
+    )
+    kept, held = KeptFiles(), hold_sheets((named / "book.xlsx").read_bytes(), "inventory.xlsx")
+    read: list[float | None] = []
+
+    def count(data: bytes, width: float | None) -> Drawing:
+        read.append(width)
+        return read_plan(data, width)
+
+    monkeypatch.setattr("assess.workbook.picture_files.read_plan", count)
+    place = (2, PLACES["Floors", "plan_width"])
+    for width in (10, 11, 12):
+        with kept:
+            plan = _read(held.changed({"Floors": {place: width}}), named, kept).floors[0].plan
+        assert plan is not None
+        assert plan.width == width
+    assert read == [10]
+    (named / "plan.png").write_bytes(picture("PNG"))
+    for width in (10, 11, 200, 300):
+        with kept:
+            _read(held.changed({"Floors": {place: width}}), named, kept)
+    assert read == [10, 10, 11, 200]  # as many pixels for 300 m as for 200 m
 
 
 @pytest.mark.parametrize(
