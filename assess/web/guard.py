@@ -172,11 +172,18 @@ async def _refuse(scope: Scope, send: Send, status: int, message: Text, fix: Tex
         said, mended = gettext(message), gettext(fix)
     if any(name == b"accept" and b"text/html" in value for name, value in scope["headers"]):
         kind = b"text/html; charset=utf-8"
-        text = f"<p>{escape(said)}</p><p>{escape(mended)}</p>"
+        text = f"{_lead_again(scope, status)}<p>{escape(said)}</p><p>{escape(mended)}</p>"
         body = f'<!DOCTYPE html><html lang="{code}"><meta charset="utf-8"><title>assess</title>{text}</html>'
     else:
         kind, body = b"application/json", json.dumps({"message": said, "fix": mended, "problems": []})
     await _send(send, status, [(b"content-type", kind)], b"" if scope["method"] == "HEAD" else body.encode())
+
+
+def _lead_again(scope: Scope, status: int) -> str:
+    """Return what has a browser ask once more from here: a link of another site brings no strict cookie along."""
+    site = _read_headers(scope).get(b"sec-fetch-site", [b""])[0]
+    is_link = status == NO_SESSION and scope["path"] == "/" and site in (b"cross-site", b"same-site")
+    return '<meta http-equiv="refresh" content="0; url=/">' if is_link else ""
 
 
 def _find_language(scope: Scope) -> str:

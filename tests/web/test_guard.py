@@ -51,6 +51,8 @@ def test_without_the_cookie_every_path_answers_401(client):
     page = Client(client.base).get("/", Accept="text/html")
     assert page.status == 401
     assert b"Press Enter" in page.data  # how to open it again
+    assert b"refresh" not in page.data
+    assert b"refresh" in Client(client.base).get("/", Accept="text/html", **{"Sec-Fetch-Site": "cross-site"}).data
 
 
 def test_a_ticket_opens_the_page_once_and_becomes_a_strict_cookie(tmp_path):

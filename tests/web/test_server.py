@@ -39,6 +39,7 @@ def test_a_signal_ends_it_after_the_last_edit_is_saved(served, tmp_path, number)
     assert sorted(one.name for one in tmp_path.iterdir()) == ["home", "office.xlsx", "tmp"]
 
 
+@pytest.mark.slow
 def test_edits_are_saved_by_themselves(served, tmp_path):
     path = write(tmp_path / "office.xlsx")
     server = served(path)
@@ -50,6 +51,7 @@ def test_edits_are_saved_by_themselves(served, tmp_path):
     assert _read(path, at) == 77
 
 
+@pytest.mark.slow
 def test_a_file_that_another_program_changed_is_not_overwritten(served, tmp_path):
     path = write(tmp_path / "office.xlsx")
     server = served(path)
