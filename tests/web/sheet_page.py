@@ -15,6 +15,13 @@ SCROLL_TO = """async (head) => {
 }"""
 
 
+COPY = """([text, html]) => document.addEventListener("copy", (event) => {
+    event.preventDefault();
+    event.clipboardData.setData("text/plain", text);
+    if (html) event.clipboardData.setData("text/html", html);
+})"""
+
+
 class SheetPage:
     """A page that shows the sheets; `server` is the running `assess open`."""
 
@@ -85,17 +92,18 @@ class SheetPage:
         return {row: cells[at] for row, cells in found["rows"] if at < len(cells) and cells[at] is not None}
 
     def copy_text(self, text, html=None):
-        """Put a text, and a table, on the clipboard as another program does."""
-        self.page.evaluate("""async ([text, html]) => {
-            const items = { "text/plain": new Blob([text], { type: "text/plain" }) };
-            if (html) items["text/html"] = new Blob([html], { type: "text/html" });
-            await navigator.clipboard.write([new ClipboardItem(items)]);
-        }""", [text, html])
+        """Put a text, and a table, on the clipboard as another program does: by Ctrl+C in another window."""
+        other = self.page.context.new_page()
+        other.set_content("<textarea autofocus>x</textarea>")
+        other.evaluate(COPY, [text, html])
+        other.locator("textarea").press("Control+c")
+        other.close()
+        self.page.bring_to_front()
         return self
 
 
 def opened(page, server, **options):
     """Open the page of a server at its sheets."""
-    found = page(server, permissions=["clipboard-read", "clipboard-write"], **options)
+    found = page(server, **options)
     expect(found.get_by_role("tab").first).to_be_visible()
     return SheetPage(found, server)

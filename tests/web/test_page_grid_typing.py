@@ -1,5 +1,6 @@
 """Typing into the sheets: classes that follow, lists, problems in their cells, keys alone, undo."""
 
+import html
 import re
 import shutil
 
@@ -149,7 +150,7 @@ def test_markup_in_a_cell_is_text(page, served, tmp_path):
     expect(sheet.page.locator(".problems")).to_contain_text("<img")
     sheet.head("Room").get_by_role("button").click()
     sheet.page.keyboard.press("Escape")
-    sheet.copy_text(MARKUP, f"<table><tr><td>{MARKUP}</td></tr></table>").select("Notes", 3).type("<Control+v>")
+    sheet.copy_text(MARKUP, f"<table><tr><td style='color:red'>{html.escape(MARKUP)}{MARKUP}</td></tr></table>").select("Notes", 3).type("<Control+v>")
     sheet.select("Type", 3).type("<img", "<Enter>").settle()
     assert sheet.values("Items", "notes")[3] == MARKUP
     assert sheet.page.locator("img").count() == 0

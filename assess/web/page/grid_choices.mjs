@@ -30,7 +30,7 @@ export function guessName(names, text, isClosed) {
 export class ChoiceList {
   constructor(box, input, take, say) {
     Object.assign(this, { box, input, take, say });
-    this.node = el("div", { class: "grid-choices", role: "listbox", id: "grid-choices", hidden: true, "aria-label": t("Choices") });
+    this.node = el("div", { class: "grid-choices", role: "listbox", id: "grid-choices", tabindex: "0", hidden: true, "aria-label": t("Choices") });
     this.node.addEventListener("pointerdown", (event) => {
       event.preventDefault(); // the field keeps the focus
       const option = event.target.closest("[role=option]");

@@ -78,6 +78,7 @@ export class Editor {
   }
 
   #typed() {
+    if (!this.mode && !this.canType) return void (this.input.value = "");
     if (!this.mode) this.#start("typing");
     if (!hasChoices(this.target.column)) return;
     if (this.list.isOpen) this.list.filter(this.input.value);

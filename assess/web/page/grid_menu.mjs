@@ -37,7 +37,11 @@ export class ColumnMenu {
         texts.length > MOST_VALUES ? el("p", { text: t("More than {n} values: use the text above.", { n: MOST_VALUES }) }) : null),
       el("div", { class: "grid-menu-end" }, button(t("Filter"), apply, "primary"), button(t("Clear the filter"), () => this.#clear(column))),
     );
-    contains.addEventListener("keydown", (event) => event.key === "Enter" && apply());
+    contains.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter") return;
+      event.preventDefault(); // the focus goes to the grid: the key must not be typed there
+      apply();
+    });
     this.node.setAttribute("aria-label", t("Sort and filter {column}", { column: column.label }));
     this.node.hidden = false;
     this.#place(c);

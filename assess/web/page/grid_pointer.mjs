@@ -162,10 +162,12 @@ export class Pointer {
     this.grid.ask();
   }
 
-  #double(event) {
-    const edge = event.target.closest(".grid-edge");
+  /** The pointer is captured by the box, so its events do not tell what is below. */
+  #double({ clientX, clientY }) {
+    const target = document.elementFromPoint(clientX, clientY);
+    const edge = target?.closest(".grid-edge");
     if (edge) this.grid.fitWidth(Number(edge.closest("[data-column]").dataset.column));
-    else if (event.target.closest("[role=gridcell], .grid-input") && !this.editor.mode) this.editor.edit();
+    else if (target?.closest("[role=gridcell]") && !this.editor.mode) this.editor.edit();
   }
 
   #click(event) {

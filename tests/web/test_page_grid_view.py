@@ -1,0 +1,213 @@
+"""What the sheets show: many rows, sorted and filtered rows, widths, series, a phone, what axe-core says."""
+
+import re
+from pathlib import Path
+
+import pytest
+import xlsxwriter
+from playwright.sync_api import expect
+
+from tests.web.sheet_page import CLASS, opened
+from tests.workbooks import write
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+AXE = Path(__file__).parents[1] / "data" / "axe-core" / "axe.min.js"
+MANY = 20_000
+MOST_NODES, MOST_BYTES = 1500, 60e6
+HEADERS = ("Item", "Floor", "Room", "Description", "Type", "Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis",
+           "Anchored", "Friction", "X [m]", "Y [m]", "Angle [deg]", "Route", "Importance", "Weight [kg]", "Photo", "Notes")  # fmt: skip
+HEIGHTS = {"B": 150, "a": 90, "C": 210, "d": None, "E": 90}
+
+
+@pytest.fixture
+def sorted_items(page, served, tmp_path):
+    """Return the sheet Items of pieces whose names and heights are in no order."""
+    items = [
+        {"item": name, "floor": "1", "room": room, "breadth": 40, "width": 80, "height": height}
+        for (name, height), room in zip(HEIGHTS.items(), ("Hall", "Store", "Hall", "Hall", ""), strict=True)
+    ]
+    return opened(page, served(write(tmp_path / "office.xlsx", items))).open("Items")
+
+
+def write_many(path):
+    """Write a workbook with as many pieces as a sheet takes and 20 columns."""
+    book = xlsxwriter.Workbook(path, {"constant_memory": True})
+    floors, items = book.add_worksheet("Floors"), book.add_worksheet("Items")
+    for row, cells in enumerate([("Floor", "PFA X [g]", "PFA Y [g]"), ("1", 0.4, 0.3)]):
+        floors.write_row(row, 0, cells)
+    items.write_row(0, 0, HEADERS)
+    for row in range(1, MANY):
+        items.write_row(row, 0, (f"P{row}", "1", f"Room {row % 50}", f"Piece number {row}", "", 1, 30 + row % 50, 80,
+                                 100 + row % 120, "X", "no", 0.5, row % 40, row % 30, 90, "", "property", 20, "", f"note {row}"))  # fmt: skip
+    book.close()
+    return path
+
+
+def names_shown(sheet):
+    """Return the items in sight from the top, without the blank rows at the end."""
+    rows = sheet.grid.locator(".grid-row:not([hidden]):not(.grid-head)")
+    found = rows.evaluate_all("""all => all.map((row) => [Number(row.getAttribute("aria-rowindex")),
+        row.querySelector("[aria-colindex='2']").textContent]).sort((a, b) => a[0] - b[0])""")
+    return [name for _, name in found if name]
+
+
+def choose(sheet, label, *buttons):
+    sheet.head(label).get_by_role("button").click()
+    for one in buttons:
+        sheet.page.locator(".grid-menu").get_by_role("button", name=one, exact=True).click()
+
+
+def test_twenty_thousand_rows(page, served, tmp_path):
+    sheet = opened(page, served(write_many(tmp_path / "many.xlsx"))).open("Items").settle()
+    client = sheet.page.context.new_cdp_session(sheet.page)
+    client.send("Performance.enable")
+    sheet.select("Item", 2).type(*["<PageDown>"] * 20, "<Control+End>")
+    expect(sheet.cell("Notes", MANY)).to_have_text(f"note {MANY - 1}")
+    sheet.type("<Home>")
+    expect(sheet.cell(CLASS if sheet.head(CLASS).count() else "Item", MANY)).to_be_visible()
+    sheet.select("Height", MANY - 3).type("250", "<Enter>").settle()
+    client.send("HeapProfiler.collectGarbage")
+    metrics = {one["name"]: one["value"] for one in client.send("Performance.getMetrics")["metrics"]}
+    nodes = sheet.page.evaluate("() => document.querySelectorAll('*').length")
+    print(f"{nodes} elements, {metrics['JSHeapUsedSize'] / 1e6:.1f} MB")
+    assert nodes < MOST_NODES
+    assert metrics["JSHeapUsedSize"] < MOST_BYTES
+    assert int(sheet.grid.get_attribute("aria-rowcount")) >= MANY
+    assert sheet.values("Items", "height")[MANY - 3] == 250
+
+
+def test_sorted_filtered_and_found_rows_leave_the_file_as_it_is(sorted_items):
+    sheet = sorted_items
+    before = sheet.server.client.get("/api/download").data
+    line = sheet.page.locator(".sheet-order")
+    choose(sheet, "Item", "Sort descending")
+    assert names_shown(sheet) == ["E", "d", "C", "B", "a"]
+    choose(sheet, "Height", "Sort ascending")
+    expect(line).to_contain_text("5 of 5 rows; sorted by Height")
+    assert names_shown(sheet) == ["a", "E", "B", "C", "d"]
+    choose(sheet, "Room", "None")
+    sheet.page.locator(".grid-menu").get_by_label("Hall").check()
+    sheet.page.locator(".grid-menu").get_by_role("button", name="Filter", exact=True).click()
+    expect(line).to_contain_text("3 of 5 rows; sorted by Height; filtered by Room")
+    assert names_shown(sheet) == ["B", "C", "d"]
+    sheet.head("Item").get_by_role("button").click()
+    sheet.page.get_by_placeholder("contains").fill("c")
+    sheet.keyboard.press("Enter")
+    assert names_shown(sheet) == ["C"]
+    sheet.type("<Control+f>", "hall")
+    expect(sheet.page.locator(".grid-find-count")).to_have_text("1 of 1")
+    sheet.type("<Escape>")
+    expect(sheet.page.locator("#grid-active")).to_have_text("Hall")
+    line.get_by_role("button", name="Show all").click()
+    expect(line).to_be_hidden()
+    assert names_shown(sheet) == list(HEIGHTS)
+    sheet.type("<Control+f>", "hall", "<Enter>", "<Enter>", "<Shift+Enter>")
+    expect(sheet.page.locator(".grid-find-count")).to_have_text(re.compile("[123] of 3"))
+    assert sheet.server.client.get("/api/download").data == before
+
+
+def test_an_edit_in_sorted_rows_reaches_its_row_and_nothing_jumps(sorted_items):
+    sheet = sorted_items
+    choose(sheet, "Height", "Sort ascending")
+    sheet.select("Height", 3).type("300", "<Enter>").settle()
+    assert names_shown(sheet) == ["a", "E", "B", "C", "d"]
+    assert sheet.values("Items", "height")[3] == 300
+    sheet.page.get_by_role("button", name="Add a row").click()
+    sheet.type("new", "<Enter>").settle()
+    assert names_shown(sheet) == ["a", "E", "B", "C", "d", "new"]
+    assert sheet.values("Items", "item")[7] == "new"
+    sheet.page.get_by_role("button", name="Sort and filter again", exact=True).click()
+    assert names_shown(sheet) == ["E", "B", "C", "a", "d", "new"]
+
+
+def test_rows_are_duplicated_and_cleared_without_moving_others(sorted_items):
+    sheet = sorted_items
+    sheet.select("Item", 2).page.get_by_role("button", name="Duplicate rows").click()
+    sheet.settle()
+    assert sheet.cells("Items", 7)[0] == "B 2"
+    assert sheet.cells("Items", 7)[2:] == sheet.cells("Items", 2)[2:]
+    sheet.select("Item", 3, "Item", 4).page.get_by_role("button", name="Clear rows").click()
+    sheet.settle()
+    assert sheet.values("Items", "item") == {2: "B", 5: "d", 6: "E", 7: "B 2"}
+
+
+def test_the_fill_handle_continues_a_series_and_copies_with_ctrl(sorted_items):
+    sheet = sorted_items
+
+    def drag(label, first, last, to, *held):
+        sheet.select(label, first, label, last)
+        handle = sheet.page.locator(".grid-handle").bounding_box()
+        goal = sheet.cell(label, to).bounding_box()
+        sheet.page.mouse.move(handle["x"] + 4, handle["y"] + 4)
+        sheet.page.mouse.down()
+        sheet.page.mouse.move(goal["x"] + 20, goal["y"] + 12, steps=4)
+        for key in held:
+            sheet.keyboard.down(key)
+        sheet.page.mouse.up()
+        for key in held:
+            sheet.keyboard.up(key)
+        sheet.settle()
+
+    sheet.select("Item", 7).type("R08", "<Enter>").select("Room", 7).type("Room 1", "<Enter>")
+    sheet.select("Quantity", 7).type("1", "<Enter>", "3", "<Enter>").settle()
+    drag("Item", 7, 7, 10)
+    drag("Room", 7, 7, 9)
+    drag("Quantity", 7, 8, 10)
+    drag("Height", 2, 2, 4)
+    drag("Width", 6, 6, 8, "Control")
+    assert [sheet.values("Items", "item")[row] for row in range(7, 11)] == ["R08", "R09", "R10", "R11"]
+    assert [sheet.values("Items", "room")[row] for row in range(7, 10)] == ["Room 1", "Room 2", "Room 3"]
+    assert [sheet.values("Items", "quantity")[row] for row in range(7, 11)] == [1, 3, 5, 7]
+    assert [sheet.values("Items", "height")[row] for row in range(2, 5)] == [150, 150, 150]
+    assert [sheet.values("Items", "width")[row] for row in range(6, 9)] == [80, 81, 82]
+
+
+def test_widths_are_dragged_fitted_and_kept(sorted_items):
+    sheet = sorted_items
+
+    def width():
+        return sheet.head("Room").bounding_box()["width"]
+
+    edge = sheet.head("Room").locator(".grid-edge").bounding_box()
+    start = width()
+    sheet.page.mouse.move(edge["x"] + 3, edge["y"] + 10)
+    sheet.page.mouse.down()
+    sheet.page.mouse.move(edge["x"] + 83, edge["y"] + 10, steps=3)
+    sheet.page.mouse.up()
+    assert width() == pytest.approx(start + 80, abs=3)
+    sheet.page.reload()
+    expect(sheet.head("Room")).to_be_visible()
+    assert width() == pytest.approx(start + 80, abs=3)
+    sheet.head("Room").locator(".grid-edge").dblclick()
+    assert width() < start
+    sheet.cell("Room", 2).dblclick()
+    sheet.type(" A", "<Enter>").settle()
+    assert sheet.values("Items", "room")[2] == "Hall A"
+
+
+def test_a_phone_reads_and_does_not_edit(page, served, tmp_path):
+    sheet = opened(page, served(write(tmp_path / "office.xlsx")), width=390, height=844, has_touch=True)
+    expect(sheet.page.get_by_text("at least 900 pixels wide")).to_be_visible()
+    expect(sheet.cell(CLASS, 2)).to_contain_text("high")
+    sheet.cell("Item", 2).tap()
+    sheet.type("changed", "<Enter>").settle()
+    assert sheet.values("Items", "item")[2] == "A1"
+    assert sheet.page.evaluate("() => document.documentElement.scrollWidth") <= 390
+    sheet.open("Building")
+    expect(sheet.page.get_by_label("Address", exact=True)).not_to_be_editable()
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 1400), ("light", 390)])
+def test_axe_core_finds_nothing_serious(page, served, tmp_path, scheme, width):
+    items = [{"item": "A1", "floor": "1", "breadth": "wide", "width": 80, "height": 200}, {"item": "A2", "floor": "9"}]
+    sheet = opened(page, served(write(tmp_path / "office.xlsx", items)), width=width, color_scheme=scheme)
+    found = []
+    for name in ("Items", "Building"):
+        sheet.open(name).settle()
+        if name == "Items" and width > 900:
+            sheet.select("Type", 2).type("<Alt+ArrowDown>")
+        sheet.page.evaluate(AXE.read_text(encoding="utf-8"))
+        found += sheet.page.evaluate("async () => (await axe.run()).violations")
+    serious = [one for one in found if one["impact"] in ("serious", "critical")]
+    assert [(one["id"], [node["html"][:200] for node in one["nodes"]]) for one in serious] == []
