@@ -6,7 +6,7 @@ any thread.
 """
 
 from pathlib import Path
-from threading import Lock, RLock
+from threading import RLock
 from typing import Any, Literal, Self
 
 from assess.errors import InputError, OutputError, WorkbookError
@@ -39,7 +39,7 @@ class Book:
     def __init__(self, name: str, data: bytes, folder: Path, file: DiskFile | None) -> None:
         self.name, self.folder, self._file = name, folder.resolve(), file
         self.version = 1
-        self._lock, self._saving = RLock(), Lock()
+        self._lock, self._saving = RLock(), RLock()  # who needs both takes the one of saving first
         self._kept = KeptFiles()
         self._save_error, self._changed_outside = "", False
         self._take_in(data)
@@ -261,9 +261,8 @@ class Book:
         if self._file is None:
             return
         try:
-            found = self._write()
             with self._saving:
-                self._replace(self._file, *found)
+                self._replace(self._file, *self._write())
         except ChangedOutsideError:
             with self._lock:
                 self._changed_outside = True
@@ -277,8 +276,9 @@ class Book:
         if different:
             file.replace(data)
         with self._lock:
-            self._save_error, self._changed_outside = "", False
+            self._save_error = ""
             if different:
+                self._changed_outside = False
                 self._data, self._base, self._base_live = data, now, None
                 self._compare({*different, *self._different})  # more may have been edited meanwhile
 

@@ -2,6 +2,8 @@
 
 import os
 import shutil
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,7 @@ from assess.workbook.layout import PLACES
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Content, write_workbook
 from tests.pictures import picture
+from tests.workbook.books import change_parts, replace
 
 HEIGHT = PLACES["Items", "height"]
 ROWS = {
@@ -102,6 +105,39 @@ def test_nothing_to_save_writes_nothing(path):
     assert (path.stat().st_mtime_ns, path.stat().st_ino) == (before.st_mtime_ns, before.st_ino)
 
 
+def test_edits_while_it_is_saved_are_not_lost(path):
+    """Three that save and one that edits: what is edited is in the file, or counts as unsaved."""
+    book = Book.open_disk(path)
+    with ThreadPoolExecutor(3) as pool:
+        savers = []
+        for height in range(100, 112):
+            set_height(book, height, row=2 + height % 2)
+            savers.append(pool.submit(book.save))
+            if height % 5 == 0:
+                book.undo(book.version)
+        for one in savers:
+            one.result()
+    held = [item.height for item in book.snapshot().inventory.items]
+    assert book.state()["unsaved"] == (heights(path) != held)
+    book.save()
+    assert not book.state()["unsaved"]
+    assert heights(path) == held
+
+
+def test_macros_stay(path):
+    change_parts(path, {
+        "xl/vbaProject.bin": b"macros",
+        "[Content_Types].xml": replace("spreadsheetml.sheet.main+xml", "ms-excel.sheet.macroEnabled.main+xml"),
+    })  # fmt: skip
+    macros = path.rename(path.with_suffix(".xlsm"))
+    book = Book.open_disk(macros)
+    set_height(book, 150)
+    book.save()
+    with zipfile.ZipFile(macros) as archive:
+        assert archive.read("xl/vbaProject.bin") == b"macros"
+    assert heights(macros) == [1.5, 1.8]
+
+
 def test_a_link_stays_and_its_file_is_replaced(path, tmp_path):
     link = tmp_path / "link.xlsx"
     link.symlink_to(path)
@@ -128,6 +164,9 @@ def test_a_file_that_was_changed_outside_is_left(path, filled):
     assert book.check_outside()
     assert book.state()["changed_outside"]
     assert book.state()["unsaved"]  # what was edited is still there
+    book.undo(book.version)
+    book.save()  # nothing to save
+    assert book.state()["changed_outside"]
     version = book.version
     book.reload()
     assert book.version > version

@@ -121,6 +121,8 @@ def rich(tmp_path, monkeypatch):
 def edit_all(book):
     height, name = PLACES["Items", "height"], PLACES["Items", "item"]
     book.edit(1, [["Items", 2, height, 150], ["Items", 4, name, "A3 renamed"], ["Items", 3, 60, "New owner"]], "x")
+    added = {"item": "A6", "floor": "1", "breadth": 30, "height": 150, "anchored": "no"}
+    book.edit(2, [["Items", 7, PLACES["Items", field], value] for field, value in added.items()], "x")
 
 
 def parts_of(path):
@@ -147,11 +149,11 @@ def test_libreoffice_shows_the_same(rich, tmp_path):
     before = stored_cells(libreoffice(rich, tmp_path / "before.xlsx"))
     book = Book.open_disk(rich)
     edit_all(book)
-    book.edit(2, [["Floors", 3, PLACES["Floors", "pfa_x"], 0.8]], "x")
+    book.edit(3, [["Floors", 3, PLACES["Floors", "pfa_x"], 0.8]], "x")
     book.save()
     as_users = stored_cells(libreoffice(rich, tmp_path / "users.xlsx", recalculates=False))
     after = stored_cells(libreoffice(rich, tmp_path / "after.xlsx"))
-    live = {("Items", f"{LETTERS['Items', label]}{row}") for label in LIVE for row in range(2, 7)}
+    live = {("Items", f"{LETTERS['Items', label]}{row}") for label in LIVE for row in range(2, 8)}
     assert live <= after.keys()
     for cell in live:
         stored, computed = as_users.get(cell), after.get(cell)
