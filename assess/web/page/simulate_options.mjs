@@ -28,15 +28,14 @@ export function describeOptions(begin) {
   const formats = FORMATS().map(([value, label, checked]) => option("checkbox", { name: "format", value, checked }, label));
   const runs = choose([...RUNS.map((n) => [String(n), runsLabel(n)]), [AUTO, t("as many as every class needs, up to 5,000")]], String(USUAL_RUNS));
   const seed = el("input", { type: "number", min: 0, step: 1, value: "1" });
-  const button = el("button", { type: "submit", class: "primary", text: t("Start the run") });
-  const node = el("form", { class: "card options", noValidate: true },
+  const button = el("button", { type: "submit", form: "simulate-options", class: "primary", text: t("Start the run") });
+  const node = el("form", { id: "simulate-options", class: "card options", noValidate: true },
     el("div", { class: "columns" },
       el("fieldset", null, el("legend", { text: t("Which pieces") }), verify),
       el("fieldset", null, el("legend", { text: t("What to write") }), formats)),
     el("div", { class: "fields" },
       labelled(t("Motions of each floor"), runs, t("More motions narrow the range of each chance, and take longer.")),
-      labelled(t("Seed"), seed, t("The same seed gives the same result."))),
-    el("div", { class: "buttons" }, button));
+      labelled(t("Seed"), seed, t("The same seed gives the same result."))));
   node.addEventListener("submit", (event) => {
     event.preventDefault();
     begin(read(node, runs, seed));
@@ -52,8 +51,9 @@ function option(type, props, label, help = "") {
 
 function read(form, runs, seed) {
   const chosen = (name) => [...form.querySelectorAll(`input[name="${name}"]:checked`)].map((one) => one.value);
+  const formats = chosen("format");
   return {
     verify: chosen("verify")[0], runs: runs.value === AUTO ? AUTO : Number(runs.value),
-    seed: Math.max(0, Math.round(Number(seed.value) || 0)), formats: chosen("format"),
+    seed: Math.max(0, Math.round(Number(seed.value) || 0)), formats: formats.length ? formats : ["json"],
   };
 }

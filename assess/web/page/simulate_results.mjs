@@ -70,7 +70,7 @@ export class ResultsView {
     const count = (key, name) => rows.filter((one) => !one.isStale && one[name] === key).reduce((sum, one) => sum + one.n, 0);
     const line = (key) => el("tr", null, el("th", { scope: "row" }, badge(key)),
       el("td", { class: "num", text: number(count(key, "before"), 0, true) }), el("td", { class: "num", text: number(count(key, "after"), 0, true) }));
-    return el("section", { class: "card" }, el("h3", { text: t("Pieces by class") }), table([t("Class"), t("By the formula"), t("Simulated")], CLASSES.map(line)));
+    return el("section", { class: "card" }, el("h3", { text: t("Pieces by class") }), table([t("Class"), t("By the formula"), t("With the simulation")], CLASSES.map(line)));
   }
 
   #changed(rows) {

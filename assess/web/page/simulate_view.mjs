@@ -23,7 +23,7 @@ class SimulateView {
     this.results = new ResultsView(store, (cell) => this.#reveal(cell));
     this.#root = el("div", { class: "page-like simulate" }, el("h2", { text: t("Simulate and report") }),
       el("p", { class: "muted", text: t("Risk classes of the sheet come from a formula. A simulation shakes every piece by many motions of its floor, and confirms or corrects its class. You may go on working meanwhile.") }),
-      this.options, this.progress.node, this.fault, this.results.node);
+      this.options, el("div", { class: "buttons" }, this.form.button), this.progress.node, this.fault, this.results.node);
     root.append(this.#root);
     jobs.addEventListener("change", () => this.#update());
     store.addEventListener("live", () => jobs.current?.state === "done" && this.results.update(jobs.current));
@@ -93,7 +93,7 @@ class SimulateView {
   #complain(message, problems) {
     const line = (one) => {
       const text = [one.message, one.fix].filter(Boolean).join(" ");
-      const cell = one.row && one.at !== null && one.at !== undefined ? [one.sheet, one.row, one.at] : null;
+      const cell = placeOf(one);
       const name = one.cell ? `${this.#store.sheet(one.sheet)?.title ?? one.sheet}!${one.cell}` : "";
       return el("li", null, cell && [el("button", { type: "button", class: "plain", text: name, on: { click: () => this.#reveal(cell) } }), " "], text);
     };
@@ -105,6 +105,14 @@ class SimulateView {
     location.hash = "#sheet";
     this.#store.reveal(cell);
   }
+}
+
+/** The cell of a problem as [sheet, row, column], from its name such as J3; null where it has none. */
+function placeOf({ sheet, cell }) {
+  const found = /^([A-Z]{1,3})(\d+)$/.exec(cell ?? "");
+  if (!found) return null;
+  const at = [...found[1]].reduce((sum, letter) => 26 * sum + letter.charCodeAt(0) - 64, 0) - 1;
+  return [sheet, Number(found[2]), at];
 }
 
 function timeLeft(seconds) {

@@ -1,0 +1,47 @@
+"""The page on a phone: everything can be read, nothing runs off the edge."""
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.conftest import EXAMPLE
+from tests.web.looking import VIEWS, examine, show
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+WIDTH, HEIGHT = 390, 844
+OVER_THE_EDGE = """width => [...document.querySelectorAll("body *")].filter((one) => {
+    if (one.getBoundingClientRect().width === 0 || one.closest("svg *, .unseen, .skip")) return false;
+    for (let up = one.parentElement; up !== document.body && up; up = up.parentElement) {
+        if (/auto|scroll|hidden|clip/.test(getComputedStyle(up).overflowX) && !up.matches(".view")) return false;
+    }
+    return one.getBoundingClientRect().right > width + 0.5;
+}).map((one) => `${one.tagName}.${one.className}: ${one.textContent.trim().slice(0, 40)}`)"""
+SMALL_TABS = """() => [...document.querySelectorAll("nav.tabs a")]
+    .filter((one) => one.getBoundingClientRect().height < 40).length"""
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_every_view_can_be_read(page, served, theme):
+    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, color_scheme=theme, has_touch=True)
+    for view in VIEWS:
+        show(found, view)
+        assert found.evaluate("() => document.documentElement.scrollWidth") <= WIDTH, view
+        assert found.evaluate(OVER_THE_EDGE, WIDTH) == [], view
+        assert examine(found) == [], view
+    assert found.evaluate(SMALL_TABS) == 0
+
+
+def test_on_a_phone_the_tabs_are_at_the_bottom_and_nothing_is_edited(page, served):
+    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, has_touch=True)
+    expect(found.locator(".counts")).to_contain_text("very high")
+    tabs = found.get_by_role("navigation", name="Views").bounding_box()
+    assert tabs["y"] + tabs["height"] == HEIGHT
+    expect(found.get_by_role("button", name="Undo")).to_be_hidden()
+    before = found.evaluate("async () => (await import('/store.mjs')).store.state.version")
+    found.get_by_role("gridcell").first.click()
+    found.keyboard.type("x")
+    found.keyboard.press("Enter")
+    assert found.evaluate("async () => (await import('/store.mjs')).store.waiting") == 0
+    assert found.evaluate("async () => (await import('/store.mjs')).store.state.version") == before
+    found.set_viewport_size({"width": 900, "height": 800})
+    expect(found.get_by_role("button", name="Undo")).to_be_visible()

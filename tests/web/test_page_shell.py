@@ -1,0 +1,287 @@
+"""The frame of the page: every view opens, in both languages and themes, and nothing is lost on the way."""
+
+import gzip
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from openpyxl import load_workbook
+from playwright.sync_api import expect
+
+import assess.web
+from assess.web.answers import find_page_file
+from tests.conftest import EXAMPLE
+from tests.web.looking import VIEWS, examine, note_requests, show
+from tests.web.serving import start
+from tests.workbooks import ITEMS, write
+
+PAGE = Path(assess.web.__file__).with_name("page")
+MOST_BYTES = 150_000
+STATE = ".save-state"
+
+in_browser = [pytest.mark.browser, pytest.mark.slow]
+
+
+def browsing(test):
+    """Mark a test that opens a browser."""
+    for mark in in_browser:
+        test = mark(test)
+    return test
+
+
+@pytest.fixture
+def office(tmp_path):
+    return write(tmp_path / "office.xlsx")
+
+
+@pytest.fixture
+def example(tmp_path):
+    """Return a copy of the worked example with the records that it names."""
+    folder = tmp_path / "example"
+    folder.mkdir()
+    shutil.copytree(EXAMPLE.parent / "records", folder / "records")
+    return Path(shutil.copy(EXAMPLE, folder))
+
+
+def edit(page, sheet, row, at, value):
+    """Change a cell as a view does; return when the page shows it."""
+    page.evaluate(
+        """async ([sheet, row, at, value]) => {
+            const { store } = await import("/store.mjs");
+            store.edit([[sheet, row, at, value]], "typing");
+        }""",
+        [sheet, row, at, value],
+    )
+
+
+def value(page, sheet, row, at):
+    return page.evaluate(
+        "async ([sheet, row, at]) => (await import('/store.mjs')).store.sheet(sheet)?.value(row, at)", [sheet, row, at]
+    )
+
+
+# ---------------------------------------------------------------- without a browser
+
+
+def test_the_page_is_small_and_complete():
+    files = [path for path in PAGE.rglob("*") if path.is_file()]
+    assert sum(len(gzip.compress(path.read_bytes())) for path in files) <= MOST_BYTES
+    name = re.compile(r'(?:from |import\(|href=|src=)"(?:\./)?([\w-]+\.(?:mjs|css))"')
+    named = {found for path in files for found in name.findall(path.read_text("utf-8"))}
+    assert len(named) > 20
+    assert [name for name in sorted(named) if find_page_file(name) is None] == []
+
+
+def test_nothing_of_the_page_names_another_server_or_makes_elements_of_text():
+    for path in PAGE.rglob("*.mjs"):
+        text = path.read_text("utf-8").replace("http://www.w3.org/", "")
+        assert not re.search(r"https?://|innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(", text), (
+            path.name
+        )
+    assert not re.search(r"https?://|@import|url\(", "".join(path.read_text("utf-8") for path in PAGE.rglob("*.css")))
+
+
+# ---------------------------------------------------------------- all views
+
+
+@browsing
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_every_view_is_accessible_and_asks_no_other_server(page, served, example, theme):
+    server = served(example)
+    found = page(server, color_scheme=theme, reduced_motion="reduce")
+    addresses = note_requests(found)
+    found.reload()
+    for view in VIEWS:
+        show(found, view)
+        expect(found.locator(f"#view-{view} [role=alert]:not(:empty)")).to_have_count(0)
+        assert examine(found) == [], view
+    assert len(addresses) > 20
+    assert [one for one in addresses if not one.startswith((server.base + "/", "data:", "blob:"))] == []
+
+
+@browsing
+def test_a_view_that_fails_leaves_the_others(page, served, office):
+    found = page(served(office))
+    found.route(
+        "**/what_if_view.mjs",
+        lambda route: route.fulfill(body="throw new Error('broken')", content_type="text/javascript"),
+    )
+    found.reload()
+    show(found, "what-if")
+    expect(found.locator("#view-what-if").get_by_role("alert")).to_contain_text("other views work")
+    show(found, "simulate")
+    expect(found.get_by_role("button", name="Start the run")).to_be_enabled()
+    assert [one for one in found.errors if "broken" not in one] == []
+    found.errors.clear()
+
+
+@browsing
+def test_the_address_holds_the_tab_and_a_new_tab_shows_the_same(page, served, office):
+    found = page(served(office))
+    found.get_by_role("link", name="Simulate and report").click()
+    expect(found.locator("#view-simulate")).to_be_visible()
+    edit(found, "Items", 2, 3, "Attic")
+    expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+    other = found.context.new_page()
+    other.goto(found.url)
+    found.close()
+    expect(other.locator("#view-simulate")).to_be_visible()
+    expect(other.get_by_role("link", name="Simulate and report")).to_have_attribute("aria-current", "page")
+    assert value(other, "Items", 2, 3) == "Attic"
+    other.get_by_role("button", name="Undo").click()
+    expect(other.get_by_role("button", name="Redo")).to_be_enabled()
+    assert value(other, "Items", 2, 3) == ITEMS[0].get("room")
+
+
+@browsing
+def test_italian(page, served, office):
+    server = served(office)
+    found = page(server)
+    expect(found.get_by_role("link", name="Sheet", exact=True)).to_be_visible()
+    found.get_by_label("Language of the page").select_option("it")
+    expect(found.get_by_role("link", name="Foglio", exact=True)).to_be_visible()
+    expect(found.locator(STATE)).to_have_text("Tutte le modifiche sono salvate in office.xlsx")
+    assert found.locator("html").get_attribute("lang") == "it"
+    numbers = found.evaluate("""async () => {
+        const { number, percent, t } = await import("/texts.mjs");
+        return [number(1.5), number(12345.678, 1, true), percent(0.0123), t("{word}: {n:,}", { word: "x", n: 2000 })];
+    }""")
+    assert numbers == ["1,5", "12.345,7", "1,2 %", "x: 2.000"]
+    found.reload()
+    expect(found.get_by_role("link", name="Foglio", exact=True)).to_be_visible()
+    assert server.client.get("/api/book").json()["language"] == "en"
+    found.get_by_label("Lingua della pagina").select_option("en")
+    expect(found.get_by_role("link", name="Sheet", exact=True)).to_be_visible()
+
+
+@browsing
+def test_the_page_speaks_the_browsers_language_where_no_workbook_says_otherwise(page, served):
+    found = page(served(), locale="it-IT")
+    expect(found.get_by_role("heading", name="Aprire una cartella di lavoro")).to_be_visible()
+
+
+@browsing
+def test_the_theme_is_kept(page, served, office):
+    found = page(served(office), color_scheme="light")
+    colour = "() => getComputedStyle(document.body).backgroundColor"
+    light = found.evaluate(colour)
+    found.get_by_label("Colours").select_option("dark")
+    dark = found.evaluate(colour)
+    found.reload()
+    expect(found.get_by_label("Colours")).to_have_value("dark")
+    assert found.evaluate(colour) == dark != light
+
+
+@browsing
+def test_a_percentage_stays_on_its_side_of_a_limit(page, served, office):
+    chances = [0.02999, 0.03, 0.69996, None, 1, 0]
+    shown = page(served(office)).evaluate(
+        "async chances => { const { percent } = await import('/texts.mjs'); return chances.map(percent); }", chances
+    )
+    assert shown == ["2.999 %", "3.0 %", "69.996 %", "–", "100.0 %", "0.0 %"]
+
+
+# ---------------------------------------------------------------- nothing is lost
+
+
+@browsing
+def test_what_is_changed_while_the_server_is_gone_reaches_the_file(page, served, office):
+    server = served(office)
+    found = page(server)
+    expect(found.locator(STATE)).to_contain_text("All changes saved")
+    server.stop()
+    edit(found, "Items", 2, 3, "Attic")
+    expect(found.get_by_role("alert").filter(has_text="does not answer")).to_contain_text(
+        "assess open office.xlsx --port"
+    )
+    expect(found.locator(STATE)).to_have_text("Not connected: changes are kept in this page")
+    port = server.base.rpartition(":")[2]
+    again = start(office, "--no-browser", "--port", port, cwd=office.parent)
+    try:
+        found.context.new_page().goto(again.url)
+        expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx", timeout=15_000)
+        expect(found.get_by_role("alert")).to_have_count(0)
+    finally:
+        again.stop()
+    assert load_workbook(office)["Items"].cell(2, 4).value == "Attic"
+
+
+@browsing
+def test_a_change_by_another_program_is_told_and_can_be_read(page, served, office):
+    found = page(served(office))
+    expect(found.locator(STATE)).to_contain_text("All changes saved")
+    other = load_workbook(office)
+    other["Items"].cell(2, 4).value = "Cellar"
+    other.save(office)
+    said = found.get_by_role("alert").filter(has_text="changed by another program")
+    expect(said.get_by_role("button", name="Download my version")).to_be_visible(timeout=15_000)
+    said.get_by_role("button", name="Read the file again").click()
+    expect(said).to_have_count(0)
+    expect(found.locator(STATE)).to_contain_text("All changes saved")
+    assert value(found, "Items", 2, 3) == "Cellar"
+
+
+DROP = """([name, data]) => {
+    const files = new DataTransfer();
+    files.items.add(new File([Uint8Array.from(atob(data), (one) => one.charCodeAt(0))], name));
+    const options = { dataTransfer: files, bubbles: true, cancelable: true };
+    (document.querySelector("dialog[open]") ?? document.body).dispatchEvent(new DragEvent("drop", options));
+}"""
+
+
+def drop(page, name, data):
+    from base64 import b64encode
+
+    page.evaluate(DROP, [name, b64encode(data).decode()])
+
+
+@browsing
+def test_a_workbook_and_the_files_that_it_names_are_dropped_in(page, served, example):
+    found = page(served())
+    expect(found.get_by_role("heading", name="Open a workbook")).to_be_visible()
+    drop(found, "old.xls", b"old")
+    expect(found.get_by_role("alert").filter(has_text="old.xls cannot be opened")).to_contain_text("LibreOffice")
+    drop(found, "broken.xlsx", b"no workbook")
+    expect(found.get_by_role("alert").filter(has_text="broken.xlsx was not opened")).to_be_visible()
+    drop(found, "tower.xlsx", example.read_bytes())
+    expect(found.get_by_role("heading", name="tower.xlsx")).to_be_visible()
+    missing = found.get_by_role("button", name=re.compile(r"\d+ files? missing"))
+    missing.click()
+    dialog = found.get_by_role("dialog")
+    names = dialog.locator("tbody th").all_inner_texts()
+    expect(dialog.locator("tbody tr").first).to_contain_text("record of a motion")
+    expect(dialog.locator("tbody tr").first.get_by_role("button").first).to_have_text(re.compile(r"^Floors!\w+\d+$"))
+    assert examine(found) == []
+    records = {path.name: path for path in (example.parent / "records").rglob("*") if path.is_file()}
+    drop(found, "holiday.jpg", b"picture")
+    expect(found.get_by_role("alert").filter(has_text="holiday.jpg was not taken")).to_be_visible()
+    for name in names:
+        last = name.rpartition("/")[2]
+        drop(found, last, records[last].read_bytes())
+        expect(dialog.get_by_role("rowheader", name=name, exact=True)).to_have_count(0)
+    expect(dialog).to_contain_text("Nothing is missing.")
+    dialog.get_by_role("button", name="Close").click()
+    expect(missing).to_be_hidden()
+    expect(found.locator(".counts")).to_contain_text("very high")
+
+
+@browsing
+def test_a_held_workbook_asks_before_it_is_left(page, served, office, tmp_path):
+    found = page(served())
+    expect(found.get_by_role("heading", name="Open a workbook")).to_be_visible()
+    drop(found, "mine.xlsx", office.read_bytes())
+    expect(found.locator(STATE)).to_have_text("No changes since the last download")
+    edit(found, "Items", 2, 3, "Attic")
+    expect(found.locator(STATE)).to_have_text("Not downloaded yet")
+    drop(found, "other.xlsx", office.read_bytes())
+    found.get_by_role("dialog").get_by_role("button", name="Cancel").click()
+    expect(found.get_by_role("heading", name="mine.xlsx")).to_be_visible()
+    with found.expect_download() as download:
+        found.get_by_role("link", name="Download").click()
+    expect(found.locator(STATE)).to_have_text("No changes since the last download")
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    assert (path.name, load_workbook(path)["Items"].cell(2, 4).value) == ("mine.xlsx", "Attic")
+    drop(found, "other.xlsx", office.read_bytes())
+    expect(found.get_by_role("heading", name="other.xlsx")).to_be_visible()
