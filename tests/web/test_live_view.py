@@ -1,6 +1,9 @@
 """Classes, words, problems and what of them changed, as the page is told while one types."""
 
+import io
 import json
+import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import formualizer
@@ -227,11 +230,18 @@ def test_problems_are_in_the_language_of_the_workbook(tmp_path):
     assert _by_row(answer)[5][1] == "ancorato"
 
 
+def test_sessions_of_two_languages_do_not_mix(tmp_path):
+    def words(language):
+        book = hold(paths[language])
+        return {_by_row(_answer(book))[5][1] for _ in range(20)}
+
+    paths = {code: _write(tmp_path / f"{code}.xlsx", {}, code) for code in ("en", "it")}
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(words, ["en", "it"] * 3)) == [{"anchored"}, {"ancorato"}] * 3
+
+
 @pytest.mark.parametrize("sheet", ["Items", "Floors"])
 def test_a_workbook_without_a_sheet_is_answered(tmp_path, sheet):
-    import io
-    import zipfile
-
     path = write(tmp_path / "w.xlsx")
     renamed = io.BytesIO()
     with zipfile.ZipFile(path) as old, zipfile.ZipFile(renamed, "w") as new:
