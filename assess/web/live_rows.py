@@ -157,7 +157,7 @@ class _Words:
     def describe(self, row: Row, labels: Sequence[str], anchored: str | None) -> LiveRow:
         """Return what is shown of a row; `anchored` is what counts in place of its own cell, if anything does."""
         sizes, word = filled_sizes(self.table, row, self.types), self.explain(row)
-        shown = dict.fromkeys(LIVE, word)
+        shown: dict[str, float | str] = dict.fromkeys(LIVE, word)
         if word == gettext(NO_SHAKING):
             shown[LIVE[0]] = round(sizes["breadth"] / sizes["height"], DECIMALS)
             if (anchored or row.get("anchored")) == YES:
