@@ -42,7 +42,9 @@ class SheetPage:
 
     def cell(self, label, row):
         """Return a cell by its header and its row in the spreadsheet, which the number at its left tells."""
-        line = self.grid.locator(".grid-row:not([hidden])").filter(has=self.page.locator(f".grid-number:text-is('{row}')"))
+        line = self.grid.locator(".grid-row:not([hidden])").filter(
+            has=self.page.locator(f".grid-number:text-is('{row}')")
+        )
         return line.locator(f"[aria-colindex='{self.column(label)}']")
 
     def shown(self, label, row):

@@ -32,7 +32,9 @@ def small(page, served, tmp_path):
 
 def test_a_thousand_rows_are_one_edit_and_one_step_back(small):
     before = small.server.client.get("/api/download").data
-    block = [[f"N{n}", "", "1", f"Room {n % 40}", "Shelf", "", "", "40,5", "80", str(150 + n % 60)] for n in range(1000)]
+    block = [
+        [f"N{n}", "", "1", f"Room {n % 40}", "Shelf", "", "", "40,5", "80", str(150 + n % 60)] for n in range(1000)
+    ]
     small.copy_text("\r\n".join("\t".join(row) for row in block) + "\r\n").select("Item", 8)
     small.page.evaluate("() => (window.started = performance.now())")
     small.type("<Control+v>")
@@ -56,7 +58,9 @@ def test_tables_of_other_programs(small):
     small.copy_text(text, FROM_CALC).select("Type", 2).select("Description", 2)
     small.type("<Control+v>")  # Description, Type
     small.copy_text("45,12\t1200,5", None).select("Breadth", 3).type("<Control+v>")
-    small.copy_text("Bookcase at the door\t38,3\njoined\t\n", FROM_EXCEL).select("Quantity", 5).select("Type", 5).type("<Control+v>")
+    small.copy_text("Bookcase at the door\t38,3\njoined\t\n", FROM_EXCEL).select("Quantity", 5).select("Type", 5).type(
+        "<Control+v>"
+    )
     small.copy_text("Desk\t63", FROM_SHEETS).select("Quantity", 4).select("Photo", 4).type("<Control+v>")
     small.settle()
     assert [small.values("Items", "description")[row] for row in (2, 3)] == ["First\nsecond", '12" shelf']

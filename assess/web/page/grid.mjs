@@ -2,7 +2,7 @@
 // are in grid_editor.mjs, grid_pointer.mjs and grid_keys.mjs.
 
 import { clear, el } from "./elements.mjs";
-import { cellText, cellValue, describeCell, hasChoices, isComputed, problemText, simulatedColumn } from "./grid_cells.mjs";
+import { cellText, cellValue, classColumn, describeCell, hasChoices, isComputed, problemText, simulatedColumn } from "./grid_cells.mjs";
 import { RowOrder } from "./grid_rows.mjs";
 import { Selection } from "./grid_selection.mjs";
 import { cellName, isFilled } from "./sheet.mjs";
@@ -14,7 +14,8 @@ const NUMBERS_WIDTH = 52;
 const MARGIN_ROWS = 6;
 const MARGIN_PX = 200;
 const CHARACTER = 7.2;
-const PADDING = 22;
+const HEAD_CHARACTER = 8.4;
+const PADDING = 26;
 const NARROWEST = 44;
 const WIDEST = 340;
 const NARROW_PAGE = 600;
@@ -55,7 +56,8 @@ export class Grid extends EventTarget {
   open(sheet) {
     if (this.sheet) this.#places.set(this.sheet.name, { top: this.box.scrollTop, left: this.box.scrollLeft, anchor: this.selection.anchor, head: this.selection.head });
     this.sheet = sheet;
-    this.order = this.#orders.get(sheet.name)?.sheet === sheet ? this.#orders.get(sheet.name) : new RowOrder(this.store, sheet);
+    const kept = this.#orders.get(sheet.name);
+    this.order = kept?.sheet === sheet ? kept : new RowOrder(this.store, sheet, kept);
     this.#orders.set(sheet.name, this.order);
     this.refreshColumns();
     const place = this.#places.get(sheet.name) ?? { top: 0, left: 0, anchor: [0, 0], head: [0, 0] };
@@ -65,13 +67,22 @@ export class Grid extends EventTarget {
     this.draw();
   }
 
+  /** Forget where sheets were left, and their order: another workbook is open. */
+  forget() {
+    this.sheet = null;
+    this.#orders.clear();
+    this.#places.clear();
+  }
+
   /** Build the columns anew: after another sheet, or where a simulation has come or gone. */
   refreshColumns() {
     const shown = this.sheet.columns.filter((column) => !column.hidden);
-    const at = shown.findIndex((column) => column.field === "class" && column.kind === "live");
-    this.hasSimulated = this.store.simulated.size > 0 && this.sheet.name === "Items";
-    if (this.hasSimulated) shown.splice(at + 1, 0, simulatedColumn());
-    const isFrozen = (column) => (column.at ?? -1) < this.sheet.frozen && column.at !== null;
+    const isClass = (column) => column.field === "class" && column.kind === "live";
+    const isItems = this.sheet.name === "Items";
+    if (isItems && !shown.some(isClass)) shown.splice(1, 0, classColumn()); // a file without the column shows it, too
+    this.hasSimulated = this.store.simulated.size > 0 && isItems;
+    if (this.hasSimulated) shown.splice(shown.findIndex(isClass) + 1, 0, simulatedColumn());
+    const isFrozen = (column) => (column.at === null ? isClass(column) : column.at < this.sheet.frozen);
     this.columns = shown.map((column) => ({ ...column, isFrozen: isFrozen(column) }));
     this.columns.sort((one, other) => other.isFrozen - one.isFrozen);
     this.layOut();
@@ -84,7 +95,8 @@ export class Grid extends EventTarget {
 
   widthOf(column) {
     const kept = Number(localStorage.getItem(this.#widthKey(column)));
-    const width = kept || Math.min(WIDEST, Math.max((column.width || 10) * CHARACTER, column.label.length * 4.2) + PADDING);
+    const word = Math.max(...column.label.split(/\s+/).map((one) => one.length));
+    const width = kept || Math.min(WIDEST, PADDING + Math.max((column.width || 10) * CHARACTER, word * HEAD_CHARACTER, column.label.length * 4.2));
     return this.isNarrow && column.isFrozen ? Math.min(width, NARROW_COLUMN) : Math.max(NARROWEST, Math.round(width));
   }
 

@@ -24,6 +24,11 @@ export const simulatedColumn = () => ({
   help: t("The class by simulation, and the share of motions in which the piece overturns; grey where its row changed since."),
 });
 
+/** The class by the formulas, for a workbook without the column. */
+export const classColumn = () => ({
+  at: null, field: "class", kind: "live", label: t("Class"), unit: "", width: 16, choices: [], offered: [], source: "", help: t("The class by the formulas."),
+});
+
 /** What a cell holds for sorting, filtering, finding and copying. */
 export function cellValue(store, sheet, row, column) {
   if (column.kind === SIMULATED) return store.simulated.get(row)?.chance ?? null;

@@ -140,6 +140,11 @@ export class Editor {
     return this.#end();
   }
 
+  /** Forget what is typed: its workbook is gone. */
+  drop() {
+    if (this.mode) this.#end();
+  }
+
   #end() {
     this.mode = null;
     this.target = null;

@@ -16,10 +16,12 @@ export class Form {
   }
 
   open(sheet) {
+    const isSame = this.sheet && JSON.stringify(this.sheet.columns) === JSON.stringify(sheet.columns);
     this.sheet = sheet;
+    if (isSame) return this.draw(); // the same book read again: what is being typed stays
     this.lines = sheet.columns.filter((column) => !column.hidden).map((column) => this.#line(column));
     clear(this.node).append(...this.lines.map((line) => line.node));
-    this.draw();
+    return this.draw();
   }
 
   #line(column) {

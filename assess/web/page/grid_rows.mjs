@@ -12,12 +12,16 @@ export class RowOrder {
   #used = 0;
   #top = 0;
 
-  constructor(store, sheet) {
+  /** @param {RowOrder} [earlier] that of the same sheet before the book was read again */
+  constructor(store, sheet, earlier) {
     this.store = store;
     this.sheet = sheet;
-    this.sort = null; // {column, down}
-    this.filters = new Map(); // at -> {column, contains, values}
+    const again = (one) => ({ ...one, column: sheet.columns.find(({ label, kind }) => label === one.column.label && kind !== "live") });
+    const kept = [...(earlier?.filters ?? [])].map(([label, one]) => [label, again(one)]).filter(([, one]) => one.column);
+    this.sort = earlier?.sort && again(earlier.sort).column ? again(earlier.sort) : null; // {column, down}
+    this.filters = new Map(kept); // label -> {column, contains, values}
     this.collator = new Intl.Collator(document.documentElement.lang || undefined, { numeric: true, sensitivity: "base" });
+    this.apply();
   }
 
   /** Whether the rows stand as in the file, all of them. */

@@ -147,27 +147,32 @@ class GridView {
 
   // ---- what changes
 
+  /** Another book, or the same read again: then what is being typed stays. */
   #opened() {
-    this.editor.cancel();
+    const { book } = this.store;
+    const isSame = book !== null && this.bookName === book.name;
+    this.bookName = book?.name;
+    if (!isSame) this.editor.drop();
     this.menu.node.hidden = true;
-    if (!this.store.book) return;
+    if (!book) return;
     const kept = this.sheet?.name ?? sessionStorage.getItem(KEPT) ?? FIRST;
-    this.sheet = null;
-    this.open(this.store.sheet(kept) ? kept : FIRST);
+    if (!isSame) this.grid.forget();
+    this.open(this.store.sheet(kept) ? kept : FIRST, isSame);
   }
 
-  /** Show a sheet. */
-  open(name) {
+  /** Show a sheet; `keepsTyping` where it is the one that is shown. */
+  open(name, keepsTyping = false) {
     const sheet = this.store.sheet(name);
     if (!sheet) return;
-    this.editor.commit();
+    if (!keepsTyping) this.editor.commit();
     this.sheet = sheet;
     sessionStorage.setItem(KEPT, name);
     const isForm = sheet.layout === "form";
     this.grid.box.hidden = isForm || !sheet.found;
     this.form.node.hidden = !isForm || !sheet.found;
-    this.tools.hidden = isForm;
-    this.line.hidden = isForm;
+    this.tools.hidden = isForm || !sheet.found;
+    this.line.hidden = isForm || !sheet.found;
+    this.order.hidden = true;
     this.lacking.hidden = sheet.found;
     this.lacking.textContent = sheet.found ? "" : t("This workbook has no sheet {sheet}, or one without its headers.", { sheet: sheet.title });
     if (!this.find.node.hidden) this.find.close();
@@ -227,7 +232,7 @@ class GridView {
     this.#drawLine();
     const [r0, , r1] = selection.range;
     const rows = Array.from({ length: r1 - r0 + 1 }, (_, i) => order.row(r0 + i));
-    this.store.select({ sheet: sheet.name, row: active.row, at: active.column.at, rows }, "grid");
+    this.store.select({ sheet: sheet.name, row: active.row, at: active.column.at ?? 0, rows }, "grid");
   }
 
   #describe({ r, c, row, column, name }) {

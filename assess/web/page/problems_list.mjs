@@ -5,6 +5,7 @@ import { cellName } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
 
 const MOST = 100;
+const WIDE = 900;
 const SEVERITIES = ["error", "warning", "note"];
 const SIGNS = { error: "✖", warning: "▲", note: "ℹ" };
 const count = {
@@ -27,7 +28,8 @@ export class ProblemsList {
   }
 
   #restore() {
-    this.isOpen = sessionStorage.getItem("assess-problems") !== "closed";
+    const kept = sessionStorage.getItem("assess-problems");
+    this.isOpen = kept ? kept === "open" : innerWidth >= WIDE;
   }
 
   #toggleOpen() {
