@@ -1,0 +1,263 @@
+// What gestures on the plan write into the workbook. Every function is one edit, so one step of undo.
+
+import { inUnit, pointInside, roundTo, wholeAngle, writeOutline } from "./plan_geometry.mjs";
+import { nameKey } from "./plan_model.mjs";
+import { isFilled, nextName } from "./sheet.mjs";
+import { notice } from "./messages.mjs";
+import { t } from "./texts.mjs";
+
+const CENTIMETRE = 0.01;
+const MILLIMETRE = 0.001;
+const UNMOVED = 0.0005;
+const AXIS_WITHIN = 15; // degrees from X or Y within which an angle tells the axis, as the core has it
+const ANCHORED_YES = 1;
+
+export class PlanEdits {
+  constructor(model, store) {
+    Object.assign(this, { model, store });
+  }
+
+  // ---- cells
+
+  /** A cell to edit: none where the workbook lacks the column. */
+  cell(sheetName, row, field, value) {
+    const column = this.store.sheet(sheetName)?.column(field);
+    return column ? [[sheetName, row, column.at, value]] : [];
+  }
+
+  /** A length in metres for a cell. */
+  length(sheetName, row, field, metres, step = CENTIMETRE) {
+    const column = this.store.sheet(sheetName)?.column(field);
+    return column ? [[sheetName, row, column.at, metres === null ? null : inUnit(metres, column, step)]] : [];
+  }
+
+  #choice(sheetName, field, at) {
+    return this.store.sheet(sheetName)?.column(field)?.choices[at] ?? null;
+  }
+
+  #edit(edits, label) {
+    return edits.length ? this.store.edit(edits, label) : Promise.resolve(true);
+  }
+
+  #freeRow(name) {
+    const sheet = this.store.sheet(name);
+    const row = sheet?.found ? sheet.firstFreeRow() : null;
+    if (row === null) {
+      const text = sheet?.found ? t("The sheet {sheet} is full.", { sheet: sheet.title }) : t("This workbook has no sheet {sheet}, or one without its headers.", { sheet: sheet?.title ?? name });
+      notice(text, { kind: "error" });
+    }
+    return row;
+  }
+
+  /** Empty the cells of a row that somebody filled. */
+  #clearRow(name, row) {
+    const sheet = this.store.sheet(name);
+    return sheet.columns.filter((column) => column.kind !== "live" && isFilled(sheet.value(row, column.at))).map((column) => [name, row, column.at, null]);
+  }
+
+  select(sheet, rows) {
+    const column = this.store.sheet(sheet)?.columns[0];
+    this.store.select({ sheet, row: rows[0] ?? 0, at: column?.at ?? 0, rows }, "plan");
+  }
+
+  // ---- pieces
+
+  /** Write new poses [{row, x, y, angle}]; what did not change is left as it stands in the cell. */
+  pose(poses, label) {
+    const edits = poses.flatMap(({ row, x, y, angle }) => {
+      const old = this.model.pieces.get(row);
+      const moved = (value, before) => value !== undefined && (!old || Math.abs(value - before) > UNMOVED);
+      return [
+        ...(moved(x, old?.x) ? this.length("Items", row, "x", x) : []),
+        ...(moved(y, old?.y) ? this.length("Items", row, "y", y) : []),
+        ...(angle !== undefined && (!old || wholeAngle(angle) !== old.angle) ? this.#turned(row, old, wholeAngle(angle)) : []),
+      ];
+    });
+    return this.#edit(edits, label);
+  }
+
+  /** A new angle. An Axis that agreed with the angle before follows it, so that the two do not contradict each other. */
+  #turned(row, old, angle) {
+    const edits = this.cell("Items", row, "angle_deg", angle);
+    const column = this.store.sheet("Items").column("axis");
+    const typed = column ? this.store.sheet("Items").value(row, column.at) : null;
+    if (!isFilled(typed) || !old) return edits;
+    const [before, after] = [axisOf(old.angle), axisOf(angle)];
+    if (before < 0 || after < 0 || column.choices[before] !== typed) return edits;
+    return [...edits, ...this.cell("Items", row, "axis", column.choices[after])];
+  }
+
+  move(rows, [dx, dy], label = t("move")) {
+    const poses = rows.map((row) => this.model.pieces.get(row)).filter(Boolean)
+      .map((one) => ({ row: one.row, x: dx ? roundTo(one.x + dx, CENTIMETRE) : one.x, y: dy ? roundTo(one.y + dy, CENTIMETRE) : one.y }));
+    return this.pose(poses, label);
+  }
+
+  turn(rows, degrees) {
+    const poses = rows.map((row) => this.model.pieces.get(row)).filter(Boolean).map((one) => ({ row: one.row, angle: one.angle + degrees }));
+    return this.pose(poses, t("turn"));
+  }
+
+  /** Put pieces that are in the list onto the plan. */
+  place(row, [x, y]) {
+    const sheet = this.store.sheet("Items");
+    const floor = sheet.column("floor");
+    const other = floor && nameKey(sheet.value(row, floor.at)) !== nameKey(this.model.floor);
+    const edits = [...this.length("Items", row, "x", x), ...this.length("Items", row, "y", y), ...(other ? this.cell("Items", row, "floor", this.model.floorValue) : [])];
+    this.select("Items", [row]);
+    return this.#edit(edits, t("place on the plan"));
+  }
+
+  takeOff(rows) {
+    const edits = rows.flatMap((row) => [...this.cell("Items", row, "x", null), ...this.cell("Items", row, "y", null)]);
+    return this.#edit(edits, t("take off the plan"));
+  }
+
+  deleteRows(sheet, rows) {
+    return this.#edit(rows.flatMap((row) => this.#clearRow(sheet, row)), t("delete"));
+  }
+
+  /** The item that new pieces are named after: the last of the floor, else the last of all. */
+  #lastName() {
+    const sheet = this.store.sheet("Items");
+    const item = sheet.column("item");
+    const floor = sheet.column("floor");
+    const named = sheet.rowNumbers.filter((row) => isFilled(sheet.value(row, item.at)));
+    const own = floor ? named.filter((row) => nameKey(sheet.value(row, floor.at)) === nameKey(this.model.floor)) : [];
+    const row = own.at(-1) ?? named.at(-1);
+    return row === undefined ? null : sheet.value(row, item.at);
+  }
+
+  /** Add a piece of a type of the catalogue at a point. */
+  add(type, [x, y], angle = 0) {
+    const row = this.#freeRow("Items");
+    if (row === null) return Promise.resolve(false);
+    const names = this.store.sheet("Items").names("item");
+    const last = this.#lastName();
+    const name = last === null ? "A1" : nextName(last, names);
+    const edits = [
+      ...this.cell("Items", row, "item", name), ...this.cell("Items", row, "floor", this.model.floorValue), ...this.cell("Items", row, "type", type),
+      ...this.length("Items", row, "x", x), ...this.length("Items", row, "y", y), ...this.cell("Items", row, "angle_deg", wholeAngle(angle)),
+    ];
+    const done = this.#edit(edits, t("add"));
+    this.select("Items", [row]);
+    return done;
+  }
+
+  /**
+   * Copies of pieces, in the first free rows, with names of their own.
+   * @param {number[]} rows those that are copied
+   * @param {number[]} shift by which the copies stand apart
+   */
+  copy(rows, [dx, dy]) {
+    const sheet = this.store.sheet("Items");
+    const [names, edits, made] = [sheet.names("item"), [], []];
+    let free = this.#freeRow("Items");
+    for (const row of rows.filter((one) => sheet.isUsed(one))) {
+      if (free === null || (sheet.capacity && free > sheet.capacity)) break;
+      for (const column of sheet.columns) {
+        const value = sheet.value(row, column.at);
+        if (column.kind !== "live" && isFilled(value)) edits.push(["Items", free, column.at, this.#copied(column, value, names, [dx, dy])]);
+      }
+      made.push(free);
+      free += 1;
+    }
+    const done = this.#edit(edits, t("copy"));
+    if (made.length) this.select("Items", made);
+    return done;
+  }
+
+  #copied(column, value, names, [dx, dy]) {
+    if (column.field === "item") {
+      names.push(nextName(value, names));
+      return names.at(-1);
+    }
+    if (column.field === "floor") return this.model.floorValue;
+    const shift = { x: dx, y: dy }[column.field];
+    return shift && typeof value === "number" ? inUnit(value * column.factor + shift, column) : value;
+  }
+
+  // ---- places and segments
+
+  /** Add a place: a ring of corners, or a point. */
+  addPlace(kindAt, ring, point) {
+    const row = this.#freeRow("Places");
+    if (row === null) return null;
+    const sheet = this.store.sheet("Places");
+    const kind = this.#choice("Places", "kind", kindAt);
+    const [x, y] = point ?? pointInside(ring);
+    const column = sheet.column("outline");
+    const stem = `${this.model.floor} ${kind ?? ""}`.trim();
+    const edits = [
+      ...this.cell("Places", row, "place", nextName(`${stem} 0`, sheet.names("place"))), ...this.cell("Places", row, "floor", this.model.floorValue),
+      ...this.length("Places", row, "x", x), ...this.length("Places", row, "y", y), ...this.cell("Places", row, "kind", kind),
+      ...(ring && column ? this.cell("Places", row, "outline", writeOutline(ring, column)) : []),
+    ];
+    const done = this.#edit(edits, t("draw a place"));
+    this.select("Places", [row]);
+    return done;
+  }
+
+  outline(row, ring, label = t("outline")) {
+    const column = this.store.sheet("Places").column("outline");
+    return this.#edit(this.cell("Places", row, "outline", ring ? writeOutline(ring, column) : null), label);
+  }
+
+  movePlace(row, [x, y]) {
+    return this.#edit([...this.length("Places", row, "x", x), ...this.length("Places", row, "y", y)], t("move"));
+  }
+
+  /** Another name for a place, also where segments name it. */
+  renamePlace(row, name) {
+    const sheet = this.store.sheet("Places");
+    const old = nameKey(sheet.value(row, sheet.column("place").at));
+    const routes = this.store.sheet("Routes");
+    const named = ["start", "end"].map((field) => routes?.column(field)).filter(Boolean).flatMap((column) =>
+      routes.rowNumbers.filter((one) => nameKey(routes.value(one, column.at)) === old).map((one) => ["Routes", one, column.at, name]));
+    return this.#edit([...this.cell("Places", row, "place", name), ...(name && old ? named : [])], t("name"));
+  }
+
+  /** Add a segment of a route between two places. */
+  addSegment(route, from, to) {
+    const row = this.#freeRow("Routes");
+    if (row === null) return null;
+    const sheet = this.store.sheet("Routes");
+    const [routeAt, segmentAt] = [sheet.column("route").at, sheet.column("segment").at];
+    const own = sheet.rowNumbers.filter((one) => nameKey(sheet.value(one, routeAt)) === nameKey(route)).map((one) => String(sheet.value(one, segmentAt) ?? ""));
+    const edits = [
+      ...this.cell("Routes", row, "route", route), ...this.cell("Routes", row, "segment", nextName(String(own.length), own)),
+      ...this.cell("Routes", row, "floor", this.model.floorValue), ...this.cell("Routes", row, "start", from), ...this.cell("Routes", row, "end", to),
+    ];
+    const done = this.#edit(edits, t("draw a segment"));
+    this.select("Routes", [row]);
+    return done;
+  }
+
+  // ---- the picture and anchors
+
+  /** Where the picture lies, as the four numbers of the floor. */
+  placePicture({ left, bottom, width, turn }, label = t("place the picture")) {
+    const row = this.model.plan.floor_row;
+    const edits = [
+      ...this.length("Floors", row, "plan_left", left, MILLIMETRE), ...this.length("Floors", row, "plan_bottom", bottom, MILLIMETRE),
+      ...this.length("Floors", row, "plan_width", width, MILLIMETRE), ...this.cell("Floors", row, "plan_turn", roundTo(turn, 0.01)),
+    ];
+    return this.#edit(edits, label);
+  }
+
+  namePicture(name) {
+    return this.#edit(this.cell("Floors", this.model.plan.floor_row, "plan", name), t("picture"));
+  }
+
+  anchor(rows, label) {
+    const yes = this.#choice("Items", "anchored", ANCHORED_YES);
+    return this.#edit(rows.flatMap((row) => this.cell("Items", row, "anchored", yes)), label);
+  }
+}
+
+/** The axis that an angle tells: 0 X, 1 Y, -1 neither. */
+function axisOf(angle) {
+  const folded = ((angle % 180) + 180) % 180;
+  if (Math.min(folded, 180 - folded) <= AXIS_WITHIN) return 0;
+  return Math.abs(folded - 90) <= AXIS_WITHIN ? 1 : -1;
+}

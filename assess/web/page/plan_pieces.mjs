@@ -1,0 +1,222 @@
+// The pieces on the plan: a rectangle each, with its class as colour and sign, its name, and the sides that are Breadth.
+
+import { describe } from "./classes.mjs";
+import { svg } from "./elements.mjs";
+import { number, percent, t } from "./texts.mjs";
+
+const LEAST_SIGN = 7; // font size [px]
+const MOST_SIGN = 15;
+const LETTER = 6.4; // width of a letter of a name [px]
+const NAME_HEIGHT = 12;
+
+/** Lengths in metres as the page shows them, in the unit of the workbook. */
+export function shownLength(metres, { unit, factor }, digits = 2) {
+  return `${number(metres / factor, digits)} ${unit}`;
+}
+
+export class PieceLayer {
+  #nodes = new Map();
+  #previews = new Map();
+  active = 0; // the piece that Tab reaches
+
+  constructor(model, store) {
+    Object.assign(this, { model, store, scale: 40, usesSimulated: true, selected: new Set() });
+    this.node = svg("g", { class: "pieces" });
+  }
+
+  // ---- drawing
+
+  draw() {
+    const { pieces } = this.model;
+    for (const [row, parts] of this.#nodes) {
+      if (pieces.has(row)) continue;
+      parts.node.remove();
+      this.#nodes.delete(row);
+    }
+    for (const piece of pieces.values()) {
+      const parts = this.#nodes.get(piece.row) ?? this.#make(piece.row);
+      this.#update(parts, piece);
+    }
+    this.#setRole(pieces.size > 0);
+    if (!pieces.has(this.active)) this.active = this.order()[0] ?? 0;
+    this.#setTabStops();
+  }
+
+  #setRole(hasAny) {
+    const { node } = this;
+    if (!hasAny) for (const name of ["role", "aria-multiselectable", "aria-label"]) node.removeAttribute(name);
+    else {
+      node.setAttribute("role", "listbox");
+      node.setAttribute("aria-multiselectable", "true");
+      node.setAttribute("aria-label", t("Pieces on floor {floor}", { floor: this.model.floor }));
+    }
+  }
+
+  #make(row) {
+    const parts = { title: svg("title"), body: svg("rect", { class: "body" }), sides: svg("path", { class: "sides" }), sign: svg("text", { class: "sign" }), name: svg("text", { class: "name" }) };
+    parts.turned = svg("g", null, parts.body, parts.sides);
+    parts.px = svg("g", { class: "px" }, parts.sign, parts.name);
+    parts.node = svg("g", { class: "piece", role: "option", "data-row": row, tabindex: "-1" }, parts.title, parts.turned, parts.px);
+    this.#nodes.set(row, parts);
+    this.node.append(parts.node);
+    return parts;
+  }
+
+  #update(parts, piece) {
+    const { breadth: b, width: w } = piece;
+    const set = (node, values) => Object.entries(values).forEach(([name, value]) => node.setAttribute(name, value));
+    set(parts.body, { x: -b / 2, y: -w / 2, width: b, height: w });
+    set(parts.sides, { d: `M${-b / 2} ${-w / 2}H${b / 2}M${-b / 2} ${w / 2}H${b / 2}` });
+    const { key, isStale, isAnchored } = this.classOf(piece);
+    const { css } = describe(key);
+    const isSelected = this.selected.has(piece.row);
+    const classes = ["piece", css, isSelected && "selected", isStale && "stale", isAnchored && !key && "anchored", piece.sizes_missing && "sizes-missing"];
+    parts.node.setAttribute("class", classes.filter(Boolean).join(" "));
+    parts.node.setAttribute("aria-selected", String(isSelected));
+    const label = this.label(piece);
+    if (parts.label !== label) {
+      parts.label = label;
+      parts.node.setAttribute("aria-label", label);
+      parts.title.textContent = label;
+    }
+    parts.sign.textContent = this.#sign(key, isAnchored);
+    parts.name.textContent = piece.item;
+    this.#put(parts, this.#previews.get(piece.row) ?? piece);
+    this.#fitText(parts, piece);
+  }
+
+  #sign(key, isAnchored) {
+    if (key) return describe(key).sign;
+    return isAnchored ? "⚓" : "–";
+  }
+
+  #put(parts, { x, y, angle }) {
+    parts.node.setAttribute("transform", `translate(${x.toFixed(4)} ${(-y).toFixed(4)})`);
+    parts.turned.setAttribute("transform", `rotate(${-angle})`);
+    parts.angle = angle;
+  }
+
+  /** Sign and name as large as the piece allows; the name along its longer side, upright or read from the right. */
+  #fitText(parts, piece) {
+    const [b, w] = [piece.breadth * this.scale, piece.width * this.scale];
+    const [long, short] = [Math.max(b, w), Math.min(b, w)];
+    const size = Math.min(MOST_SIGN, Math.max(LEAST_SIGN, 0.85 * short));
+    const room = long - size - 6;
+    const isNamed = short >= NAME_HEIGHT && room >= piece.item.length * LETTER;
+    const along = (((parts.angle + (w >= b ? 90 : 0)) % 180) + 180) % 180;
+    const shown = isNamed ? (along > 90 ? along - 180 : along) : 0;
+    parts.px.style.transform = `scale(var(--u)) rotate(${-shown}deg)`;
+    parts.sign.style.fontSize = `${size.toFixed(1)}px`;
+    parts.name.style.display = isNamed || this.selected.has(piece.row) ? "" : "none";
+    const shift = isNamed ? (piece.item.length * LETTER) / 2 + 2 : 0;
+    parts.sign.setAttribute("x", -shift);
+    parts.name.setAttribute("x", isNamed ? size / 2 + 1 : 0);
+    parts.name.setAttribute("y", isNamed ? 0 : Math.max(10, this.#reach(piece, parts.angle)) + 10);
+    parts.name.classList.toggle("beside", !isNamed);
+  }
+
+  /** Half the height of a piece on the screen. */
+  #reach({ breadth, width }, angle) {
+    const a = (angle * Math.PI) / 180;
+    return ((Math.abs(breadth * Math.sin(a)) + Math.abs(width * Math.cos(a))) / 2) * this.scale;
+  }
+
+  zoom(scale) {
+    this.scale = scale;
+    for (const [row, parts] of this.#nodes) {
+      const piece = this.model.pieces.get(row);
+      if (piece) this.#fitText(parts, piece);
+    }
+  }
+
+  // ---- while dragged
+
+  /** Show pieces elsewhere than they stand: Map of rows to {x, y, angle}. */
+  preview(poses) {
+    this.#previews = poses;
+    for (const [row, pose] of poses) {
+      const parts = this.#nodes.get(row);
+      if (parts) this.#put(parts, pose);
+      if (parts) this.#fitText(parts, this.model.pieces.get(row));
+    }
+  }
+
+  endPreview() {
+    const rows = [...this.#previews.keys()];
+    this.#previews = new Map();
+    for (const row of rows) {
+      const [parts, piece] = [this.#nodes.get(row), this.model.pieces.get(row)];
+      if (parts && piece) this.#update(parts, piece);
+    }
+  }
+
+  /** Where a piece is shown. */
+  pose(row) {
+    const piece = this.model.pieces.get(row);
+    return piece && { ...piece, ...this.#previews.get(row) };
+  }
+
+  // ---- classes and words
+
+  /** The class that is shown: the simulated one where there is one and it is asked for. */
+  classOf(piece) {
+    const { store } = this;
+    const live = store.live.get(piece.row);
+    const simulated = this.usesSimulated ? store.simulated?.get(piece.row) : undefined;
+    const found = simulated ?? live;
+    return { key: found?.class ?? "", chance: found?.chance ?? null, isStale: Boolean(simulated?.stale), isAnchored: piece.anchored === "yes", word: live?.word ?? "" };
+  }
+
+  /** What is said of a piece: name, what it is, class, position. */
+  label(piece) {
+    const { key, chance, isStale, word } = this.classOf(piece);
+    const unit = this.model.unit;
+    const parts = [[piece.item, piece.description].filter(Boolean).join(", "), key ? t("class {word}", { word: describe(key).word }) : word || describe("").word];
+    if (chance !== null) parts.push(t("chance {chance}", { chance: percent(chance) }));
+    if (isStale) parts.push(t("simulated before it was changed"));
+    parts.push(t("X {x}, Y {y}, angle {angle}°", { x: shownLength(piece.x, unit), y: shownLength(piece.y, unit), angle: number(piece.angle) }));
+    return parts.join("; ");
+  }
+
+  // ---- keyboard
+
+  /** The rows of pieces in the order of reading: from above, from the left. */
+  order() {
+    return [...this.model.pieces.values()].sort((a, b) => Math.round(b.y - a.y) || a.x - b.x).map((one) => one.row);
+  }
+
+  #setTabStops() {
+    for (const [row, parts] of this.#nodes) parts.node.setAttribute("tabindex", row === this.active ? "0" : "-1");
+  }
+
+  activate(row) {
+    this.active = row;
+    this.#setTabStops();
+  }
+
+  focus(row = this.active) {
+    this.activate(row);
+    this.#nodes.get(row)?.node.focus({ preventScroll: true });
+  }
+
+  select(rows) {
+    const changed = [...new Set([...this.selected, ...rows])];
+    this.selected = new Set(rows);
+    for (const row of changed) {
+      const [parts, piece] = [this.#nodes.get(row), this.model.pieces.get(row)];
+      if (parts && piece) this.#update(parts, piece);
+    }
+    if (rows.length && this.model.pieces.has(rows[0])) this.activate(rows[0]);
+    this.#raise(rows);
+  }
+
+  /** Selected pieces lie on top; focus survives, as the nodes that are moved past stay where they are. */
+  #raise(rows) {
+    if (rows.length > 20) return;
+    for (const row of rows) {
+      const node = this.#nodes.get(row)?.node;
+      if (!node || node.contains(document.activeElement) || node === this.node.lastChild) continue;
+      this.node.append(node);
+    }
+  }
+}

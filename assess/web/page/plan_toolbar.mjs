@@ -1,0 +1,138 @@
+// The tools above the plan: floor, tools, snapping, what is shown, zoom, help.
+
+import { choose, clear, el } from "./elements.mjs";
+import { t } from "./texts.mjs";
+
+const BUTTONS_UP_TO = 6; // floors; beyond that a list
+const KINDS = 5;
+
+const icon = (path) => {
+  const NS = "http://www.w3.org/2000/svg";
+  const node = document.createElementNS(NS, "svg");
+  node.setAttribute("viewBox", "0 0 20 20");
+  node.setAttribute("class", "icon");
+  node.setAttribute("aria-hidden", "true");
+  const line = document.createElementNS(NS, "path");
+  line.setAttribute("d", path);
+  node.append(line);
+  return node;
+};
+
+const ICONS = {
+  select: "M5 3L15 11L10.5 11.6L13 17L11 18L8.5 12.5L5 15.5Z",
+  measure: "M3 13L13 3L17 7L7 17ZM6.5 9.5L8.5 11.5M9.5 6.5L11 8",
+  place: "M4 16V4H16V10H11V16Z",
+  segment: "M3 15H9L9 5H15M12.5 2.5L15.5 5L12.5 7.5",
+};
+
+export class Toolbar {
+  /** @param {{model, store, scene, viewport, select, tools, currentTool, canEdit, setTool, setFloor, fit, help}} parts */
+  constructor(parts) {
+    Object.assign(this, parts);
+    this.floors = el("div", { class: "plan-floors" });
+    this.#buildTools();
+    this.#buildShown();
+    this.#buildView();
+    this.node = el("div", { class: "plan-toolbar", role: "toolbar", "aria-label": t("Tools of the plan") }, this.floors, this.toolGroup, this.options, this.shown);
+  }
+
+  #buildTools() {
+    const tool = (name, label, key) => el("button", { type: "button", class: "tool", title: `${label} (${key})`, "aria-label": label, dataset: { tool: name }, on: { click: () => this.setTool(name) } }, icon(ICONS[name]), el("span", { text: label }));
+    this.toolGroup = el("div", { class: "plan-group tools editing-only", role: "group", "aria-label": t("Tools") },
+      tool("select", t("Select"), "V"), tool("measure", t("Measure"), "M"), tool("place", t("Place"), "P"), tool("segment", t("Segment"), "S"));
+    this.options = el("div", { class: "plan-group options editing-only" });
+    this.snap = el("input", { type: "checkbox", checked: true });
+    this.snap.addEventListener("change", () => (this.tools.select.snaps = this.snap.checked));
+    this.kind = el("select", { "aria-label": t("Kind of place") });
+    this.kind.addEventListener("change", () => {
+      this.tools.place.kindAt = this.kind.selectedIndex;
+      this.tools.place.leave();
+      this.tools.place.enter();
+    });
+    this.route = el("input", { class: "route-name", list: "plan-routes", autocomplete: "off", "aria-label": t("Route of new segments") });
+    this.route.addEventListener("input", () => (this.tools.segment.route = this.route.value.trim()));
+    this.routeList = el("datalist", { id: "plan-routes" });
+    this.placeOptions = el("label", { class: "inline" }, t("Kind"), this.kind);
+    this.routeOptions = el("label", { class: "inline" }, t("Route"), this.route, this.routeList);
+    this.options.append(this.placeOptions, this.routeOptions, el("label", { class: "check", title: t("Pieces snap to walls and to each other; Alt switches it off while dragging.") }, this.snap, t("Snap")));
+  }
+
+  #buildShown() {
+    const falls = choose([["selected", t("of the selected")], ["all", t("of all")], ["none", t("of none")]], this.scene.falls);
+    falls.addEventListener("change", () => {
+      this.scene.falls = falls.value;
+      this.scene.drawFalls();
+    });
+    const routes = el("input", { type: "checkbox", checked: true });
+    routes.addEventListener("change", () => {
+      this.scene.showsRoutes = routes.checked;
+      this.scene.drawRoutes();
+    });
+    this.simulated = el("input", { type: "checkbox", checked: true });
+    this.simulated.addEventListener("change", () => {
+      this.scene.pieces.usesSimulated = this.simulated.checked;
+      this.model.dispatchEvent(new Event("classes"));
+    });
+    this.simulatedLabel = el("label", { class: "check", hidden: true }, this.simulated, t("Simulated classes"));
+    this.shown = el("div", { class: "plan-group shown", role: "group", "aria-label": t("What is shown") },
+      el("label", { class: "inline", title: t("The floor that a piece may cover when it falls") }, t("Falls"), falls), el("label", { class: "check" }, routes, t("Routes")), this.simulatedLabel);
+  }
+
+  #buildView() {
+    const button = (text, label, run, key) => el("button", { type: "button", class: "square", text, "aria-label": label, title: key ? `${label} (${key})` : label, on: { click: run } });
+    this.view = el("div", { class: "plan-view-tools", role: "group", "aria-label": t("View") },
+      button("−", t("Zoom out"), () => this.viewport.zoom(0.8), "-"), button("+", t("Zoom in"), () => this.viewport.zoom(1.25), "+"), button("⤢", t("Show all"), () => this.fit(), "0"),
+      el("button", { type: "button", class: "square editing-only", text: "?", "aria-label": t("Keys of the plan"), title: t("Keys of the plan"), on: { click: () => this.help() } }));
+  }
+
+  // ---- drawing
+
+  draw() {
+    this.#drawFloors();
+    const tool = this.currentTool();
+    for (const button of this.toolGroup.children) button.setAttribute("aria-pressed", String(button.dataset.tool === tool.name));
+    this.placeOptions.hidden = tool.name !== "place";
+    this.routeOptions.hidden = tool.name !== "segment";
+    this.simulatedLabel.hidden = !this.store.simulated?.size;
+    if (tool.name === "place") this.#drawKinds();
+    if (tool.name === "segment") this.#drawRoutes(tool);
+    for (const name of ["place", "segment"]) {
+      const button = this.toolGroup.querySelector(`[data-tool="${name}"]`);
+      button.disabled = !this.store.sheet(name === "place" ? "Places" : "Routes")?.found;
+    }
+  }
+
+  #drawKinds() {
+    const choices = this.store.sheet("Places")?.column("kind")?.choices ?? [];
+    if (this.kind.options.length === choices.length) return;
+    clear(this.kind).append(...choices.slice(0, KINDS).map((one) => el("option", { value: one, text: one })));
+    this.kind.selectedIndex = this.tools.place.kindAt;
+  }
+
+  #drawRoutes(tool) {
+    const names = this.store.sheet("Routes")?.names("route") ?? [];
+    clear(this.routeList).append(...names.map((value) => el("option", { value })));
+    if (!tool.route) tool.nextRoute();
+    if (document.activeElement !== this.route) this.route.value = tool.route;
+  }
+
+  #drawFloors() {
+    const { plan } = this.model;
+    const floors = plan?.floors ?? [];
+    const mark = JSON.stringify([floors, plan?.floor]);
+    if (mark === this.floorsShown) return;
+    this.floorsShown = mark;
+    const name = (one) => (one.name && one.name !== one.floor ? one.name : t("Floor {floor}", { floor: one.floor }));
+    const hadFocus = this.floors.contains(document.activeElement);
+    clear(this.floors);
+    if (floors.length > BUTTONS_UP_TO) {
+      const list = choose(floors.map((one) => [one.floor, name(one)]), plan.floor, { "aria-label": t("Floor") });
+      list.addEventListener("change", () => this.setFloor(list.value));
+      this.floors.append(list);
+    } else {
+      this.floors.append(el("div", { class: "segmented", role: "group", "aria-label": t("Floor") }, floors.map((one) =>
+        el("button", { type: "button", text: name(one), dataset: { floor: one.floor }, "aria-pressed": String(one.floor === plan.floor), on: { click: () => this.setFloor(one.floor) } }))));
+    }
+    if (hadFocus) this.floors.querySelector('[aria-pressed="true"], select')?.focus();
+  }
+}
