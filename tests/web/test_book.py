@@ -24,7 +24,7 @@ ITEMS_PART = "xl/worksheets/sheet4.xml"
 
 
 @pytest.fixture(scope="module")
-def filled(tmp_path_factory) -> bytes:
+def filled(tmp_path_factory):
     """The bytes of a small workbook with live formulas and their results."""
     path = tmp_path_factory.mktemp("filled") / "office.xlsx"
     write_workbook(path, with_live(Content(ROWS)))
@@ -32,7 +32,7 @@ def filled(tmp_path_factory) -> bytes:
 
 
 @pytest.fixture
-def book(filled, tmp_path) -> Book:
+def book(filled, tmp_path):
     return Book.hold("office.xlsx", filled, tmp_path)
 
 
@@ -205,14 +205,8 @@ def test_cells_that_cannot_be_edited(book):
 
 def test_formulas_merges_arrays_and_tables(tmp_path):
     """What a change of the bytes would refuse is refused as it is typed."""
-    rows = [
-        ["Item", "Floor", "Mine", "Sum"],
-        ["A1", "1", 1, 2],
-        ["A2", "1", 1, 2],
-        ["A3", "1", 1, 2],
-        ["A4", "1", 1, 2],
-    ]
-    path = write_shared(tmp_path / "own.xlsx", {"Items": rows, "Floors": [["Floor"], ["1"]]})
+    rows = [["Item", "Floor", "Mine", "Sum"], *([f"A{at}", "1", 1, 2] for at in range(1, 5))]
+    path = write_shared(tmp_path / "own.xlsx", {"Items": rows})
     change_parts(path, {
         "xl/worksheets/sheet1.xml": replace('<c r="D2"><v>2</v></c>', '<c r="D2"><f>C2+1</f><v>2</v></c>'),
     })  # fmt: skip

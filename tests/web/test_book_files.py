@@ -32,7 +32,7 @@ RECORD = Path(__file__).parents[2] / "inventories" / "records" / "575-market" / 
 
 
 @pytest.fixture(scope="module")
-def filled(tmp_path_factory) -> bytes:
+def filled(tmp_path_factory):
     """A workbook that names no files."""
     path = tmp_path_factory.mktemp("filled") / "office.xlsx"
     write_workbook(path, Content(PLAIN))
@@ -40,7 +40,7 @@ def filled(tmp_path_factory) -> bytes:
 
 
 @pytest.fixture(scope="module")
-def naming(tmp_path_factory) -> bytes:
+def naming(tmp_path_factory):
     """A workbook that names files."""
     path = tmp_path_factory.mktemp("naming") / "office.xlsx"
     write_workbook(path, Content(ROWS))
@@ -48,7 +48,7 @@ def naming(tmp_path_factory) -> bytes:
 
 
 @pytest.fixture
-def path(filled, tmp_path) -> Path:
+def path(filled, tmp_path):
     """A workbook in a folder of its own."""
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "office.xlsx").write_bytes(filled)
@@ -56,7 +56,7 @@ def path(filled, tmp_path) -> Path:
 
 
 @pytest.fixture
-def named(path, naming) -> Path:
+def named(path, naming):
     """One that names files, which are missing."""
     path.write_bytes(naming)
     return path

@@ -12,6 +12,7 @@ from assess.workbook import template
 from assess.workbook.layout import LETTERS, PLACES
 from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook
+from assess.workbook.writer import write_book
 from tests.pictures import picture
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts, replace
@@ -101,7 +102,7 @@ def add_pivot(path):
 @pytest.fixture
 def rich(tmp_path, monkeypatch):
     """A workbook of furniture with all of that in it, and a chain of calculation as Excel writes it."""
-    write = template.write_book
+    write = write_book
     monkeypatch.setattr(
         template, "write_book", lambda path, fill: write(path, lambda book: (fill(book), add_own(book)))
     )
