@@ -4,6 +4,7 @@ import io
 import re
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import openpyxl
 import pytest
@@ -205,7 +206,7 @@ def test_cells_that_cannot_be_edited(book):
 
 def test_formulas_merges_arrays_and_tables(tmp_path):
     """What a change of the bytes would refuse is refused as it is typed."""
-    rows = [["Item", "Floor", "Mine", "Sum"], *([f"A{at}", "1", 1, 2] for at in range(1, 5))]
+    rows: list[list[Any]] = [["Item", "Floor", "Mine", "Sum"], *([f"A{at}", "1", 1, 2] for at in range(1, 5))]
     path = write_shared(tmp_path / "own.xlsx", {"Items": rows})
     change_parts(path, {
         "xl/worksheets/sheet1.xml": replace('<c r="D2"><v>2</v></c>', '<c r="D2"><f>C2+1</f><v>2</v></c>'),
