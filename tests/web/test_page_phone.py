@@ -37,6 +37,10 @@ def test_on_a_phone_the_tabs_are_at_the_bottom_and_nothing_is_edited(page, serve
     tabs = found.get_by_role("navigation", name="Views").bounding_box()
     assert tabs["y"] + tabs["height"] == HEIGHT
     expect(found.get_by_role("button", name="Undo")).to_be_hidden()
+    found.get_by_role("button", name="Menu").click()
+    expect(found.get_by_role("link", name="Download a copy")).to_be_visible()
+    found.get_by_role("button", name="Menu").click()
+    expect(found.get_by_label("Language of the page")).to_be_hidden()
     before = found.evaluate("async () => (await import('/store.mjs')).store.state.version")
     found.get_by_role("gridcell").first.click()
     found.keyboard.type("x")

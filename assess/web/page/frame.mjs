@@ -69,10 +69,20 @@ class Frame {
     p.download = el("a", { class: "button", href: "/api/download", text: t("Download"), download: "" });
     p.download.addEventListener("click", (event) => this.#onDownload(event));
     p.open = el("a", { class: "button editing-only", href: "#start", text: t("New or open…"), title: t("Make a new workbook, or open another") });
+    p.more = button(t("Menu"), "☰", () => this.#toggleMenu(), { class: "more", "aria-expanded": "false", "aria-controls": "menu" });
     return el("header", { class: "top" },
-      el("div", { class: "book-name" }, p.name, p.state), p.counts,
-      (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
-      el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch()));
+      el("div", { class: "book-name" }, p.name, p.state), p.more, p.counts,
+      el("div", { id: "menu", class: "menu" },
+        (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
+        el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch())));
+  }
+
+  /** On a phone what is not always needed is folded away. */
+  #toggleMenu() {
+    const { more } = this.#parts;
+    const isOpen = more.getAttribute("aria-expanded") !== "true";
+    more.setAttribute("aria-expanded", String(isOpen));
+    more.closest("header").classList.toggle("is-open", isOpen);
   }
 
   #languageSwitch() {

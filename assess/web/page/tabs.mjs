@@ -16,6 +16,7 @@ export class Tabs {
   #store;
   #views = new Map();
   #shown = "";
+  #hasAll = false;
 
   constructor(store) {
     this.#store = store;
@@ -51,6 +52,13 @@ export class Tabs {
     one.root.hidden = false;
     await one.ready;
     if (this.#shown === key) one.view?.show?.();
+    if (this.#store.book && !this.#hasAll) this.#loadOthers();
+  }
+
+  /** Load the modules of the other views, so that they can be shown while the server does not answer. */
+  #loadOthers() {
+    this.#hasAll = true;
+    for (const [, , load] of TABS) load().catch(() => {}); // it is explained where the view is asked for
   }
 
   #add(tab) {
