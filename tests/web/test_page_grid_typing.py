@@ -38,6 +38,14 @@ def tab_to(sheet, selector, key="Tab"):
     raise AssertionError(f"{selector} cannot be reached by {key}")
 
 
+def edit_elsewhere(sheet):
+    """Change a cell as another window of the session does."""
+    client = sheet.server.client
+    version = client.get("/api/book").json()["version"]
+    done = client.post("/api/edit", {"version": version, "edits": [["Items", 2, 3, "Attic"]], "label": ""})
+    assert done.status == 200, done.data
+
+
 def test_a_first_piece_by_keyboard_alone(page, served, tmp_path):
     shutil.copy(BLANK, tmp_path / "new.xlsx")
     sheet = opened(page, served(tmp_path / "new.xlsx"))
@@ -184,11 +192,7 @@ def test_quick_edits_reach_the_server_in_order_and_each_is_one_step_back(small):
 
 
 def test_an_edit_meets_a_change_from_elsewhere(small):
-    version = small.server.client.get("/api/book").json()["version"]
-    other = small.server.client.post(
-        "/api/edit", {"version": version, "edits": [["Items", 2, 3, "Attic"]], "label": ""}
-    )
-    assert other.status == 200, other.data
+    edit_elsewhere(small)
     small.select("Description", 3).type("Desk", "<Enter>")
     expect(small.cell("Room", 2)).to_have_text("Attic")
     small.settle()
@@ -217,10 +221,8 @@ def test_a_cell_that_cannot_be_changed_goes_back_and_is_named(page, served, tmp_
 
 
 def test_what_is_typed_stays_while_the_book_is_read_again(small):
-    client = small.server.client
     small.select("Description", 3).type("Des")
-    version = client.get("/api/book").json()["version"]
-    client.post("/api/edit", {"version": version, "edits": [["Items", 2, 3, "Attic"]], "label": ""})
+    edit_elsewhere(small)
     expect(small.cell("Room", 2)).to_have_text("Attic")  # the page asks every two seconds
     small.type("k", "<Enter>").settle()
     assert small.values("Items", "description")[3] == "Desk"

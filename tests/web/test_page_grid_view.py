@@ -15,8 +15,10 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 AXE = Path(__file__).parents[1] / "data" / "axe-core" / "axe.min.js"
 MANY = 20_000
 MOST_NODES, MOST_BYTES = 1500, 60e6
-HEADERS = ("Item", "Floor", "Room", "Description", "Type", "Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis",
-           "Anchored", "Friction", "X [m]", "Y [m]", "Angle [deg]", "Route", "Importance", "Weight [kg]", "Photo", "Notes")  # fmt: skip
+HEADERS = (
+    "Item", "Floor", "Room", "Description", "Type", "Quantity", "Breadth [cm]", "Width [cm]", "Height [cm]", "Axis",
+    "Anchored", "Friction", "X [m]", "Y [m]", "Angle [deg]", "Route", "Importance", "Weight [kg]", "Photo", "Notes",
+)  # fmt: skip
 HEIGHTS = {"B": 150, "a": 90, "C": 210, "d": None, "E": 90}
 
 
@@ -38,8 +40,10 @@ def write_many(path):
         floors.write_row(row, 0, cells)
     items.write_row(0, 0, HEADERS)
     for row in range(1, MANY):
-        items.write_row(row, 0, (f"P{row}", "1", f"Room {row % 50}", f"Piece number {row}", "", 1, 30 + row % 50, 80,
-                                 100 + row % 120, "X", "no", 0.5, row % 40, row % 30, 90, "", "property", 20, "", f"note {row}"))  # fmt: skip
+        items.write_row(row, 0, (
+            f"P{row}", "1", f"Room {row % 50}", f"Piece number {row}", "", 1, 30 + row % 50, 80, 100 + row % 120, "X",
+            "no", 0.5, row % 40, row % 30, 90, "", "property", 20, "", f"note {row}",
+        ))  # fmt: skip
     book.close()
     return path
 
