@@ -2,6 +2,7 @@
 // looked up in the catalogue that the server sends.
 
 const MISSING = "–";
+const PERCENT = "\u00a0%";
 const LIMITS = [0.03, 0.3, 0.7]; // of the classes, as assess.risk; a percentage never rounds across one
 const MOST_DECIMALS = 4;
 const YEAR_S = 31536000;
@@ -63,9 +64,9 @@ export function percent(chance) {
   if (chance === null || chance === undefined || !Number.isFinite(chance)) return MISSING;
   for (let digits = 1; digits <= MOST_DECIMALS; digits += 1) {
     const shown = Number((100 * chance).toFixed(digits));
-    if (!LIMITS.some((limit) => chance < limit && limit <= shown / 100)) return `${number(shown, digits)} %`;
+    if (!LIMITS.some((limit) => chance < limit && limit <= shown / 100)) return `${number(shown, digits)}${PERCENT}`;
   }
-  return `${number(100 * chance - 10 ** -MOST_DECIMALS, MOST_DECIMALS)} %`;
+  return `${number(100 * chance - 10 ** -MOST_DECIMALS, MOST_DECIMALS)}${PERCENT}`;
 }
 
 /** A size of a file: 12 kB, 3.4 MB. */
