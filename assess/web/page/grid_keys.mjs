@@ -134,7 +134,7 @@ export class Keys {
       z: () => (shiftKey ? this.store.redo() : this.store.undo()), y: () => this.store.redo(),
       f: () => this.act.find(), d: () => this.actions.fillDown(), r: () => this.actions.fillRight(), a: () => this.#all(),
       home: () => this.#to([0, 0], shiftKey), end: () => this.#to(this.#last(), shiftKey), " ": () => selection.columns(),
-      "-": () => this.actions.clearRows(), enter: () => this.editor.canType && this.actions.fillDown(),
+      "-": () => this.actions.clearRows(),
     }[key.toLowerCase()];
     if (!act) return false;
     act();

@@ -284,8 +284,8 @@ class GridView {
     if (cells.length === 0) return;
     const [sheet, row, at] = cells[0];
     if (this.sheet?.name === sheet && this.sheet.layout !== "form") {
-      const rows = cells.filter(([name]) => name === sheet).map(([, one]) => this.grid.order.indexOf(one)).filter((r) => r >= 0);
-      if (rows.includes(this.grid.selection.anchor[0])) return;
+      const active = this.grid.active?.row;
+      if (cells.some(([name, one]) => name === sheet && one === active)) return;
     }
     this.#waiting = { sheet, row, at, takesFocus: true };
     this.#goToWaiting();

@@ -20,6 +20,7 @@ export const isFilled = (value) => value !== null && value !== undefined && valu
 export class Sheet {
   #rows = new Map();
   #numbers = null;
+  #last = null;
   #columns = new Map();
   #fields = new Map();
 
@@ -44,9 +45,8 @@ export class Sheet {
 
   /** The last row with any value that somebody filled in; the header where there is none. */
   get lastRow() {
-    const numbers = this.rowNumbers;
-    for (let i = numbers.length - 1; i >= 0; i--) if (this.isUsed(numbers[i])) return numbers[i];
-    return this.headerRow;
+    this.#last ??= this.rowNumbers.findLast((row) => this.isUsed(row)) ?? this.headerRow;
+    return this.#last;
   }
 
   /** The value of a cell: null where it is blank. */
@@ -64,6 +64,10 @@ export class Sheet {
     }
     while (cells.length < at) cells.push(null);
     cells[at] = value;
+    this.#last = null;
+    if (value !== null || cells.some(isFilled)) return;
+    this.#rows.delete(row); // many rows that are blank again would have to be passed over each time
+    this.#numbers = null;
   }
 
   /** The column, or the line of a form, of a field; undefined where the workbook lacks it. */
