@@ -21,13 +21,27 @@ LiveRows = Mapping[int, list[float | str]]
 
 _WIDE = frozenset({"Building", "Floors", "Catalogue"})
 """Sheets on which the live columns of every row, and the helper columns of Lists, rest."""
+_IDLE = ("latitude", "longitude", "azimuth_deg", "report_date", "logo", "hazard", "language")
+"""Lines of Building on which no live column rests, and that may be wrong: a logo is missing until it is handed over."""
 _CLOSE = 1e-9
 """Relative difference up to which a stored number is left as it is: programs write 15 to 17 digits."""
 
 
 def find_live(snapshot: Snapshot) -> LiveRows:
-    """Return what the live columns of a workbook show; nothing where it has none."""
-    return find_live_rows(snapshot.inventory) if snapshot.sheets[ITEMS.name].live else {}
+    """Return what the live columns of a workbook show.
+
+    Nothing where it has none, or where a line of Building is wrong: the formulas tell of it, the core leaves it out.
+    """
+    is_known = snapshot.sheets[ITEMS.name].live and not _is_building_wrong(snapshot)
+    return find_live_rows(snapshot.inventory) if is_known else {}
+
+
+def _is_building_wrong(snapshot: Snapshot) -> bool:
+    """Tell whether a line of Building that the live columns rest on has an error."""
+    building = snapshot.tables["Building"]
+    harmless = {building.cell(name, 0) for name in _IDLE if name in building.places}
+    wrong = (one.cell for one in snapshot.problems if one.severity == "error" and one.sheet == building.sheet.name)
+    return not harmless.issuperset(wrong)
 
 
 def write_changes(data: bytes, base: Snapshot, now: Snapshot, different: Iterable[CellPlace], was: LiveRows) -> bytes:

@@ -119,6 +119,19 @@ def test_an_edit_of_a_floor_reaches_every_live_value(book, tmp_path):
     assert {cell: found.get(cell) for cell in live} == {cell: anew.get(cell) for cell in live}
 
 
+def test_what_the_formulas_tell_and_the_core_leaves_out(book, filled):
+    """Where a line of Building is wrong no result is stored: each program computes what the formulas say of that."""
+    lines = {one["field"]: one["row"] for one in book.describe()["sheets"][0]["columns"]}
+    live = {f"{LETTERS['Items', label]}{row}" for label in LIVE for row in range(2, 7)}
+    edit(book, ("Building", lines["logo"], 1, "missing.png"))
+    before, found = stored(filled), stored(book.write())
+    assert {cell: found.get(cell) for cell in live} == {cell: before.get(cell) for cell in live}
+    edit(book, ("Building", lines["period"], 1, "long"))
+    assert live.isdisjoint(stored(book.write()))
+    book.undo(book.version)
+    assert stored(book.write()) == found
+
+
 def test_what_is_held_is_what_is_written(book, tmp_path):
     """The snapshot of a book with edits of every kind equals the reading of the bytes that it writes."""
     edit(
