@@ -15,6 +15,8 @@ SCROLL_TO = """async (head) => {
 }"""
 
 
+TWO_FRAMES = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+"""The grid draws before the next frame."""
 COPY = """([text, html]) => document.addEventListener("copy", (event) => {
     event.preventDefault();
     event.clipboardData.setData("text/plain", text);
@@ -60,6 +62,7 @@ class SheetPage:
         self.shown(label, row).click()
         if last:
             self.shown(last, last_row).click(modifiers=["Shift"])
+        self.page.evaluate(TWO_FRAMES)
         return self
 
     def type(self, *keys):
