@@ -9,6 +9,7 @@ import { number, percent, t, tn } from "./texts.mjs";
 
 const PIECE_FIELDS = ["item", "room", "type", "anchored", "x", "y", "angle_deg", "against_wall"];
 const PLACE_FIELDS = ["place", "kind", "x", "y"];
+const WIDE = new Set(["type", "place"]);
 const SEGMENT_FIELDS = ["route", "segment", "start", "end", "room", "clear_width", "required_width", "occupants"];
 
 export class Details {
@@ -147,7 +148,7 @@ export class Details {
     input.addEventListener("change", () => this.#write(sheet.name, row, column, input.value));
     input.title = problem ? problem.message : column.help;
     if (problem?.severity === "error") input.setAttribute("aria-invalid", "true");
-    const isWide = column.kind === "text" && !column.choices.length;
+    const isWide = WIDE.has(column.field);
     return el("label", { class: isWide ? "field wide" : "field" }, el("span", { class: "field-name", text: label }), input, problem && el("span", { class: problem.severity === "error" ? "error-text hint" : "warning-text hint", text: problem.message }));
   }
 

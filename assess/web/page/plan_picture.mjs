@@ -97,8 +97,8 @@ export class Picture {
     if (!from) return {};
     const gesture = {};
     let now = from;
-    gesture.drag = (point) => {
-      const [dx, dy] = [point.at[0] - gesture.from.at[0], point.at[1] - gesture.from.at[1]];
+    gesture.drag = (point, { at }) => {
+      const [dx, dy] = [point.at[0] - at[0], point.at[1] - at[1]];
       now = { ...from, left: from.left + dx, bottom: from.bottom + dy };
       this.scene.drawPicture(now);
     };
@@ -121,8 +121,8 @@ export class Picture {
     const centre = this.#centre(from);
     let now = from;
     const gesture = {};
-    gesture.drag = (point) => {
-      const by = direction(centre, point.at) - direction(centre, gesture.from.at);
+    gesture.drag = (point, { at }) => {
+      const by = direction(centre, point.at) - direction(centre, at);
       const turn = roundTo((((from.turn + by) % 360) + 360) % 360, point.alt ? 0.1 : 1);
       const [u, v] = turnPoint([(from.width) / 2, (from.width * this.picture.aspect) / 2], turn);
       now = { ...from, turn, left: centre[0] - u, bottom: centre[1] - v };

@@ -2,7 +2,7 @@
 
 import { svg } from "./elements.mjs";
 import { PieceLayer } from "./plan_pieces.mjs";
-import { moveRing } from "./plan_geometry.mjs";
+import { boxOf, moveRing } from "./plan_geometry.mjs";
 import { number, t } from "./texts.mjs";
 
 const SIGNS = { open: "✓", doubtful: "≈", not_known: "?", blocked: "✕" };
@@ -10,6 +10,8 @@ const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500];
 const GRID_PX = 22; // least distance of grid lines
 const BAR_PX = 70; // least length of the scale bar
 const NAMED_FROM = 55; // pixels a metre from which points of routes show their names
+const TINY_TO = 18; // pixels a metre below which a piece is a fleck of its class
+const LETTER_PX = 6.2;
 const SIGN_PX = 46; // length of an open segment from which its sign is drawn
 const MARKS = {
   exit: "M-7 -3H0V-7L8 0L0 7V3H-7Z", stair: "M-7 6V2.5H-3.5V-1H0V-4.5H3.5V-8H7V6Z", door: "M-5 0A5 5 0 1 0 5 0A5 5 0 1 0 -5 0Z",
@@ -48,6 +50,7 @@ export class Scene {
       this.drawRoutes();
     }
     this.viewport.svg.classList.toggle("far", scale < NAMED_FROM);
+    this.viewport.svg.classList.toggle("tiny", scale < TINY_TO);
     this.#drawGrid(scale, left, top);
   }
 
@@ -151,10 +154,16 @@ export class Scene {
     const state = this.model.stateOf("place", place.row);
     const isSelected = this.#isSelected("Places", place.row);
     const classes = ["mark", `mark-${place.kind || "point"}`, stateClass(state), isSelected && "selected"].filter(Boolean).join(" ");
-    const isRoom = place.kind === "room";
     const sign = state && svg("g", { class: "state-sign", "aria-hidden": "true" }, svg("circle", { r: 8 }), svg("text", { text: signOf(state) }));
     return svg("g", { class: classes, transform: `translate(${place.x} ${-place.y})`, "data-place": place.row }, this.#title(place.place, state),
-      svg("g", { class: "px" }, svg("circle", { class: "reach", r: 12 }), sign || svg("path", { d: MARKS[place.kind] ?? MARKS.corridor }), svg("text", { class: "place-name", x: isRoom ? 0 : 11, y: isRoom ? 18 : 0, text: place.place })));
+      svg("g", { class: "px" }, svg("circle", { class: "reach", r: 12 }), sign || svg("path", { d: MARKS[place.kind] ?? MARKS.corridor }), this.#isNamed(place, isSelected) && svg("text", { class: "place-name", y: 18, text: place.place })));
+  }
+
+  /** The name of a room is left out where it is wider than the room. */
+  #isNamed({ place, outline }, isSelected) {
+    if (!outline || isSelected) return true;
+    const [x0, , x1] = boxOf(outline);
+    return (x1 - x0) * this.viewport.scale >= place.length * LETTER_PX;
   }
 
   // ---- what pieces cover when they fall

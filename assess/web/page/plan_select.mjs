@@ -46,7 +46,7 @@ export class SelectTool {
     gesture.last = point;
     gesture.frame ??= requestAnimationFrame(() => {
       gesture.frame = null;
-      if (gesture === this.#gesture && gesture.last) gesture.drag?.(gesture.last);
+      if (gesture === this.#gesture && gesture.last) gesture.drag?.(gesture.last, gesture.from);
     });
   }
 
@@ -55,7 +55,7 @@ export class SelectTool {
     this.#gesture = null;
     if (!gesture) return;
     if (gesture.isMoved) {
-      gesture.drag?.(point);
+      gesture.drag?.(point, gesture.from);
       gesture.drop?.(point);
     } else gesture.click?.(point);
     this.#end(gesture);
@@ -101,7 +101,7 @@ export class SelectTool {
     pieces.focus(row);
     const click = () => {
       if (point.more && isSelected) this.edits.select("Items", [...pieces.selected].filter((one) => one !== row));
-      else if (!point.more && pieces.selected.size > 1) this.edits.select("Items", [row]);
+      else if (!point.more) this.edits.select("Items", [row]);
     };
     if (!this.canEdit()) return { click };
     const rows = [...pieces.selected].filter((one) => this.model.pieces.has(one));
@@ -114,8 +114,8 @@ export class SelectTool {
     const poses = new Map(rows.map((one) => [one, this.model.pieces.get(one)]));
     const lines = this.linesBut(rows);
     const gesture = {};
-    gesture.drag = (point) => {
-      const shift = [point.at[0] - gesture.from.at[0], point.at[1] - gesture.from.at[1]];
+    gesture.drag = (point, from) => {
+      const shift = [point.at[0] - from.at[0], point.at[1] - from.at[1]];
       const snapped = this.#snap(held, shift, lines, point.alt);
       gesture.shift = snapped.shift;
       this.pieces.preview(new Map([...poses].map(([one, pose]) => [one, this.#shifted(pose, snapped.shift)])));

@@ -119,13 +119,14 @@ export class Toolbar {
   #drawFloors() {
     const { plan } = this.model;
     const floors = plan?.floors ?? [];
-    const mark = JSON.stringify([floors, plan?.floor]);
+    const isList = floors.length > BUTTONS_UP_TO || (floors.length > 1 && !this.canEdit());
+    const mark = JSON.stringify([floors, plan?.floor, isList]);
     if (mark === this.floorsShown) return;
     this.floorsShown = mark;
     const name = (one) => (one.name && one.name !== one.floor ? one.name : t("Floor {floor}", { floor: one.floor }));
     const hadFocus = this.floors.contains(document.activeElement);
     clear(this.floors);
-    if (floors.length > BUTTONS_UP_TO) {
+    if (isList) {
       const list = choose(floors.map((one) => [one.floor, name(one)]), plan.floor, { "aria-label": t("Floor") });
       list.addEventListener("change", () => this.setFloor(list.value));
       this.floors.append(list);

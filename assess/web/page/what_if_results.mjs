@@ -19,7 +19,7 @@ export class Results {
 
   draw(answer) {
     this.#answer = answer;
-    clear(this.node).append(this.#counts(answer), this.#states(answer), this.#pieces(answer));
+    clear(this.node).append(el("div", { class: "stack" }, this.#counts(answer), this.#states(answer)), this.#pieces(answer));
   }
 
   /** One sentence for those who hear the page. */
@@ -71,7 +71,7 @@ export class Results {
   }
 
   #stateTable(pairs) {
-    const cell = (one) => (one ? el("td", null, el("span", { class: `state-word state-${one.standing ? "standing" : one.state.replace("_", "-")}`, title: one.detail, text: one.word }), one.chance === null ? "" : ` ${percent(one.chance)}`) : el("td", { text: "–" }));
+    const cell = (one) => (one ? el("td", null, el("span", { class: `state-word state-${one.standing ? "standing" : one.state.replace("_", "-")}`, title: one.detail, text: one.word }), one.chance !== null && [" ", shownChance(one.chance)]) : el("td", { text: "–" }));
     return el("table", { class: "plain" }, el("thead", null, el("tr", null, [t("Route or room"), t("now"), t("then")].map((text) => el("th", { scope: "col", text })))),
       el("tbody", null, pairs.slice(0, MOST).map(({ kind, name, was, is }) => el("tr", null, el("th", { scope: "row" }, el("span", { class: "muted", text: `${kind} ` }), name), cell(was), cell(is)))));
   }
@@ -90,14 +90,16 @@ export class Results {
     const head = el("h2", { text: t("Pieces of another class ({n})", { n: changed.length }) });
     if (!changed.length) return el("section", { class: "card" }, head, el("p", { class: "muted", text: t("No piece changes its class.") }));
     const isAnchored = new Set(anchored);
-    const cell = (one, row, isThen) => el("td", null, one?.class ? [badge(one.class), ` ${percent(one.chance)}`] : isThen && isAnchored.has(row) ? `⚓ ${t("anchored")}` : one?.word || "–");
-    const rows = changed.slice(0, MOST).map((one) => el("tr", null, el("th", { scope: "row", text: items?.value(one.row, at) ?? one.row }), el("td", { text: about === undefined ? "" : items.value(one.row, about) ?? "" }), cell(one.was, one.row, false), cell(one.is, one.row, true)));
+    const cell = (one, row, isThen) => el("td", null, one?.class ? [badge(one.class), " ", shownChance(one.chance)] : isThen && isAnchored.has(row) ? `⚓ ${t("anchored")}` : one?.word || "–");
+    const rows = changed.slice(0, MOST).map((one) => el("tr", null, el("th", { scope: "row", class: "chance", text: items?.value(one.row, at) ?? one.row }), el("td", { text: about === undefined ? "" : items.value(one.row, about) ?? "" }), cell(one.was, one.row, false), cell(one.is, one.row, true)));
     const more = changed.length - MOST;
     return el("section", { class: "card" }, head, el("div", { class: "scroll-x" }, el("table", { class: "plain" }, el("thead", null, el("tr", null, [t("Item"), t("Description"), t("now"), t("then")].map((text) => el("th", { scope: "col", text })))), el("tbody", null, rows))), more > 0 && el("p", { class: "muted", text: tn("{n:,} more", "{n:,} more", more) }));
   }
 }
 
 const say = (state) => ({ open: t("open"), doubtful: t("doubtful"), not_known: t("not known"), blocked: t("blocked") })[state];
+
+const shownChance = (chance) => el("span", { class: "chance", text: percent(chance) });
 
 const byRow = (items) => new Map(items.row.map((row, i) => [row, { class: items.class[i], word: items.word[i], chance: items.chance[i] }]));
 

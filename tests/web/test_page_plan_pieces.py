@@ -1,0 +1,213 @@
+"""Pieces on the plan by a real mouse and by keys: what lands in the workbook, what stays, what undo brings back."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.web.plan_page import opened_plan, write_floor
+from tests.web.sheet_page import CLASS
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+A1, A2, A3, FREE = 2, 3, 4, 6
+"""Rows of the pieces, and the first free one."""
+
+
+@pytest.fixture
+def plan(page, served, tmp_path):
+    return opened_plan(page, served(write_floor(tmp_path / "hall.xlsx")))
+
+
+def test_a_dragged_piece_moves_in_the_workbook_and_undo_brings_it_back(page, served, tmp_path):
+    plan = opened_plan(page, served(write_floor(tmp_path / "hall.xlsx")), width=2200)
+    before = plan.server.client.get("/api/download").data
+    shown = plan.piece(A2).get_attribute("class")
+    assert "class-high" in shown or "class-very-high" in shown
+    plan.drag((5, 4), (5.5, 3.5), (3.5, 2.5), keys=["Alt"])
+    assert plan.at(A2) == (3.5, 2.5, 0)
+    assert plan.shown_at(A2) == (3.5, 2.5)
+    assert re.sub(" selected", "", plan.piece(A2).get_attribute("class")) == shown
+    plan.keyboard.press("Control+z")
+    assert plan.at(A2) == (5, 4, 0)
+    expect(plan.piece(A2)).to_have_attribute("transform", "translate(5.0000 -4.0000)")
+    assert plan.server.client.get("/api/download").data == before
+    plan.keyboard.press("Control+y")
+    assert plan.at(A2) == (3.5, 2.5, 0)
+    plan.page.locator("nav.tabs [data-tab=sheet]").click()
+    sheet = plan.sheet.open("Items")
+    expect(sheet.cell("X", A2)).to_have_text("3.5")
+    expect(sheet.cell(CLASS, A2)).to_contain_text("high")
+    sheet.select("X", A2).type("<Control+z>")
+    expect(sheet.cell("X", A2)).to_have_text("5")
+    plan.open()
+    expect(plan.piece(A2)).to_have_attribute("transform", "translate(5.0000 -4.0000)")
+
+
+def test_a_late_answer_does_not_move_a_piece_back(plan):
+    """While the server still answers for the plan before, the piece stays where it was dropped."""
+    held = []
+    plan.page.route("**/api/plan*", lambda route: held.append(route))
+    plan.drag((5, 4), (4, 2), keys=["Alt"])
+    assert plan.shown_at(A2) == (4, 2)
+    plan.drag((4, 2), (3, 3), keys=["Alt"])
+    held[-1].continue_()
+    plan.page.unroute("**/api/plan*")
+    plan.settle()
+    expect(plan.piece(A2)).to_have_attribute("transform", "translate(3.0000 -3.0000)")
+    assert plan.at(A2)[:2] == (3, 3)
+
+
+def test_several_pieces_are_framed_and_dragged_in_one_step(plan):
+    plan.drag((1, 5.5), (6, 1))
+    expect(plan.page.locator(".piece.selected")).to_have_count(2)
+    plan.drag((2, 2), (3, 3), keys=["Alt"])
+    assert (plan.at(A1)[:2], plan.at(A2)[:2]) == ((3, 3), (6, 5))
+    plan.keyboard.press("Control+z")
+    assert (plan.at(A1)[:2], plan.at(A2)[:2]) == ((2, 2), (5, 4))
+
+
+def test_a_piece_is_turned_by_its_handle_and_by_keys(plan):
+    plan.click(5, 4)
+    handle = plan.page.locator(".handle.turn")
+    box = handle.locator("circle").last.bounding_box()
+    plan.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    plan.mouse.down()
+    plan.mouse.move(*plan.place(4.9, 5.5), steps=8)
+    plan.mouse.up()
+    assert plan.at(A2) == (5, 4, 90)
+    plan.keyboard.press("Shift+R")
+    assert plan.at(A2) == (5, 4, 105)
+    plan.keyboard.press("r")
+    assert plan.at(A2) == (5, 4, 195)
+    for angle in (105, 90, 0):
+        plan.keyboard.press("Control+z")
+        assert plan.at(A2) == (5, 4, angle)
+
+
+def test_a_piece_snaps_to_the_wall_and_to_another_piece_unless_alt_is_held(plan):
+    near = 3 / plan.page.evaluate("() => document.querySelector('svg.plan .world').getScreenCTM().a")
+    plan.drag((5, 4), (7.8 - near, 4.03))
+    assert plan.at(A2)[0] == 7.8, "its side, 0.2 m from its centre, lies on the wall at 8 m"
+    plan.drag((7.8, 4), (2 + 0.4 + 0.2 + near, 3.2))
+    assert plan.at(A2)[0] == 2.6, "side by side with A1, which is turned by 90 degrees and 0.8 m wide along X"
+    x = plan.at(A2)[0]
+    plan.drag((x, 3.2), (7.8 - near, 3.2), keys=["Alt"])
+    assert plan.at(A2)[0] == pytest.approx(7.8 - near, abs=0.011)
+    assert plan.at(A2)[0] != 7.8 or near < 0.005
+
+
+def test_keys_alone_select_move_copy_and_take_off(plan):
+    plan.page.locator("svg.plan").focus()
+    for _ in range(12):
+        plan.keyboard.press("Tab")
+        if plan.piece(A2).evaluate("node => node === document.activeElement"):
+            break
+    expect(plan.piece(A2)).to_be_focused()
+    expect(plan.piece(A2)).to_have_attribute("aria-label", re.compile("A2.*class.*high.*chance.*X 5.00 m, Y 4.00 m"))
+    plan.keyboard.press("Enter")
+    plan.keyboard.press("ArrowLeft")
+    plan.keyboard.press("Shift+ArrowUp")
+    assert plan.at(A2) == (4.95, 4.01, 0)
+    plan.keyboard.down("ArrowRight")
+    for _ in range(9):
+        plan.keyboard.down("ArrowRight")
+    plan.keyboard.up("ArrowRight")
+    assert plan.at(A2)[0] == 5.45
+    plan.keyboard.press("Control+z")
+    assert plan.at(A2)[0] == 4.95, "a held key is one step"
+    plan.keyboard.press("Control+d")
+    expect(plan.piece(FREE)).to_be_focused()
+    assert plan.at(FREE) == (5.45, 3.51, 0)
+    assert plan.values("Items", "item")[FREE] == "A4"
+    assert plan.values("Items", "anchored")[FREE] == "no"
+    plan.keyboard.press("Delete")
+    plan.page.get_by_role("button", name="Take off the plan").click()
+    assert plan.at(FREE) == (None, None, 0)
+    plan.keyboard.press("Control+z")
+    expect(plan.piece(FREE)).to_be_visible()
+    plan.click(5.45, 3.51)
+    plan.keyboard.press("Delete")
+    plan.page.get_by_role("button", name="Delete the row").click()
+    expect(plan.piece(FREE)).to_have_count(0)
+    assert FREE not in plan.values("Items", "item")
+
+
+def test_copy_and_paste_goes_to_another_floor(plan):
+    plan.click(2, 2)
+    plan.keyboard.press("Control+c")
+    plan.page.get_by_role("button", name="First").click()
+    expect(plan.piece(5)).to_be_visible()
+    plan.mouse.move(*plan.place(1.5, 1.2))
+    plan.keyboard.press("Control+v")
+    expect(plan.piece(FREE)).to_be_visible()
+    x, y, angle = plan.at(FREE)
+    assert (x, y, angle) == (pytest.approx(1.5, abs=0.02), pytest.approx(1.2, abs=0.02), 90)
+    assert plan.values("Items", "floor")[FREE] == "2"
+    assert plan.values("Items", "description")[FREE] == "Bookcase"
+
+
+def test_a_type_is_dragged_from_the_catalogue_and_an_unplaced_piece_from_its_list(plan):
+    plan.tab("add")
+    plan.panel.get_by_label("Find a type").fill("bookcase tall")
+    source = plan.panel.locator("[data-type='Bookcase tall']").bounding_box()
+    plan.mouse.move(source["x"] + 20, source["y"] + 10)
+    plan.mouse.down()
+    plan.mouse.move(*plan.place(4, 1.5), steps=8)
+    plan.mouse.up()
+    expect(plan.piece(FREE)).to_be_visible()
+    assert plan.at(FREE) == (pytest.approx(4, abs=0.02), pytest.approx(1.5, abs=0.02), 0)
+    assert plan.values("Items", "type")[FREE] == "Bookcase tall"
+    assert plan.values("Items", "floor")[FREE] == "1"
+    assert plan.values("Items", "item")[FREE] == "A4"
+    expect(plan.piece(FREE)).to_have_class(re.compile("class-(very-)?high"))
+    plan.tab("pieces")
+    source = plan.panel.locator(f".unplaced [data-row='{A3}']").bounding_box()
+    plan.mouse.move(source["x"] + 20, source["y"] + 10)
+    plan.mouse.down()
+    plan.keyboard.down("Alt")
+    plan.mouse.move(*plan.place(6, 1), steps=8)
+    plan.mouse.up()
+    plan.keyboard.up("Alt")
+    assert plan.at(A3)[:2] == (pytest.approx(6, abs=0.02), pytest.approx(1, abs=0.02))
+    expect(plan.piece(A3)).to_be_visible()
+    plan.keyboard.press("Control+z")
+    expect(plan.piece(A3)).to_have_count(0)
+    assert plan.at(A3)[:2] == (None, None)
+
+
+def test_the_selection_is_shared_with_the_sheet(plan):
+    plan.click(5, 4)
+    plan.page.locator("nav.tabs [data-tab=sheet]").click()
+    expect(plan.page.locator(".sheet-cell")).to_have_text(re.compile(f"{A2}$"))
+    plan.sheet.open("Items").select("Description", 5)
+    plan.open()
+    expect(plan.page.get_by_role("button", name="First")).to_have_attribute("aria-pressed", "true")
+    expect(plan.piece(5)).to_have_class(re.compile("selected"))
+
+
+def test_positions_are_written_in_the_unit_of_the_workbook(page, served, tmp_path):
+    foot = 0.3048
+    items = [{"item": "A1", "floor": "1", "breadth": 16, "width": 32, "height": 80, "x": 2 / foot, "y": 2 / foot}]
+    path = write_floor(tmp_path / "feet.xlsx", "imperial", items, places=[], routes=[])
+    plan = opened_plan(page, served(path))
+    plan.drag((2, 2), (3, 2.5), keys=["Alt"])
+    assert plan.at(2)[:2] == (pytest.approx(3 / foot, abs=0.006), pytest.approx(2.5 / foot, abs=0.006))
+    expect(plan.page.locator(".scale-bar")).to_have_text(re.compile("ft$"))
+
+
+def test_on_a_phone_the_plan_is_read_and_not_edited(page, served, tmp_path):
+    server = served(write_floor(tmp_path / "hall.xlsx"))
+    plan = opened_plan(page, server, width=390, height=844, has_touch=True)
+    plan.page.touchscreen.tap(*plan.place(2, 2))
+    expect(plan.panel.locator(".details h3")).to_have_text("A1")
+    expect(plan.panel.locator("input:visible, [data-panel=add]")).to_have_count(0)
+    before = plan.place(2, 2)
+    plan.drag((2, 2), (3, 2))
+    expect(plan.page.locator("[data-tool]:visible")).to_have_count(0)
+    assert plan.at(A1)[:2] == (2, 2)
+    plan.page.get_by_role("button", name="Zoom in").click()
+    assert plan.place(2, 2) != before
+    plan.tab("routes")
+    expect(plan.panel.locator(".states li")).to_have_count(2)
+    assert plan.page.evaluate("() => document.documentElement.scrollWidth <= innerWidth")
