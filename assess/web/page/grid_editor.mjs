@@ -22,6 +22,7 @@ export class Editor {
     this.input.addEventListener("compositionstart", () => this.#start("typing"));
     this.input.addEventListener("blur", () => this.commit());
     grid.addEventListener("drawn", () => this.place());
+    grid.addEventListener("select", () => (this.input.readOnly = !this.canType)); // at once: the next key may come before the next frame
   }
 
   focus() {
