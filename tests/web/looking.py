@@ -14,6 +14,7 @@ def show(page, view):
     page.evaluate("view => { location.hash = view; }", view)
     expect(page.locator(f"#view-{view}")).to_be_visible()
     expect(page.locator(f"#view-{view} > *").first).to_be_attached()
+    expect(page.locator(f"#view-{view} [aria-busy=true]")).to_have_count(0)
 
 
 def examine(page):
