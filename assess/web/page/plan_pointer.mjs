@@ -3,6 +3,7 @@
 const WHEEL = 0.0016; // zoom a pixel of the wheel
 const LINE_PX = 16;
 const CLICK_PX = 4;
+const DOUBLE_MS = 450;
 
 export class PlanPointer {
   #touches = new Map();
@@ -10,6 +11,7 @@ export class PlanPointer {
   #pinch = null;
   #tool = null;
   #isSpace = false;
+  #click = null;
 
   /** @param {{viewport: object, tool: () => object, canEdit: () => boolean}} parts */
   constructor(parts) {
@@ -20,7 +22,6 @@ export class PlanPointer {
     svg.addEventListener("pointermove", (event) => this.#move(event));
     svg.addEventListener("pointerup", (event) => this.#up(event));
     svg.addEventListener("pointercancel", (event) => this.#up(event, true));
-    svg.addEventListener("dblclick", (event) => this.tool().double?.(this.point(event)));
     svg.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
     svg.addEventListener("auxclick", (event) => event.preventDefault());
     addEventListener("keydown", (event) => this.#space(event, true));
@@ -97,8 +98,21 @@ export class PlanPointer {
     if (!this.#tool) return;
     const tool = this.#tool;
     this.#tool = null;
-    if (isCancelled) tool.cancel?.();
-    else tool.up?.(this.point(event));
+    if (isCancelled) {
+      tool.cancel?.();
+      return;
+    }
+    tool.up?.(this.point(event));
+    this.#countClick(event);
+  }
+
+  /** Two clicks at one place. The browser tells of none where the first replaced what lies there. */
+  #countClick(event) {
+    const before = this.#click;
+    const now = { at: [event.clientX, event.clientY], time: event.timeStamp };
+    const isSecond = before && now.time - before.time < DOUBLE_MS && !isDrag(before.at, now.at);
+    this.#click = isSecond ? null : now;
+    if (isSecond) this.tool().double?.({ ...this.point(event), target: targetAt(event) });
   }
 
   #endTool() {
@@ -127,6 +141,9 @@ export class PlanPointer {
     this.viewport.zoom(Math.exp(-Math.max(-250, Math.min(250, px)) * speed), ...this.viewport.toLocal(event.clientX, event.clientY));
   }
 }
+
+/** What lies under a pointer; events of captured pointers name the drawing itself. */
+const targetAt = ({ clientX, clientY, target }) => document.elementFromPoint(clientX, clientY) ?? target;
 
 /** Whether a pointer went far enough to be a drag. */
 export const isDrag = ([a, b], [c, d]) => Math.hypot(c - a, d - b) >= CLICK_PX;

@@ -1,0 +1,171 @@
+"""The floor under the pieces, drawn by a real mouse: its picture, rooms, doors, segments of routes and their states."""
+
+import re
+
+import pytest
+from PIL import Image, ImageDraw
+from playwright.sync_api import expect
+
+from tests.web.plan_page import FLOORS, ITEMS, opened_plan, write_floor
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+NUMBERS = ("plan_left", "plan_bottom", "plan_width", "plan_turn")
+
+
+@pytest.fixture
+def plan(page, served, tmp_path):
+    return opened_plan(page, served(write_floor(tmp_path / "hall.xlsx", items=ITEMS[:2])))
+
+
+@pytest.fixture
+def empty(page, served, tmp_path):
+    return opened_plan(page, served(write_floor(tmp_path / "empty.xlsx", items=[], places=[], routes=[])))
+
+
+def draw_picture(path):
+    """Write a picture twice as wide as high, with a line from 0.1 to 0.6 of its width."""
+    picture = Image.new("RGB", (600, 300), "white")
+    ImageDraw.Draw(picture).line([(60, 240), (360, 240)], fill="black", width=3)
+    picture.save(path)
+
+
+def on_picture(plan, u, v):
+    """Return where a point of the picture is shown [px]; u and v are shares of its width, from its lower left corner."""
+    return plan.page.locator("svg.plan .picture").evaluate("""(node, [u, v]) => {
+        const width = node.width.baseVal.value;
+        const point = new DOMPoint(u * width, -v * width).matrixTransform(node.getScreenCTM());
+        return [point.x, point.y];
+    }""", [u, v])
+
+
+def numbers(plan):
+    return [plan.values("Floors", name).get(2) for name in NUMBERS]
+
+
+def measure(plan, *ends):
+    plan.tool("measure")
+    for end in ends:
+        plan.mouse.click(*end)
+    plan.mouse.move(10, 400)
+    length = plan.page.locator(".readout").text_content()
+    plan.tool("select")
+    return length
+
+
+@pytest.mark.parametrize(("run", "turn"), [("", 0), ("90", 90)])
+def test_a_picture_is_placed_by_two_clicks_and_a_distance(page, served, tmp_path, run, turn):
+    draw_picture(tmp_path / "plan.png")
+    floors = [FLOORS[0] | {"plan": "plan.png"}, FLOORS[1]]
+    plan = opened_plan(page, served(write_floor(tmp_path / "hall.xlsx", floors=floors)))
+    plan.tab("picture")
+    expect(plan.panel).to_contain_text("Not placed yet")
+    plan.page.get_by_role("button", name="Place by two points").click()
+    plan.mouse.click(*on_picture(plan, 0.1, 0.1))
+    plan.mouse.click(*on_picture(plan, 0.6, 0.1))
+    form = plan.panel.locator("form")
+    form.get_by_label("Distance of the two points").fill("6,5")
+    form.get_by_label("X of the first point").fill("1")
+    form.get_by_label("Y of the first point").fill("1.5")
+    form.get_by_label("it runs").select_option(run)
+    form.get_by_role("button", name="Place the picture").click()
+    expect(plan.panel).to_contain_text("Placed: 13.00 m wide")
+    left, bottom, width, turned = numbers(plan)
+    assert (width, turned) == (pytest.approx(13, abs=0.05), pytest.approx(turn, abs=0.3))
+    plan.page.get_by_role("button", name="Show all").click()
+    ends = on_picture(plan, 0.1, 0.1), on_picture(plan, 0.6, 0.1)
+    assert ends[0] == pytest.approx(plan.place(1, 1.5), abs=1.5)
+    length = float(measure(plan, *ends).split()[0])
+    assert length == pytest.approx(6.5, abs=0.06), "the clicks lie within a pixel"
+    plan.keyboard.press("Control+z")
+    assert numbers(plan) == [None] * 4
+    expect(plan.panel).to_contain_text("Not placed yet")
+    assert (left, bottom) != (None, None)
+
+
+def test_an_unlocked_picture_is_dragged_and_added_from_the_page(plan, tmp_path):
+    draw_picture(tmp_path / "new.png")
+    plan.tab("picture")
+    plan.page.locator("input[type=file]").last.set_input_files(tmp_path / "new.png")
+    expect(plan.panel).to_contain_text("Not placed yet")
+    plan.panel.get_by_label("Unlocked").check()
+    plan.drag((3, 3), (4, 3.5))
+    left, bottom, width, turn = numbers(plan)
+    assert None not in (left, bottom, width)
+    plan.drag((3, 3), (3.5, 2))
+    assert numbers(plan) == [pytest.approx(left + 0.5, abs=0.05), pytest.approx(bottom - 1, abs=0.05), width, turn]
+    plan.keyboard.press("Control+z")
+    assert numbers(plan) == [left, bottom, width, turn]
+
+
+def test_rooms_doors_and_a_segment_are_drawn_and_its_state_follows(empty):
+    plan = empty
+    expect(plan.page.locator(".plan-empty")).to_contain_text("Nothing is on this floor yet")
+    plan.tool("place")
+    for corner in ((1, 1), (6, 1), (6, 5), (1, 5)):
+        plan.click(*corner)
+    plan.keyboard.press("Enter")
+    room = plan.values("Places", "place")[2]
+    outline = [[float(one) for one in corner.split()] for corner in plan.values("Places", "outline")[2].split("; ")]
+    assert [one for corner in outline for one in corner] == pytest.approx([1, 1, 6, 1, 6, 5, 1, 5], abs=0.06)
+    assert outline[0][1] == outline[1][1], "nearly level sides are level"
+    assert plan.values("Places", "kind")[2] == "room"
+    assert (plan.values("Places", "x")[2], plan.values("Places", "y")[2]) == pytest.approx((3.5, 3), abs=0.1)
+    plan.tool("place")
+    plan.page.get_by_label("Kind of place").select_option("exit")
+    plan.click(6, 3.5)
+    assert plan.values("Places", "kind")[3] == "exit"
+    assert plan.values("Places", "x")[3] == outline[1][0], "it snaps to the wall"
+    plan.tool("segment")
+    plan.page.get_by_label("Route of new segments").fill("Way out")
+    plan.click(3.5, 3.2)
+    plan.click(6, 3.5)
+    assert plan.values("Routes", "route") == {2: "Way out"}
+    assert (plan.values("Routes", "start")[2], plan.values("Routes", "end")[2]) == (room, plan.values("Places", "place")[3])
+    plan.keyboard.press("Escape")
+    plan.keyboard.press("Escape")
+    expect(plan.page.locator("[data-tool=select]")).to_have_attribute("aria-pressed", "true")
+    expect(plan.page.locator(".band")).to_have_class(re.compile("state-open"))
+    for _ in range(3):
+        plan.keyboard.press("Control+z")
+        plan.settle()
+    assert plan.values("Places", "place") == {}
+
+
+def test_a_piece_that_would_block_the_way_changes_its_state(plan):
+    expect(plan.page.locator(".band")).to_have_class(re.compile("state-open"))
+    plan.drag((5, 4), (6.5, 3), keys=["Alt"])
+    expect(plan.page.locator(".band")).to_have_class(re.compile("state-blocked|state-standing"))
+    plan.tab("routes")
+    expect(plan.panel.locator(".states")).to_have_count(2)
+    expect(plan.panel.locator(".states").first).to_contain_text("✕ blocked")
+    plan.keyboard.press("Control+z")
+    expect(plan.panel.locator(".states").first).to_contain_text("✓ open")
+
+
+def test_corners_of_a_room_are_dragged_added_and_taken_out(plan):
+    def outline():
+        return plan.values("Places", "outline")[2]
+
+    plan.click(6.5, 1)
+    expect(plan.page.locator(".handle.vertex")).to_have_count(4)
+    plan.drag((8, 6), (7, 5), keys=["Alt"])
+    corners = [[float(one) for one in corner.split()] for corner in outline().split("; ")]
+    assert corners[2] == pytest.approx([7, 5], abs=0.02)
+    plan.drag((4, 0), (4, 1), keys=["Alt"])
+    assert len(outline().split("; ")) == 5
+    plan.mouse.dblclick(*plan.place(4, 1))
+    assert len(outline().split("; ")) == 4
+    for _ in range(3):
+        plan.keyboard.press("Control+z")
+        plan.settle()
+    assert outline() == "0 0; 8 0; 8 6; 0 6"
+
+
+def test_a_renamed_place_keeps_its_segments(plan):
+    plan.click(6.5, 1)
+    plan.panel.get_by_label("Place").fill("Great hall")
+    plan.keyboard.press("Enter")
+    assert plan.values("Places", "place")[2] == "Great hall"
+    assert plan.values("Routes", "start")[2] == "Great hall"
+    expect(plan.page.locator(".band")).to_have_class(re.compile("state-open"))
