@@ -4,7 +4,7 @@ import { el, clear } from "./elements.mjs";
 import { jobs } from "./job.mjs";
 import { describeOptions } from "./simulate_options.mjs";
 import { ResultsView } from "./simulate_results.mjs";
-import { t, tn } from "./texts.mjs";
+import { language, t, tn } from "./texts.mjs";
 import { notice } from "./messages.mjs";
 
 const MINUTE_S = 60;
@@ -13,6 +13,7 @@ class SimulateView {
   #root;
   #store;
   #shown = "";
+  #isShown = false;
 
   constructor(root, store) {
     this.#store = store;
@@ -26,14 +27,22 @@ class SimulateView {
       this.options, el("div", { class: "buttons" }, this.form.button), this.progress.node, this.fault, this.results.node);
     root.append(this.#root);
     jobs.addEventListener("change", () => this.#update());
-    store.addEventListener("live", () => jobs.current?.state === "done" && this.results.update(jobs.current));
+    store.addEventListener("live", () => this.#showResults());
   }
 
   show() {
+    this.#isShown = true;
     this.#update();
   }
 
-  hide() {}
+  hide() {
+    this.#isShown = false;
+  }
+
+  /** Results are drawn only while they are seen: there may be thousands of rows. */
+  #showResults() {
+    if (this.#isShown && jobs.current?.state === "done") this.results.update(jobs.current);
+  }
 
   #progressCard() {
     const bar = el("progress", { max: 1, value: 0, "aria-label": t("Progress") });
@@ -73,7 +82,7 @@ class SimulateView {
     if (state === "running") this.#showProgress(job);
     this.results.node.hidden = state !== "done";
     const key = `${job?.id} ${state}`;
-    if (state === "done") this.results.update(job);
+    this.#showResults();
     if (key === this.#shown) return;
     this.#shown = key;
     this.options.open = state !== "done";
@@ -85,8 +94,10 @@ class SimulateView {
   #showProgress(job) {
     const { bar, words } = this.progress;
     bar.value = job.share;
-    const text = t("{stage} {detail}: {share} %", { stage: job.label || job.stage, detail: job.detail ?? "", share: Math.floor(100 * job.share) });
-    const shown = [text.replace(/\s+:/, ":"), job.seconds_left === null || job.seconds_left === undefined ? "" : timeLeft(job.seconds_left)].filter(Boolean).join(", ");
+    const detail = language() === "en" ? (job.detail ?? "") : ""; // it is not translated
+    const text = t("{stage} {detail}: {share} %", { stage: job.label || job.stage, detail, share: Math.floor(100 * job.share) });
+    const left = typeof job.seconds_left === "number" ? timeLeft(job.seconds_left) : "";
+    const shown = [text.replace(/\s+:/, ":"), left].filter(Boolean).join(", ");
     if (words.textContent !== shown) words.textContent = shown;
   }
 
