@@ -204,21 +204,6 @@ class Table:
         cells = {one.cell for one in problems if one.severity == "error" and one.sheet == self.sheet.name}
         return replace(self, failed=self.failed | cells) if cells - self.failed else self
 
-    def without_faulty(self) -> "Table":
-        """Return the table without the rows of errors; without any where its headers, or the sheet itself, are wrong.
-
-        Of a form only the faulty values are left out.
-        """
-        if self.sheet.layout == "form":
-            faulty = {name for name in self.places if self.cell(name, 0) in self.failed}
-            kept = ({name: value for name, value in row.values.items() if name not in faulty} for row in self.rows)
-            return replace(self, rows=tuple(Row(0, values) for values in kept))
-        numbers, named = {row.number for row in self.rows}, [set(_row_numbers(cell)) for cell in self.failed]
-        if not all(one & numbers for one in named):
-            return replace(self, rows=())
-        faulty_rows = set().union(*named)
-        return replace(self, rows=tuple(row for row in self.rows if row.number not in faulty_rows))
-
 
 def _repeats(cells: Cells, headers: Cells, needed: Sequence[int]) -> bool:
     """Tell whether a row repeats the headers of the columns that are needed, and no less than two headers."""
@@ -230,10 +215,10 @@ def _repeats(cells: Cells, headers: Cells, needed: Sequence[int]) -> bool:
 
 def first_row(cell: str) -> int:
     """Return the number of the first row that an address names, 0 for none."""
-    return next(iter(_row_numbers(cell)), 0)
+    return next(iter(row_numbers(cell)), 0)
 
 
-def _row_numbers(cell: str) -> range:
+def row_numbers(cell: str) -> range:
     """Return the numbers of the rows that an address names."""
     if (found := _ROWS.search(cell)) is None:
         return range(0)
@@ -375,7 +360,7 @@ class _Parser:
     def _check_merged(self, rows: Sequence[int]) -> None:
         """Report merged cells in the header row and in entries; in headings between those they do no harm."""
         for reference in self.source.merged:
-            merged = _row_numbers(reference)
+            merged = row_numbers(reference)
             at = bisect_left(rows, merged.start)
             if at < len(rows) and rows[at] < merged.stop:
                 message = fill("cells are merged inside the table.")

@@ -4,7 +4,7 @@
 the model.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -26,8 +26,8 @@ from assess.model import (
     axis_of,
 )
 from assess.workbook.names import key
-from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.schema import SHEETS
+from assess.workbook.parse import Row, Table, Tables, row_numbers
+from assess.workbook.schema import PICTURE_FIELDS, SHEETS
 from assess.workbook.values import shorten
 
 _ITEM_FIELDS = frozenset(field.name for field in fields(Item))
@@ -210,7 +210,7 @@ def turned_axis(row: Row) -> Axis | None:
 
 def leave_out(tables: Tables) -> tuple[Tables, list[Problem]]:
     """Return the tables without faulty rows and the rows that need one of those, with warnings of the latter."""
-    left = {sheet: table.without_faulty() for sheet, table in tables.items()}
+    left = {sheet: _without_faulty(table) for sheet, table in tables.items()}
     problems: list[Problem] = []
     for sheet, names in (("Places", ("floor",)), ("Routes", ("floor", "start", "end")), ("Items", ("floor", "route"))):
         columns = {column.name: column.source for column in left[sheet].sheet.columns}
@@ -224,6 +224,32 @@ def leave_out(tables: Tables) -> tuple[Tables, list[Problem]]:
     gone = [row for row, known in named if key(row.get("segment")) not in known]
     problems += _warn_left_out(items, "segment", gone)
     return {**left, "Items": _without(items, gone)}, problems
+
+
+def _without_faulty(table: Table) -> Table:
+    """Return a table without the rows of errors; without any where its headers, or the sheet itself, are wrong.
+
+    Of a form only the faulty values are left out, and of a row whose only errors are in `PICTURE_FIELDS` these.
+    """
+    if not table.failed:
+        return table
+    if table.sheet.layout == "form":
+        faulty = {name for name in table.places if table.cell(name, 0) in table.failed}
+        return replace(table, rows=tuple(_without_fields(row, faulty) for row in table.rows))
+    names = PICTURE_FIELDS & table.places.keys()
+    spare = {row.number: {name for name in names if table.cell(name, row.number) in table.failed} for row in table.rows}
+    harmless = {table.cell(name, number) for number, fields in spare.items() for name in fields}
+    named = [set(row_numbers(cell)) for cell in table.failed - harmless]
+    if not all(one & spare.keys() for one in named):
+        return replace(table, rows=())
+    faulty_rows = set().union(*named)
+    kept = (row for row in table.rows if row.number not in faulty_rows)
+    return replace(table, rows=tuple(_without_fields(row, spare[row.number]) for row in kept))
+
+
+def _without_fields(row: Row, names: Collection[str]) -> Row:
+    values = {name: value for name, value in row.values.items() if name not in names}
+    return replace(row, values=values) if names else row
 
 
 def _without(table: Table, gone: Iterable[Row]) -> Table:

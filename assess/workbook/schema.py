@@ -343,6 +343,9 @@ COSTS = Sheet(
 
 SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE, COSTS)
 
+PICTURE_FIELDS = frozenset({"photo", "plan", "plan_left", "plan_bottom", "plan_width", "plan_turn"})
+"""Fields of tables that only reports and plans show: a row in which they are wrong is assessed without them."""
+
 HELP, LISTS = "Help", "Lists"
 """Sheets of the empty workbook that hold no data; reading leaves them out."""
 

@@ -221,3 +221,14 @@ def test_series_hold_plans_and_photos_and_results_json_does_not(folder: Path) ->
     assert (row.file, row.width_m, row.is_lines) == ("p.svg", 16.0, True)
     text = assess.write_reports(results, folder, "json")["json"].read_text(encoding="utf-8")
     assert "p.svg" not in text
+
+
+def test_pieces_are_read_without_pictures_that_are_wrong(folder: Path) -> None:
+    path = _write(folder, {"plan": "gone.png"}, PIECE | {"item": "A2", "photo": "gone.jpg"})
+    inventory = read_inventory(path, strict=False)
+    assert [item.item for item in inventory.items] == ["A1", "A2"]
+    assert inventory.floors[0].plan is None
+    assert "photo" not in inventory.items[1].more
+    assert len(inventory.errors) == 2
+    both = _write(folder, {}, PIECE | {"item": "A2", "photo": "gone.jpg", "height": "tall"})
+    assert [item.item for item in read_inventory(both, strict=False).items] == ["A1"]
