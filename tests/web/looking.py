@@ -20,7 +20,8 @@ def show(page, view):
 def examine(page):
     """Return what axe-core is sure of that is grave: rule, impact and the first element of each."""
     page.evaluate(AXE.read_text(encoding="utf-8"))
-    found = page.evaluate("() => axe.run(document, {resultTypes: ['violations'], iframes: false, preload: false})")["violations"]
+    options = {"resultTypes": ["violations"], "iframes": False, "preload": False}
+    found = page.evaluate("options => axe.run(document, options)", options)["violations"]
     return [(one["id"], one["impact"], one["nodes"][0]["html"][:200]) for one in found if one["impact"] in GRAVE]
 
 
