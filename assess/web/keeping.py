@@ -6,7 +6,9 @@ import time
 from assess.web.sessions import Keys, Session
 
 SAVED_AFTER = 1.0
-"""Time from the last change of a workbook to its being saved [s]."""
+"""Time from the last change of a workbook to its being saved [s]; longer where saving itself takes long."""
+SAVING_SHARE = 0.3
+"""Most of the time that saving may take while a workbook is being changed [-]."""
 LOOKED_EVERY = 60.0
 """Time between two looks for sessions that have ended [s]."""
 
@@ -16,6 +18,7 @@ class Keeper:
 
     def __init__(self, keys: Keys) -> None:
         self._keys, self._due = keys, dict[Session, float]()
+        self._took = 0.0  # by the last save [s]
         self._woken, self._is_ended = threading.Condition(), False
         self._next_look = time.monotonic() + LOOKED_EVERY
         self._thread = threading.Thread(target=self._run, name="assess-keeper", daemon=True)
@@ -28,7 +31,8 @@ class Keeper:
         """Have a workbook be saved, once nothing more is changed for a moment."""
         if session.book is not None and session.book.mode == "disk":
             with self._woken:
-                self._due[session] = time.monotonic() + SAVED_AFTER
+                pause = max(SAVED_AFTER, self._took / SAVING_SHARE)
+                self._due[session] = time.monotonic() + pause
                 self._woken.notify()
 
     def end(self) -> None:
@@ -41,7 +45,9 @@ class Keeper:
     def _run(self) -> None:
         while (sessions := self._wait()) is not None:
             for session in sessions:
+                started = time.monotonic()
                 session.save()
+                self._took = time.monotonic() - started
             if time.monotonic() >= self._next_look:
                 self._next_look = time.monotonic() + LOOKED_EVERY
                 self._keys.expire(time.monotonic())
