@@ -7,7 +7,10 @@ from playwright.sync_api import expect
 from assess.workbook.template import Content, write_workbook
 from tests.web.sheet_page import opened
 
-FLOORS = [{"floor": "1", "name": "Ground", "pfa_x": 0.3, "pfv_x": 30.0}, {"floor": "2", "name": "First", "pfa_x": 0.5, "pfv_x": 45.0}]
+FLOORS = [
+    {"floor": "1", "name": "Ground", "pfa_x": 0.3, "pfv_x": 30.0},
+    {"floor": "2", "name": "First", "pfa_x": 0.5, "pfv_x": 45.0},
+]
 SIZES = {"breadth": 40, "width": 80, "height": 200}
 ITEMS = [
     {"item": "A1", "floor": "1", "room": "Hall", "description": "Bookcase", **SIZES, "x": 2.0, "y": 2.0, "angle_deg": 90},
@@ -107,5 +110,3 @@ class PlanPage:
 def opened_plan(page, server, **options):
     """Open the page of a server at its plan."""
     return PlanPage(opened(page, server, **options)).open()
-
-

@@ -32,11 +32,14 @@ def draw_picture(path):
 
 def on_picture(plan, u, v):
     """Return where a point of the picture is shown [px]; u and v are shares of its width, from its lower left corner."""
-    return plan.page.locator("svg.plan .picture").evaluate("""(node, [u, v]) => {
+    return plan.page.locator("svg.plan .picture").evaluate(
+        """(node, [u, v]) => {
         const width = node.width.baseVal.value;
         const point = new DOMPoint(u * width, -v * width).matrixTransform(node.getScreenCTM());
         return [point.x, point.y];
-    }""", [u, v])
+    }""",
+        [u, v],
+    )
 
 
 def numbers(plan):
@@ -121,7 +124,10 @@ def test_rooms_doors_and_a_segment_are_drawn_and_its_state_follows(empty):
     plan.click(3.5, 3.2)
     plan.click(6, 3.5)
     assert plan.values("Routes", "route") == {2: "Way out"}
-    assert (plan.values("Routes", "start")[2], plan.values("Routes", "end")[2]) == (room, plan.values("Places", "place")[3])
+    assert (plan.values("Routes", "start")[2], plan.values("Routes", "end")[2]) == (
+        room,
+        plan.values("Places", "place")[3],
+    )
     plan.keyboard.press("Escape")
     plan.keyboard.press("Escape")
     expect(plan.page.locator("[data-tool=select]")).to_have_attribute("aria-pressed", "true")

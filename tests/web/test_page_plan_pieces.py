@@ -200,7 +200,7 @@ def test_on_a_phone_the_plan_is_read_and_not_edited(page, served, tmp_path):
     server = served(write_floor(tmp_path / "hall.xlsx"))
     plan = opened_plan(page, server, width=390, height=844, has_touch=True)
     plan.page.touchscreen.tap(*plan.place(2, 2))
-    expect(plan.panel.locator(".details h3")).to_have_text("A1")
+    expect(plan.panel.locator(".details h2")).to_have_text("A1")
     expect(plan.panel.locator("input:visible, [data-panel=add]")).to_have_count(0)
     before = plan.place(2, 2)
     plan.drag((2, 2), (3, 2))

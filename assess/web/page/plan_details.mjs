@@ -58,7 +58,7 @@ export class Details {
     const unit = this.model.unit;
     const sizes = [piece.breadth, piece.width, piece.height].map((one) => (one === null ? "?" : number(one / unit.factor, 2))).join(" × ");
     this.#add(
-      el("h3", { text: piece.item }), piece.description && el("p", { text: piece.description }),
+      el("h2", { text: piece.item }), piece.description && el("p", { text: piece.description }),
       el("p", { class: isStale ? "class-line stale" : "class-line" }, badge(key), chance !== null ? ` ${percent(chance)}` : key ? "" : ` ${word}`, isStale && ` ${t("simulated before it was changed")}`),
       el("p", { class: "muted", text: t("Breadth × Width × Height: {sizes} {unit}", { sizes, unit: unit.unit }) }),
       piece.sizes_missing && el("p", { class: "warning-text", text: t("Its sizes are missing: choose a Type, or fill in Breadth and Height.") }));
@@ -68,7 +68,7 @@ export class Details {
 
   #several(rows) {
     const pieces = rows.map((row) => this.model.pieces.get(row));
-    this.#add(el("h3", { text: tn("{n:,} piece selected", "{n:,} pieces selected", rows.length) }),
+    this.#add(el("h2", { text: tn("{n:,} piece selected", "{n:,} pieces selected", rows.length) }),
       el("p", { class: "muted", text: pieces.slice(0, 12).map((one) => one.item).join(", ") + (pieces.length > 12 ? " …" : "") }));
     if (this.canEdit()) this.#add(this.#pieceButtons(rows));
   }
@@ -101,7 +101,7 @@ export class Details {
   #place(row) {
     const place = this.model.places.get(row);
     const corners = place.outline ? tn("Outline with {n} corner", "Outline with {n} corners", place.outline.length) : t("No outline");
-    this.#add(el("h3", { text: place.place }), this.#state("place", row), el("p", { class: "muted", text: corners }));
+    this.#add(el("h2", { text: place.place }), this.#state("place", row), el("p", { class: "muted", text: corners }));
     if (!this.canEdit()) return;
     this.#add(this.#fields("Places", row, PLACE_FIELDS), el("div", { class: "buttons" },
       place.outline && this.#button(t("Take the outline away"), () => this.edits.outline(row, null, t("outline"))),
@@ -112,7 +112,7 @@ export class Details {
   #segment(row) {
     const one = this.model.segments.get(row);
     const length = one.points.length === 2 ? Math.hypot(one.points[1][0] - one.points[0][0], one.points[1][1] - one.points[0][1]) : null;
-    this.#add(el("h3", { text: `${one.route}, ${one.segment}` }), this.#state("segment", row),
+    this.#add(el("h2", { text: `${one.route}, ${one.segment}` }), this.#state("segment", row),
       el("p", { class: "muted", text: length === null ? t("A place of it has no X and Y.") : t("Length {length}", { length: shownLength(length, this.model.unit) }) }));
     if (!this.canEdit()) return;
     this.#add(this.#fields("Routes", row, SEGMENT_FIELDS), el("div", { class: "buttons" },

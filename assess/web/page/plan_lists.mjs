@@ -37,7 +37,7 @@ export class PieceLists {
 
   #group(key, pieces) {
     const { sign, word, css } = describe(key);
-    const heading = el("h3", { class: "group-head" }, el("span", { class: `badge ${css}`, "aria-hidden": "true", text: sign }), ` ${word} (${pieces.length})`);
+    const heading = el("h2", { class: "group-head" }, el("span", { class: `badge ${css}`, "aria-hidden": "true", text: sign }), ` ${word} (${pieces.length})`);
     const rest = pieces.length - MOST;
     return el("div", null, heading, el("ul", { class: "rows" }, pieces.slice(0, MOST).map((one) => this.#row(one)), rest > 0 && el("li", { text: tn("{n:,} more", "{n:,} more", rest) })));
   }
@@ -52,7 +52,7 @@ export class PieceLists {
   #drawUnplaced(rows) {
     clear(this.unplaced);
     if (!rows.length) return;
-    this.unplaced.append(el("h3", { class: "group-head", text: t("Not on the plan ({n})", { n: rows.length }) }));
+    this.unplaced.append(el("h2", { class: "group-head", text: t("Not on the plan ({n})", { n: rows.length }) }));
     if (this.canEdit()) this.unplaced.append(el("p", { class: "hint", text: t("Drag one onto the plan, or press Enter to put it in the middle.") }));
     this.unplaced.append(el("ul", { class: "rows" }, rows.slice(0, MOST).map((one) => this.#unplacedRow(one))));
   }
@@ -101,6 +101,7 @@ export class TypeList {
 
 export class RouteLists {
   #all = false;
+  #isOpen = false;
 
   /** @param {{model, store, goTo}} parts */
   constructor(parts) {
@@ -120,10 +121,23 @@ export class RouteLists {
     this.node.setAttribute("aria-busy", String(model.routesOld));
     if (routes.error) this.node.append(el("p", { class: "error-text", text: routes.error }));
     if (!routes.routes.length && !routes.rooms.length) {
-      this.node.append(el("p", { class: "muted", text: t("The workbook has no routes. Draw rooms, doors and exits, then segments between them: their states are shown here.") }));
+      this.node.append(el("p", { class: "muted", text: t("The workbook has no routes. Draw rooms, doors and exits, then segments between them: their states are shown here.") }), ...this.#drawn());
       return;
     }
-    this.node.append(this.#switch(), ...this.#group(t("Routes"), this.#routes()), ...this.#group(t("Rooms"), this.#rooms()), ...this.#remarks(routes));
+    this.node.append(this.#switch(), ...this.#group(t("Routes"), this.#routes()), ...this.#group(t("Rooms"), this.#rooms()), ...this.#drawn(), ...this.#remarks(routes));
+  }
+
+  /** All places and segments of the floor, so that each can be reached by keys. */
+  #drawn() {
+    const { places, segments } = this.model;
+    const row = (name, about, run) => el("li", null, el("button", { type: "button", class: "plain row", on: { click: run } }, el("b", { text: name }), el("span", { class: "end", text: about })));
+    const rows = [
+      ...[...places.values()].map((one) => row(one.place, this.model.text("Places", one.row, "kind"), () => this.goTo("Places", one.row))),
+      ...[...segments.values()].map((one) => row(`${one.route}, ${one.segment}`, `${one.from} – ${one.to}`, () => this.goTo("Routes", one.row))),
+    ];
+    if (!rows.length) return [];
+    const details = el("details", { open: this.#isOpen, on: { toggle: () => (this.#isOpen = details.open) } }, el("summary", { text: t("Places and segments of this floor ({n})", { n: rows.length }) }), el("ul", { class: "rows" }, rows));
+    return [details];
   }
 
   #switch() {
@@ -145,7 +159,7 @@ export class RouteLists {
   }
 
   #group(title, rows) {
-    return rows.length ? [el("h3", { class: "group-head", text: `${title} (${rows.length})` }), el("ul", { class: "rows states" }, rows)] : [];
+    return rows.length ? [el("h2", { class: "group-head", text: `${title} (${rows.length})` }), el("ul", { class: "rows states" }, rows)] : [];
   }
 
   #row(name, state, run, isHere) {

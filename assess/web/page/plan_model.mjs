@@ -23,7 +23,9 @@ export class PlanModel extends EventTarget {
   segments = new Map();
   types = [];
   isShown = false;
+  #book = "";
   #floor = null;
+  #shownFloor = null;
   #asked = 0;
   #timer = 0;
   #routesTimer = 0;
@@ -78,7 +80,11 @@ export class PlanModel extends EventTarget {
   // ---- asking
 
   #reset() {
+    const name = this.store.book?.name ?? "";
+    if (name !== this.#book) this.#floor = this.#shownFloor = null;
+    this.#book = name;
     this.plan = null;
+    if (!name) this.pieces = this.places = this.segments = new Map();
     this.routes = null;
     this.types = [];
     this.#routesVersion = null;
@@ -127,9 +133,9 @@ export class PlanModel extends EventTarget {
       this.#isStale = true;
       return;
     }
-    const isOther = this.plan?.floor !== answer.floor;
+    const isOther = this.#shownFloor !== answer.floor;
     this.plan = answer;
-    this.#floor = answer.floor;
+    this.#floor = this.#shownFloor = answer.floor;
     this.error = "";
     this.#isStale = false;
     this.pieces = new Map(answer.pieces.map((one) => [one.row, one]));

@@ -64,24 +64,23 @@ export class PieceLayer {
 
   #update(parts, piece) {
     const { breadth: b, width: w } = piece;
+    const shown = this.classOf(piece);
+    const isSelected = this.selected.has(piece.row);
+    const pose = this.#previews.get(piece.row) ?? piece;
+    const label = this.label(piece);
+    const mark = [label, b, w, piece.sizes_missing, isSelected, shown.isStale, shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
+    if (parts.mark === mark) return;
+    parts.mark = mark;
     const set = (node, values) => Object.entries(values).forEach(([name, value]) => node.setAttribute(name, value));
     set(parts.body, { x: -b / 2, y: -w / 2, width: b, height: w });
     set(parts.sides, { d: `M${-b / 2} ${-w / 2}H${b / 2}M${-b / 2} ${w / 2}H${b / 2}` });
-    const { key, isStale, isAnchored } = this.classOf(piece);
-    const { css } = describe(key);
-    const isSelected = this.selected.has(piece.row);
-    const classes = ["piece", css, isSelected && "selected", isStale && "stale", isAnchored && !key && "anchored", piece.sizes_missing && "sizes-missing"];
-    parts.node.setAttribute("class", classes.filter(Boolean).join(" "));
-    parts.node.setAttribute("aria-selected", String(isSelected));
-    const label = this.label(piece);
-    if (parts.label !== label) {
-      parts.label = label;
-      parts.node.setAttribute("aria-label", label);
-      parts.title.textContent = label;
-    }
+    const { key, isStale, isAnchored } = shown;
+    const classes = ["piece", describe(key).css, isSelected && "selected", isStale && "stale", isAnchored && !key && "anchored", piece.sizes_missing && "sizes-missing"];
+    set(parts.node, { class: classes.filter(Boolean).join(" "), "aria-selected": String(isSelected), "aria-label": label });
+    parts.title.textContent = label;
     parts.sign.textContent = this.#sign(key, isAnchored);
     parts.name.textContent = piece.item;
-    this.#put(parts, this.#previews.get(piece.row) ?? piece);
+    this.#put(parts, pose);
     this.#fitText(parts, piece);
   }
 
@@ -91,6 +90,8 @@ export class PieceLayer {
   }
 
   #put(parts, { x, y, angle }) {
+    if (parts.pose === `${x} ${y} ${angle}`) return;
+    parts.pose = `${x} ${y} ${angle}`;
     parts.node.setAttribute("transform", `translate(${x.toFixed(4)} ${(-y).toFixed(4)})`);
     parts.turned.setAttribute("transform", `rotate(${-angle})`);
     parts.angle = angle;
@@ -136,6 +137,7 @@ export class PieceLayer {
     this.#previews = poses;
     for (const [row, pose] of poses) {
       const parts = this.#nodes.get(row);
+      if (parts) parts.mark = "";
       if (parts) this.#put(parts, pose);
       if (parts) this.#fitText(parts, this.model.pieces.get(row));
     }

@@ -29,6 +29,7 @@ export class Scene {
   opacity = 0.6;
   showsRoutes = true;
   #pictureShown = null;
+  #frame = null;
 
   constructor(model, store, viewport) {
     Object.assign(this, { model, store, viewport });
@@ -39,11 +40,12 @@ export class Scene {
       layer("rooms"), layer("bands"), layer("fallen", { "aria-hidden": "true" }), this.pieces.node, layer("marks"), layer("handles"), layer("draft", { "aria-hidden": "true" }),
     );
     this.hatch = viewport.svg.querySelector("pattern");
-    viewport.addEventListener("view", () => this.#onView());
+    viewport.addEventListener("view", () => (this.#frame ??= requestAnimationFrame(() => this.#onView())));
   }
 
   #onView() {
-    const { scale, left, top } = this.viewport;
+    this.#frame = null;
+    const { scale } = this.viewport;
     this.hatch.setAttribute("patternTransform", `scale(${1 / scale})`);
     if (scale !== this.pieces.scale) {
       this.pieces.zoom(scale);
@@ -51,7 +53,7 @@ export class Scene {
     }
     this.viewport.svg.classList.toggle("far", scale < NAMED_FROM);
     this.viewport.svg.classList.toggle("tiny", scale < TINY_TO);
-    this.#drawGrid(scale, left, top);
+    this.#drawGrid();
   }
 
   draw() {

@@ -58,7 +58,7 @@ export class Results {
     box.addEventListener("change", () => ((this.#showsAll = box.checked), this.draw(this.#answer)));
     const shown = this.#showsAll ? pairs : changed;
     const said = changed.length ? tn("{n:,} state changes.", "{n:,} states change.", changed.length) : t("No state changes.");
-    return el("section", { class: "card" }, el("h2", { text: t("Routes and rooms") }), this.#tally(before, after), el("div", { class: "buttons" }, el("p", { text: said }), el("label", { class: "check" }, box, t("Show all"))), shown.length > 0 && el("div", { class: "scroll-x" }, this.#stateTable(shown)));
+    return el("section", { class: "card" }, el("h2", { text: t("Routes and rooms") }), this.#tally(before, after), el("div", { class: "buttons" }, el("p", { text: said }), el("label", { class: "check" }, box, t("Show all"))), shown.length > 0 && wide(t("Routes and rooms"), this.#stateTable(shown)));
   }
 
   /** How many routes and rooms are in each state, now and then. */
@@ -93,9 +93,12 @@ export class Results {
     const cell = (one, row, isThen) => el("td", null, one?.class ? [badge(one.class), " ", shownChance(one.chance)] : isThen && isAnchored.has(row) ? `⚓ ${t("anchored")}` : one?.word || "–");
     const rows = changed.slice(0, MOST).map((one) => el("tr", null, el("th", { scope: "row", class: "chance", text: items?.value(one.row, at) ?? one.row }), el("td", { text: about === undefined ? "" : items.value(one.row, about) ?? "" }), cell(one.was, one.row, false), cell(one.is, one.row, true)));
     const more = changed.length - MOST;
-    return el("section", { class: "card" }, head, el("div", { class: "scroll-x" }, el("table", { class: "plain" }, el("thead", null, el("tr", null, [t("Item"), t("Description"), t("now"), t("then")].map((text) => el("th", { scope: "col", text })))), el("tbody", null, rows))), more > 0 && el("p", { class: "muted", text: tn("{n:,} more", "{n:,} more", more) }));
+    return el("section", { class: "card" }, head, wide(head.textContent, el("table", { class: "plain" }, el("thead", null, el("tr", null, [t("Item"), t("Description"), t("now"), t("then")].map((text) => el("th", { scope: "col", text })))), el("tbody", null, rows))), more > 0 && el("p", { class: "muted", text: tn("{n:,} more", "{n:,} more", more) }));
   }
 }
+
+/** A table that scrolls where it is wider than its card, by keys as well. */
+const wide = (label, table) => el("div", { class: "scroll-x", tabIndex: 0, role: "region", "aria-label": label }, table);
 
 const say = (state) => ({ open: t("open"), doubtful: t("doubtful"), not_known: t("not known"), blocked: t("blocked") })[state];
 
