@@ -13,7 +13,7 @@ FLOORS = [
 ]
 SIZES = {"breadth": 40, "width": 80, "height": 200}
 ITEMS = [
-    {"item": "A1", "floor": "1", "room": "Hall", "description": "Bookcase", **SIZES, "x": 2.0, "y": 2.0, "angle_deg": 90},
+    {"item": "A1", "floor": "1", "description": "Bookcase", **SIZES, "x": 2.0, "y": 2.0, "angle_deg": 90},
     {"item": "A2", "floor": "1", "room": "Hall", **SIZES, "x": 5.0, "y": 4.0, "angle_deg": 0, "anchored": "no"},
     {"item": "A3", "floor": "1", "room": "Hall", **SIZES, "notes": "in the store"},
     {"item": "B1", "floor": "2", **SIZES, "x": 1.0, "y": 1.0},

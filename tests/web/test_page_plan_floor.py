@@ -31,7 +31,7 @@ def draw_picture(path):
 
 
 def on_picture(plan, u, v):
-    """Return where a point of the picture is shown [px]; u and v are shares of its width, from its lower left corner."""
+    """Return where a point of the picture is shown [px]; u and v are shares of its width, from its lower left."""
     return plan.page.locator("svg.plan .picture").evaluate(
         """(node, [u, v]) => {
         const width = node.width.baseVal.value;

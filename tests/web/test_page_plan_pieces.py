@@ -47,7 +47,7 @@ def test_a_dragged_piece_moves_in_the_workbook_and_undo_brings_it_back(page, ser
 def test_a_late_answer_does_not_move_a_piece_back(plan):
     """While the server still answers for the plan before, the piece stays where it was dropped."""
     held = []
-    plan.page.route("**/api/plan*", lambda route: held.append(route))
+    plan.page.route("**/api/plan*", lambda route: held.append(route))  # noqa: PLW0108 - it looks at its arguments
     plan.drag((5, 4), (4, 2), keys=["Alt"])
     assert plan.shown_at(A2) == (4, 2)
     plan.drag((4, 2), (3, 3), keys=["Alt"])
