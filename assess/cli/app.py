@@ -28,6 +28,7 @@ START = """\b
 Start here:
   assess new building.xlsx     a workbook to fill in; with --example a filled one
   assess check building.xlsx   every problem of it, by sheet and cell
+  assess open building.xlsx    the workbook as sheets and as a plan in the browser
   assess run building.xlsx     the reports
 \b
 assess COMMAND --help shows the options of a command, with examples.

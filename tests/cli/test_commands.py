@@ -24,7 +24,20 @@ RUN = ("run", "--verify", "none")
 ROOT = Path(__file__).parents[2]
 
 
-COMMANDS = ["new", "check", "run", "compare", "fragility", "routes", "rock", "record", "study", "methods", "doctor"]
+COMMANDS = [
+    "new",
+    "check",
+    "open",
+    "run",
+    "compare",
+    "fragility",
+    "routes",
+    "rock",
+    "record",
+    "study",
+    "methods",
+    "doctor",
+]
 
 
 def test_every_file_of_a_command_is_one_and_is_in_the_help_in_order():
@@ -62,7 +75,7 @@ def test_the_examples_show_every_option(name, module):
 
 def test_the_help_says_where_to_start():
     text = run(app, ["--help"]).output.partition("Start here:")[2]
-    assert re.findall(r"assess (\w+) building", text) == ["new", "check", "run"]
+    assert re.findall(r"assess (\w+) building", text) == ["new", "check", "open", "run"]
 
 
 @pytest.mark.parametrize(("name", "module"), find_commands())
