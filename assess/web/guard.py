@@ -102,6 +102,8 @@ class Guard:
         return site == b"same-origin" and origin[0] in self._origins and b"x-assess" in visit.headers
 
 
+_NO_ICON = '<link rel="icon" href="data:,">'
+"""Browsers ask for an icon otherwise."""
 _CLOSED = fill("This page is closed for this browser.")
 _AGAIN = fill("Press Enter in the window in which assess runs: it opens the page again. Or start assess open again.")
 
@@ -160,7 +162,7 @@ async def _lead_in(send: Send, cookies: Collection[bytes]) -> None:
     Not by a redirect: where a link of another site led here, a browser would not send a strict cookie along with it.
     """
     body = b'<!DOCTYPE html><html lang="en"><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=/">'
-    body += b"<title>assess</title></html>"
+    body += f"{_NO_ICON}<title>assess</title></html>".encode()
     headers = [(b"content-type", b"text/html; charset=utf-8"), *((b"set-cookie", one) for one in cookies)]
     await _send(send, 200, headers, body)
 
@@ -169,13 +171,13 @@ async def _refuse(scope: Scope, send: Send, status: int, message: Text, fix: Tex
     """Answer with a short page to a browser that wanted one, else as every request of the page is answered."""
     code = _find_language(scope)
     with speaking(load_catalogue(code)):
-        said, mended = gettext(message), gettext(fix)
+        said, fixed = gettext(message), gettext(fix)
     if any(name == b"accept" and b"text/html" in value for name, value in scope["headers"]):
         kind = b"text/html; charset=utf-8"
-        text = f"{_lead_again(scope, status)}<p>{escape(said)}</p><p>{escape(mended)}</p>"
+        text = f"{_lead_again(scope, status)}<p>{escape(said)}</p><p>{escape(fixed)}</p>"
         body = f'<!DOCTYPE html><html lang="{code}"><meta charset="utf-8"><title>assess</title>{text}</html>'
     else:
-        kind, body = b"application/json", json.dumps({"message": said, "fix": mended, "problems": []})
+        kind, body = b"application/json", json.dumps({"message": said, "fix": fixed, "problems": []})
     await _send(send, status, [(b"content-type", kind)], b"" if scope["method"] == "HEAD" else body.encode())
 
 
