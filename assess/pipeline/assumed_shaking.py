@@ -27,7 +27,10 @@ def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Proble
         "published medians.",
         choice=fill(used.choice), pga=used.pga / GRAVITY, pgv=used.pgv / VELOCITY["cm/s"],
     )  # fmt: skip
-    fix = fill("There are three ways to know it better: see `assess check`.")
+    fix = fill(
+        "To know it better: type the PGA of a hazard map or a ShakeMap at the address into Ground PGA, or name records "
+        "in Floors."
+    )
     yield Problem("note", "Building", cell, message, fix)
     yield from _remark_on_scatter(building, used)
 

@@ -29,7 +29,8 @@ def describe_problems(problems: Iterable[Problem], sheets: Mapping[str, str]) ->
 
 def _describe(shown: Problem, alike: list[Problem], english: Mapping[str, str]) -> dict[str, Any]:
     sheet = english.get(shown.sheet) or (find_sheet(shown.sheet) or (shown.sheet,))[0]
-    cells = [cell for one in alike for cell in list_cells(sheet, one.cell)]
+    found = [(cell, one) for one in alike for cell in list_cells(sheet, one.cell)]
+    cells = [cell for cell, _ in found]
     row, at = cells[0] if cells else (None, None)
     return {
         "severity": shown.severity,
@@ -41,6 +42,7 @@ def _describe(shown: Problem, alike: list[Problem], english: Mapping[str, str]) 
         "fix": gettext(shown.fix),
         "count": len(alike),
         "cells": cells,
+        "own": [(gettext(one.message), gettext(one.fix)) for _, one in found] if len(alike) > 1 else [],
         "lacks": shown.lacks if isinstance(shown, Gap) else "",
     }
 

@@ -150,10 +150,12 @@ def list_groups(problems: Iterable[Problem]) -> list[tuple[Problem, list[Problem
 
 
 def _kind(problem: Problem) -> tuple[object, ...]:
-    """Return by what problems belong together: sheet, column, kind of message, and the name that it is about."""
+    """Return by what problems belong together: sheet, column, kind of message, its reason, and the name it is about."""
     message, fix = problem.message, problem.fix
     name = message.values.get("name") if isinstance(message, Text) else None
-    said = [one.template if isinstance(one, Text) else one for one in (message, fix)]
+    parts = message.values.values() if isinstance(message, Text) else ()
+    reasons = [one for one in parts if isinstance(one, Text)]
+    said = [one.template if isinstance(one, Text) else one for one in (message, fix, *reasons)]
     return problem.severity, problem.sheet, re.sub(r"\d+", "", problem.cell), problem.group, *said, name
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from assess.errors import Problem
-from assess.i18n import fill
+from assess.i18n import fill, nfill
 from assess.model import (
     AXES,
     Axis,
@@ -263,8 +263,9 @@ def _warn_left_out(table: Table, name: str, rows: Iterable[Row]) -> Iterable[Pro
     for row in rows:
         by_name.setdefault(row.get(name), []).append(row)
     for text, own in by_name.items():
-        message = fill(
-            "rows that name {label} {name} are left out, as its own row has errors: {n:,}.",
-            label=table.label(name), name=shorten(text), n=len(own),
+        message = nfill(
+            "{n:,} row that names {label} {name} is left out, as the row that defines {name} has errors.",
+            "{n:,} rows that name {label} {name} are left out, as the row that defines {name} has errors.",
+            len(own), label=table.label(name), name=shorten(text),
         )  # fmt: skip
-        yield table.problem(name, own[0], message, fill("Correct the errors."), "warning")
+        yield table.problem(name, own[0], message, fill("Correct that row."), "warning")

@@ -266,3 +266,16 @@ def test_the_run_and_the_page_agree_on_a_faulty_workbook(tmp_path):
     found = _classes(_answer(book))
     assert {row: found[row] for row in expected} == expected
     assert all(found[row][0] == "" for row in found.keys() - expected.keys())
+
+
+def test_cells_of_one_habit_keep_their_own_message(tmp_path):
+    sizes = {"width": 80, "height": 200}
+    items = [{"item": name, "floor": "1", "breadth": text, **sizes} for name, text in (("A1", "abc"), ("A2", "wide"))]
+    path = write(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_x": 0.3}])
+    problem = next(one for one in _answer(hold(path))["problems"] if one["severity"] == "error")
+    assert problem["count"] == 2
+    assert [message for message, _ in problem["own"]] == [
+        "Breadth is the text 'abc', expected a number [cm].",
+        "Breadth is the text 'wide', expected a number [cm].",
+    ]
+    assert len(problem["cells"]) == len(problem["own"])

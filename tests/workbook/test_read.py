@@ -156,7 +156,7 @@ def test_rows_that_need_a_row_that_is_left_out_go_with_it(tmp_path: Path) -> Non
     inventory = lenient(write(tmp_path, [*ITEMS, ["A2", "2", 40, 180], ["A3", "2", 40, 180]], floors))
     assert ([one.floor for one in inventory.floors], [one.item for one in inventory.items]) == (["1"], ["A1"])
     assert [str(one) for one in inventory.problems if one.severity == "warning"] == [
-        "Items!B3: rows that name Floor '2' are left out, as its own row has errors: 2. Correct the errors."
+        "Items!B3: 2 rows that name Floor '2' are left out, as the row that defines '2' has errors. Correct that row."
     ]
 
 

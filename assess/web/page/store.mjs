@@ -347,10 +347,12 @@ class Store extends EventTarget {
     this.#byCell = new Map();
     for (const problem of problems) {
       const isOne = problem.row !== null && problem.row !== undefined && problem.at !== null;
-      for (const [row, at] of problem.cells ?? (isOne ? [[problem.row, problem.at]] : [])) {
+      const cells = problem.cells ?? (isOne ? [[problem.row, problem.at]] : []);
+      for (const [n, [row, at]] of cells.entries()) {
         const cell = key(problem.sheet, row, at);
+        const [message, fix] = problem.own?.[n] ?? [problem.message, problem.fix];
         const worst = this.#byCell.get(cell);
-        if (!worst || SEVERITIES.indexOf(problem.severity) < SEVERITIES.indexOf(worst.severity)) this.#byCell.set(cell, problem);
+        if (!worst || SEVERITIES.indexOf(problem.severity) < SEVERITIES.indexOf(worst.severity)) this.#byCell.set(cell, { ...problem, message, fix });
       }
     }
   }
