@@ -13,11 +13,15 @@ from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
 from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Area, Value, find_headers, read_back
 from assess.workbook.places import split_range
-from assess.workbook.typed import is_free, understand
+from assess.workbook.typed import is_converted, is_free, understand
 from assess.workbook.values import is_blank, shorten
 
 MOST_EDITS = 500_000
 """Cells of one edit."""
+COMPUTED_KINDS = ("number", "count", "date", "choice", "flag")
+"""Kinds of columns into which a spreadsheet program would take a formula."""
+DIGITS = 6
+"""Significant digits of a number that was converted from another unit."""
 
 Refused = list[list[Any]]
 """Sheet, row, column of each cell that is refused, and why."""
@@ -110,7 +114,7 @@ def take_edits(
         sheet, row, at, value = _take_apart(edit)
         column, why = _find_column(sheets.get(sheet), row, at)
         if column is not None:
-            why = locks.find(held.cells[sheet], row, at) or _refuse_value(value)
+            why = locks.find(held.cells[sheet], row, at) or _refuse_value(value) or _refuse_formula(column, value)
         if column is None or why:
             refused.append([sheet, row, at, say(why)])
             continue
@@ -169,6 +173,12 @@ def _refuse_value(value: Value) -> str:
     return "" if is_number else fill("the value is not a number that a cell holds.")
 
 
+def _refuse_formula(column: PageColumn, value: Value) -> str:
+    """Return why a formula that was typed cannot be taken: as a text it would only be a wrong number."""
+    is_formula = isinstance(value, str) and value.lstrip().startswith("=") and column.kind in COMPUTED_KINDS
+    return fill("formulas are not computed here: type the value.") if is_formula else ""
+
+
 def take_value(column: PageColumn, value: Value) -> Value:
     """Return what belongs into a cell for what was typed: a number in the unit of its header, a choice, a date.
 
@@ -191,6 +201,8 @@ def take_value(column: PageColumn, value: Value) -> Value:
     if known.kind in ("choice", "flag"):
         word = None if remark is None else remark.value
         return value if word is None else word
+    if isinstance(meant, float) and is_converted(known, value, column.unit):
+        return float(f"{meant:.{DIGITS}g}")
     return meant.strip() if isinstance(meant, str) else meant if isinstance(meant, float | int) else value
 
 

@@ -10,7 +10,7 @@ from assess.report.figures.underlay import Ring, cut_falls
 from assess.routes.geometry import angle_apart, fallen, rectangle
 from assess.routes.walls import find_walls
 from assess.workbook.parse import Row, Table
-from assess.workbook.resolve import filled_sizes
+from assess.workbook.resolve import SIZES, filled_sizes
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -23,7 +23,7 @@ DECIMALS = 4
 
 @dataclass(frozen=True, slots=True)
 class PlacedPiece:
-    """A piece with a position; `falls` is what it may cover beyond its footprint [m]."""
+    """A piece with a position; `falls` is what it may cover beyond its footprint [m], `missing` its unknown sizes."""
 
     row: Row
     at: Point
@@ -31,7 +31,7 @@ class PlacedPiece:
     breadth: float
     width: float
     height: float | None
-    sizes_missing: bool
+    missing: tuple[str, ...]
     falls: tuple[Ring, ...] = ()
 
     @property
@@ -55,7 +55,7 @@ class PlacedPiece:
             "anchored": row.get("anchored") or "unknown",
             "quantity": row.get("quantity") or 1,
             "fallen": [round_points(ring) for ring in self.falls],
-            "sizes_missing": self.sizes_missing,
+            "missing": [*self.missing],
         }
 
 
@@ -87,7 +87,7 @@ def _place(table: Table, row: Row, types: Mapping[str, CatalogueType], away: flo
         breadth=min(DEFAULT_SIZE, width or DEFAULT_SIZE) if breadth is None else breadth,
         width=width or DEFAULT_SIZE,
         height=height,
-        sizes_missing=breadth is None or height is None,
+        missing=tuple(name for name in SIZES if sizes.get(name) is None),
     )
     return piece if breadth is None or height is None else replace(piece, falls=_list_falls(piece, height, away))
 

@@ -33,7 +33,24 @@ def check_name(name: object) -> str:
     text = name.strip() if isinstance(name, str) else ""
     if text and not text.lower().endswith(ENDINGS[0]):
         text = f"{text}{ENDINGS[0]}"
-    if not text or make_safe(text) != text or len(text) > LONGEST or text.startswith((".", "-", "~")):
-        fix = fill("Choose a name of letters and digits, such as office.xlsx.")
+    if fix := _find_fault(text):
         raise RequestError(fill("{name} cannot be the name of a workbook.", name=repr(text[:LONGEST])), UNUSABLE, fix)
     return text
+
+
+def _find_fault(text: str) -> str:
+    """Return what of a name is not accepted, and how to mend it; "" where nothing is wrong."""
+    stem = text[: -len(ENDINGS[0])]
+    if not stem.strip(". "):
+        return fill("Choose a name, such as office.xlsx.")
+    if signs := " ".join(dict.fromkeys(one for one in text if one in _FORBIDDEN)):
+        return fill("A name cannot have {signs}: leave it out.", signs=signs)
+    if any(unicodedata.category(one)[0] == "C" for one in text):
+        return fill("It has signs that cannot be seen: type it again.")
+    if len(text) > LONGEST:
+        return fill("A name has at most {most} signs: shorten it.", most=LONGEST)
+    if stem.endswith((".", " ")) or text.startswith((".", "-", "~")):
+        return fill("A name cannot begin with . - or ~, and cannot end with a point or a space.")
+    if make_safe(text) != text:
+        return fill("Windows keeps that name for itself: choose another, such as office.xlsx.")
+    return ""

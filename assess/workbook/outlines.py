@@ -16,6 +16,8 @@ FARTHEST = 1e5
 SAME = 1e-3
 """Distance up to which two corners are the same [m]."""
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)")
+_DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
+_MAYBE_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
 
 Corner = tuple[float, float]
 
@@ -34,14 +36,14 @@ def parse_outline(text: str, factor: float) -> Outline:
     Parameters
     ----------
     text : str
-        ``x y; x y; x y``
+        ``x y; x y; x y``; the comma of ``6,5 0`` is a decimal one
     factor : float
         From its unit to m.
 
     Raises
     ------
     OutlineError
-        If a corner is not two numbers, two that follow each other are the same, there are fewer than three or more
+        If a corner is not two numbers, or can be read in two ways (``1,500 0``), two that follow each other are the same, there are fewer than three or more
         than 200, or its sides cross or touch each other.
     """
     parts = [part.split() for part in text.replace("\n", ";").split(";") if part.strip()]
@@ -66,6 +68,7 @@ def parse_outline(text: str, factor: float) -> Outline:
 
 
 def _read_corner(number: int, part: list[str], factor: float) -> Corner:
+    part = _take_commas(number, part)
     if len(part) != 2 or not all(_NUMBER.fullmatch(one) for one in part):
         shown = " ".join(part)[:40]
         raise OutlineError(fill("corner {n} is '{text}', expected two numbers, x and y.", n=number, text=shown))
@@ -73,6 +76,19 @@ def _read_corner(number: int, part: list[str], factor: float) -> Corner:
     if max(abs(x), abs(y)) > FARTHEST:
         raise OutlineError(fill("corner {n} lies more than {most:,} km away.", n=number, most=int(FARTHEST / 1000)))
     return x, y
+
+
+def _take_commas(number: int, part: list[str]) -> list[str]:
+    """Return the numbers of a corner with points for decimal commas."""
+    if len(part) != 2 or not all(_NUMBER.fullmatch(one) or _DECIMAL_COMMA.fullmatch(one) for one in part):
+        return part
+    if any(_MAYBE_THOUSANDS.fullmatch(one) for one in part):
+        shown = " ".join(part)[:40]
+        raise OutlineError(
+            fill("corner {n} is '{text}', which can be read in two ways: write decimals with a point.",
+                 n=number, text=shown)
+        )  # fmt: skip
+    return [one.replace(",", ".") for one in part]
 
 
 def _is_same(one: Corner, other: Corner) -> bool:

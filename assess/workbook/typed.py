@@ -23,12 +23,20 @@ Quote = Callable[[object], str]
 
 LONGEST = 60
 """Characters of a text that may be a number or a date."""
+INCHES_OF_A_FOOT = 12
 
 _WIDE = {at: at - 0xFEE0 for at in range(0xFF01, 0xFF5F)}
 _PLAIN_SIGNS: dict[int, int | str] = {**_WIDE, **DASHES, **dict.fromkeys(map(ord, "\u2019\u02bc"), "'")}
 _NUMBER = re.compile(
     r"(?P<sign>[-+]?) ?(?P<digits>\d[\d.,' ]*|[.,]\d+)(?P<power>[eE][-+]?\d{1,3})?(?P<unit>.*)", re.ASCII
 )
+_FEET = re.compile(
+    r"(?P<sign>[-+]?) ?(?:(?P<feet>\d+) ?(?:'(?!')|ft\.?|foot|feet) ?-? ?)?"
+    r"(?:(?P<inches>\d+(?:[.,]\d+)?) ?(?:\"|''|in\.?|inch|inches))?|(?P<alone>\d+(?:[.,]\d+)?) ?'",
+    re.ASCII | re.IGNORECASE,
+)
+"""Feet and inches; feet alone may have a fraction."""
+_PRIMES = {ord("\u2032"): "'", **dict.fromkeys(map(ord, "\u2033\u201d\u201c"), '"')}
 _PLAIN = re.compile(r"\d+(?:[.,]\d*)?|[.,]\d+", re.ASCII)
 _GROUPED = re.compile(
     r"([1-9]\d{0,2}(?P<mark>[ ',.])\d{3}(?:(?P=mark)\d{3})*)(?:(?P<point>[.,])(?P<rest>\d*))?", re.ASCII
@@ -91,6 +99,9 @@ def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tupl
         return 100 * value, _note_shown(column, value, unit)
     if not isinstance(value, str) or len(value) > LONGEST:
         return value, None
+    if (length := _read_feet(column, value, unit)) is not None:
+        typed = fill("{number:g}{unit}", number=length, unit=f" {unit}")
+        return length, note("unit", _name_column(column, unit), quote(value), typed, length)
     match = _NUMBER.fullmatch(straighten(value).removeprefix("'").lstrip())  # the sign by which programs enter a text
     factor = _find_factor(match["unit"].strip(), column, unit) if match else None
     if match is None or factor is None:
@@ -103,6 +114,31 @@ def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tupl
     number = readings[0]
     typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
     return number, note(_find_habit(column, value, match), _name_column(column, unit), quote(value), typed, number)
+
+
+def is_converted(column: Column, value: object, unit: str) -> bool:
+    """Tell whether a text names another unit than the header, so that the number that it means was computed."""
+    if not isinstance(value, str) or len(value) > LONGEST or column.kind not in ("number", "count"):
+        return False
+    match = _NUMBER.fullmatch(straighten(value).removeprefix("'").lstrip())
+    factor = _find_factor(match["unit"].strip(), column, unit) if match else None
+    return factor not in (None, 1.0) or _read_feet(column, value, unit) is not None
+
+
+def _read_feet(column: Column, value: str, unit: str) -> float | None:
+    """Return a length in feet and inches, with their signs, in the header's unit; None for any other text."""
+    if column.quantity != "length":
+        return None
+    match = _FEET.fullmatch(straighten(value.translate(_PRIMES)))
+    if match is None or not (match["feet"] or match["inches"] or match["alone"]):
+        return None
+    known = QUANTITIES["length"]
+    inches = float((match["inches"] or "0").replace(",", "."))
+    if match["feet"] and inches >= INCHES_OF_A_FOOT:  # 1'800" may be one number
+        return None
+    feet = float((match["feet"] or match["alone"] or "0").replace(",", "."))
+    metres = (feet * known["ft"] + inches * known["in"]) * (-1 if match["sign"] == "-" else 1)
+    return float(f"{metres / known[unit]:.12g}")
 
 
 def _note_shown(column: Column, value: Percent, unit: str) -> Remark:
