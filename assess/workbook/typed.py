@@ -31,11 +31,12 @@ _NUMBER = re.compile(
     r"(?P<sign>[-+]?) ?(?P<digits>\d[\d.,' ]*|[.,]\d+)(?P<power>[eE][-+]?\d{1,3})?(?P<unit>.*)", re.ASCII
 )
 _FEET = re.compile(
-    r"(?P<sign>[-+]?) ?(?:(?P<feet>\d+) ?(?:'(?!')|ft\.?|foot|feet) ?-? ?)?"
-    r"(?:(?P<inches>\d+(?:[.,]\d+)?) ?(?:\"|''|in\.?|inch|inches))?|(?P<alone>\d+(?:[.,]\d+)?) ?'",
+    r"(?P<sign>[-+]?) ?(?:"
+    r"(?P<feet>\d+) ?(?:'|ft\.?|foot|feet)(?: ?-? ?(?P<inches>\d+(?:[.,]\d+)?) ?(?:\"|''|in\.?|inch|inches))?"
+    r"|(?P<more_feet>\d+[.,]\d{1,2}) ?'|(?P<more_inches>\d+(?:[.,]\d{1,2})?) ?(?:\"|''))",
     re.ASCII | re.IGNORECASE,
 )
-"""Feet and inches; feet alone may have a fraction."""
+"""Feet and inches, and either alone with its sign."""
 _PRIMES = {ord("\u2032"): "'", **dict.fromkeys(map(ord, "\u2033\u201d\u201c"), '"')}
 _PLAIN = re.compile(r"\d+(?:[.,]\d*)?|[.,]\d+", re.ASCII)
 _GROUPED = re.compile(
@@ -130,13 +131,14 @@ def _read_feet(column: Column, value: str, unit: str) -> float | None:
     if column.quantity != "length":
         return None
     match = _FEET.fullmatch(straighten(value.translate(_PRIMES)))
-    if match is None or not (match["feet"] or match["inches"] or match["alone"]):
+    if match is None:
+        return None
+    feet, inches = (
+        float((match[name] or match[f"more_{name}"] or "0").replace(",", ".")) for name in ("feet", "inches")
+    )
+    if match["inches"] and inches >= INCHES_OF_A_FOOT:  # 1'800" may be one number
         return None
     known = QUANTITIES["length"]
-    inches = float((match["inches"] or "0").replace(",", "."))
-    if match["feet"] and inches >= INCHES_OF_A_FOOT:  # 1'800" may be one number
-        return None
-    feet = float((match["feet"] or match["alone"] or "0").replace(",", "."))
     metres = (feet * known["ft"] + inches * known["in"]) * (-1 if match["sign"] == "-" else 1)
     return float(f"{metres / known[unit]:.12g}")
 

@@ -156,6 +156,7 @@ def test_what_is_held_is_what_is_written(book, tmp_path):
 @pytest.mark.parametrize(
     ("field", "typed", "kept"),
     [("breadth", "45 cm", 45), ("breadth", "1,80 m", 180), ("breadth", "45,5", 45.5), ("breadth", "18 in", 45.72),
+     ("breadth", "1'4\"", 40.64), ("breadth", "5 11/16", "5 11/16"),
      ("breadth", "wide", "wide"), ("breadth", True, True), ("breadth", " ", None), ("breadth", "", None),
      ("anchored", "Y", "yes"), ("anchored", "YES", "YES"), ("anchored", "maybe", "maybe"), ("anchored", True, "yes"),
      ("axis", "x", "x"), ("item", "  A  9 ", "A 9"), ("item", "007", "007"), ("item", 7, 7),
@@ -215,6 +216,19 @@ def test_cells_that_cannot_be_edited(book):
     assert len(found) == 16
     assert tuple(good[:3]) not in found
     assert all(found.values())
+
+
+def test_typed_formulas_are_refused_where_a_value_belongs(book):
+    """As a text they would stand there as a wrong number, or as no date."""
+    fields = [
+        ("Items", 2, "quantity"),
+        ("Items", 2, "breadth"),
+        ("Items", 3, "anchored"),
+        ("Building", 0, "report_date"),
+    ]
+    places = [(sheet, *book.sheets[sheet].place(field, row)) for sheet, row, field in fields]
+    found = refusals(book, *((*place, " =1+40") for place in places), ("Items", 2, at("notes"), "=1+40"))
+    assert found == dict.fromkeys(places, "formulas are not computed here: type the value.")
 
 
 def test_formulas_merges_arrays_and_tables(tmp_path):

@@ -123,11 +123,21 @@ def test_pieces_with_errors_are_still_drawn(path):
     edit(book, ("Items", 2, "height", "tall"), ("Items", 3, "breadth", None), ("Items", 4, "quantity", "x"))
     edit(book, *(("Items", 8, name, value) for name, value in (("item", "new"), ("floor", "1"), ("x", 3), ("y", 3))))
     found = {one["item"]: one for one in _plan(book)["pieces"]}
-    missing = {name: one["sizes_missing"] for name, one in found.items()}
-    assert missing == {"A1": True, "A2": True, "A3": False, "new": True}
+    missing = {name: one["missing"] for name, one in found.items()}
+    assert missing == {"A1": ["height"], "A2": ["breadth"], "A3": [], "new": ["breadth", "width", "height"]}
     assert (found["new"]["breadth"], found["new"]["width"], found["new"]["fallen"]) == (0.4, 0.4, [])
     assert (found["A2"]["breadth"], found["A2"]["width"]) == (0.4, 0.8)
     assert len(found["A3"]["fallen"]) == 2
+
+
+def test_an_unknown_width_is_told(path):
+    """It is drawn as Breadth, as the routes assume it; nobody may take that for what the piece covers."""
+    book = hold(path)
+    edit(book, ("Items", 2, "width", None))
+    (shelves,) = _plan(book, "2")["pieces"]
+    assert (shelves["missing"], shelves["width"]) == (["width"], shelves["breadth"])
+    piece = _plan(book, "1")["pieces"][0]
+    assert (piece["missing"], piece["width"], len(piece["fallen"])) == (["width"], 0.3, 2)
 
 
 def test_a_workbook_without_floors_has_a_frame(path):

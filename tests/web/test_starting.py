@@ -46,6 +46,9 @@ def test_a_new_workbook_replaces_no_file_and_leaves_its_folder_by_no_name(served
     for name in ("../a.xlsx", "a/b.xlsx", "a\\b.xlsx", "C:\\a.xlsx", "/tmp/a.xlsx", "CON.xlsx", ".xlsx", ".a.xlsx",
                  "a\n.xlsx", "a\u202e.xlsx", "x" * 300, "-rf.xlsx", "a:b.xlsx", 5, ["a"]):  # fmt: skip
         assert server.client.post("/api/start", {"kind": "blank", "name": name}).status == 422, name
+    refused = {"a<b>.xlsx": "cannot have < >", "nul": "Windows keeps", "-rf": "cannot begin", ".xlsx": "Choose a name"}
+    for name, why in refused.items():
+        assert why in server.client.post("/api/start", {"kind": "blank", "name": name}).json()["fix"]
     for wrong in ({"kind": "x"}, {"use": "Castle"}, {"shaking": "strong"}, {"units": "feet"}, {"language": "tlh"},
                   {"pieces": [{"type": "Throne", "count": 1}]}, {"pieces": [{"type": "Desk", "count": 10**9}]},
                   {"pieces": [3]}, {"pieces": "Desk"}, {"building": "x" * 1000}):  # fmt: skip

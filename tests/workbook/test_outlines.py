@@ -21,6 +21,7 @@ SQUARE = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
         " 0 0 ; 6.0 0 ;\n6 4; 0 4; 0 0",
         "0  0\n6 0\n6 4\n0 4",
         "+0 0; 6. .0; 6 4; 0 4",
+        "0,0 0; 6,00 0; 6 4,0; 0,000 4",
     ],
 )
 def test_an_outline_is_its_corners(text):
@@ -48,7 +49,9 @@ def test_angled_rooms_either_way_round_and_corners_on_a_side_are_fine(text):
         ("0 0; 6 0; 3 0; 3 4", r"sides 1 and 2 cross"),
         ("0 0; 6 0; 6 4; 3 0; 0 4", r"sides 1 and 3 cross or touch"),
         ("0 0; 6 0; 6 4; 0 y", r"corner 4 is '0 y'"),
-        ("0,5 0; 6 0; 6 4", r"corner 1 is '0,5 0', expected two numbers"),
+        ("0,5; 6 0; 6 4", r"corner 1 is '0,5', expected two numbers"),
+        ("0,0 6,0 6,4; 1 1; 2 1", r"corner 1 is '0,0 6,0 6,4', expected two numbers"),
+        ("0 0; 6,500 0; 6 4", r"corner 2 is '6,500 0', which can be read in two ways"),
         ("0 0 1; 6 0 1; 6 4 1", r"corner 1 is '0 0 1'"),
         ("5", r"corner 1 is '5'"),
         ("0 0; 6 0; 6 0; 0 4", r"corner 3 is the same as the one before"),

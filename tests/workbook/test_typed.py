@@ -58,6 +58,17 @@ NUMBERS: list[tuple[Column, str, str, object, str]] = [
     (X, "m", "\u22121,5", -1.5, "comma"),
     (X, "m", "\u2013 3", -3, "signs"),
     (X, "m", "+3", 3, "text"),
+    (HEIGHT, "in", "5' 11\"", 71, "unit"),
+    (HEIGHT, "in", "5\u2019 11\u201d", 71, "unit"),
+    (HEIGHT, "in", "5\u2032-11\u2033", 71, "unit"),
+    (HEIGHT, "cm", "1'4\"", 40.64, "unit"),
+    (HEIGHT, "cm", "5 ft 11 in", 180.34, "unit"),
+    (HEIGHT, "ft", "5 feet 6 inches", 5.5, "unit"),
+    (HEIGHT, "in", "5' 1,5''", 61.5, "unit"),
+    (HEIGHT, "in", "6'", 72, "unit"),
+    (HEIGHT, "in", "5.5'", 66, "unit"),
+    (HEIGHT, "ft", '66"', 5.5, "unit"),
+    (X, "ft", "-1' 6\"", -1.5, "unit"),
     (WEIGHT, "kg", "12 kg", 12, "unit"),
     (WEIGHT, "kg", "10 lbs", 4.5359237, "unit"),
     (FRICTION, "", "0,15", 0.15, "comma"),
@@ -84,7 +95,7 @@ def test_numbers_as_they_are_typed(column: Column, unit: str, text: str, number:
 @pytest.mark.parametrize(
     "text", ["45 kg", "about 45", "40-45", "40 x 60", "1.2.3", "1,2,3", "12,34,567", "1.234,5.6", "4²", "½", "45 cm²",
              "1e999", "0e999", "١,٥٠٠", "9" * 400, "#N/A", "--3", "high", "%",
-             "'high", "''200", "'200'", "'"],
+             "'high", "''200", "'200'", "'", "5' 11", "1'800\"", "5' 12\"", "5 11\"", "5.5' 3\"", "1.125\"", "\""],
 )  # fmt: skip
 def test_texts_that_are_no_number_of_the_column(text: str) -> None:
     assert meant(HEIGHT, text) == (text, "")
