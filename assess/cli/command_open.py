@@ -86,9 +86,14 @@ def command(
     with bind(place) as listening, private_folder() as folder:
         server = Server(listening, place, folder, Path.cwd())
         if book is not None:
-            server.take(book)
+            _warn(server.take(book), str(book.state()["save_error"]))
         ending = server.run(interrupts.NUMBERS, lambda: _welcome(server, place, no_browser))
     _say_goodbye(ending)
+
+
+def _warn(*remarks: str) -> None:
+    for remark in filter(None, remarks):
+        typer.echo(f"warning  {remark}", err=True)
 
 
 def _check_packages() -> None:

@@ -77,7 +77,7 @@ def describe_state(asked: Asked) -> Answer:
     session = asked.session
     if session.book is not None and time.monotonic() - session.looked > LOOK:
         session.looked = time.monotonic()
-        session.book.check_outside()
+        session.book.follow_outside()
     job = session.job.summarise() if session.job else None
     if session.book is None:
         return {"state": None, "job": job}
@@ -89,23 +89,33 @@ def edit(asked: Asked) -> Answer:
     edits = asked.body.get("edits")
     if not isinstance(edits, list):
         raise RequestError(fill("The request cannot be read."), UNUSABLE)
-    change = asked.book.edit(_version(asked), edits, str(asked.body.get("label") or ""))
+    change = _named_book(asked).edit(_version(asked), edits, str(asked.body.get("label") or ""))
     asked.note_edit(asked.session)
     return _note_download(asked, change)
 
 
 def undo(asked: Asked) -> Answer:
     """Take back the last change."""
-    change = asked.book.undo(_version(asked))
+    change = _named_book(asked).undo(_version(asked))
     asked.note_edit(asked.session)
     return _note_download(asked, change)
 
 
 def redo(asked: Asked) -> Answer:
     """Make a change that was taken back once more."""
-    change = asked.book.redo(_version(asked))
+    change = _named_book(asked).redo(_version(asked))
     asked.note_edit(asked.session)
     return _note_download(asked, change)
+
+
+def _named_book(asked: Asked) -> "Book":
+    """Return the book that a change is for; VersionError where the page has another opening of it, or another book."""
+    from assess.web.book import VersionError
+
+    book = asked.book
+    if asked.body.get("server") not in (None, book.opening):
+        raise VersionError(book.state())
+    return book
 
 
 def _version(asked: Asked) -> int:

@@ -5,15 +5,17 @@ differ from the base into its bytes, and after `Book.save` what was saved is the
 any thread.
 """
 
+import secrets
+from contextlib import suppress
 from pathlib import Path
 from threading import RLock
 from typing import Any, Literal, Self
 
-from assess.errors import InputError, OutputError, WorkbookError
+from assess.errors import AssessError, InputError, OutputError, WorkbookError
 from assess.i18n import fill
 from assess.web.cell_edits import EditsRefused, Locks, say, take_edits
 from assess.web.columns import PageSheet, find_sheets, find_units, show
-from assess.web.disk_file import ChangedOutsideError, DiskFile
+from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.history import CellPlace, Contents, History, Step
 from assess.web.named_files import FILES, add_file, list_missing
 from assess.web.snapshot import Snapshot
@@ -39,9 +41,11 @@ class Book:
     def __init__(self, name: str, data: bytes, folder: Path, file: DiskFile | None) -> None:
         self.name, self.folder, self._file = name, folder.resolve(), file
         self.version = 1
+        self.opening, self.remark = secrets.token_hex(8), ""
         self._lock, self._saving = RLock(), RLock()  # who needs both takes the one of saving first
         self._kept = KeptFiles()
         self._save_error, self._changed_outside = "", False
+        self._hindrance = file.find_hindrance() if file else ""
         self._take_in(data)
 
     @classmethod
@@ -71,6 +75,7 @@ class Book:
         self.sheets: dict[str, PageSheet] = find_sheets(held, tables)
         self.language, self.units = held.language, find_units(self.sheets)
         self._history, self._different = History(), set[CellPlace]()
+        self._saved_version = self._read_version = self.version
         self._now = self._base = self._snap(held)
         self._base_live: LiveRows | None = None
         self._written: tuple[int, bytes] = (self.version, data)
@@ -101,8 +106,11 @@ class Book:
         with self._lock:
             return {
                 "version": self.version,
+                "server": self.opening,
+                "saved_version": self._saved_version,
+                "read_version": self._read_version,
                 "unsaved": bool(self._different),
-                "save_error": say(self._save_error),
+                "save_error": say(self._save_error or self._hindrance),
                 "changed_outside": self._changed_outside,
                 "can_undo": self._history.at > 0,
                 "can_redo": self._history.at < len(self._history.steps),
@@ -112,6 +120,10 @@ class Book:
         """Return everything that the page shows of the cells and of the files."""
         with self._lock:
             now, found = self._now, {"name": self.name, "mode": self.mode, "language": self.language}
+            found |= {
+                "file": find_hash(str(self.path and self.path.resolve()).encode())[:16],
+                "remark": say(self.remark),
+            }
             missing = self._find_missing(anew=True)
             state = self.state()
         cells = now.cells.cells
@@ -207,6 +219,8 @@ class Book:
                 self._different.discard(place)
             else:
                 self._different.add(place)
+        if not self._different:
+            self._saved_version = self.version
 
     def _names_file(self, place: CellPlace) -> bool:
         column = self.sheets[place[0]].find(place[1], place[2])
@@ -276,9 +290,9 @@ class Book:
         if different:
             file.replace(data)
         with self._lock:
-            self._save_error = ""
+            self._save_error = self._hindrance = ""
             if different:
-                self._changed_outside = False
+                self._changed_outside, self._saved_version = False, now.version
                 self._data, self._base, self._base_live = data, now, None
                 self._compare({*different, *self._different})  # more may have been edited meanwhile
 
@@ -287,10 +301,19 @@ class Book:
         if self._file is None:
             return False
         with self._saving:
-            is_changed = self._file.is_changed()
+            is_changed, hindrance = self._file.is_changed(), self._file.find_hindrance()
         with self._lock:
-            self._changed_outside = is_changed
+            self._changed_outside, self._hindrance = is_changed, hindrance
         return is_changed
+
+    def follow_outside(self) -> None:
+        """Read a file again that another program has changed, unless that would drop changes.
+
+        One that cannot be read, such as one that is still being written, is tried at the next call.
+        """
+        with self._saving, self._lock, suppress(AssessError, OSError):
+            if self.check_outside() and not self._different:
+                self.reload()
 
     def reload(self) -> None:
         """Read the file again; what was not saved, and the history, are dropped.
@@ -308,6 +331,7 @@ class Book:
             self.version += 1
             self._take_in(data)
             self._file, self._save_error, self._changed_outside = file, "", False
+            self._hindrance = file.find_hindrance()
 
     # ------------------------------------------------------------ the files that it names
 

@@ -1,5 +1,6 @@
 """The workbook's own file: read, watched for changes by other programs, and replaced as a whole."""
 
+import errno
 import hashlib
 import os
 import stat
@@ -12,6 +13,10 @@ from assess.delivery.disk import flush_folder
 from assess.errors import InputError, OutputError
 from assess.i18n import fill
 from assess.workbook.open import read_file
+
+IN_USE = frozenset((errno.EACCES, errno.EBUSY, errno.ETXTBSY))
+"""What systems answer where another program holds a file open; rights have been looked at before."""
+FULL = frozenset((errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC)))
 
 
 class ChangedOutsideError(InputError):
@@ -74,23 +79,41 @@ class DiskFile:
             mode = stat.S_IMODE(target.stat().st_mode)
         except (OSError, RuntimeError):
             raise OutputError(
-                fill("{name} is no longer in its folder: your changes are kept here; download them.",
-                     name=self.path.name)
-            ) from None  # fmt: skip
-        if not mode & stat.S_IWUSR or not os.access(target, os.W_OK):
-            raise OutputError(
-                fill("{name} is read-only: allow writing, or download your changes.", name=self.path.name)
-            )
+                fill("{name} is no longer in its folder: put it back, or download your version.", name=self.path.name)
+            ) from None
+        if hindrance := self.find_hindrance():
+            raise OutputError(hindrance)
         if self.is_changed():
             raise ChangedOutsideError(self.path)
         try:
             self._swap(target, data, mode)
         except OSError as error:
-            raise OutputError(
-                fill("{name} cannot be saved: {why}. Close it in other programs; your changes are kept here.",
-                     name=self.path.name, why=error.strerror or error)
-            ) from None  # fmt: skip
+            raise OutputError(self._explain(error)) from None
         self.digest, self.signature = find_hash(data), self._look()
+
+    def find_hindrance(self) -> str:
+        """Return why it could not be replaced, as far as its rights and those of its folder tell; blank where it can."""
+        try:
+            target = self.path.resolve(strict=True)
+            is_writable = bool(target.stat().st_mode & stat.S_IWUSR) and os.access(target, os.W_OK)
+        except (OSError, RuntimeError):
+            return ""
+        if not is_writable:
+            return fill("{name} is read-only: allow writing, or download your version.", name=self.path.name)
+        if not os.access(target.parent, os.W_OK | os.X_OK):
+            return fill(
+                "The folder of {name} does not allow writing: changes can be downloaded, not saved in it.",
+                name=self.path.name,
+            )
+        return ""
+
+    def _explain(self, error: OSError) -> str:
+        name, why = self.path.name, error.strerror or error
+        if error.errno in FULL:
+            return fill("{name} cannot be saved: {why}. Free some space, or download your version.", name=name, why=why)
+        if error.errno in IN_USE:
+            return fill("{name} cannot be saved: {why}. Close it in other programs.", name=name, why=why)
+        return fill("{name} cannot be saved: {why}. Download your version.", name=name, why=why)
 
     def _swap(self, target: Path, data: bytes, mode: int) -> None:
         handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".tmp", dir=target.parent)

@@ -7,6 +7,10 @@ from assess.web.sessions import Keys, Session
 
 SAVED_AFTER = 1.0
 """Time from the last change of a workbook to its being saved [s]; longer where saving itself takes long."""
+SAVED_AT_LATEST = 3.0
+"""Time from the first change that is not saved to its being saved, however much is changed after it [s]; as above."""
+SAVED_AGAIN_AFTER = 3.0
+"""Time after which saving that has failed is tried again [s]."""
 SAVING_SHARE = 0.3
 """Most of the time that saving may take while a workbook is being changed [-]."""
 LOOKED_EVERY = 60.0
@@ -18,6 +22,7 @@ class Keeper:
 
     def __init__(self, keys: Keys) -> None:
         self._keys, self._due = keys, dict[Session, float]()
+        self._latest = dict[Session, float]()
         self._took = 0.0  # by the last save [s]
         self._woken, self._is_ended = threading.Condition(), False
         self._next_look = time.monotonic() + LOOKED_EVERY
@@ -28,12 +33,20 @@ class Keeper:
         self._thread.start()
 
     def note_edit(self, session: Session) -> None:
-        """Have a workbook be saved, once nothing more is changed for a moment."""
+        """Have a workbook be saved, once nothing more is changed for a moment, or soon."""
         if session.book is not None and session.book.mode == "disk":
             with self._woken:
-                pause = max(SAVED_AFTER, self._took / SAVING_SHARE)
-                self._due[session] = time.monotonic() + pause
+                now, pause = time.monotonic(), self._took / SAVING_SHARE
+                latest = self._latest.setdefault(session, now + max(SAVED_AT_LATEST, pause))
+                self._due[session] = min(now + max(SAVED_AFTER, pause), latest)
                 self._woken.notify()
+
+    def _try_again(self, session: Session) -> None:
+        """Have a workbook that could not be saved be saved a little later: what stood in the way may be gone."""
+        state = session.book.state() if session.book else {}
+        if state.get("unsaved") and state["save_error"] and not state["changed_outside"]:
+            with self._woken:
+                self._due.setdefault(session, time.monotonic() + max(SAVED_AGAIN_AFTER, self._took / SAVING_SHARE))
 
     def end(self) -> None:
         """End, after what is being saved."""
@@ -48,6 +61,7 @@ class Keeper:
                 started = time.monotonic()
                 session.save()
                 self._took = time.monotonic() - started
+                self._try_again(session)
             if time.monotonic() >= self._next_look:
                 self._next_look = time.monotonic() + LOOKED_EVERY
                 self._keys.expire(time.monotonic())
@@ -61,6 +75,7 @@ class Keeper:
                 if due or now >= self._next_look:
                     for session in due:
                         del self._due[session]
+                        self._latest.pop(session, None)
                     return due
                 self._woken.wait(min(*self._due.values(), self._next_look, self._next_look) - now)
         return None

@@ -146,9 +146,9 @@ class Server:
         names = [f"{name}:{self.port}" for name in (LOOPBACK, "localhost", "[::1]")]
         return [*names, LOOPBACK, "localhost"] if self.port == HTTP else names
 
-    def take(self, book: "Book") -> None:
-        """Open a workbook in the session of the own machine."""
-        self._keys.sessions()[0].take(book)
+    def take(self, book: "Book") -> str:
+        """Open a workbook in the session of the own machine; return what its user should know, blank without."""
+        return self._keys.sessions()[0].take(book).remark
 
     def issue_address(self) -> str:
         """Return an address that opens the page once, in one browser; where a proxy is in front, its way in."""

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from assess.errors import AssessError
 from assess.i18n import fill
+from assess.web.folders import NOTE, PREFIX, find_other, note_opened
 from assess.web.jobs import Job, Slots, check_free
 from assess.web.request_errors import NOT_FOUND, TOO_MANY, RequestError
 from assess.web.safe_names import make_safe
@@ -118,7 +119,22 @@ class Session:
             self.save()
             self.drop_book(kept=book.folder)
             self.book, self.downloaded = book, book.version
+            self._note_opened(book)
         return book
+
+    def _note_opened(self, book: "Book") -> None:
+        """Tell other servers of this user which workbook is open, and the user where one of them has it open too."""
+        if book.path is None or not self.folder.parent.name.startswith(PREFIX):
+            return
+        other = find_other(self.folder, book.path)
+        note_opened(self.folder, book.path)
+        if other is not None:
+            book.remark = fill(
+                "{name} is also open in another window that assess started (process {pid}). Use only one of them, so "
+                "that the changes of one do not stand in the way of the other's.",
+                name=book.name,
+                pid=str(other),
+            )
 
     def hold(self, name: str, data: bytes) -> "Book":
         """Open a workbook that was sent."""
@@ -167,6 +183,7 @@ class Session:
         if self.job is not None:
             self.job.close()
         self.job = self.book = self.live = None
+        (self.folder / NOTE).unlink(missing_ok=True)
         for folder in self.folder.glob("files-*"):
             if folder.resolve() != kept:
                 shutil.rmtree(folder, ignore_errors=True)
