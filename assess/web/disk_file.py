@@ -92,7 +92,7 @@ class DiskFile:
         self.digest, self.signature = find_hash(data), self._look()
 
     def find_hindrance(self) -> str:
-        """Return why it could not be replaced, as far as its rights and those of its folder tell; blank where it can."""
+        """Return why it cannot be replaced, as far as its rights and those of its folder tell; blank where it can."""
         try:
             target = self.path.resolve(strict=True)
             is_writable = bool(target.stat().st_mode & stat.S_IWUSR) and os.access(target, os.W_OK)

@@ -59,7 +59,10 @@ def test_a_file_that_another_program_changed_is_not_overwritten(served, tmp_path
     wait_until(lambda: server.client.get("/api/state").json()["state"]["unsaved"], lambda unsaved: not unsaved)
     write(path, [])
     theirs = path.read_bytes()
-    wait_until(lambda: server.client.get("/api/state").json()["state"]["changed_outside"], bool)
+    state = wait_until(lambda: server.client.get("/api/state").json()["state"], lambda state: state["read_version"] > 2)
+    assert not state["changed_outside"]  # nothing was unsaved: it has been read again
+    write(path, [{"item": "B1"}])
+    theirs = path.read_bytes()
     at = _edit(server.client, 78)
     assert server.client.post("/api/save").status == 409
     assert path.read_bytes() == theirs
