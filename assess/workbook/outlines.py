@@ -43,8 +43,8 @@ def parse_outline(text: str, factor: float) -> Outline:
     Raises
     ------
     OutlineError
-        If a corner is not two numbers, or can be read in two ways (``1,500 0``), two that follow each other are the same, there are fewer than three or more
-        than 200, or its sides cross or touch each other.
+        If a corner is not two numbers or can be read in two ways (``1,500 0``), two that follow each other are the
+        same, there are fewer than three or more than 200, or its sides cross or touch each other.
     """
     parts = [part.split() for part in text.replace("\n", ";").split(";") if part.strip()]
     corners = [_read_corner(at, part, factor) for at, part in enumerate(parts, 1)]
