@@ -25,9 +25,9 @@ OPTIONS = ("verify", "runs", "seed", "scale", "scenario")
 
 ITEM_INPUTS = (
     "item", "floor", "breadth", "width", "height", "centre_of_gravity", "weight", "bracket_height", "bracket_capacity",
-    "axis", "anchored", "friction", "angle_deg",
+    "axis", "anchored", "friction", "angle_deg", "quantity",
 )  # fmt: skip
-"""Fields of a piece by which its simulated chance, or whether it counts as anchored, is found."""
+"""Fields of a piece by which its simulated chance, whether it counts as anchored, or how many it is, is found."""
 BUILDING_INPUTS = (
     "storeys", "height", "period", "azimuth_deg", "scenario_kind", "ground_pga", "ground_pgv", "sds", "shaking",
     "friction", "restitution", "motion_uncertainty", "piece_uncertainty",
@@ -112,19 +112,23 @@ def _read(book: "Book") -> "tuple[Snapshot, bytes]":
 
 
 def list_stale(before: Inventory, now: Inventory) -> list[int]:
-    """Return the rows of furniture whose chance may be another one than when they were simulated."""
-    known = {one.row: one for one in before.items}
+    """Return the rows of furniture whose chance or number may be another one than when they were simulated.
+
+    Among them are rows that are gone, or now have an error.
+    """
+    known, left = {one.row: one for one in before.items}, {one.row for one in now.items}
     is_other = not (
         _is_alike(before.building, now.building, BUILDING_INPUTS)
         and before.hazard == now.hazard
         and len(before.floors) == len(now.floors)
         and all(_is_alike(one, other, FLOOR_INPUTS) for one, other in zip(before.floors, now.floors, strict=True))
     )
-    return [
+    changed = [
         one.row
         for one in now.items
         if is_other or one.row not in known or not _is_alike(known[one.row], one, ITEM_INPUTS)
     ]
+    return [*changed, *(row for row in known if row not in left)]
 
 
 def _is_alike(one: object, other: object, fields: Iterable[str]) -> bool:

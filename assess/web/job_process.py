@@ -132,7 +132,9 @@ def summarise(results: Results) -> dict[str, Any]:
     rows = list(results)
     items = {
         "row": [one.item.row for one in rows],
+        "quantity": [one.item.quantity for one in rows],
         "class": ["" if one.is_anchored else key(one.adopted.risk) for one in rows],
+        "formula": ["" if one.is_anchored else key(one.formula_class) for one in rows],
         "chance": [one.adopted.probability for one in rows],
         "low": [one.adopted.low for one in rows],
         "high": [one.adopted.high for one in rows],
@@ -154,6 +156,7 @@ def _sum(state: State) -> dict[str, Any]:
         "counts": {key(risk): state.count(risk) for risk in RiskClass},
         "falls": state.falls,
         "anchored": state.anchored,
+        "apart": state.apart,
         "blocked_routes": state.blocked_routes,
         "cut_off_rooms": state.cut_off_rooms,
     }

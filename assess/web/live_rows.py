@@ -176,8 +176,12 @@ class _Words:
         if any(table.spoilt(name, row) for name in sizes):
             return gettext(WRONG)
         if len(filled_sizes(table, row, self.types).keys() & set(sizes)) < len(sizes):
-            return ""
+            return gettext(WRONG) if self._names_no_type(row) else ""
         return gettext(self._explain_motion(row))
+
+    def _names_no_type(self, row: Row) -> bool:
+        """Whether its sizes are to come from a type that the catalogue does not have."""
+        return row.get("type") is not None and key(row.get("type")) not in self.types
 
     def _explain_motion(self, row: Row) -> str:
         floor = key(row.get("floor") or "")

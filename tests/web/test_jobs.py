@@ -80,7 +80,17 @@ def test_results_are_those_of_the_command(running, tmp_path):
     assert job["items"]["chance"] == pytest.approx([row["adopted"]["probability"] for row in rows])
     classes = [one.replace("_", " ") for one in job["items"]["class"]]
     assert classes == ["" if row["anchor"]["counts_as_anchored"] else row["adopted"]["class"] for row in rows]
-    assert job["before_after"]["before"]["falls"] > job["before_after"]["after"]["falls"]
+    live = running.client.get("/api/live").json()["items"]
+    shown = dict(zip(live["row"], live["class"], strict=True))
+    free = zip(job["items"]["row"], classes, strict=True)
+    assert job["items"]["formula"] == [shown[row] if risk else "" for row, risk in free]
+    sums = job["before_after"]
+    assert sums["before"]["falls"] > sums["after"]["falls"]
+    pieces = {
+        sum([*sums[side]["counts"].values(), sums[side]["anchored"], sums[side]["apart"]])
+        for side in ("before", "after")
+    }
+    assert pieces == {sum(job["items"]["quantity"])}
 
 
 def test_a_job_ends_with_its_files_and_is_found_again(running):
@@ -123,6 +133,7 @@ def test_floors_and_the_building_make_all_rows_stale(example_inventory):
     rows = [one.row for one in example_inventory.items]
     building = example_inventory.building
     assert list_stale(example_inventory, example_inventory) == []
+    assert list_stale(example_inventory, replace(example_inventory, items=example_inventory.items[1:])) == rows[:1]
     assert list_stale(example_inventory, change_floor(name="Attic")) == []
     assert list_stale(example_inventory, change_floor(pfa={"X": 1.0})) == rows
     assert list_stale(example_inventory, replace(example_inventory, building=replace(building, client="B"))) == []

@@ -121,6 +121,18 @@ def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, langua
     assert words[max(words)][1] == {"en": "shaking?", "it": "scuotimento?"}[language]
 
 
+def test_a_type_that_is_not_known_is_to_be_checked(tmp_path):
+    """Without sizes of its own the piece has no class for that; one that is only begun is left alone."""
+    items = [{"item": "A1", "floor": "1", "breadth": 40, "height": 180}] * 3
+    book = hold(_write(tmp_path / "w.xlsx", {"Items": items, "Floors": FLOORS}))
+    edit(
+        book,
+        ("Items", 2, "type", "Zorp"),
+        *(("Items", row, name, None) for row in (2, 3) for name in ("breadth", "height")),
+    )
+    assert [word for _, word, *_ in _by_row(_answer(book)).values()] == ["check", "", "check"]
+
+
 def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):
     book = hold(write(tmp_path / "w.xlsx"))
     whole = _classes(_answer(book))

@@ -36,6 +36,7 @@ def test_on_a_phone_the_tabs_are_at_the_bottom_and_nothing_is_edited(page, serve
     expect(found.locator(".counts")).to_contain_text("very high")
     tabs = found.get_by_role("navigation", name="Views").bounding_box()
     assert tabs["y"] + tabs["height"] == HEIGHT
+    expect(found.locator(".problems-rows")).to_be_hidden()
     expect(found.get_by_role("button", name="Undo")).to_be_hidden()
     found.get_by_role("button", name="Menu").click()
     expect(found.get_by_role("link", name="Download a copy")).to_be_visible()

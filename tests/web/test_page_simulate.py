@@ -51,8 +51,24 @@ def test_from_start_to_report(simulating):
     assert page.locator("iframe").get_attribute("sandbox") == "allow-scripts"
     rows = [row for row, _ in simulated(page)]
     assert rows == SIMULATED
-    counts = page.get_by_role("region", name="Results").get_by_role("table").first
-    assert counts.locator("tbody tr").count() == 4
+    header = page.locator(".counts-line")
+    expect(header.get_by_label("Classes by")).to_have_value("simulated")
+    found = header.get_by_role("list").inner_text()
+    results = page.get_by_role("region", name="Results")
+    counts, fixed = results.get_by_role("table").first, results.get_by_role("table").last
+    for table in (counts, fixed):  # each column is all pieces, and the classes are those of the header
+        rows = [row.locator("td").all_inner_texts() for row in table.locator("tbody tr").all()][:7]
+        one, other = ([int(row[at]) for row in rows if row[at].isdecimal()] for at in (0, 1))
+        assert sum(one[:-1]) == one[-1] == other[-1] == sum(other[:-1])
+    assert [row.locator("td").last.inner_text() for row in counts.locator("tbody tr").all()][:4] == re.findall(
+        r"[■▲◇○] (\d+)", found)  # fmt: skip
+    header.get_by_label("Classes by").select_option("formula")
+    expect(header.get_by_role("list", name="Pieces by class, by formula")).to_be_visible()
+    header.get_by_label("Classes by").select_option("simulated")
+    show(page, "what-if")
+    expect(page.locator(".basis-note")).to_contain_text("not those of the simulation, which found")
+    expect(page.get_by_text("by the simulation it has")).to_be_visible()
+    show(page, "simulate")
     assert examine(page) == []
     with page.expect_download() as download:
         page.get_by_role("link", name="Download all in one file").click()
@@ -72,6 +88,7 @@ def test_pieces_changed_since_are_told_apart(simulating):
         store.edit([["Items", 4, store.sheet("Items").column("height").at, 60]], "typing");
     }""")
     expect(page.locator(".stale-note")).to_contain_text("1 piece.")
+    expect(page.locator(".counts-line")).to_contain_text("1 row changed since")
     assert [row for row, is_stale in simulated(page) if is_stale] == [4]
     page.get_by_role("button", name="Undo").click()
     expect(page.locator(".stale-note")).to_have_count(0)
@@ -100,10 +117,14 @@ def test_a_run_is_found_again_after_a_reload_and_can_be_cancelled(simulating):
 
 
 def test_a_workbook_with_errors_says_which(page, served, tmp_path):
-    found = page(served(write(tmp_path / "office.xlsx", [ITEMS[0] | {"height": "tall"}, *ITEMS[1:]])))
+    items = [ITEMS[0] | {"height": "tall"}, ITEMS[1] | {"type": "Zorp"}, *ITEMS[2:]]
+    found = page(served(write(tmp_path / "office.xlsx", items)))
+    expect(found.locator(".counts-line")).to_contain_text("by formula")
     show(found, "simulate")
     found.get_by_role("button", name="Start the run").click()
     said = found.locator("#view-simulate [role=alert]")
+    expect(said).to_contain_text("1 error to correct first")
+    expect(said.get_by_role("listitem").filter(visible=True)).to_have_count(1)
     expect(said).to_contain_text("'tall'")
     said.get_by_role("button").first.click()
     expect(found.locator("#view-sheet")).to_be_visible()

@@ -2,13 +2,16 @@
 
 import { countBadges } from "./classes.mjs";
 import { choose, clear, el } from "./elements.mjs";
-import { countAll, jobs } from "./job.mjs";
+import { countSimulated, jobs } from "./job.mjs";
 import { acceptDrops } from "./open_file.mjs";
 import { showFiles } from "./files_view.mjs";
 import { Tabs } from "./tabs.mjs";
 import { language, languages, loadTexts, t, tn } from "./texts.mjs";
 import { themeSwitch } from "./theme.mjs";
 import { Watch, whenSent } from "./watch.mjs";
+
+/** What keeps an undo of its own: text fields, and the questions of dialogs. */
+const OWN_UNDO = `textarea, [contenteditable], dialog, input:not(${["checkbox", "radio", "range", "button", "submit", "reset", "file", "color"].map((one) => `[type="${one}"]`).join()})`;
 
 /** The save state in words, and whether something has to be done about it. */
 export function saveState(store, isGone = false) {
@@ -60,7 +63,7 @@ class Frame {
     const p = this.#parts;
     p.name = el("h1", { text: "assess" });
     p.state = el("div", { class: "save-state", role: "status" });
-    p.counts = el("ul", { class: "counts", "aria-label": t("Pieces by class") });
+    p.counts = this.#countsLine();
     const button = (label, sign, run, more = {}) =>
       el("button", { type: "button", "aria-label": label, title: label, on: { click: run }, ...more }, sign);
     p.undo = button(t("Undo"), "↶", () => this.#store.undo(), { class: "editing-only" });
@@ -75,6 +78,17 @@ class Frame {
       el("div", { id: "menu", class: "menu" },
         (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
         el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch())));
+  }
+
+  /** The pieces by class, and by what: by the formula, or by the simulation once there is one. */
+  #countsLine() {
+    const p = this.#parts;
+    p.badges = el("ul", { class: "counts" });
+    p.basis = el("span", { class: "basis", text: t("by formula") });
+    p.bases = choose([["simulated", t("simulated")], ["formula", t("by formula")]], "simulated", { class: "basis", "aria-label": t("Classes by"), hidden: true });
+    p.bases.addEventListener("change", () => this.#showCounts());
+    p.since = el("span", { class: "since warning-text", hidden: true });
+    return el("div", { class: "counts-line" }, p.basis, p.bases, p.badges, p.since);
   }
 
   /** On a phone what is not always needed is folded away. */
@@ -109,7 +123,7 @@ class Frame {
 
   #onKey(event) {
     if (event.defaultPrevented || !(event.ctrlKey || event.metaKey) || event.altKey || !this.#store.book) return;
-    if (event.target.closest?.("input, textarea, select, [contenteditable], dialog")) return;
+    if (event.target.closest?.(OWN_UNDO)) return;
     const key = event.key.toLowerCase();
     const run = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
     if (!run) return;
@@ -149,7 +163,19 @@ class Frame {
   }
 
   #showCounts() {
-    clear(this.#parts.counts).append(...countBadges(countAll(this.#store)));
+    const p = this.#parts;
+    const simulated = countSimulated();
+    const isSimulated = Boolean(simulated) && p.bases.value === "simulated";
+    clear(p.badges).append(...countBadges(isSimulated ? simulated : this.#store.counts));
+    p.badges.setAttribute("aria-label", isSimulated ? t("Pieces by class, simulated") : t("Pieces by class, by formula"));
+    p.basis.hidden = Boolean(simulated);
+    p.bases.hidden = !simulated;
+    p.counts.title = isSimulated
+      ? t("Pieces by class as the simulation found them, as in its reports. Those under – are anchored, or have the formula's class only.")
+      : t("Pieces by class as the formula has them now; they follow every change. Those under – are anchored, or have no class.");
+    const n = jobs.current?.stale?.length ?? 0;
+    p.since.hidden = !isSimulated || n === 0;
+    p.since.textContent = tn("{n:,} row changed since", "{n:,} rows changed since", n);
   }
 }
 

@@ -95,8 +95,7 @@ export class Grid extends EventTarget {
 
   widthOf(column) {
     const kept = Number(localStorage.getItem(this.#widthKey(column)));
-    const word = Math.max(...column.label.split(/\s+/).map((one) => one.length));
-    const width = kept || Math.min(WIDEST, PADDING + Math.max((column.width || 10) * CHARACTER, word * HEAD_CHARACTER, column.label.length * 4.2));
+    const width = kept || Math.min(WIDEST, PADDING + Math.max((column.width || 10) * CHARACTER, headLength(column) * HEAD_CHARACTER));
     return this.isNarrow && column.isFrozen ? Math.min(width, NARROW_COLUMN) : Math.max(NARROWEST, Math.round(width));
   }
 
@@ -351,4 +350,10 @@ export class Grid extends EventTarget {
   text(r, c) {
     return cellText(this.store, this.sheet, this.order.row(r), this.columns[c]);
   }
+}
+
+/** Characters of the longer line of a header, its unit included, when it is broken into two. */
+function headLength({ label, unit }) {
+  const words = [...label.split(/\s+/), ...(unit ? [`[${unit}]`] : [])];
+  return Math.min(...words.map((_, at) => Math.max(words.slice(0, at + 1).join(" ").length, words.slice(at + 1).join(" ").length)));
 }

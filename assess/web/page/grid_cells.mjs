@@ -20,7 +20,7 @@ export const isComputed = (column) => column.kind === "live" || column.kind === 
 
 /** The column of the simulated classes, which is in no file. */
 export const simulatedColumn = () => ({
-  at: null, field: SIMULATED, kind: SIMULATED, label: t("Simulated class"), unit: "", width: 16, choices: [], offered: [], source: "",
+  at: null, field: SIMULATED, kind: SIMULATED, label: t("Simulated class"), unit: "", width: 23, choices: [], offered: [], source: "",
   help: t("The class by simulation, and the share of motions in which the piece overturns; grey where its row changed since."),
 });
 

@@ -90,23 +90,18 @@ function simulatedRows(job) {
   return rows;
 }
 
-/** How many pieces a row stands for. */
-export function quantityOf(store, row) {
-  const sheet = store.sheet("Items");
-  const column = sheet?.column("quantity");
-  const value = column ? Number(sheet.value(row, column.at)) : 1;
-  return Number.isInteger(value) && value > 0 ? value : 1;
+/**
+ * Pieces by class as a run found them, whatever changed since: the same as in its reports. Under "" are those that are
+ * anchored or have the formula's class only. Null where nothing was simulated.
+ */
+export function countSimulated(job = jobs.current) {
+  if (job?.state !== "done" || !job.items?.simulated.some(Boolean)) return null;
+  return countPieces(job.items, (at) => (job.items.simulated[at] ? job.items.class[at] : ""));
 }
 
-/** Pieces by class with the simulated class where there is one that still holds. */
-export function countAll(store) {
-  const counts = { ...store.counts };
-  for (const [row, result] of store.simulated) {
-    const live = store.live.get(row);
-    if (!live?.class || !result.class || result.stale || live.class === result.class) continue;
-    const n = quantityOf(store, row);
-    counts[live.class] -= n;
-    counts[result.class] = (counts[result.class] ?? 0) + n;
-  }
+/** How many pieces, quantities counted, are of each class that `classOf` tells of a row of a run. */
+export function countPieces({ row, quantity }, classOf) {
+  const counts = {};
+  row.forEach((_, at) => (counts[classOf(at)] = (counts[classOf(at)] ?? 0) + quantity[at]));
   return counts;
 }

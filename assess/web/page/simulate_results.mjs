@@ -1,8 +1,8 @@
 // The results of a simulation: counts before and after, classes that changed, files, the report.
 
-import { CLASSES, badge, describe } from "./classes.mjs";
+import { CLASSES, badge } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
-import { quantityOf } from "./job.mjs";
+import { countPieces, countSimulated } from "./job.mjs";
 import { bytes, number, percent, t, tn } from "./texts.mjs";
 
 const ARCHIVE = "report.zip";
@@ -34,18 +34,18 @@ export class ResultsView {
   update(job) {
     const rows = this.#rows(job);
     clear(this.top).append(...[
-      el("h2", { text: t("Results") }), this.#stale(job), this.#files(job), this.#counts(job, rows), this.#changed(rows), fixing(job),
+      el("h2", { text: t("Results") }), this.#stale(job), this.#files(job), countsCard(job), this.#changed(rows), fixing(job),
     ].filter(Boolean));
     this.#showReport(job);
   }
 
-  /** Every piece with its class by the formula and the one that the run adopted. */
+  /** Every row with its class by the formula and the one that the run adopted, both as the run found them. */
   #rows(job) {
-    const { row, chance, low, high, simulated } = job.items;
+    const { row, chance, low, high, simulated, formula } = job.items;
     const stale = new Set(job.stale);
     return row.map((one, at) => ({
-      row: one, before: this.#store.live.get(one)?.class ?? "", after: job.items.class[at], chance: chance[at], low: low[at], high: high[at],
-      isSimulated: simulated[at], isStale: stale.has(one), n: quantityOf(this.#store, one),
+      row: one, before: formula[at], after: job.items.class[at], chance: chance[at], low: low[at], high: high[at],
+      isSimulated: simulated[at], isStale: stale.has(one),
     }));
   }
 
@@ -65,18 +65,10 @@ export class ResultsView {
       hasAll && el("div", { class: "buttons" }, el("a", { class: "button primary", href: address(ARCHIVE), download: ARCHIVE, text: t("Download all in one file (ZIP)") })));
   }
 
-  #counts(job, rows) {
-    if (!rows.some((one) => one.isSimulated)) return el("p", { text: t("Nothing was simulated: all classes are those of the formula.") });
-    const count = (key, name) => rows.filter((one) => !one.isStale && one[name] === key).reduce((sum, one) => sum + one.n, 0);
-    const line = (key) => el("tr", null, el("th", { scope: "row" }, badge(key)),
-      el("td", { class: "num", text: number(count(key, "before"), 0, true) }), el("td", { class: "num", text: number(count(key, "after"), 0, true) }));
-    return el("section", { class: "card" }, el("h3", { text: t("Pieces by class") }), table([t("Class"), t("By the formula"), t("With the simulation")], CLASSES.map(line)));
-  }
-
   #changed(rows) {
     if (!rows.some((one) => one.isSimulated)) return null;
     const order = (one) => CLASSES.indexOf(one.after) * 10 - (one.chance ?? 0);
-    const changed = rows.filter((one) => one.before !== one.after && one.isSimulated && (one.before || one.isStale)).sort((a, b) => order(a) - order(b));
+    const changed = rows.filter((one) => one.before !== one.after && one.isSimulated).sort((a, b) => order(a) - order(b));
     const title = el("h3", { text: tn("{n:,} class changed by the simulation", "{n:,} classes changed by the simulation", changed.length) });
     if (!changed.length) return el("section", { class: "card" }, title, el("p", { text: t("Every simulated piece keeps the class of the formula.") }));
     const more = changed.length - MOST_CHANGED;
@@ -109,19 +101,42 @@ export class ResultsView {
   }
 }
 
-function table(heads, rows) {
-  const head = el("tr", null, heads.map((text) => (text ? el("th", { scope: "col", text }) : el("td"))));
+function table(heads, rows, isNumbers = false) {
+  const head = el("tr", null, heads.map((text, at) => (text ? el("th", { scope: "col", class: at && isNumbers ? "num" : null, text }) : el("td"))));
   return el("div", { class: "scroll-x", tabIndex: 0, role: "group", "aria-label": heads[0] }, el("table", { class: "plain" }, el("thead", null, head), el("tbody", null, rows)));
 }
 
-/** What fixing everything on the list would change. */
+const row = (head, ...numbers) => el("tr", null, el("th", { scope: "row" }, head), numbers.map((text) => el("td", { class: "num", text })));
+const whole = (n) => number(n ?? 0, 0, true);
+
+/** Pieces by class by the formula and by the simulation, both of the same run: each column is all pieces. */
+function countsCard(job) {
+  const simulated = countSimulated(job);
+  if (!simulated) return el("p", { text: t("Nothing was simulated: all classes are those of the formula.") });
+  const { items } = job;
+  const formula = countPieces(items, (at) => items.formula[at]);
+  const all = items.quantity.reduce((sum, n) => sum + n, 0);
+  const anchored = countPieces(items, (at) => items.class[at])[""] ?? 0;
+  const apart = (simulated[""] ?? 0) - anchored;
+  const rows = CLASSES.map((key) => row(badge(key), whole(formula[key]), whole(simulated[key])));
+  if (apart) rows.push(row(t("formula's class only"), "–", whole(apart)));
+  rows.push(row(t("anchored"), whole(anchored), whole(anchored)), row(t("All pieces"), whole(all), whole(all)));
+  return el("section", { class: "card" }, el("h3", { text: t("Pieces by class") }), table([t("Class"), t("By the formula"), t("With the simulation")], rows, true),
+    apart > 0 && el("p", { class: "hint", text: t("Formula's class only: not simulated, or the simulation gave a lower class that its motions do not confirm.") }));
+}
+
+/** What fixing everything on the list would change: each column is all pieces. */
 function fixing(job) {
   const sums = job.before_after;
   if (!sums?.entries) return null;
-  const pair = (label, one, other) => el("tr", null, el("th", { scope: "row", text: label }), el("td", { class: "num", text: one }), el("td", { class: "num", text: other }));
   const { before, after } = sums;
-  const rows = CLASSES.map((key) => pair(`${describe(key).sign} ${describe(key).word}`, number(before.counts[key] ?? 0, 0, true), number(after.counts[key] ?? 0, 0, true)));
-  rows.push(pair(t("Pieces expected to overturn"), number(before.falls, 1), number(after.falls, 1)));
+  const pair = (head, find) => row(head, whole(find(before)), whole(find(after)));
+  const sum = (side) => CLASSES.reduce((n, key) => n + (side.counts[key] ?? 0), side.anchored + side.apart);
+  const rows = CLASSES.map((key) => pair(badge(key), (side) => side.counts[key]));
+  if (before.apart || after.apart) rows.push(pair(t("formula's class only"), (side) => side.apart));
+  rows.push(pair(t("anchored"), (side) => side.anchored), pair(t("All pieces"), sum));
+  rows.push(row(t("Pieces expected to overturn"), number(before.falls, 1), number(after.falls, 1)));
   const title = tn("If the {n:,} entry of the list of fixes is done", "If all {n:,} entries of the list of fixes are done", sums.entries);
-  return el("section", { class: "card" }, el("h3", { text: title }), table([t("Pieces"), t("Now"), t("Once fixed")], rows));
+  const basis = countSimulated(job) ? t("The list by the simulation, as in the reports. By the formulas, as in What if, it may have another number of entries.") : t("The list by the formula, as in the reports.");
+  return el("section", { class: "card" }, el("h3", { text: title }), el("p", { class: "hint", text: basis }), table([t("Pieces"), t("Now"), t("Once fixed")], rows, true));
 }

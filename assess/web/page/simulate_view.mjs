@@ -8,6 +8,8 @@ import { language, t, tn } from "./texts.mjs";
 import { notice } from "./messages.mjs";
 
 const MINUTE_S = 60;
+const MOST_SHOWN = 20;
+const SIGNS = { error: "✖", warning: "▲", note: "ℹ" };
 
 class SimulateView {
   #root;
@@ -101,15 +103,23 @@ class SimulateView {
     if (words.textContent !== shown) words.textContent = shown;
   }
 
+  /** What keeps it from running: the errors alone, each with a way to its cell; the rest is folded away. */
   #complain(message, problems) {
-    const line = (one) => {
-      const text = [one.message, one.fix].filter(Boolean).join(" ");
-      const cell = placeOf(one);
-      const name = one.cell ? `${this.#store.sheet(one.sheet)?.title ?? one.sheet}!${one.cell}` : "";
-      return el("li", null, cell && [el("button", { type: "button", class: "plain", text: name, on: { click: () => this.#reveal(cell) } }), " "], text);
-    };
+    const errors = problems.filter((one) => one.severity === "error");
+    const others = problems.filter((one) => one.severity !== "error");
+    const first = errors.length ? tn("{n:,} error to correct first", "{n:,} errors to correct first", errors.length) : message;
+    const list = (some) => el("ul", { class: "problem-list" }, some.slice(0, MOST_SHOWN).map((one) => this.#line(one)), some.length > MOST_SHOWN && el("li", { text: tn("{n:,} more", "{n:,} more", some.length - MOST_SHOWN) }));
+    const folded = others.length > 0 && el("details", { class: "fold" }, el("summary", { text: tn("{n:,} warning or note, which does not keep it from running", "{n:,} warnings and notes, which do not keep it from running", others.length) }), list(others));
     clear(this.fault).append(el("section", { class: "card" }, el("h3", { class: "error-text", text: t("Not simulated") }),
-      el("p", { text: message }), problems.length > 0 && el("ul", null, problems.slice(0, 20).map(line))));
+      el("p", null, el("b", { text: first })), errors.length > 0 && list(errors), folded));
+  }
+
+  #line(one) {
+    const cell = placeOf(one);
+    const sheet = this.#store.sheet(one.sheet);
+    const name = one.cell ? `${sheet?.title ?? one.sheet}!${one.cell}` : (sheet?.title ?? one.sheet);
+    const link = cell ? el("button", { type: "button", class: "plain link", text: name, on: { click: () => this.#reveal(cell) } }) : el("b", { text: name });
+    return el("li", { class: one.severity }, el("span", { class: "problems-sign", "aria-hidden": "true", text: SIGNS[one.severity] ?? "" }), link, ` ${[one.message, one.fix].filter(Boolean).join(" ")}`);
   }
 
   #reveal(cell) {

@@ -148,7 +148,7 @@ export class StartForm {
   }
 
   #removal(run) {
-    return el("button", { type: "button", class: "plain", "aria-label": t("Remove this type"), title: t("Remove this type"), text: "×", on: { click: run } });
+    return el("button", { type: "button", "aria-label": t("Remove this type"), title: t("Remove this type"), text: t("Remove"), on: { click: run } });
   }
 
   /** The name of the file follows the building until somebody types another. */

@@ -2,6 +2,7 @@
 
 import { CLASSES, badge, describe } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
+import { countSimulated, jobs } from "./job.mjs";
 import { percent, t, tn } from "./texts.mjs";
 
 const MOST = 300;
@@ -34,7 +35,7 @@ export class Results {
     const keys = [...CLASSES, ""];
     const most = Math.max(1, ...keys.flatMap((key) => [before.counts[key] ?? 0, after.counts[key] ?? 0]));
     const rows = keys.map((key) => this.#bars(key, before.counts[key] ?? 0, after.counts[key] ?? 0, most));
-    return el("section", { class: "card" }, el("h2", { text: t("Pieces by class") }),
+    return el("section", { class: "card" }, el("h2", { text: t("Pieces by class, by the formulas") }), simulatedNote(),
       el("table", { class: "bars" }, el("thead", null, el("tr", null, el("th", { scope: "col", text: t("Class") }), el("th", { scope: "col", class: "num", text: t("now") }), el("th", { scope: "col", class: "num", text: t("then") }), el("th", { scope: "col", class: "num", text: t("change") }), el("td"))), el("tbody", null, rows)));
   }
 
@@ -95,6 +96,16 @@ export class Results {
     const more = changed.length - MOST;
     return el("section", { class: "card" }, head, wide(head.textContent, el("table", { class: "plain" }, el("thead", null, el("tr", null, [t("Item"), t("Description"), t("now"), t("then")].map((text) => el("th", { scope: "col", text })))), el("tbody", null, rows))), more > 0 && el("p", { class: "muted", text: tn("{n:,} more", "{n:,} more", more) }));
   }
+}
+
+/** Why these numbers are not those of a simulation, where there is one. */
+function simulatedNote() {
+  const found = countSimulated();
+  if (!found) return null;
+  const counts = CLASSES.map((key) => t("{n:,} {word}", { n: found[key] ?? 0, word: describe(key).word })).join(", ");
+  const n = jobs.current.stale.length;
+  const since = n ? tn("{n:,} row changed since.", "{n:,} rows changed since.", n) : "";
+  return el("p", { class: "hint basis-note", text: t("What if goes by the formulas, so its numbers are not those of the simulation, which found {counts}. {since}", { counts, since }).trim() });
 }
 
 /** A table that scrolls where it is wider than its card, by keys as well. */

@@ -3,6 +3,7 @@
 import { post } from "./api.mjs";
 import { CLASSES, badge, describe } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
+import { countSimulated, jobs } from "./job.mjs";
 import { ask, notice } from "./messages.mjs";
 import { PlanEdits } from "./plan_edits.mjs";
 import { PlanModel, nameKey } from "./plan_model.mjs";
@@ -89,7 +90,8 @@ class WhatIfView {
       this.#drawFirst();
       this.#askSoon();
     });
-    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Anchor the first of what to fix") }), el("div", { class: "slider" }, this.firstSlider, this.firstText));
+    this.firstBasis = el("span", { class: "hint" });
+    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Anchor the first of what to fix") }), el("div", { class: "slider" }, this.firstSlider, this.firstText), this.firstBasis);
   }
 
   #drawFirst() {
@@ -101,6 +103,8 @@ class WhatIfView {
     const text = t("{n} of {all}", { n: this.#first, all: entries });
     this.firstText.textContent = text;
     this.firstSlider.setAttribute("aria-valuetext", text);
+    const simulated = countSimulated() ? (jobs.current.before_after?.entries ?? 0) : null;
+    this.firstBasis.textContent = simulated === null ? t("The list by the formulas.") : tn("The list by the formulas; by the simulation it has {n:,} entry.", "The list by the formulas; by the simulation it has {n:,} entries.", simulated);
   }
 
   #pieceList() {
@@ -120,6 +124,11 @@ class WhatIfView {
       this.#ticked.clear();
       if (this.#isShown) this.#askSoon(0);
     });
+    store.addEventListener("simulated", () => {
+      if (!this.#isShown || !this.#answer) return;
+      this.#drawFirst();
+      this.results.draw(this.#answer);
+    });
     store.addEventListener("live", () => {
       if (!this.#isShown || !store.book) return;
       this.#drawPieces();
@@ -131,6 +140,7 @@ class WhatIfView {
     this.#isShown = true;
     this.#drawPieces();
     if (this.#answer?.version !== this.store.state.version) this.#askSoon(0);
+    else this.#take(this.#answer); // a simulation may have ended meanwhile
   }
 
   hide() {
