@@ -175,3 +175,47 @@ def test_a_renamed_place_keeps_its_segments(plan):
     assert plan.values("Places", "place")[2] == "Great hall"
     assert plan.values("Routes", "start")[2] == "Great hall"
     expect(plan.page.locator(".band")).to_have_class(re.compile("state-open"))
+
+
+def test_a_click_on_a_segment_splits_it_and_one_beside_it_tells_what_to_click(plan):
+    before = plan.place(6, 3)
+    plan.tool("segment")
+    assert plan.place(6, 3) == before, "choosing a tool moves nothing under the mouse"
+    plan.page.get_by_label("Route of new segments").fill("Side way")
+    plan.click(4, -0.4)
+    expect(plan.page.locator(".readout")).to_have_text("Click a room, door, stair, exit or junction.")
+    assert plan.values("Routes", "route") == {2: "Way out"}
+    plan.click(6, 3)
+    plan.page.get_by_role("button", name="Split it here").click()
+    plan.settle()
+    assert plan.values("Places", "place")[4] == "1 corridor 1"
+    assert plan.values("Places", "kind")[4] == "corridor"
+    assert (plan.values("Places", "x")[4], plan.values("Places", "y")[4]) == pytest.approx((6, 3), abs=0.02)
+    assert plan.values("Routes", "segment") == {2: "1", 3: "2"}
+    assert plan.values("Routes", "start") == {2: "Hall", 3: "1 corridor 1"}
+    assert plan.values("Routes", "end") == {2: "1 corridor 1", 3: "Door"}
+    expect(plan.page.locator(".band")).to_have_count(2)
+    plan.click(4, 3)
+    assert plan.values("Routes", "start")[4] == "1 corridor 1", "the junction is where the next segment begins"
+    assert plan.values("Routes", "end")[4] == "Hall"
+    assert plan.values("Routes", "route")[4] == "Side way"
+    plan.keyboard.press("Control+z")
+    plan.keyboard.press("Control+z")
+    assert plan.values("Routes", "end") == {2: "Door"}
+    assert plan.values("Places", "place") == {2: "Hall", 3: "Door"}
+
+
+def test_a_room_is_drawn_by_keyboard_alone(empty):
+    plan = empty
+    plan.page.locator("svg.plan").focus()
+    plan.keyboard.press("p")
+    for keys in ("ArrowLeft", "ArrowUp " * 10, "ArrowRight " * 12, "Shift+ArrowDown " * 5):
+        for key in keys.split():
+            plan.keyboard.press(key)
+        plan.keyboard.press("Enter")
+    expect(plan.say()).to_have_text(re.compile(r"X .* m, Y .* m"))
+    plan.keyboard.press("Enter")
+    corners = [[float(one) for one in corner.split()] for corner in plan.values("Places", "outline")[2].split("; ")]
+    (x, y), *others = corners
+    assert [one for corner in others for one in corner] == pytest.approx([x, y + 1, x + 1.2, y + 1, x + 1.2, y + 0.95])
+    expect(plan.page.locator("[data-tool=select]")).to_have_attribute("aria-pressed", "true")

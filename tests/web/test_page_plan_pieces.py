@@ -147,6 +147,48 @@ def test_copy_and_paste_goes_to_another_floor(plan):
     assert plan.values("Items", "description")[FREE] == "Bookcase"
 
 
+def test_a_copy_pasted_at_once_lies_beside_the_original(plan):
+    plan.click(2, 2)
+    plan.keyboard.press("Control+c")
+    plan.keyboard.press("Control+v")
+    assert plan.at(FREE)[:2] == (2.5, 1.5)
+    expect(plan.say()).to_have_text("1 piece pasted")
+    plan.keyboard.press("Control+v")
+    assert plan.at(FREE + 1)[:2] == (3, 1)
+
+
+def test_undo_works_while_a_checkbox_or_a_list_has_the_focus(plan):
+    plan.drag((2, 2), (3, 3), keys=["Alt"])
+    for focused in (
+        plan.page.get_by_label("Snap"),
+        plan.page.get_by_label("Falls"),
+        plan.page.locator("[data-tool=select]"),
+    ):
+        focused.focus()
+        plan.keyboard.press("Control+z")
+        assert plan.at(A1)[:2] == (2, 2)
+        plan.keyboard.press("Control+y")
+        assert plan.at(A1)[:2] == (3, 3)
+
+
+def test_what_is_not_known_of_a_piece_is_marked_and_leads_to_its_cell(page, served, tmp_path):
+    items = [{"item": "A1", "floor": "1", "type": "Bookcase 5 shelves", "x": 3, "y": 3, "angle_deg": 0}]
+    plan = opened_plan(page, served(write_floor(tmp_path / "hall.xlsx", items=items, routes=[])))
+    piece = plan.piece(A1)
+    expect(piece).to_have_class(re.compile("width-missing"))
+    expect(piece.locator(".unknown")).to_have_text(["?", "?"])
+    assert piece.locator(".body").evaluate("node => getComputedStyle(node).strokeDasharray") != "none"
+    plan.click(3, 3)
+    expect(plan.page.locator(".fallen .unknown")).to_have_count(4)
+    expect(plan.panel).to_contain_text("0.32 × ? × 1.8")
+    plan.panel.get_by_role("button", name="Fill in Width: how far it reaches is not known.").click()
+    expect(plan.page.locator(".sheet-cell")).to_have_text(re.compile(f"{A1}$"))
+    plan.sheet.type("80<Enter>")
+    plan.open()
+    expect(piece.locator(".unknown")).to_have_count(0)
+    assert piece.get_attribute("class").find("missing") == -1
+
+
 def test_a_type_is_dragged_from_the_catalogue_and_an_unplaced_piece_from_its_list(plan):
     plan.tab("add")
     plan.panel.get_by_label("Find a type").fill("bookcase tall")

@@ -56,14 +56,22 @@ export class Details {
     const piece = this.model.pieces.get(row);
     const { key, chance, isStale, word } = this.scene.pieces.classOf(piece);
     const unit = this.model.unit;
-    const sizes = [piece.breadth, piece.width, piece.height].map((one) => (one === null ? "?" : number(one / unit.factor, 2))).join(" × ");
+    const sizes = ["breadth", "width", "height"].map((name) => (piece.missing.includes(name) ? "?" : number(piece[name] / unit.factor, 2))).join(" × ");
     this.#add(
       el("h2", { text: piece.item }), piece.description && el("p", { text: piece.description }),
       el("p", { class: isStale ? "class-line stale" : "class-line" }, badge(key), chance !== null ? ` ${percent(chance)}` : key ? "" : ` ${word}`, isStale && ` ${t("simulated before it was changed")}`),
       el("p", { class: "muted", text: t("Breadth × Width × Height: {sizes} {unit}", { sizes, unit: unit.unit }) }),
-      piece.sizes_missing && el("p", { class: "warning-text", text: t("Its sizes are missing: choose a Type, or fill in Breadth and Height.") }));
+      ...piece.missing.map((name) => this.#lacking(row, name)));
     if (!this.canEdit()) return;
     this.#add(this.#fields("Items", row, PIECE_FIELDS), this.#pieceButtons([row]));
+  }
+
+  /** A size that is not known, and the way to its cell. */
+  #lacking(row, name) {
+    const column = this.store.sheet("Items").column(name);
+    if (!column) return null;
+    const text = t("Fill in {size}: how far it reaches is not known.", { size: column.label });
+    return el("p", { class: "warning-text" }, this.canEdit() ? this.#button(text, () => this.#reveal("Items", row, column), { class: "plain to-cell" }) : text);
   }
 
   #several(rows) {
@@ -85,8 +93,7 @@ export class Details {
       this.#button(t("Show in the sheet"), () => this.#reveal("Items", rows[0])));
   }
 
-  #reveal(sheet, row) {
-    const column = this.store.sheet(sheet).columns[0];
+  #reveal(sheet, row, column = this.store.sheet(sheet).columns[0]) {
     location.hash = "#sheet";
     this.store.reveal([sheet, row, column.at]);
   }

@@ -1,17 +1,26 @@
-// Tools that take points one after the other: measure, draw a place, draw a segment.
+// Tools that take points one after the other: what they share, measure, draw a place.
 
-import { distance, isInside } from "./plan_geometry.mjs";
+import { distance, roundTo } from "./plan_geometry.mjs";
 import { isDrag } from "./plan_pointer.mjs";
 import { shownLength } from "./plan_pieces.mjs";
 import { t } from "./texts.mjs";
 
 const CLOSE_PX = 10;
+const STEP = 0.1; // of the cross-hair [m]
+const FINE = 0.01;
+const CROSS_PX = 14;
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const OUTLINED = 2; // kinds from this on are points: door, stair, exit
 
-/** What all of them share: a point follows the pointer, a press and release at the same place sets it. */
-class PointsTool {
+/**
+ * What all of them share: a point follows the pointer, a press and release at the same place sets it. By keys a cross-hair
+ * is moved, and Enter sets the point.
+ */
+export class PointsTool {
   takesTouch = true;
   points = [];
+  cursor = null; // the cross-hair, while it is moved by keys
+  #pointer = null;
   #pressed = null;
 
   constructor(parts) {
@@ -20,11 +29,13 @@ class PointsTool {
 
   enter() {
     this.points = [];
-    this.say(this.help());
+    this.#pointer = null;
+    this.say(`${this.help()} ${t("Arrow keys and Enter set points, too.")}`);
   }
 
   leave() {
     this.points = [];
+    this.cursor = null;
     this.scene.sketch();
   }
 
@@ -37,6 +48,8 @@ class PointsTool {
   }
 
   move(point) {
+    this.#pointer = point.at;
+    this.cursor = null;
     this.draw(this.snap(point));
   }
 
@@ -52,17 +65,51 @@ class PointsTool {
     return this.select.snapDrawn(point, this.points.at(-1) ?? null);
   }
 
-  /** Escape takes the points back, and where there are none, leaves the tool. */
+  /** Arrow keys move the cross-hair, Enter sets a point there. Escape takes the points back, and where there are none, leaves the tool. */
   key(event) {
-    if (event.key !== "Escape") return false;
+    if (event.ctrlKey || event.metaKey || event.altKey) return false;
+    if (event.key in ARROWS) return this.#step(ARROWS[event.key], event.shiftKey ? FINE : STEP), true;
+    if (event.key === "Enter" && this.cursor) return this.#set(), true;
+    return event.key === "Escape" && this.takeBack();
+  }
+
+  takeBack() {
     if (this.points.length === 0) return false;
     this.points = [];
     this.scene.sketch();
     return true;
   }
 
+  #step([dx, dy], step) {
+    const [x, y] = this.cursor ?? this.#pointer ?? this.viewport.centre;
+    this.cursor = [roundTo(x + dx * step, step), roundTo(y + dy * step, step)];
+    this.viewport.reveal(this.cursor);
+    const found = this.snap(this.#aim());
+    this.draw(found);
+    const { unit } = this.model;
+    const place = found.place ? `; ${found.place.place}` : "";
+    this.say(t("X {x}, Y {y}", { x: shownLength(this.cursor[0], unit), y: shownLength(this.cursor[1], unit) }) + place);
+  }
+
+  /** The cross-hair as a point of the pointer; it stands where it was moved to, so nothing snaps. */
+  #aim() {
+    return { at: this.cursor, px: this.viewport.toScreen(this.cursor), target: this.viewport.svg, alt: true };
+  }
+
+  #set() {
+    const aim = this.#aim();
+    this.add(this.snap(aim), aim);
+    if (this.cursor) this.draw(this.snap(aim));
+  }
+
   guides(found) {
-    return found.guides.map((points) => ({ name: "guide", points }));
+    return [...found.guides.map((points) => ({ name: "guide", points })), ...this.cross()];
+  }
+
+  cross() {
+    if (!this.cursor) return [];
+    const [[x, y], r] = [this.cursor, CROSS_PX / this.viewport.scale];
+    return [{ name: "cross-hair", points: [[x - r, y], [x + r, y]] }, { name: "cross-hair", points: [[x, y - r], [x, y + r]] }];
   }
 }
 
@@ -110,7 +157,8 @@ export class PlaceTool extends PointsTool {
       return;
     }
     const [first] = this.points;
-    if (first && this.points.length >= 3 && distance(first, raw.at) * this.viewport.scale < CLOSE_PX) this.close();
+    const isLast = this.cursor && this.points.length && distance(this.points.at(-1), raw.at) <= FINE / 2; // Enter twice
+    if (this.points.length >= 3 && (isLast || distance(first, raw.at) * this.viewport.scale < CLOSE_PX)) this.close();
     else if (!this.points.length || distance(this.points.at(-1), point) > 0.02) this.points.push(point);
   }
 
@@ -128,7 +176,7 @@ export class PlaceTool extends PointsTool {
   }
 
   key(event) {
-    if (event.key === "Enter" && this.points.length) return this.close(), true;
+    if (event.key === "Enter" && this.points.length && !this.cursor) return this.close(), true;
     if (event.key === "Backspace" && this.points.length) return this.points.pop(), true;
     return super.key(event);
   }
@@ -137,67 +185,5 @@ export class PlaceTool extends PointsTool {
     const before = this.points.at(-1);
     const text = before ? [{ at: found.point, text: shownLength(distance(before, found.point), this.model.unit) }] : [];
     this.scene.sketch([{ name: "drawn", points: [...this.points, found.point], dots: true, isClosed: this.points.length > 1 }, ...this.guides(found)], text);
-  }
-}
-
-export class SegmentTool extends PointsTool {
-  name = "segment";
-  route = "";
-  #from = null;
-
-  help() {
-    return t("Click a place, then the next: each click adds a segment of the route. Escape leaves.");
-  }
-
-  leave() {
-    this.#from = null;
-    super.leave();
-  }
-
-  key(event) {
-    if (event.key !== "Escape" || !this.#from) return false;
-    this.leave();
-    return true;
-  }
-
-  snap(point) {
-    return { point: point.at, place: this.#placeAt(point), guides: [] };
-  }
-
-  /** The place at a point: its sign, else the nearest sign, else the room around it. */
-  #placeAt({ target, at }) {
-    const row = Number(target.closest?.("[data-place]")?.dataset.place ?? 0);
-    const places = [...this.model.places.values()].filter((one) => one.x !== null && one.y !== null);
-    const near = places.map((one) => [distance([one.x, one.y], at), one]).sort((a, b) => a[0] - b[0])[0];
-    if (near && near[0] * this.viewport.scale < 14) return near[1];
-    const found = this.model.places.get(row) ?? places.find((one) => one.outline && isInside(at, one.outline));
-    return found && found.x !== null && found.y !== null ? found : null;
-  }
-
-  add({ place }) {
-    if (!place) {
-      this.say(t("There is no place here: draw rooms, doors and exits first, with the tool Place."));
-      return;
-    }
-    const from = this.#from;
-    this.#from = place;
-    this.say(t("From {place}", { place: place.place }));
-    if (from && from.row !== place.row) this.edits.addSegment(this.route || this.nextRoute(), from.place, place.place);
-  }
-
-  /** The first name for a route that is free. */
-  nextRoute() {
-    const names = new Set(this.store.sheet("Routes").names("route"));
-    for (let n = 1; ; n++) {
-      const name = t("Route {n}", { n });
-      if (!names.has(name)) return (this.route = name);
-    }
-  }
-
-  draw({ point, place }) {
-    const to = place ? [place.x, place.y] : point;
-    const lines = place ? [{ name: "drawn", points: [to, to], dots: true }] : [];
-    if (this.#from) lines.push({ name: "drawn", points: [[this.#from.x, this.#from.y], to] });
-    this.scene.sketch(lines, place ? [{ at: to, text: place.place }] : []);
   }
 }

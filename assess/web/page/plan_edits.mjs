@@ -11,6 +11,7 @@ const MILLIMETRE = 0.001;
 const UNMOVED = 0.0005;
 const AXIS_WITHIN = 15; // degrees from X or Y within which an angle tells the axis, as the core has it
 const ANCHORED_YES = 1;
+const CORRIDOR = 1;
 
 export class PlanEdits {
   constructor(model, store) {
@@ -231,6 +232,30 @@ export class PlanEdits {
     const done = this.#edit(edits, t("draw a segment"));
     this.select("Routes", [row]);
     return done;
+  }
+
+  /**
+   * Split a segment in two at a point, with a new place between them.
+   * @returns {{row, place, x, y} | null} the new place
+   */
+  splitSegment(row, [x, y]) {
+    const [placeRow, segmentRow] = [this.#freeRow("Places"), this.#freeRow("Routes")];
+    if (placeRow === null || segmentRow === null) return null;
+    const [places, sheet] = [this.store.sheet("Places"), this.store.sheet("Routes")];
+    const kind = this.#choice("Places", "kind", CORRIDOR);
+    const place = nextName(`${this.model.floor} ${kind ?? ""}`.trim() + " 0", places.names("place"));
+    const [routeAt, segmentAt] = [sheet.column("route").at, sheet.column("segment").at];
+    const own = sheet.rowNumbers.filter((one) => nameKey(sheet.value(one, routeAt)) === nameKey(sheet.value(row, routeAt)));
+    const segment = nextName(sheet.value(row, segmentAt), own.map((one) => String(sheet.value(one, segmentAt) ?? "")));
+    const changed = { segment, start: place };
+    const copied = sheet.columns.filter((column) => column.kind !== "live" && (isFilled(sheet.value(row, column.at)) || column.field in changed))
+      .map((column) => ["Routes", segmentRow, column.at, changed[column.field] ?? sheet.value(row, column.at)]);
+    this.#edit([
+      ...this.cell("Places", placeRow, "place", place), ...this.cell("Places", placeRow, "floor", this.model.floorValue), ...this.cell("Places", placeRow, "kind", kind),
+      ...this.length("Places", placeRow, "x", x, MILLIMETRE), ...this.length("Places", placeRow, "y", y, MILLIMETRE),
+      ...this.cell("Routes", row, "end", place), ...copied,
+    ], t("split a segment"));
+    return { row: placeRow, place, x, y };
   }
 
   // ---- the picture and anchors

@@ -92,10 +92,13 @@ export function inUnit(metres, column, step = 0.01) {
 /** The text of an outline: "x y; x y; x y" in the unit of its column. */
 export const writeOutline = (ring, column) => ring.map((point) => point.map((one) => inUnit(one, column)).join(" ")).join("; ");
 
+/** As the core reads corners: 6,5 has a decimal comma, 1,500 can be read in two ways. */
+const DECIMAL_COMMA = /^[-+]?(?![1-9]\d{0,2},\d{3}$)\d+,\d+$/;
+
 /** The corners that a text names, in metres; null where it names fewer than three. */
 export function readOutline(text, column) {
   const factor = column?.factor || 1;
-  const ring = String(text ?? "").split(/[;\n]/).map((one) => one.trim().split(/\s+/).map((part) => Number(part) * factor))
+  const ring = String(text ?? "").split(/[;\n]/).map((one) => one.trim().split(/\s+/).map((part) => Number(DECIMAL_COMMA.test(part) ? part.replace(",", ".") : part) * factor))
     .filter((one) => one.length === 2 && one.every(Number.isFinite));
   if (ring.length > 3 && distance(ring[0], ring.at(-1)) <= 1e-3) ring.pop();
   return ring.length >= 3 ? ring : null;

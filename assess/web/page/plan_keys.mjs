@@ -23,6 +23,7 @@ export const listKeys = () => [
   [t("Delete"), t("take off the plan, or delete the row")],
   ["Ctrl+Z, Ctrl+Y", t("undo, redo")],
   ["Ctrl+A", t("select all pieces of the floor")],
+  [t("Arrow keys, Enter"), t("while drawing: move the cross-hair by 10 cm, with Shift by 1 cm; set a point, twice to close")],
   ["Alt", t("while dragging: no snapping")],
   [t("Wheel, + and −"), t("zoom; 0 shows all")],
   [t("Space and drag, middle button"), t("move the view")],
@@ -31,6 +32,8 @@ export const listKeys = () => [
 
 export class PlanKeys {
   #clipboard = [];
+  #copiedAt = null; // where the pointer was
+  #pastes = 0; // since it moved
   #burst = null;
   #leaves = false;
   #pointer = null;
@@ -86,6 +89,8 @@ export class PlanKeys {
     if (key === "d" && rows.length) return this.#copy(rows), true;
     if (key === "c" && rows.length && !String(getSelection())) {
       this.#clipboard = rows;
+      this.#copiedAt = this.#pointer;
+      this.#pastes = 0;
       this.say(tn("{n} piece copied", "{n} pieces copied", rows.length));
       return true;
     }
@@ -98,16 +103,23 @@ export class PlanKeys {
     this.#focusSelected();
   }
 
-  /** Paste at the pointer where it is over the plan, else next to the original, or in the middle on another floor. */
+  /** Paste at the pointer where it was moved over the plan, else next to the original, or in the middle on another floor. */
   #paste() {
     const rows = this.#clipboard;
     const at = rows.map((row) => [this.model.length("Items", row, "x"), this.model.length("Items", row, "y")]).filter((one) => one[0] !== null && one[1] !== null);
     if (!at.length) return;
     const centre = [0, 1].map((i) => at.reduce((sum, one) => sum + one[i], 0) / at.length);
     const isHere = rows.some((row) => this.model.pieces.has(row));
-    const to = this.#pointer ?? (isHere ? [centre[0] + APART, centre[1] - APART] : this.viewport.centre);
+    const pointer = this.#pointer;
+    const hasMoved = pointer && (!this.#copiedAt || pointer[0] !== this.#copiedAt[0] || pointer[1] !== this.#copiedAt[1]);
+    if (hasMoved) this.#pastes = 0;
+    const first = hasMoved || (pointer && !isHere) ? pointer : isHere ? [centre[0] + APART, centre[1] - APART] : this.viewport.centre;
+    const to = [first[0] + this.#pastes * APART, first[1] - this.#pastes * APART]; // never one over the other
+    this.#copiedAt = pointer;
+    this.#pastes += 1;
     this.edits.copy(rows, [roundTo(to[0] - centre[0], FINE), roundTo(to[1] - centre[1], FINE)]);
     this.#focusSelected();
+    this.say(tn("{n} piece pasted", "{n} pieces pasted", at.length));
   }
 
   #focusSelected() {

@@ -8,6 +8,7 @@ const ASK_MS = 40;
 const ROUTES_MS = 300;
 const UNKNOWN_SIZE = 0.4; // as the server draws a piece of unknown sizes [m]
 const KINDS = ["room", "corridor", "door", "stair", "exit"];
+const SIZES = ["breadth", "width", "height"];
 const ANCHORED = ["no", "yes", "partly", "unknown"];
 
 /** Names as the workbook compares them. */
@@ -249,7 +250,7 @@ export class PlanModel extends EventTarget {
     const piece = {
       row, ...base, angle, breadth, width, height: size("height") ?? old?.height ?? null,
       anchored: this.#choice("Items", row, "anchored", ANCHORED) || "unknown", quantity: old?.quantity ?? 1,
-      sizes_missing: old?.sizes_missing ?? b === null, fallen: [],
+      missing: SIZES.filter((field) => size(field) === null && (old?.missing.includes(field) ?? true)), fallen: [],
     };
     const isSame = old && old.breadth === piece.breadth && old.width === piece.width && old.height === piece.height;
     if (isSame) piece.fallen = old.fallen.map((ring) => moveRing(ring, old, piece));

@@ -2,12 +2,14 @@
 
 import { describe } from "./classes.mjs";
 import { svg } from "./elements.mjs";
+import { turnPoint } from "./plan_geometry.mjs";
 import { number, percent, t } from "./texts.mjs";
 
 const LEAST_SIGN = 7; // font size [px]
 const MOST_SIGN = 15;
 const LETTER = 6.4; // width of a letter of a name [px]
 const NAME_HEIGHT = 12;
+const UNKNOWN_PX = 9; // of the question marks beyond the ends
 
 /** Lengths in metres as the page shows them, in the unit of the workbook. */
 export function shownLength(metres, { unit, factor }, digits = 2) {
@@ -55,8 +57,9 @@ export class PieceLayer {
   #make(row) {
     const parts = { title: svg("title"), body: svg("rect", { class: "body" }), sides: svg("path", { class: "sides" }), sign: svg("text", { class: "sign" }), name: svg("text", { class: "name" }) };
     parts.turned = svg("g", null, parts.body, parts.sides);
+    parts.unknown = svg("g", { class: "unknown-ends" });
     parts.px = svg("g", { class: "px" }, parts.sign, parts.name);
-    parts.node = svg("g", { class: "piece", role: "option", "data-row": row, tabindex: "-1" }, parts.title, parts.turned, parts.px);
+    parts.node = svg("g", { class: "piece", role: "option", "data-row": row, tabindex: "-1" }, parts.title, parts.turned, parts.unknown, parts.px);
     this.#nodes.set(row, parts);
     this.node.append(parts.node);
     return parts;
@@ -68,20 +71,31 @@ export class PieceLayer {
     const isSelected = this.selected.has(piece.row);
     const pose = this.#previews.get(piece.row) ?? piece;
     const label = this.label(piece);
-    const mark = [label, b, w, piece.sizes_missing, isSelected, shown.isStale, shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
+    const mark = [label, b, w, piece.missing, isSelected, shown.isStale, shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
     if (parts.mark === mark) return;
     parts.mark = mark;
     const set = (node, values) => Object.entries(values).forEach(([name, value]) => node.setAttribute(name, value));
     set(parts.body, { x: -b / 2, y: -w / 2, width: b, height: w });
     set(parts.sides, { d: `M${-b / 2} ${-w / 2}H${b / 2}M${-b / 2} ${w / 2}H${b / 2}` });
     const { key, isStale, isAnchored } = shown;
-    const classes = ["piece", describe(key).css, isSelected && "selected", isStale && "stale", isAnchored && !key && "anchored", piece.sizes_missing && "sizes-missing"];
+    const classes = ["piece", describe(key).css, isSelected && "selected", isStale && "stale", isAnchored && !key && "anchored", piece.missing.length && "sizes-missing", piece.missing.includes("width") && "width-missing"];
     set(parts.node, { class: classes.filter(Boolean).join(" "), "aria-selected": String(isSelected), "aria-label": label });
     parts.title.textContent = label;
     parts.sign.textContent = this.#sign(key, isAnchored);
     parts.name.textContent = piece.item;
     this.#put(parts, pose);
+    this.#markEnds(parts, piece, pose.angle);
     this.#fitText(parts, piece);
+  }
+
+  /** Question marks where it is not known how far a piece reaches. */
+  #markEnds(parts, { breadth: b, width: w, missing }, angle) {
+    const ends = [...(missing.includes("width") ? [[0, w / 2], [0, -w / 2]] : []), ...(missing.includes("breadth") ? [[b / 2, 0], [-b / 2, 0]] : [])];
+    parts.unknown.replaceChildren(...ends.map((end) => {
+      const [x, y] = turnPoint(end, angle);
+      const k = UNKNOWN_PX / Math.hypot(x, y);
+      return svg("g", { transform: `translate(${x.toFixed(4)} ${(-y).toFixed(4)})` }, svg("text", { class: "px unknown", x: x * k, y: -y * k, text: "?" }));
+    }));
   }
 
   #sign(key, isAnchored) {
@@ -139,6 +153,7 @@ export class PieceLayer {
       const parts = this.#nodes.get(row);
       if (parts) parts.mark = "";
       if (parts) this.#put(parts, pose);
+      if (parts && pose.angle !== undefined) this.#markEnds(parts, this.model.pieces.get(row), pose.angle);
       if (parts) this.#fitText(parts, this.model.pieces.get(row));
     }
   }
@@ -175,6 +190,8 @@ export class PieceLayer {
     const unit = this.model.unit;
     const parts = [[piece.item, piece.description].filter(Boolean).join(", "), key ? t("class {word}", { word: describe(key).word }) : word || describe("").word];
     if (chance !== null) parts.push(t("chance {chance}", { chance: percent(chance) }));
+    const sheet = this.store.sheet("Items");
+    for (const name of piece.missing) parts.push(t("{size} is not known", { size: sheet.column(name)?.label ?? name }));
     if (isStale) parts.push(t("simulated before it was changed"));
     parts.push(t("X {x}, Y {y}, angle {angle}°", { x: shownLength(piece.x, unit), y: shownLength(piece.y, unit), angle: number(piece.angle) }));
     return parts.join("; ");

@@ -2,7 +2,7 @@
 
 import { svg } from "./elements.mjs";
 import { PieceLayer } from "./plan_pieces.mjs";
-import { boxOf, moveRing } from "./plan_geometry.mjs";
+import { boxOf, moveRing, turnPoint } from "./plan_geometry.mjs";
 import { number, t } from "./texts.mjs";
 
 const SIGNS = { open: "✓", doubtful: "≈", not_known: "?", blocked: "✕" };
@@ -19,6 +19,15 @@ const MARKS = {
 };
 
 const path = (ring, isClosed = true) => ring.map(([x, y], i) => `${i ? "L" : "M"}${x} ${-y}`).join("") + (isClosed ? "Z" : "");
+
+/** Question marks on both sides of what a piece of unknown width covers. */
+function markSides(ring, { x, y, angle }) {
+  const [u0, v0, u1, v1] = boxOf(ring.map((one) => turnPoint([one[0] - x, one[1] - y], -angle)));
+  return [v0, v1].map((v) => {
+    const [dx, dy] = turnPoint([(u0 + u1) / 2, v], angle);
+    return svg("g", { transform: `translate(${x + dx} ${-(y + dy)})` }, svg("text", { class: "px unknown", text: "?" }));
+  });
+}
 
 /** How a state is called in the style sheet: as the reports, with what stands in the way already apart. */
 const stateClass = (state) => (state ? `state-${state.standing ? "standing" : state.state.replace("_", "-")}` : "state-none");
@@ -173,12 +182,12 @@ export class Scene {
   drawFalls() {
     const { pieces } = this;
     const rows = this.falls === "all" ? [...this.model.pieces.keys()] : this.falls === "none" ? [] : [...pieces.selected];
-    const rings = rows.flatMap((row) => {
+    const falls = rows.flatMap((row) => {
       const piece = this.model.pieces.get(row);
       const pose = pieces.pose(row);
-      return piece && pose ? piece.fallen.map((ring) => moveRing(ring, piece, pose)) : [];
+      return piece && pose ? piece.fallen.map((ring) => [moveRing(ring, piece, pose), piece.missing.includes("width") && pose]) : [];
     });
-    this.fallen.replaceChildren(...rings.map((ring) => svg("path", { d: path(ring) })));
+    this.fallen.replaceChildren(...falls.flatMap(([ring, open]) => [svg("path", { d: path(ring) }), ...(open ? markSides(ring, open) : [])]));
   }
 
   // ---- drafts

@@ -54,7 +54,8 @@ export class Toolbar {
     this.routeList = el("datalist", { id: "plan-routes" });
     this.placeOptions = el("label", { class: "inline" }, t("Kind"), this.kind);
     this.routeOptions = el("label", { class: "inline" }, t("Route"), this.route, this.routeList);
-    this.options.append(this.placeOptions, this.routeOptions, el("label", { class: "check", title: t("Pieces snap to walls and to each other; Alt switches it off while dragging.") }, this.snap, t("Snap")));
+    const ofTool = el("div", { class: "tool-option" }, this.placeOptions, this.routeOptions); // one place for both, kept: the plan must not move
+    this.options.append(ofTool, el("label", { class: "check", title: t("Pieces snap to walls and to each other; Alt switches it off while dragging.") }, this.snap, t("Snap")));
   }
 
   #buildShown() {
@@ -91,8 +92,8 @@ export class Toolbar {
     this.#drawFloors();
     const tool = this.currentTool();
     for (const button of this.toolGroup.children) button.setAttribute("aria-pressed", String(button.dataset.tool === tool.name));
-    this.placeOptions.hidden = tool.name !== "place";
-    this.routeOptions.hidden = tool.name !== "segment";
+    this.placeOptions.classList.toggle("unused", tool.name !== "place");
+    this.routeOptions.classList.toggle("unused", tool.name !== "segment");
     this.simulatedLabel.hidden = !this.store.simulated?.size;
     if (tool.name === "place") this.#drawKinds();
     if (tool.name === "segment") this.#drawRoutes(tool);

@@ -3,7 +3,7 @@
 import { clear, el, svg } from "./elements.mjs";
 import { ask } from "./messages.mjs";
 import { Details } from "./plan_details.mjs";
-import { MeasureTool, PlaceTool, SegmentTool } from "./plan_draft.mjs";
+import { MeasureTool, PlaceTool } from "./plan_draft.mjs";
 import { PlanEdits } from "./plan_edits.mjs";
 import { boxOf } from "./plan_geometry.mjs";
 import { PlanKeys, listKeys } from "./plan_keys.mjs";
@@ -12,6 +12,7 @@ import { PlanModel, nameKey } from "./plan_model.mjs";
 import { Picture, PlacingTool } from "./plan_picture.mjs";
 import { PlanPointer } from "./plan_pointer.mjs";
 import { Scene } from "./plan_scene.mjs";
+import { SegmentTool } from "./plan_segments.mjs";
 import { SelectTool } from "./plan_select.mjs";
 import { dragOnto } from "./plan_drop.mjs";
 import { Toolbar } from "./plan_toolbar.mjs";
