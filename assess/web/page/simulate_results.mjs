@@ -7,6 +7,7 @@ import { bytes, number, percent, t, tn } from "./texts.mjs";
 
 const ARCHIVE = "report.zip";
 const MOST_CHANGED = 200;
+const MOST_OPEN = 10;
 const LABELS = {
   "report.html": () => t("Report as a page"),
   "report.pdf": () => t("Report for the client (PDF)"),
@@ -22,6 +23,7 @@ export class ResultsView {
   #store;
   #reveal;
   #framed = "";
+  #isListOpen = false;
 
   constructor(store, reveal) {
     this.#store = store;
@@ -34,7 +36,7 @@ export class ResultsView {
   update(job) {
     const rows = this.#rows(job);
     clear(this.top).append(...[
-      el("h2", { text: t("Results") }), this.#stale(job), this.#files(job), countsCard(job), this.#changed(rows), fixing(job),
+      el("h2", { text: t("Results") }), this.#stale(job), this.#files(job), countsCard(job), fixing(job), this.#changed(rows),
     ].filter(Boolean));
     this.#showReport(job);
   }
@@ -72,21 +74,24 @@ export class ResultsView {
     const title = el("h3", { text: tn("{n:,} class changed by the simulation", "{n:,} classes changed by the simulation", changed.length) });
     if (!changed.length) return el("section", { class: "card" }, title, el("p", { text: t("Every simulated piece keeps the class of the formula.") }));
     const more = changed.length - MOST_CHANGED;
-    return el("section", { class: "card" }, title,
-      table([t("Item"), t("By the formula"), t("Simulated"), t("Chance"), ""], changed.slice(0, MOST_CHANGED).map((one) => this.#line(one))),
-      more > 0 && el("p", { text: tn("and {n:,} more: see the sheet", "and {n:,} more: see the sheet", more) }));
+    const list = table([t("Item"), t("By the formula"), t("Simulated"), t("Chance"), ""], changed.slice(0, MOST_CHANGED).map((one) => this.#line(one)));
+    const rest = more > 0 && el("p", { text: tn("and {n:,} more: see the sheet", "and {n:,} more: see the sheet", more) });
+    if (changed.length <= MOST_OPEN) return el("section", { class: "card" }, title, list);
+    const fold = el("details", { class: "fold", open: this.#isListOpen }, el("summary", { text: t("Show the list") }), list, rest);
+    fold.addEventListener("toggle", () => (this.#isListOpen = fold.open)); // results are drawn anew after every change
+    return el("section", { class: "card" }, title, fold);
   }
 
   #line(one) {
     const items = this.#store.sheet("Items");
     const at = items?.column("item")?.at ?? 0;
     const name = String(items?.value(one.row, at) ?? t("row {n}", { n: one.row }));
-    const range = one.low === null ? "" : ` ${t("({low} to {high})", { low: percent(one.low), high: percent(one.high) })}`;
+    const range = one.low !== null && el("span", { class: "range hint", text: t("({low} to {high})", { low: percent(one.low), high: percent(one.high) }) });
     const isHigher = CLASSES.indexOf(one.after) < CLASSES.indexOf(one.before);
     const change = one.isStale ? t("inputs changed") : isHigher ? t("↑ raised") : t("↓ lowered");
-    const link = el("button", { type: "button", class: "plain", text: name, on: { click: () => this.#reveal(["Items", one.row, at]) } });
+    const link = el("button", { type: "button", class: "plain link", text: name, on: { click: () => this.#reveal(["Items", one.row, at]) } });
     return el("tr", { class: one.isStale ? "stale" : "" }, el("th", { scope: "row" }, link), el("td", null, badge(one.before)), el("td", null, badge(one.after)),
-      el("td", { text: percent(one.chance) + range }), el("td", { text: change }));
+      el("td", null, percent(one.chance), " ", range), el("td", { class: "change", text: change }));
   }
 
   /** The report in a frame that can do nothing but show it; made once a run, so that it does not jump. */

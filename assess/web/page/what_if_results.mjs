@@ -36,7 +36,7 @@ export class Results {
     const most = Math.max(1, ...keys.flatMap((key) => [before.counts[key] ?? 0, after.counts[key] ?? 0]));
     const rows = keys.map((key) => this.#bars(key, before.counts[key] ?? 0, after.counts[key] ?? 0, most));
     return el("section", { class: "card" }, el("h2", { text: t("Pieces by class, by the formulas") }), simulatedNote(),
-      el("table", { class: "bars" }, el("thead", null, el("tr", null, el("th", { scope: "col", text: t("Class") }), el("th", { scope: "col", class: "num", text: t("now") }), el("th", { scope: "col", class: "num", text: t("then") }), el("th", { scope: "col", class: "num", text: t("change") }), el("td"))), el("tbody", null, rows)));
+      el("table", { class: "bars" }, el("thead", null, el("tr", null, el("th", { scope: "col", text: t("Class") }), el("th", { scope: "col", class: "num", text: t("now") }), el("th", { scope: "col", class: "num", text: t("then") }), el("th", { scope: "col", class: "num", text: t("change") }), el("td", { class: "bar-cell" }))), el("tbody", null, rows)));
   }
 
   #bars(key, before, after, most) {
@@ -102,7 +102,7 @@ export class Results {
 function simulatedNote() {
   const found = countSimulated();
   if (!found) return null;
-  const counts = CLASSES.map((key) => t("{n:,} {word}", { n: found[key] ?? 0, word: describe(key).word })).join(", ");
+  const counts = CLASSES.map((key) => t("{word}: {n:,}", { word: describe(key).word, n: found[key] ?? 0 })).join(", ");
   const n = jobs.current.stale.length;
   const since = n ? tn("{n:,} row changed since.", "{n:,} rows changed since.", n) : "";
   return el("p", { class: "hint basis-note", text: t("What if goes by the formulas, so its numbers are not those of the simulation, which found {counts}. {since}", { counts, since }).trim() });
