@@ -190,6 +190,22 @@ def test_widths_are_dragged_fitted_and_kept(sorted_items):
     assert sheet.values("Items", "room")[2] == "Hall A"
 
 
+CUT = """all => all.filter((one) => one.scrollHeight > one.clientHeight + 1 || one.scrollWidth > one.clientWidth)
+    .map((one) => one.textContent)"""
+
+
+@pytest.mark.parametrize("locale", ["en-GB", "it-IT"])
+def test_headers_show_their_units_and_the_tabs_of_the_plan_their_names(page, served, tmp_path, locale):
+    sheet = opened(page, served(write(tmp_path / "office.xlsx")), width=4000, locale=locale).open("Items")
+    expect(sheet.head("Bracket capacity")).to_contain_text("[kN]")
+    assert sheet.grid.locator(".grid-label").evaluate_all(CUT) == []
+    sheet.page.set_viewport_size({"width": 1400, "height": 900})
+    sheet.page.locator("nav.tabs [data-tab=plan]").click()
+    expect(sheet.page.locator(".plan-tabs")).to_be_visible()
+    assert sheet.page.locator(".plan-tabs, .plan-tabs button").evaluate_all(CUT) == []
+    assert len({one.bounding_box()["y"] for one in sheet.page.locator(".plan-tabs button").all()}) == 1
+
+
 def test_a_phone_reads_and_does_not_edit(page, served, tmp_path):
     sheet = opened(page, served(write(tmp_path / "office.xlsx")), width=390, height=844, has_touch=True)
     expect(sheet.page.get_by_text("at least 900 pixels wide")).to_be_visible()

@@ -62,6 +62,10 @@ def test_from_start_to_report(simulating):
         assert sum(one[:-1]) == one[-1] == other[-1] == sum(other[:-1])
     assert [row.locator("td").last.inner_text() for row in counts.locator("tbody tr").all()][:4] == re.findall(
         r"[■▲◇○] (\d+)", found)  # fmt: skip
+    show(page, "sheet")
+    column = page.get_by_role("grid").locator("[data-label='Simulated class']").get_attribute("aria-colindex")
+    cells = page.get_by_role("grid").locator(f"[role=gridcell][aria-colindex='{column}']")
+    assert cells.evaluate_all("all => all.filter((one) => one.scrollWidth > one.clientWidth).length") == 0
     header.get_by_label("Classes by").select_option("formula")
     expect(header.get_by_role("list", name="Pieces by class, by formula")).to_be_visible()
     header.get_by_label("Classes by").select_option("simulated")
