@@ -8,6 +8,7 @@ import { showFiles } from "./files_view.mjs";
 import { Tabs } from "./tabs.mjs";
 import { language, languages, loadTexts, t, tn } from "./texts.mjs";
 import { themeSwitch } from "./theme.mjs";
+import { undoneLine } from "./undone.mjs";
 import { Watch, whenSent } from "./watch.mjs";
 
 /** What keeps an undo of its own: text fields, and the questions of dialogs. */
@@ -19,8 +20,8 @@ export function saveState(store, isGone = false) {
   if (!book) return ["", false];
   const name = book.name;
   if (isGone) return [t("Not connected: changes are kept in this page"), true];
-  if (state.changed_outside) return [t("Changed by another program, not saved"), true];
-  if (state.save_error) return [t("Not saved: {why}", { why: state.save_error }), true];
+  if (state.changed_outside && state.unsaved) return [t("Changed by another program, not saved"), true];
+  if (state.save_error) return [state.unsaved ? t("Not saved: {why}", { why: state.save_error }) : state.save_error, true];
   if (store.waiting || (book.mode === "disk" && state.unsaved)) return [t("Saving…"), false];
   if (book.mode === "disk") return [t("All changes saved in {name}", { name }), false];
   return [state.unsaved ? t("Not downloaded yet") : t("No changes since the last download"), false];
@@ -74,7 +75,7 @@ class Frame {
     p.open = el("a", { class: "button editing-only", href: "#start", text: t("New or open…"), title: t("Make a new workbook, or open another") });
     p.more = button(t("Menu"), "☰", () => this.#toggleMenu(), { class: "more", "aria-expanded": "false", "aria-controls": "menu" });
     return el("header", { class: "top" },
-      el("div", { class: "book-name" }, p.name, p.state), p.more, p.counts,
+      el("div", { class: "book-name" }, p.name, el("div", { class: "state-line" }, p.state, undoneLine(this.#store))), p.more, p.counts,
       el("div", { id: "menu", class: "menu" },
         (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
         el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch())));
@@ -133,7 +134,7 @@ class Frame {
 
   #onLeaving(event) {
     const { book, state, waiting } = this.#store;
-    const isLost = waiting || (book && (state.save_error || state.changed_outside || (book.mode === "held" && state.unsaved)));
+    const isLost = waiting || (book && state.unsaved && (state.save_error || state.changed_outside || book.mode === "held"));
     if (isLost && !this.#isReloading) event.preventDefault();
   }
 

@@ -4,6 +4,8 @@ import { clear, el } from "./elements.mjs";
 import { t } from "./texts.mjs";
 
 const SHOWN_MS = 8000;
+const WITH_ACTIONS_MS = 15000;
+const ERROR_MS = 30000;
 const MOST = 5;
 const shown = new Map();
 
@@ -14,27 +16,29 @@ function place() {
 /**
  * Show a notice. One with the same text, or the same key, takes the place of the earlier one.
  * @param {string} text
- * @param {{kind?: "info"|"error", actions?: Array<[string, Function]>, key?: string, lasting?: boolean}} [options] an info
- *   without actions goes by itself, unless it is `lasting`
+ * @param {{kind?: "info"|"error", actions?: Array<[string, Function]>, key?: string, lasting?: boolean, until?: string}} [options]
+ *   all but `lasting` ones and errors with actions go by themselves after a while; one with `until` goes as soon as
+ *   `endNotices` is called with another moment
  * @returns {{close: Function}}
  */
-export function notice(text, { kind = "info", actions = [], key = text, lasting = false } = {}) {
+export function notice(text, { kind = "info", actions = [], key = text, lasting = false, until } = {}) {
   shown.get(key)?.close();
   const node = el("div", { class: `notice notice-${kind}`, role: kind === "error" ? "alert" : "status" });
-  const one = { close: () => (clearTimeout(one.timer), node.remove(), shown.get(key) === one && shown.delete(key)) };
+  const one = { until, close: () => (clearTimeout(one.timer), node.remove(), shown.get(key) === one && shown.delete(key)) };
   const buttons = actions.map(([label, run]) => el("button", { type: "button", text: label, on: { click: () => (one.close(), run()) } }));
   const close = el("button", { type: "button", class: "plain close", "aria-label": t("Close"), text: "×", on: { click: one.close } });
   node.append(el("p", { text }), ...buttons, close);
   place().append(node);
   shown.set(key, one);
   if (shown.size > MOST) [...shown.values()].find((other) => other.timer)?.close();
-  if (kind === "info" && !actions.length && !lasting) startTimer(one, node);
+  const isError = kind === "error";
+  if (!lasting && !(isError && actions.length)) startTimer(one, node, isError ? ERROR_MS : actions.length ? WITH_ACTIONS_MS : SHOWN_MS);
   return one;
 }
 
 /** A notice goes after a while, but not while somebody reads it. */
-function startTimer(one, node) {
-  const start = () => (one.timer = setTimeout(one.close, SHOWN_MS));
+function startTimer(one, node, time) {
+  const start = () => (one.timer = setTimeout(one.close, time));
   node.addEventListener("pointerenter", () => clearTimeout(one.timer));
   node.addEventListener("pointerleave", start);
   start();
@@ -57,6 +61,11 @@ export function ask(question, choices) {
     document.body.append(dialog);
     dialog.showModal();
   });
+}
+
+/** Take the notices away that belong to another moment: what they offer would act on something else. */
+export function endNotices(moment) {
+  for (const one of [...shown.values()]) if (one.until !== undefined && one.until !== moment) one.close();
 }
 
 /** Take all notices away. */

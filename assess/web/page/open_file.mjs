@@ -33,7 +33,7 @@ export async function openWorkbook(store, file) {
 /** Ask before the present workbook is left; true where it may be. */
 export async function canLeave(store, name) {
   const { book, state, waiting } = store;
-  if (!book || !(waiting || (state.unsaved && book.mode === "held") || state.save_error || state.changed_outside)) return true;
+  if (!book || !(waiting || (state.unsaved && (book.mode === "held" || state.save_error || state.changed_outside)))) return true;
   const question = t("Open {name} in place of {old}? Changes of {old} that were not downloaded are lost.", { name, old: book.name });
   return (await ask(question, [[t("Cancel"), false], [t("Open {name}", { name }), true]])) === true;
 }

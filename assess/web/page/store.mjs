@@ -2,7 +2,8 @@
 // problems come from the server after each change.
 
 import { connection, get, post } from "./api.mjs";
-import { notice } from "./messages.mjs";
+import { KeptEdits, key, same } from "./kept_edits.mjs";
+import { endNotices, notice } from "./messages.mjs";
 import { Sheet, cellName } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
 
@@ -10,9 +11,6 @@ const REFUSED = new Set([400, 413, 422]);
 const NAMED = 5;
 const TIMES_REPEATED = 3;
 const SEVERITIES = ["error", "warning", "note"];
-
-const key = (sheet, row, at) => `${sheet}|${row}|${at}`;
-const same = (one, other) => one === other || (one ?? "") === (other ?? "");
 
 class Store extends EventTarget {
   book = null;
@@ -31,6 +29,7 @@ class Store extends EventTarget {
   #byCell = new Map();
   #simulated = new Map();
   #queue = [];
+  #kept = new KeptEdits();
   #sending = null;
   #stopped = false;
   #liveVersion = null;
@@ -69,9 +68,10 @@ class Store extends EventTarget {
     this.#simulated = new Map();
     this.#takeLive({ version: 0, whole: true });
     this.#liveVersion = null;
+    if (book?.state?.server !== this.state.server) this.#kept = new KeptEdits();
     if (book?.state) this.state = book.state;
     this.#tell("book");
-    this.#tell("state");
+    this.#tellState();
     if (book) this.refreshLive();
   }
 
@@ -86,7 +86,18 @@ class Store extends EventTarget {
   /** Take the state of an answer, such as that of `POST /api/save`. */
   takeState(state) {
     this.state = state;
+    this.#tellState();
+  }
+
+  #tellState() {
+    this.#kept.drop(this.state.saved_version);
+    endNotices(this.#moment);
     this.#tell("state");
+  }
+
+  /** What an offer to undo is bound to. */
+  get #moment() {
+    return `${this.state.server} ${this.state.version}`;
   }
 
   /** How many edits have not reached the server yet. */
@@ -116,6 +127,7 @@ class Store extends EventTarget {
     if (changed.length === 0) return Promise.resolve(true);
     const before = changed.map(([name, row, at]) => [name, row, at, this.sheet(name).value(row, at)]);
     this.#put(changed);
+    endNotices(null);
     return new Promise((resolve) => {
       this.#queueUp({ edits: changed, before, label, resolve, keys: new Set(changed.map((cell) => key(...cell))) });
       this.#send();
@@ -152,17 +164,37 @@ class Store extends EventTarget {
       group.isSent = true;
       this.#tell("state");
       try {
-        const body = { version: this.state.version, ...(group.path ? {} : { edits: group.edits, label: group.label }) };
+        const { version, server } = this.state;
+        const body = { version, server, ...(group.path ? {} : { edits: group.edits, label: group.label }) };
         const change = await post(group.path ?? "/api/edit", body);
         if (book !== this.#books) return;
         this.#queue.shift();
+        this.#keep(group, change);
         await this.#accept(change);
-        if (group.path) this.#tell("history", change.cells ?? []);
+        if (group.path) this.#tellStep(group, change.cells ?? []);
         group.resolve(true);
       } catch (error) {
         if (book === this.#books) await this.#handleFault(error, group);
       }
     }
+  }
+
+  /** Keep what the server has taken until it is in the file. */
+  #keep(group, { cells = [], state }) {
+    if (this.book.mode !== "disk") return;
+    const typed = new Map(group.edits.map((cell) => [key(...cell), cell[3]]));
+    const before = new Map(group.before.map((cell) => [key(...cell), cell[3]]));
+    const kept = cells.map(([name, row, at, stored]) => {
+      const one = key(name, row, at);
+      const old = before.has(one) ? before.get(one) : this.sheet(name)?.value(row, at);
+      return { cell: [name, row, at], stored, typed: typed.has(one) ? typed.get(one) : stored, before: old };
+    });
+    this.#kept.add(state.version, group.label, kept);
+  }
+
+  #tellStep(group, cells) {
+    this.#tell("history", cells);
+    this.#tell("step", { isUndo: group.path === "/api/undo", cells });
   }
 
   async #handleFault(error, group) {
@@ -220,49 +252,81 @@ class Store extends EventTarget {
 
   /** Read the book again where the server has another version, and explain what of the changes that wait is lost. */
   async #resume(error) {
-    const old = this.state.version;
+    const old = this.#moment;
     const first = this.#queue[0];
     first.repeated = (first.repeated ?? 0) + 1;
     try {
-      const lost = await this.#reread(() => this.state.version !== old && first.repeated <= TIMES_REPEATED);
-      this.#tellConflict(error, lost);
+      this.#tellConflict(error, await this.#reread(() => this.#moment !== old && first.repeated <= TIMES_REPEATED));
     } catch (fault) {
       if (fault.status !== 409) await this.#handleFault(fault, first);
     }
   }
 
-  /** Read the book again; what waits is kept where nobody else changed its cells. Returns what is not. */
+  /** Read the book again, as the server has another version of it, or another server has it. */
+  async readAgain() {
+    const result = await this.#reread();
+    this.#tellConflict(null, result);
+    this.#send();
+  }
+
+  /**
+   * Read the book again; what waits is kept where nobody else changed its cells.
+   * @returns {Promise<{text: string, cells: Array}>} why it was read, and the cells of which changes are lost
+   */
   async #reread(canSend = () => true) {
     const book = await get("/api/book");
+    const { book: oldBook, state: old } = this;
+    const kept = this.#kept;
     const waiting = this.#queue;
     this.#queue = [];
     this.replaceBook(book);
-    const lost = [];
-    for (const group of waiting) {
-      const isFree = group.before.every(([name, row, at, value]) => same(this.sheet(name)?.value(row, at), value));
-      if (!canSend() || !isFree || (group.path && group.isSent)) {
-        lost.push(group);
-        group.resolve(false);
-        continue;
-      }
+    const isAnew = this.state.server !== old.server;
+    const isOther = isAnew && (book.mode !== "disk" || book.file !== oldBook?.file);
+    const again = (isAnew && !isOther ? kept : new KeptEdits()).compare((name, row, at) => this.sheet(name)?.value(row, at));
+    for (const group of again.groups) this.#queueAgain(group);
+    const lost = waiting.filter((group) => !this.#queueWaiting(group, again, !isOther && canSend()));
+    const text = isOther ? t("Another workbook was opened: {name}.", { name: book.name }) : this.#whyRead(old, isAnew, again.count);
+    return { text, cells: [...again.taken, ...lost.flatMap((group) => group.edits)] };
+  }
+
+  /** Queue what the server before had taken and not saved. */
+  #queueAgain({ label, cells }) {
+    const before = cells.map(({ cell: [name, row, at] }) => [name, row, at, this.sheet(name)?.value(row, at)]);
+    this.#put(cells.map(({ cell, stored }) => [...cell, stored]));
+    const edits = cells.map(({ cell, typed }) => [...cell, typed]);
+    this.#queue.push({ edits, before, label, resolve: () => {}, keys: new Set(edits.map((cell) => key(...cell))) });
+  }
+
+  /** Queue what had not been answered; false where that cannot be. */
+  #queueWaiting(group, again, canSend) {
+    const value = ([name, row, at]) => this.sheet(name)?.value(row, at);
+    const isDone = group.isSent && !group.path && group.edits.every((cell) => same(value(cell), cell[3]));
+    const isFree = group.before.every((cell) => same(value(cell), cell[3]) || again.isKnown(cell, value(cell)));
+    const isQueued = canSend && !isDone && isFree && !(group.path && group.isSent);
+    if (isQueued) {
       group.isSent = false;
       this.#put(group.edits);
       this.#queue.push(group);
-    }
-    return lost;
+    } else group.resolve(isDone);
+    return isQueued || isDone;
   }
 
-  #tellConflict(error, lost) {
-    const cells = lost.flatMap((group) => group.edits).map(([name, row, at]) => cellName(this.sheet(name), row, at));
+  #whyRead(old, isAnew, n) {
+    if (n) return tn("The server was started again; {n:,} change that it had not saved was sent again.", "The server was started again; {n:,} changes that it had not saved were sent again.", n);
+    if (isAnew) return t("The server was started again, and the workbook has been read again.");
+    if (this.state.read_version > old.version) return t("The file was changed by another program and has been read again.");
+    return t("The workbook was changed in another window and has been read again.");
+  }
+
+  #tellConflict(error, { text, cells }) {
     if (cells.length === 0) {
-      notice(t("The workbook was changed in another window and has been read again."), { kind: "info" });
+      notice(text, { kind: "info", key: "again" });
       return;
     }
-    const named = cells.slice(0, NAMED).join(", ") + (cells.length > NAMED ? " …" : "");
-    const text = this.state.changed_outside && error.message
-      ? error.message
-      : t("The workbook was changed in another window and has been read again.");
-    notice(`${text} ${t("Not changed: {cells}.", { cells: named })}`, { kind: "error" });
+    const names = cells.slice(0, NAMED).map(([name, row, at]) => (this.sheet(name) ? cellName(this.sheet(name), row, at) : name));
+    const named = names.join(", ") + (cells.length > NAMED ? " …" : "");
+    const why = this.state.changed_outside && error?.message ? error.message : text;
+    notice(`${why} ${t("Not changed: {cells}.", { cells: named })}`, { kind: "error" });
   }
 
   async #accept(change) {
@@ -271,7 +335,7 @@ class Store extends EventTarget {
     this.state = change.state;
     if (change.missing) this.book.missing = change.missing;
     const other = change.language && change.language !== this.book.language;
-    this.#tell("state");
+    this.#tellState();
     if (other) await this.#reread(); // titles and choices are in the language of the workbook
     else this.refreshLive();
   }
@@ -289,10 +353,17 @@ class Store extends EventTarget {
     return this.#step("/api/redo");
   }
 
+  /** Tell of the last change, with an Undo that goes as soon as there is a later one. */
+  offerUndo(text) {
+    const actions = this.waiting ? [] : [[t("Undo"), () => this.undo()]];
+    notice(text, { actions, until: this.#moment });
+  }
+
   /** Undo and redo stand in the same queue as edits, so that each finds the version that it expects. */
   #step(path) {
     const can = path === "/api/undo" ? this.state.can_undo : this.state.can_redo;
     if (!this.book || (!can && this.#queue.length === 0)) return Promise.resolve(false);
+    endNotices(null);
     return new Promise((resolve) => {
       this.#queue.push({ path, edits: [], before: [], label: "", resolve, keys: new Set() });
       this.#send();

@@ -5,20 +5,25 @@ import { ask, notice } from "./messages.mjs";
 import { t } from "./texts.mjs";
 
 const EVERY_MS = 2000;
+const UNREAD_LOOKS = 3; // so often a file that another program writes may not be readable yet
 
 export class Watch extends EventTarget {
   isGone = false;
   #store;
-  #notices = {};
+  #notices = { why: "" };
   #timer = 0;
   #isLooking = false;
   #isStranger = false;
+  #isReading = false;
+  #unread = 0;
+  #told = "";
 
   constructor(store) {
     super();
     this.#store = store;
     connection.addEventListener("gone", () => this.#onGone());
     connection.addEventListener("back", () => this.#onBack());
+    store.addEventListener("book", () => this.#showBook());
     document.addEventListener("visibilitychange", () => !document.hidden && this.look());
   }
 
@@ -46,31 +51,62 @@ export class Watch extends EventTarget {
     if (this.#isStranger) this.#onBack();
     this.dispatchEvent(new CustomEvent("job", { detail: answer.job }));
     if (!store.book || store.waiting || typeof state.version !== "number") return;
-    if (state.version > store.state.version) {
+    if (state.server !== store.state.server || state.version > store.state.version) {
       this.#readAgain();
       return;
     }
     if (state.version === store.state.version) store.takeState(state);
-    this.#showOutside(state.changed_outside);
+    this.#showOutside(state);
+    this.#showTrouble(state);
   }
 
-  /** Another window of this session changed the workbook. */
+  /** Another window of this session changed the workbook, the server read the file again, or it is another server. */
   async #readAgain() {
-    await this.#store.load();
-    notice(t("The workbook was changed in another window and has been read again."), { key: "again" });
+    if (this.#isReading) return;
+    this.#isReading = true;
+    try {
+      await this.#store.readAgain();
+    } catch {
+      // the next look finds the same
+    } finally {
+      this.#isReading = false;
+    }
   }
 
-  #showOutside(isChanged) {
+  #showBook() {
+    const { book, state } = this.#store;
+    this.#showTrouble(book ? state : {});
+    if (!book?.remark || this.#told === state.server) return;
+    this.#told = state.server;
+    notice(book.remark, { key: "remark", lasting: true });
+  }
+
+  /** The server reads a file that changed by itself; where changes would be lost by that, the user decides. */
+  #showOutside({ changed_outside: isChanged, unsaved }) {
     if (!isChanged) {
       this.#notices.outside?.close();
       this.#notices.outside = null;
+      this.#unread = 0;
       return;
     }
-    if (this.#notices.outside) return;
-    const name = this.#store.book.name;
-    const text = t("{name} was changed by another program, such as Excel. Your later changes here are not saved in it.", { name });
-    const actions = [[t("Read the file again"), () => this.#reload()], [t("Download my version"), () => download()]];
-    this.#notices.outside = notice(text, { kind: "error", actions, key: "outside" });
+    this.#unread += 1;
+    if (this.#notices.outside || (!unsaved && this.#unread < UNREAD_LOOKS)) return;
+    const { name } = this.#store.book;
+    const text = unsaved
+      ? t("{name} was changed by another program, such as Excel, while you changed it here. Both are kept: your last changes are in this page, the other ones in the file. Download your version to keep yours, or read the file again to go on without them.", { name })
+      : t("{name} was changed by another program and cannot be read as it is now. The page shows what it held before.", { name });
+    const actions = [[t("Download my version"), () => download()], [t("Read the file again"), () => this.#reload()]];
+    this.#notices.outside = notice(text, { kind: unsaved ? "info" : "error", actions, key: "outside", lasting: true });
+  }
+
+  /** What stands in the way of saving, how to end it, and a way to keep the changes; gone once saving works. */
+  #showTrouble({ save_error: why = "", unsaved = false }) {
+    const text = why && unsaved ? t("Not saved: {why} Saving is tried again every few seconds.", { why }) : why;
+    if (text === this.#notices.why) return;
+    this.#notices.trouble?.close();
+    this.#notices.why = text;
+    const actions = unsaved ? [[t("Download my version"), () => download()]] : [];
+    if (text) this.#notices.trouble = notice(text, { kind: unsaved ? "error" : "info", actions, key: "trouble", lasting: true });
   }
 
   async #reload() {
@@ -91,7 +127,7 @@ export class Watch extends EventTarget {
     const name = this.#store.book?.mode === "disk" ? this.#store.book.name : "";
     const command = `assess open ${name.includes(" ") ? `"${name}"` : name} --port ${location.port || 80}`.replace("  ", " ");
     const text = t("The program behind this page does not answer. Start it again: {command}. What you change meanwhile is kept in this page, and sent when it answers.", { command });
-    this.#notices.gone = notice(text, { kind: "error", key: "gone" });
+    this.#notices.gone = notice(text, { kind: "error", key: "gone", lasting: true });
   }
 
   #onBack() {
@@ -107,7 +143,7 @@ export class Watch extends EventTarget {
     this.isGone = this.#isStranger = true;
     this.dispatchEvent(new Event("connection"));
     const text = t("This window is no longer connected, as the program was started again. Use the window that it opened, or open the address that it printed.");
-    this.#notices.gone = notice(text, { kind: "error", key: "gone" });
+    this.#notices.gone = notice(text, { kind: "error", key: "gone", lasting: true });
   }
 }
 

@@ -4,7 +4,7 @@ import { post } from "./api.mjs";
 import { CLASSES, badge, describe } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
 import { countSimulated, jobs } from "./job.mjs";
-import { ask, notice } from "./messages.mjs";
+import { ask } from "./messages.mjs";
 import { PlanEdits } from "./plan_edits.mjs";
 import { PlanModel, nameKey } from "./plan_model.mjs";
 import { isFilled } from "./sheet.mjs";
@@ -278,6 +278,6 @@ class WhatIfView {
     this.#ticked.clear();
     this.#first = 0;
     this.#askSoon(0);
-    notice(tn("{n:,} row written.", "{n:,} rows written.", rows.length), { actions: [[t("Undo"), () => this.store.undo()]] });
+    this.store.offerUndo(tn("{n:,} row written.", "{n:,} rows written.", rows.length));
   }
 }
