@@ -97,11 +97,11 @@ def enter(url):
     return Client(client.base, reply.headers["set-cookie"].split(";")[0])
 
 
-def start(*words, cwd, temporary=None, environment=None):
-    """Start `assess open` in a folder and wait for its address."""
+def start(*words, cwd, temporary=None, environment=None, before=()):
+    """Start `assess open` in a folder, by another command where there is one `before`, and wait for its address."""
     variables = os.environ | ({"TMPDIR": str(temporary)} if temporary else {}) | (environment or {})
     process = subprocess.Popen(
-        [sys.executable, "-m", "assess", "open", *map(str, words)],
+        [*before, sys.executable, "-m", "assess", "open", *map(str, words)],
         cwd=cwd, env=variables, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     for line in process.stdout:

@@ -1,8 +1,10 @@
 """The frame of the page: every view opens, in both languages and themes, and nothing is lost on the way."""
 
 import gzip
+import os
 import re
 import shutil
+import signal
 from pathlib import Path
 
 import pytest
@@ -134,6 +136,7 @@ def test_the_address_holds_the_tab_and_a_new_tab_shows_the_same(page, served, of
     other.get_by_role("button", name="Undo").click()
     expect(other.get_by_role("button", name="Redo")).to_be_enabled()
     assert value(other, "Items", 2, 3) == ITEMS[0].get("room")
+    expect(other.locator(".undone")).to_have_text("Undone: Items!D2")
 
 
 @browsing
@@ -210,18 +213,97 @@ def test_what_is_changed_while_the_server_is_gone_reaches_the_file(page, served,
 
 
 @browsing
-def test_a_change_by_another_program_is_told_and_can_be_read(page, served, office):
+def test_what_a_killed_server_had_taken_and_not_saved_is_sent_again(page, served, office):
+    server = served(office)
+    found = page(server)
+    expect(found.get_by_role("grid")).to_be_visible()
+    office.chmod(0o444)  # it is killed before it can save
+    with found.expect_response("**/api/edit"):
+        edit(found, "Items", 2, 3, "Attic")
+    server.stop(signal.SIGKILL)
+    office.chmod(0o644)
+    assert load_workbook(office)["Items"].cell(2, 4).value != "Attic"
+    edit(found, "Items", 3, 3, "Cellar")
+    again = start(office, "--no-browser", "--port", server.base.rpartition(":")[2], cwd=office.parent)
+    try:
+        found.context.new_page().goto(again.url)
+        expect(found.locator("#notices")).to_contain_text(
+            "1 change that it had not saved was sent again", timeout=15_000
+        )
+        expect(found.locator("#notices")).not_to_contain_text("another window")
+        expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+    finally:
+        again.stop()
+    assert [load_workbook(office)["Items"].cell(row, 4).value for row in (2, 3)] == ["Attic", "Cellar"]
+
+
+def change_outside(path, name):
+    other = load_workbook(path)
+    other["Items"].cell(2, 4).value = name
+    other.save(path)
+
+
+LOOK = """isHidden => {
+    Object.defineProperty(document, "hidden", { value: isHidden, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange"));
+}"""
+"""A window that is not in sight does not look after the file."""
+
+
+@browsing
+def test_a_change_by_another_program_is_read_and_asks_only_where_changes_would_be_lost(page, served, office):
     found = page(served(office))
     expect(found.locator(STATE)).to_contain_text("All changes saved")
-    other = load_workbook(office)
-    other["Items"].cell(2, 4).value = "Cellar"
-    other.save(office)
-    said = found.get_by_role("alert").filter(has_text="changed by another program")
+    change_outside(office, "Cellar")
+    said = found.locator(".notice").filter(has_text="changed by another program")
+    expect(said).to_contain_text("has been read again", timeout=15_000)
+    assert value(found, "Items", 2, 3) == "Cellar"
+    said.get_by_role("button", name="Close").click()
+    found.evaluate(LOOK, True)
+    change_outside(office, "Garage")
+    with found.expect_response("**/api/edit"):
+        edit(found, "Items", 2, 3, "Attic")
+    found.evaluate(LOOK, False)
     expect(said.get_by_role("button", name="Download my version")).to_be_visible(timeout=15_000)
     said.get_by_role("button", name="Read the file again").click()
+    found.get_by_role("dialog").get_by_role("button", name="Read the file again").click()
     expect(said).to_have_count(0)
     expect(found.locator(STATE)).to_contain_text("All changes saved")
-    assert value(found, "Items", 2, 3) == "Cellar"
+    assert value(found, "Items", 2, 3) == "Garage"
+
+
+@browsing
+def test_what_stands_in_the_way_of_saving_is_told_until_it_is_gone(page, served, office):
+    found = page(served(office))
+    expect(found.locator(STATE)).to_contain_text("All changes saved")
+    office.rename(office.with_name("moved.xlsx"))
+    edit(found, "Items", 2, 3, "Attic")
+    said = found.get_by_role("alert").filter(has_text="no longer in its folder: put it back")
+    expect(said.get_by_role("button", name="Download my version")).to_be_visible(timeout=15_000)
+    office.with_name("moved.xlsx").rename(office)
+    expect(said).to_have_count(0, timeout=15_000)
+    expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+    assert load_workbook(office)["Items"].cell(2, 4).value == "Attic"
+
+
+@browsing
+@pytest.mark.skipif(os.name == "nt" or not (os.getuid() or shutil.which("setpriv")), reason="needs rights that count")
+def test_a_folder_that_does_not_allow_writing_is_told_at_once(page, office):
+    office.parent.chmod(0o555)
+    rights = () if os.getuid() else ("setpriv", "--bounding-set", "-dac_override")
+    server = start(office, "--no-browser", cwd="/", before=rights)
+    try:
+        found = page(server)
+        said = found.locator(".notice").filter(has_text="The folder of office.xlsx does not allow writing")
+        expect(said).to_be_visible()
+        expect(found.locator(STATE)).to_contain_text("changes can be downloaded, not saved")
+        edit(found, "Items", 2, 3, "Attic")
+        told = found.get_by_role("alert").filter(has_text="does not allow writing")
+        expect(told.get_by_role("button", name="Download my version")).to_be_visible(timeout=15_000)
+    finally:
+        _, _, err = server.stop()
+        office.parent.chmod(0o755)
+    assert err.startswith("warning  The folder of office.xlsx does not allow writing")
 
 
 DROP = """([name, data]) => {
