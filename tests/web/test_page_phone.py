@@ -50,3 +50,16 @@ def test_on_a_phone_the_tabs_are_at_the_bottom_and_nothing_is_edited(page, serve
     assert found.evaluate("async () => (await import('/store.mjs')).store.state.version") == before
     found.set_viewport_size({"width": 900, "height": 800})
     expect(found.get_by_role("button", name="Undo")).to_be_visible()
+
+
+def test_notices_leave_two_thirds_of_the_page_and_can_be_closed(page, served):
+    found = page(served(EXAMPLE), width=WIDTH, height=HEIGHT, has_touch=True)
+    expect(found.locator(".counts")).to_contain_text("very high")
+    found.evaluate("""async () => {
+        const { notice } = await import("/messages.mjs");
+        for (const n of [1, 2, 3, 4]) notice(`${n} ${"cannot be saved ".repeat(20)}`, { kind: "error", lasting: true });
+    }""")
+    assert found.locator("#notices").bounding_box()["height"] <= HEIGHT / 3
+    for left in (3, 2, 1, 0):
+        found.locator(".notice").first.get_by_role("button", name="Close").click()
+        expect(found.locator(".notice")).to_have_count(left)

@@ -88,3 +88,15 @@ def test_anchors_are_written_after_a_question_and_undone_in_one_step(sheet):
     page.get_by_role("button", name="Undo").last.click()
     expect(page.get_by_role("checkbox", name=re.compile("A2"))).to_be_visible()
     assert sheet.settle().values("Items", "anchored") == {4: "yes"}
+
+
+def test_an_undo_that_a_notice_offers_never_undoes_something_else(sheet):
+    page = sheet.page
+    page.get_by_role("checkbox", name=re.compile("A2")).check()
+    page.get_by_role("button", name="Write into the workbook").click()
+    page.get_by_role("dialog").get_by_role("button", name="Write").click()
+    said = page.locator(".notice").filter(has_text="1 row written.")
+    expect(said.get_by_role("button", name="Undo")).to_be_visible()
+    page.evaluate("async () => (await import('/store.mjs')).store.edit([['Items', 2, 3, 'Attic']], '')")
+    expect(said).to_have_count(0)
+    assert sheet.settle().values("Items", "anchored") == {3: "yes", 4: "yes"}

@@ -72,6 +72,32 @@ def test_a_file_that_another_program_changed_is_not_overwritten(served, tmp_path
     assert _read(kept, at) == 78
 
 
+@pytest.mark.slow
+def test_saving_is_not_put_off_by_one_edit_after_the_other(served, tmp_path):
+    client = served(write(tmp_path / "office.xlsx")).client
+    values = iter(range(60, 10**6))
+
+    def look():
+        _edit(client, next(values))
+        return client.get("/api/state").json()["state"]
+
+    wait_until(look, lambda state: state["saved_version"] > 1)
+
+
+@pytest.mark.slow
+def test_a_workbook_that_another_server_has_open_is_told(served, tmp_path):
+    path = write(tmp_path / "office.xlsx")
+    first = served(path)
+    second = served(path)
+    remark = second.client.get("/api/book").json()["remark"]
+    assert remark.startswith("office.xlsx is also open in another window")
+    assert f"(process {first.process.pid})" in remark
+    assert second.stop()[2] == f"warning  {remark}\nStopped. All changes are saved in office.xlsx.\n"
+    assert first.client.get("/api/book").json()["remark"] == ""
+    first.stop(signal.SIGKILL)
+    assert served(path).client.get("/api/book").json()["remark"] == ""
+
+
 def test_changes_of_a_held_workbook_that_are_not_downloaded_are_kept_at_the_end(served, tmp_path):
     data = write(tmp_path / "mine.xlsx").read_bytes()
     for is_downloaded in (False, True):
