@@ -63,7 +63,10 @@ def test_where_shaking_is_assumed_the_three_ways_to_know_it_better_are_a_list_be
     (note,) = [line for line in done.stderr.splitlines() if "the shaking is assumed" in line]
     assert note.startswith("note ")
     assert "0.215 g" in note
-    assert note.endswith("the published medians. To know it better: type the PGA of a hazard map or a ShakeMap at the address into Ground PGA, or name records in Floors.")
+    assert note.endswith(
+        "the published medians. To know it better: type the PGA of a hazard map or a ShakeMap at the address into "
+        "Ground PGA, or name records in Floors."
+    )
     lines = done.stderr.splitlines()
     at = lines.index("To know the shaking better:")
     assert at > lines.index(note)

@@ -101,6 +101,7 @@ class PlanPage:
     def shown_at(self, row):
         """Return where a piece is drawn [m]."""
         found = re.match(r"translate\(([-\d.]+) ([-\d.]+)\)", self.piece(row).get_attribute("transform"))
+        assert found
         return round(float(found[1]), 2), round(-float(found[2]), 2)
 
     def say(self):
