@@ -266,8 +266,22 @@ def check_items(tables: Tables) -> Iterator[Problem]:
         yield from _check_position(table, row)
         yield from _check_axis(table, row)
         yield from _check_bracket(table, row, sizes.get("height"))
+        if "width" not in sizes:
+            yield from _check_reach(table, row)
     for name, rows in lacking.items():
         yield _describe_no_column(table, name, rows)
+
+
+def _check_reach(table: Table, row: Row) -> Iterator[Problem]:
+    """Warn of a piece that may fall onto a route, and of which it is not known how wide it is."""
+    if not table.spoilt("width", row) and not table.spoilt("type", row) and table.says(row, "x", "y", "route"):
+        message = fill(
+            "{label} is blank and no {type} gives it: the piece is taken as wide as its {breadth}, so the area that it "
+            "may cover can be too small.",
+            label=table.label("width"), type=table.label("type"), breadth=table.label("breadth"),
+        )  # fmt: skip
+        fix = fill("Fill it in, or choose a {type} that has one.", type=table.label("type"))
+        yield table.habit("width", row, message, fix, "warning")
 
 
 def _check_bracket(table: Table, row: Row, height: float | None) -> Iterator[Problem]:

@@ -23,14 +23,14 @@ ROUTES: Mapping[str, list[Any]] = {
     "hall": ["Way", "hall", "1", "Lower", "Door", 1.5, 0.9],
 }
 ITEMS: Mapping[str, list[Any]] = {
-    "B1": ["B1", "1", 40, 180, 5, 3, 90, "Way", "hall", 0.1],
-    "B2": ["B2", "2", 40, 180, 5, 3, 90, None, None, None],
+    "B1": ["B1", "1", 40, 180, 5, 3, 90, "Way", "hall", 0.1, 80],
+    "B2": ["B2", "2", 40, 180, 5, 3, 90, None, None, None, 80],
 }
 HEADS: Mapping[str, list[str]] = {
     "Places": ["Place", "Floor", "X [m]", "Y [m]", "Kind"],
     "Routes": ["Route", "Segment", "Floor", "From", "To", "Clear width [m]", "Required width [m]"],
     "Items": ["Item", "Floor", "Breadth [cm]", "Height [cm]", "X [m]", "Y [m]", "Angle [deg]", "Route", "Segment",
-              "Edge distance [m]"],
+              "Edge distance [m]", "Width [cm]"],
 }  # fmt: skip
 ITEMS_HEAD_ROOM = [["Item", "Floor", "Room", "Breadth [cm]", "Height [cm]"]]
 SOUND = {"Places": PLACES, "Routes": ROUTES, "Items": ITEMS}
@@ -49,7 +49,10 @@ def book(folder: Path, *more: tuple[str, list[Any]], without: str = "", **change
     sheets: dict[str, list[Any]] = {}
     for sheet, head in HEADS.items():
         rows = [changed(sheet, name, changes.get(name, {})) for name in SOUND[sheet]]
-        sheets[sheet] = [head, *rows, *(row for name, row in more if name == sheet)]
+        added = [row for name, row in more if name == sheet]
+        if sheet == "Items":  # all are as wide
+            added = [[*row, *[None] * (len(head) - 1 - len(row)), 80][: len(head)] for row in added]
+        sheets[sheet] = [head, *rows, *added]
     sheets.pop(without, None)
     return write(folder, sheets.pop("Items"), TWO_FLOORS, **sheets)
 
@@ -299,8 +302,8 @@ def test_a_floor_that_cannot_be_drawn_counts_only_pieces_that_name_a_route(tmp_p
     aisle, office = UNPLACED_ROUTES[name]
     head = [*HEADS["Items"], "Quantity"]
     rows = [
-        [*ITEMS["B2"], None], ["C1", "2", 40, 180, None, None, None, None, None, None, 12],
-        ["C2", "2", 40, 180, 6, 3, 90, "Way", None, None, None],
+        [*ITEMS["B2"], None], ["C1", "2", 40, 180, None, None, None, None, None, None, 80, 12],
+        ["C2", "2", 40, 180, 6, 3, 90, "Way", None, None, 80, None],
     ]  # fmt: skip
     own = {
         "Routes": [changed("Routes", "aisle", aisle)],
@@ -382,3 +385,16 @@ def test_rooms_of_a_segment_are_split_and_a_slip_is_told(tmp_path):
     assert [one.severity for one in told] == ["warning"]
     assert "no piece is in room 'Open ofice'" in str(told[0])
     assert "Did you mean Open office?" in str(told[0])
+
+
+@pytest.mark.parametrize("field", ["X", "Route"])
+def test_a_piece_that_may_reach_a_route_is_to_have_a_width(tmp_path: Path, field: str) -> None:
+    others = {"X": None, "Y": None, "Route": None, "Segment": None, "Edge": None} | {"Width": None}
+    kept = {"X": ("X", "Y"), "Route": ("Route", "Segment", "Edge")}[field]
+    blank = {name: value for name, value in others.items() if name not in kept}
+    (warning,) = [one for one in remarks(sound(tmp_path, B1=blank), "warning") if "Width" in one]
+    assert warning.startswith(
+        "Items!K2: Width is blank and no Type gives it: the piece is taken as wide as its Breadth"
+    )
+    none = dict.fromkeys(others)
+    assert not [one for one in remarks(sound(tmp_path, B1=none), "warning") if "Width" in one]

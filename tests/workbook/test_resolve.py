@@ -153,7 +153,7 @@ def test_one_row_a_piece_on_the_plan(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("x", "y", "cell"), [(1, None, "F2"), (None, 2, "E2")])
 def test_half_a_position(tmp_path: Path, x: float | None, y: float | None, cell: str) -> None:
-    inventory = read(tmp_path, [[*ITEMS[0], "X [m]", "Y [m]"], [*ITEMS[1], x, y]])
+    inventory = read(tmp_path, [[*ITEMS[0], "X [m]", "Y [m]", "Width [cm]"], [*ITEMS[1], x, y, 90]])
     message = "a position needs both X and Y. Fill in the other, or clear both."
     assert remarks(inventory, "warning") == {f"Items!{cell}: {message}"}
 
