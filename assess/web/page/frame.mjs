@@ -75,7 +75,7 @@ class Frame {
     p.open = el("a", { class: "button editing-only", href: "#start", text: t("New or open…"), title: t("Make a new workbook, or open another") });
     p.more = button(t("Menu"), "☰", () => this.#toggleMenu(), { class: "more", "aria-expanded": "false", "aria-controls": "menu" });
     return el("header", { class: "top" },
-      el("div", { class: "book-name" }, p.name, el("div", { class: "state-line" }, p.state, undoneLine(this.#store))), p.more, p.counts,
+      el("div", { class: "book-name" }, p.name, el("div", { class: "save-line" }, p.state, undoneLine(this.#store))), p.more, p.counts,
       el("div", { id: "menu", class: "menu" },
         (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
         el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch())));

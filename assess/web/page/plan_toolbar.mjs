@@ -55,7 +55,7 @@ export class Toolbar {
     this.placeOptions = el("label", { class: "inline" }, t("Kind"), this.kind);
     this.routeOptions = el("label", { class: "inline" }, t("Route"), this.route, this.routeList);
     const ofTool = el("div", { class: "tool-option" }, this.placeOptions, this.routeOptions); // one place for both, kept: the plan must not move
-    this.options.append(ofTool, el("label", { class: "check", title: t("Pieces snap to walls and to each other; Alt switches it off while dragging.") }, this.snap, t("Snap")));
+    this.options.append(ofTool);
   }
 
   #buildShown() {
@@ -75,7 +75,8 @@ export class Toolbar {
       this.model.dispatchEvent(new Event("classes"));
     });
     this.simulatedLabel = el("label", { class: "check", hidden: true }, this.simulated, t("Simulated classes"));
-    this.shown = el("div", { class: "plan-group shown", role: "group", "aria-label": t("What is shown") },
+    const snap = el("label", { class: "check editing-only", title: t("Pieces snap to walls and to each other; Alt switches it off while dragging.") }, this.snap, t("Snap"));
+    this.shown = el("div", { class: "plan-group shown", role: "group", "aria-label": t("Settings of the plan") }, snap,
       el("label", { class: "inline", title: t("The floor that a piece may cover when it falls") }, t("Falls"), falls), el("label", { class: "check" }, routes, t("Routes")), this.simulatedLabel);
   }
 

@@ -91,7 +91,7 @@ class WhatIfView {
       this.#askSoon();
     });
     this.firstBasis = el("span", { class: "hint" });
-    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Anchor the first of what to fix") }), el("div", { class: "slider" }, this.firstSlider, this.firstText), this.firstBasis);
+    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Anchor the first entries of the work list") }), el("div", { class: "slider" }, this.firstSlider, this.firstText), this.firstBasis);
   }
 
   #drawFirst() {
