@@ -275,12 +275,13 @@ def check_items(tables: Tables) -> Iterator[Problem]:
 def _check_reach(table: Table, row: Row) -> Iterator[Problem]:
     """Warn of a piece that may fall onto a route, and of which it is not known how wide it is."""
     if not table.spoilt("width", row) and not table.spoilt("type", row) and table.says(row, "x", "y", "route"):
+        label, kind, breadth = (fill(table.label(name)) for name in ("width", "type", "breadth"))
         message = fill(
             "{label} is blank and no {type} gives it: the piece is taken as wide as its {breadth}, so the area that it "
             "may cover can be too small.",
-            label=table.label("width"), type=table.label("type"), breadth=table.label("breadth"),
+            label=label, type=kind, breadth=breadth,
         )  # fmt: skip
-        fix = fill("Fill it in, or choose a {type} that has one.", type=table.label("type"))
+        fix = fill("Fill it in, or choose a {type} that has one.", type=kind)
         yield table.habit("width", row, message, fix, "warning")
 
 
