@@ -39,7 +39,7 @@ def check_name(name: object) -> str:
 
 
 def _find_fault(text: str) -> str:
-    """Return what of a name is not accepted, and how to mend it; "" where nothing is wrong."""
+    """Return what of a name is not accepted, and how to fix it; "" where nothing is wrong."""
     stem = text[: -len(ENDINGS[0])]
     if not stem.strip(". "):
         return fill("Choose a name, such as office.xlsx.")

@@ -126,13 +126,12 @@ def read_tables(data: bytes, name: str, progress: Progress = SILENT) -> tuple[Ta
         If the file cannot be opened as a workbook at all.
     """
     with Book(data, name, progress) as book:
-        found, language, problems = _find_sheets(list(book.sheets))
-        problems += _note_hidden(found, book.hidden)
+        found, language, problems = _find_sheets(list(book.sheets), book.hidden)
         return _parse({name: (book.cells(own), code) for name, (own, code) in found.items()}, language, problems)
 
 
 def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> HeldSheets:
-    """Read the cells of every sheet of a workbook and hold them in memory; see `read_held`.
+    """Read the cells of every sheet of a workbook and hold them in memory, for `parse_held`.
 
     Raises
     ------
@@ -140,8 +139,7 @@ def hold_sheets(data: bytes, name: str, progress: Progress = SILENT) -> HeldShee
         If the file cannot be opened as a workbook at all.
     """
     with Book(data, name, progress) as book:
-        found, language, problems = _find_sheets(list(book.sheets))
-        problems += _note_hidden(found, book.hidden)
+        found, language, problems = _find_sheets(list(book.sheets), book.hidden)
         return HeldSheets(
             name=name,
             cells={sheet: hold_cells(book, own) for sheet, (own, _) in found.items()},
@@ -201,7 +199,9 @@ def _parse(
     return {name: table.with_failed(listed) for name, table in tables.items()}, listed
 
 
-def _find_sheets(present: Sequence[str]) -> tuple[dict[str, tuple[str, str]], str, list[Problem]]:
+def _find_sheets(
+    present: Sequence[str], hidden: Collection[str]
+) -> tuple[dict[str, tuple[str, str]], str, list[Problem]]:
     """Return name and language of each sheet by its English name, the workbook's language, and what is wrong."""
     known = [(name, *found) for name in present if (found := find_sheet(name))]
     own: dict[str, tuple[str, str]] = {}
@@ -216,7 +216,7 @@ def _find_sheets(present: Sequence[str]) -> tuple[dict[str, tuple[str, str]], st
     unknown = [name for name in present if name not in {name for name, *_ in known}]
     for sheet in (one for one in SHEETS if one.name not in own):
         problems += _describe_missing(sheet, language, unknown)
-    return own, language, problems
+    return own, language, [*problems, *_note_hidden(own, hidden)]
 
 
 def find_language(codes: Sequence[str]) -> str:
