@@ -15,6 +15,7 @@ from assess.hazard import HazardCurve
 from assess.i18n import count, fill, find_language
 from assess.motion.formats import parse_records, select
 from assess.motion.record import Record
+from assess.motion.site_ground import SiteGround
 from assess.rocking.block import MIDDLE
 from assess.units import LENGTH, to_edge
 
@@ -382,6 +383,8 @@ class Inventory:
         Headers of the columns of Items that `assess` does not know.
     hazard : HazardCurve, optional
         How often a year the ground shakes; compared by the hash of its file.
+    site_ground : SiteGround, optional
+        How the ground shakes at its place by a ShakeMap or in computed scenarios.
     photos : mapping of str to bytes
         Photos of pieces as small JPEGs, by what the field `photo` in `Item.more` names.
     files : mapping of str to str
@@ -410,6 +413,7 @@ class Inventory:
     problems: tuple[Problem, ...] = ()
     extra_columns: tuple[str, ...] = ()
     hazard: HazardCurve | None = field(default=None, compare=False)
+    site_ground: SiteGround | None = None
     files: Mapping[str, str] = field(default_factory=dict)
     photos: Mapping[str, bytes] = field(default_factory=dict)
     language: str = "en"

@@ -100,6 +100,7 @@ _RULES: Mapping[str, tuple[Callable[[Any], Any], Text]] = {
     ),
     "ideal": (_read_flag, fill("True or False")),
     "scale_motions": (_read_flag, fill("True or False")),
+    "city": (_read_flag, fill("True or False")),
     "zeta_acceleration": (_positive, fill("above 0, and finite")),
     "zeta_velocity": (_positive, fill("above 0, and finite")),
     "slide_coefficient": (partial(_read_number, is_allowed=lambda number: 0 <= number <= 1), fill("0 to 1")),
@@ -144,6 +145,9 @@ class Settings:
         uncertainty of either.
     scale_motions : bool
         Whether motions of the user's own are scaled to each floor's PFA.
+    city : bool
+        Whether a draw of an earthquake differs from place to place, as buildings of a portfolio need it; else it is one
+        factor for the building alone.
     zeta_acceleration, zeta_velocity : float
         Logarithmic standard deviations of Kaneko and Hayashi's two branches [-]. The paper prints neither:
         0.20 fits 23 of the 27 rows of its Table 2; 0.5 is assumed, after FEMA P-58's dispersion on PFV.
@@ -175,6 +179,7 @@ class Settings:
     scale: float = 1.0
     ideal: bool = False
     scale_motions: bool = False
+    city: bool = False
     zeta_acceleration: float = 0.20
     zeta_velocity: float = 0.5
     slide_coefficient: float = 1.0

@@ -29,7 +29,7 @@ LAYERS = {
     "routes": 9,
     "pipeline": 10,
     "report": 11,
-    "studies": 12, "compare": 12, "web": 12,
+    "studies": 12, "compare": 12, "web": 12, "bim": 12, "portfolio": 12,
     "cli": 13, "__init__": 13, "__main__": 13,
 }  # fmt: skip
 """A module imports from lower layers, and inside its own layer or folder without a loop."""

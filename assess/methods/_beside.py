@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from assess.methods._method import NO_WALL, SIDE_UNKNOWN, BoolArray, Cases, FloatArray
 from assess.methods._simulate import draw_body
 from assess.progress import SILENT, Progress
-from assess.rocking.draws import STILL, Uncertainty, draw_earthquakes
+from assess.rocking.draws import STILL, Uncertainty
 from assess.rocking.sliding import UNKNOWN, Branch, branch, is_outside_shenton, peak_slip
 from assess.settings import Settings
 from assess.units import LENGTH
@@ -109,7 +109,8 @@ class Beside:
         """Take in motions `first` to `first + k - 1`, (k, n) [m/s2]."""
         if not self.is_wanted:
             return
-        scale = np.exp(self.drawn.uncertainty.motion * draw_earthquakes(self.settings.seed, first, len(motions)))
+        numbers = self.drawn.earthquakes.draw(self.settings.seed, first, len(motions))
+        scale = np.exp(self.drawn.uncertainty.motion * numbers)
         every = motions.astype(np.float64)
         if self.sliders.size:
             self._slips.append(self._slide(every, time_step, scale, threads, progress))

@@ -23,7 +23,7 @@ from assess.methods._info import (
 from assess.progress import SILENT, Progress
 from assess.risk import classify_all
 from assess.rocking.block import MIDDLE, stocky_limit, threshold
-from assess.rocking.draws import Uncertainty
+from assess.rocking.draws import Earthquakes, Uncertainty
 from assess.settings import Settings
 
 __all__ = [
@@ -126,6 +126,8 @@ class Cases:
         Motions of floors.
     uncertainty : Uncertainty
         What is drawn.
+    earthquakes : Earthquakes
+        By which numbers the draws of an earthquake scale the motions.
     """
 
     breadth: FloatArray
@@ -142,6 +144,7 @@ class Cases:
     wall: NDArray[np.int8]
     ensembles: Sequence[Ensemble] = ()
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    earthquakes: Earthquakes = field(default_factory=Earthquakes)
 
     @classmethod
     def of(

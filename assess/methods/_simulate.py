@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from assess.methods._method import BoolArray, Cases, FloatArray, Motions
 from assess.progress import SILENT, Progress
 from assess.risk import NORMAL_95
-from assess.rocking.draws import DrawnBodies, draw_bodies, draw_earthquakes
+from assess.rocking.draws import DrawnBodies, draw_bodies
 from assess.settings import AUTO, Settings
 
 LOOKS = (125, 250, 500, 1000, 2500, 5000)
@@ -101,7 +101,7 @@ def rock_draws(
     count = len(motions)
     drawn = draw_body(cases, own, seed, first, count)
     b, h, z, eta = drawn.breadth, drawn.height, drawn.centre, drawn.restitution
-    scales = [np.exp(one * draw_earthquakes(seed, first, count)) for one in dispersions]
+    scales = [np.exp(one * cases.earthquakes.draw(seed, first, count)) for one in dispersions]
     every = len(dispersions), 1
     found = rock_blocks(
         np.tile(b, every), np.tile(h, every), motions, time_step,

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.motion.spatial_field import draw_field
 from assess.rocking import block
 from assess.rocking.block import FloatArray
 
@@ -34,8 +35,13 @@ CUT = 3.0
 STILL = 0.85
 """Share of the acceleration at which rocking starts [-] below which a piece is taken not to start: the peak of a motion
 may be somewhat above the floor's PFA, and the piece more slender than given."""
+BETWEEN, WITHIN = 0.348, 0.495
+"""Standard deviations of ln PGA [-] from one earthquake to the next, and from place to place in one: Boore et al.
+(2014), magnitude 5.5 and above, without the terms of distance and soil (doi:10.1193/070113EQS184M)."""
+SHARED = BETWEEN**2 / (BETWEEN**2 + WITHIN**2)
+"""Share of the variance that is common to all places in one earthquake [-]."""
 _EARTHQUAKE, _PIECE = 1, 2
-"""Streams of random numbers of a seed."""
+"""Streams of random numbers of a seed; 3 is that of `assess.motion.spatial_field`."""
 _AT_ONCE = 256
 """Draws that have one generator, so that late ones do not wait for all before them."""
 _TINY = 1e-6
@@ -85,6 +91,41 @@ class Uncertainty:
     def largest(self) -> float:
         """Factor that no drawn motion exceeds [-]."""
         return math.exp(CUT * self.motion)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Earthquakes:
+    """Which normal number scales the motions of a building in each draw of an earthquake.
+
+    Parameters
+    ----------
+    place : tuple of two floats, optional
+        Latitude and longitude [deg] of a building of a city: part of the number is common to all places, the rest
+        differs from place to place as `assess.motion.spatial_field` tells. None: all of it is common.
+    shared : float
+        Share of the variance that is common to all places [-].
+    given : tuple of float
+        Numbers of scenarios that were computed elsewhere, mean 0 and standard deviation 1 over all of them; draw k
+        takes number k modulo their count. Empty where there are none.
+    given_share : float
+        Share of the variance that those numbers carry [-]; the rest is drawn.
+    """
+
+    place: tuple[float, float] | None = None
+    shared: float = SHARED
+    given: tuple[float, ...] = ()
+    given_share: float = 0.0
+
+    def draw(self, seed: int, first: int, count: int) -> FloatArray:
+        """Return the numbers of draws `first` to `first + count - 1`, (count,), within 3 standard deviations."""
+        drawn = draw_earthquakes(seed, first, count)
+        if self.place is not None:
+            field = draw_field(seed, first, count, *self.place)
+            drawn = math.sqrt(self.shared) * drawn + math.sqrt(1 - self.shared) * field
+        if self.given:
+            given = np.array(self.given)[(first + np.arange(count)) % len(self.given)]
+            drawn = math.sqrt(self.given_share) * given + math.sqrt(1 - self.given_share) * drawn
+        return np.clip(drawn, -CUT, CUT)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

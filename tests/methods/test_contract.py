@@ -20,7 +20,8 @@ from tests.methods.ensembles import MadeUp
 
 SETTINGS = Settings()
 EXAMPLES = 60
-FIELDS = tuple(field.name for field in dataclasses.fields(Cases) if field.name not in ("ensembles", "uncertainty"))
+NOT_ARRAYS = ("ensembles", "uncertainty", "earthquakes")
+FIELDS = tuple(field.name for field in dataclasses.fields(Cases) if field.name not in NOT_ARRAYS)
 METHODS = pytest.mark.parametrize("method", all_methods(), ids=lambda method: method.key)
 SCREENING = pytest.mark.parametrize(
     "method", [method for method in all_methods() if method.tier == "screening"], ids=lambda method: method.key

@@ -1,0 +1,1 @@
+"""Building models and handover files in, workbooks out."""
