@@ -36,6 +36,8 @@ class SiteGround:
         ln PGA of each scenario, less their mean, over their standard deviation [-]; draw k takes number k.
     facts : tuple of pairs of Text
         What a reader has to know of its origin: the event, version and status of the map, and the like.
+    cautions : tuple of Text
+        What makes it less certain than `dispersion` tells: a map that nobody has reviewed, a site that is far away.
     """
 
     kind: Literal["shakemap", "scenarios"]
@@ -50,6 +52,7 @@ class SiteGround:
     distance: float | None = None
     scenarios: tuple[float, ...] = ()
     facts: tuple[tuple[Text, Text], ...] = ()
+    cautions: tuple[Text, ...] = ()
 
 
 class GroundField(Protocol):
