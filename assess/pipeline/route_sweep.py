@@ -246,7 +246,8 @@ def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
     chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
     inventory, settings = assessment.inventory, assessment.settings
     uncertainty = find_uncertainty(inventory.building)  # at a PFA: without the scatter of PGA given an intensity
-    cases = replace(assessment.cases, uncertainty=uncertainty)
+    drawn = replace(assessment.cases.earthquakes, given=())  # nor are there scenarios of it
+    cases = replace(assessment.cases, uncertainty=uncertainty, earthquakes=drawn)
     return choose_motions(cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None)
 
 

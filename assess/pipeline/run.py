@@ -21,6 +21,7 @@ from assess.model import AXES, Inventory
 from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governing
 from assess.pipeline.anchors import find_anchors
 from assess.pipeline.assessment import Assessment
+from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
 from assess.pipeline.demand import Demand, Demands, build_demands, find_shaking, scale_demands
 from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.remarks import list_too_low, remark
@@ -40,7 +41,6 @@ from assess.pipeline.what_if import anchor_first, anchor_named, spell_names
 from assess.pipeline.worked import choose_example, work_example
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results, Series
-from assess.rocking.draws import name_number
 from assess.route_results import RouteTables
 from assess.routes.walls import find_walls, remark_on_walls
 from assess.settings import SCENARIOS, Settings, change_settings
@@ -137,6 +137,7 @@ def compute(
     """Return the arrays of a run; parameters and errors are those of `run`."""
     every = _join_methods(methods)
     settings = settings if suite is None else replace(settings, runs=len(suite))
+    check_draws(inventory, settings)
     if isinstance(settings.anchor, tuple):
         names = spell_names(inventory, settings.anchor)
         settings, inventory = replace(settings, anchor=names), anchor_named(inventory, names)
@@ -159,7 +160,7 @@ def _compute(
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     demands = scale_demands(filled, settings.scale)
     (case_item, case_demand), obstructions = _pair(inventory, demands), _find_obstructions(inventory, progress)
-    cases = _cases(inventory, demands, case_item, case_demand)
+    cases = _cases(inventory, demands, case_item, case_demand, settings)
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, every, outcomes, case_item, _on_route(inventory, obstructions))
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory.building, settings, suite)
@@ -319,13 +320,17 @@ def _pair(inventory: Inventory, demands: Demands) -> tuple[NDArray[np.intp], tup
 
 
 def _cases(
-    inventory: Inventory, demands: Demands, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...]
+    inventory: Inventory,
+    demands: Demands,
+    case_item: NDArray[np.intp],
+    case_demand: tuple[Demand, ...],
+    settings: Settings,
 ) -> Cases:
     def column(values: list[float | None]) -> NDArray[np.float64]:
         return np.array(values, dtype=np.float64)
 
     items, building = [inventory.items[index] for index in case_item], inventory.building
-    names = {item.item: name_number(item.item) for item in inventory.items}
+    names, uncertainty = number_pieces(inventory, settings), find_uncertainty(building, find_shaking(demands))
     return Cases(
         breadth=column([item.breadth for item in items]),
         height=column([item.height for item in items]),
@@ -339,7 +344,8 @@ def _cases(
         name=np.array([names[item.item] for item in items], dtype=np.int64),
         slides_under=np.full(len(items), -1, dtype=np.intp),
         wall=_list_walls(inventory, case_item, case_demand),
-        uncertainty=find_uncertainty(building, find_shaking(demands)),
+        uncertainty=uncertainty,
+        earthquakes=find_earthquakes(inventory, settings, uncertainty),
     )
 
 

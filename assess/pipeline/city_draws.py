@@ -1,0 +1,103 @@
+"""Which earthquake draw k is for a building: by its place in a city, and by scenarios that were computed elsewhere."""
+
+from collections.abc import Mapping
+
+from assess.errors import InputError
+from assess.i18n import fill, join
+from assess.model import Inventory
+from assess.rocking.draws import SHARED, Earthquakes, Uncertainty, name_number
+from assess.settings import AUTO, RUNS, Settings
+
+MOST_DRAWS = 5000
+"""Draws that scenarios may ask for at most."""
+
+
+def find_earthquakes(inventory: Inventory, settings: Settings, uncertainty: Uncertainty) -> Earthquakes:
+    """Return by which numbers the draws of an earthquake scale the motions of a building.
+
+    Parameters
+    ----------
+    inventory : Inventory
+        Its place and the shaking of the ground there, as far as they are known.
+    settings : Settings
+        `city`: whether draws differ from place to place. A building whose place is not known takes the common part
+        alone.
+    uncertainty : Uncertainty
+        What is drawn. Scenarios carry the part of its variance that is not the building's own.
+    """
+    ground, own = inventory.site_ground, _own_motion(inventory)
+    variance = uncertainty.motion**2
+    given_share = max(0.0, 1 - own**2 / variance) if variance else 0.0
+    shared = SHARED if ground is None or ground.shared is None else ground.shared
+    return Earthquakes(
+        place=_find_place(inventory) if settings.city else None,
+        shared=shared,
+        given=() if ground is None or not given_share else ground.scenarios,
+        given_share=0.0 if ground is None or not ground.scenarios else given_share,
+    )
+
+
+def _own_motion(inventory: Inventory) -> float:
+    """Return the dispersion of the motion that is the building's own, without that of the ground [-]."""
+    given = inventory.building.motion_uncertainty
+    return Uncertainty().motion if given is None else given
+
+
+def _find_place(inventory: Inventory) -> tuple[float, float] | None:
+    latitude, longitude = inventory.building.latitude, inventory.building.longitude
+    return None if latitude is None or longitude is None else (latitude, longitude)
+
+
+def number_pieces(inventory: Inventory, settings: Settings) -> Mapping[str, int]:
+    """Return by item the number by which it draws: in a city pieces of different places draw independently."""
+    place = _find_place(inventory) if settings.city else None
+    before = "" if place is None else f"{place[0]:.6f} {place[1]:.6f} "
+    return {item.item: name_number(f"{before}{item.item}") for item in inventory.items}
+
+
+# ---------------------------------------------------------------- how many draws
+
+
+def choose_runs(scenarios: int, runs: int | str | None = None) -> int | str:
+    """Return the number of draws for a number of scenarios, 0 for none.
+
+    Parameters
+    ----------
+    scenarios : int
+        How many scenarios there are.
+    runs : int or "auto", optional
+        What was asked for. Without it the least multiple of the scenarios that is at least 200, so that each of them
+        counts alike.
+
+    Raises
+    ------
+    InputError
+        If there are more scenarios than draws, if they do not count alike, or if the number of draws is "auto".
+    """
+    if not scenarios:
+        return RUNS if runs is None else runs
+    chosen = -(-RUNS // scenarios) * scenarios if runs is None else runs
+    if scenarios > MOST_DRAWS:
+        fault = fill("{scenarios:,} scenarios, expected at most {most:,}.", scenarios=scenarios, most=MOST_DRAWS)
+        raise InputError(join(" ", (fault, fill("Keep fewer events in the file of ground motions."))))
+    if chosen == AUTO or int(chosen) % scenarios:
+        fault = fill(
+            "runs is {runs}, expected a multiple of {scenarios:,}, the number of scenarios: each has to count alike.",
+            runs=chosen,
+            scenarios=scenarios,
+        )
+        fix = fill("Leave runs out, or set it to {runs}.", runs=choose_runs(scenarios))
+        raise InputError(join(" ", (fault, fix)))
+    return chosen
+
+
+def check_draws(inventory: Inventory, settings: Settings) -> None:
+    """Raise InputError where the number of draws does not fit scenarios, or differs between buildings of a city."""
+    if settings.verify == "none":
+        return
+    if settings.city and settings.runs == AUTO:
+        fault = fill("runs is {runs}: all buildings of a city need the same draws.", runs=AUTO)
+        raise InputError(join(" ", (fault, fill("Set runs to a number, 200 for instance."))))
+    ground = inventory.site_ground
+    if ground is not None and ground.scenarios:
+        choose_runs(len(ground.scenarios), settings.runs)

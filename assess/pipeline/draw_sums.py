@@ -1,0 +1,143 @@
+"""What happens in each draw of an earthquake, summed over a building: sums over buildings are sums draw by draw.
+
+Counted are the pieces that the classes count: free-standing ones whose simulated chance is adopted. All pieces of a row
+fall together in a draw. Of routes those are counted draw by draw that have joint outcomes; of others only the expected
+number is known, which is kept apart.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.methods._method import BoolArray
+from assess.pipeline.adopt import build_falls
+from assess.pipeline.assessment import Assessment
+from assess.progress import SILENT, Progress
+from assess.results import Results
+from assess.route_results import RouteRow, RouteState, RouteTables
+from assess.routes.chances import Falls
+from assess.settings import AUTO
+
+Numbers = NDArray[np.int64]
+
+SIMULATED = "simulated"
+"""Of `assess.results.BASES`: what counts rest on where pieces were simulated."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class DrawSums:
+    """Sums over the pieces and routes of a building.
+
+    Parameters
+    ----------
+    falls : (runs,) integer array, optional
+        Pieces that fall in each draw, of those in the classes; None where nothing was simulated, or each piece in a
+        number of draws of its own.
+    people_blocked, routes_blocked : (runs,) integer arrays, optional
+        People whose route is blocked in each draw, and routes, of those with joint outcomes; None likewise.
+    joint_routes : tuple of str
+        Those routes.
+    people_expected, routes_expected : float
+        Expected numbers of people whose route is blocked, and of routes, of all that are known.
+    people_apart, routes_apart : float
+        The part of them that is in no draw: of routes without joint outcomes.
+    people_not_known : int
+        People on routes whose state is not known: they are in none of these numbers.
+    """
+
+    falls: Numbers | None
+    people_blocked: Numbers | None
+    routes_blocked: Numbers | None
+    joint_routes: tuple[str, ...]
+    people_expected: float
+    routes_expected: float
+    people_apart: float
+    routes_apart: float
+    people_not_known: int
+
+
+def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = SILENT) -> DrawSums:
+    """Return the sums of a building; `results` are those of the assessment.
+
+    Raises
+    ------
+    CancelledError
+        If `progress` is cancelled.
+    """
+    tables, runs = results.route_tables, assessment.settings.runs
+    chances = {one.route: one.blocked.probability for one in tables.routes if _is_known(one) and one.blocked}
+    people = {one.route: count_people(tables, one) or 0 for one in tables.routes}
+    falls = _find_falls(assessment) if _has_common_draws(assessment, results) else None
+    blocked = {} if falls is None else _find_blocked(assessment, falls, chances, progress)
+    apart = {route: chance for route, chance in chances.items() if route not in blocked}
+    return DrawSums(
+        falls=None if falls is None else _sum_falls(results, falls, int(runs)),
+        people_blocked=None if falls is None else _add_up(blocked, people, int(runs)),
+        routes_blocked=None if falls is None else _add_up(blocked, dict.fromkeys(blocked, 1), int(runs)),
+        joint_routes=tuple(blocked),
+        people_expected=_expect(chances, people),
+        routes_expected=sum(chances.values()),
+        people_apart=_expect(apart, people),
+        routes_apart=sum(apart.values()),
+        people_not_known=sum(number for route, number in people.items() if route not in chances),
+    )
+
+
+def count_people(tables: RouteTables, route: RouteRow) -> int | None:
+    """Return how many people leave by a route: the largest Occupants of its segments; None where all are blank."""
+    given = [tables.segments[at].occupants for at in route.segment_indices]
+    return max((one for one in given if one is not None), default=None)
+
+
+def _is_known(route: RouteRow) -> bool:
+    return route.state != RouteState.NOT_KNOWN and route.blocked is not None
+
+
+def _has_common_draws(assessment: Assessment, results: Results) -> bool:
+    """Tell whether the counts rest on simulation, and all pieces were simulated in the same draws."""
+    return results.main_basis == SIMULATED and assessment.settings.runs != AUTO
+
+
+def _find_falls(assessment: Assessment) -> Falls:
+    return build_falls(
+        assessment.inventory, assessment.adoption, assessment.outcomes, assessment.governing, assessment.settings,
+        assessment.either_axis, assessment.anchors.held,
+    )  # fmt: skip
+
+
+def _sum_falls(results: Results, falls: Falls, runs: int) -> Numbers:
+    """Return how many pieces fall in each draw, (runs,): quantities are counted."""
+    found = np.zeros(runs, dtype=np.int64)
+    for one in results:
+        if not one.is_anchored and not one.apart and one.item.index in falls.fell:
+            found += one.item.quantity * falls.fell[one.item.index]
+    return found
+
+
+def _find_blocked(
+    assessment: Assessment, falls: Falls, known: Iterable[str], progress: Progress
+) -> Mapping[str, BoolArray]:
+    """Return in which draws each of the routes `known` is blocked that has joint outcomes."""
+    if not assessment.obstructions:
+        return {}
+    from assess.routes.joint_draws import find_joint_draws
+
+    found = find_joint_draws(
+        assessment.inventory, assessment.obstructions, falls, assessment.settings,
+        int(assessment.settings.runs), progress=progress,
+    )  # fmt: skip
+    return {route: found[route] for route in known if route in found}
+
+
+def _add_up(blocked: Mapping[str, BoolArray], weight: Mapping[str, int], runs: int) -> Numbers:
+    """Return the weight of what is blocked in each draw, (runs,)."""
+    found = np.zeros(runs, dtype=np.int64)
+    for route, draws in blocked.items():
+        found += weight[route] * draws
+    return found
+
+
+def _expect(chances: Mapping[str, float], people: Mapping[str, int]) -> float:
+    return float(sum(people[route] * chance for route, chance in chances.items()))
