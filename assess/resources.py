@@ -33,6 +33,18 @@ def example_file(name: str) -> Path:
     return beside if beside.is_file() else Path(__file__).parent / name
 
 
+_CITY = {
+    "grid.xml": "samples/shakemaps/loma-prieta-1989-bay/grid.xml",
+    "coast.geojson": "samples/backgrounds/san-francisco-bay.geojson",
+}
+
+
+def city_file(name: str) -> Path:
+    """Return a file of the worked city, ``grid.xml`` or ``coast.geojson``: in a checkout among the samples."""
+    inside = Path(__file__).with_name("examples") / "city" / name
+    return inside if inside.is_file() else Path(__file__).parents[1] / _CITY[name]
+
+
 def fonts() -> dict[tuple[str, str], Path]:
     """Return the report's fonts by family and style.
 

@@ -114,7 +114,9 @@ class Content:
     live: Sequence[Sequence[float | str]] = ()
 
 
-def write_workbook(path: Path, content: Content | None = None, units: Units = "si") -> None:
+def write_workbook(
+    path: Path, content: Content | None = None, units: Units = "si", *, spare: int | None = None
+) -> None:
     """Write a workbook to fill in, or one that is filled in already, in the language in use.
 
     Parameters
@@ -125,6 +127,8 @@ def write_workbook(path: Path, content: Content | None = None, units: Units = "s
         What to fill in; an empty workbook still has the catalogue.
     units : "si" or "imperial"
         Of the headers.
+    spare : int, optional
+        Rows of each sheet that are prepared beyond those filled in, for many small workbooks; None prepares `ROWS`.
 
     Raises
     ------
@@ -136,7 +140,7 @@ def write_workbook(path: Path, content: Content | None = None, units: Units = "s
     def fill(book: Any) -> None:
         title, made = gettext("Furniture inventory"), gettext("Made with assess new")
         book.set_properties({"title": title, "comments": made, "created": CREATED})
-        _Writer(book, filled, units).write()
+        _Writer(book, filled, units, spare).write()
 
     write_book(path, fill)
 
@@ -144,7 +148,7 @@ def write_workbook(path: Path, content: Content | None = None, units: Units = "s
 class _Writer:
     """Writes the sheets of one workbook; holds its formats and names."""
 
-    def __init__(self, book: Any, content: Content, units: Units) -> None:
+    def __init__(self, book: Any, content: Content, units: Units, spare: int | None) -> None:
         self.book, self.content, self.units = book, content, units
         self.head = book.add_format({"bold": True, "bg_color": "#1f3a4d", "font_color": "#ffffff", "text_wrap": True,
                                      "valign": "top", "border": 1})  # fmt: skip
@@ -162,7 +166,10 @@ class _Writer:
         self.help = book.add_format({"text_wrap": True, "valign": "top", "align": "left", "indent": 1})
         self.bold = book.add_format({"bold": True, "valign": "top"})
         self.head_lines: dict[str, int] = {}
-        self.last = {name: 1 + max(rows, len(self._rows(name))) for name, rows in ROWS.items()}
+        self.last = {
+            name: 1 + max(rows if spare is None else len(self._rows(name)) + spare, len(self._rows(name)))
+            for name, rows in ROWS.items()
+        }
 
     def write(self) -> None:
         help_sheet = self.book.add_worksheet(gettext(HELP))

@@ -1,0 +1,143 @@
+"""The sign of a building on the map and in lists: by the worst class of its pieces, or the worst state of its routes.
+
+The signs are those of the reports: each has a shape of its own, so that it reads without colour.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from assess.i18n import gettext as _
+from assess.report.findings.route_words import name_state
+from assess.report.words import ANCHORED, ANCHORED_FILL, APART_FILL, BY_FORMULA, INK, UNCONFIRMED, class_name, risk_word
+from assess.risk import RiskClass
+from assess.route_results import RouteState
+
+if TYPE_CHECKING:
+    import pandas
+
+Row = Mapping[str, Any]
+"""One row of a table: values by column, None for what is not known."""
+
+CIRCLE = "M-5 0A5 5 0 1 0 5 0A5 5 0 1 0-5 0Z"
+DIAMOND = "M0-6.5 6.5 0 0 6.5-6.5 0Z"
+TRIANGLE = "M0-6.5 6.5 5.2-6.5 5.2Z"
+SQUARE = "M-5.4-5.4H5.4V5.4H-5.4Z"
+CROSS = "M-5-5 5 5M5-5-5 5"
+TICK = "M-5 0-1.5 4 5-5"
+_INK = "#3a4045"
+
+
+@dataclass(frozen=True, slots=True)
+class Sign:
+    """How a building is marked.
+
+    Parameters
+    ----------
+    key : str
+        Its name in styles and filters.
+    symbol : str
+        The sign in texts, that of the reports.
+    fill : str
+        Colour of the mark.
+    path : str
+        Outline of the mark round its centre, as an SVG path [px].
+    severity : int
+        What is drawn last lies on top: the worst.
+    is_open : bool
+        Whether the mark is strokes alone.
+    is_dashed : bool
+        Whether its outline is dashed: it stands outside the classes.
+    """
+
+    key: str
+    symbol: str
+    fill: str
+    path: str
+    severity: int
+    is_open: bool = False
+    is_dashed: bool = False
+
+
+_SHAPES = {
+    RiskClass.LOW: CIRCLE, RiskClass.MEDIUM: DIAMOND, RiskClass.HIGH: TRIANGLE, RiskClass.VERY_HIGH: SQUARE,
+}  # fmt: skip
+BY_CLASS: Mapping[str, Sign] = {
+    "skipped": Sign("skipped", "×", _INK, CROSS, 0, is_open=True),
+    "none": Sign("none", "–", "#ffffff", "M-5-1.5H5V1.5H-5Z", 1),
+    "anchored": Sign("anchored", ANCHORED, ANCHORED_FILL, CIRCLE, 2),
+    "by-formula": Sign("by-formula", BY_FORMULA, APART_FILL, DIAMOND, 3, is_dashed=True),
+    "unconfirmed": Sign("unconfirmed", UNCONFIRMED, APART_FILL, CIRCLE, 4, is_dashed=True),
+} | {
+    class_name(risk): Sign(class_name(risk), risk.symbol, risk.fill, _SHAPES[risk], 5 + risk) for risk in RiskClass
+}  # fmt: skip
+"""Signs by the worst class of the pieces, in the order in which they are drawn."""
+_ROUTE_SHAPES = {
+    RouteState.OPEN: TICK, RouteState.DOUBTFUL: DIAMOND, RouteState.NOT_KNOWN: CIRCLE, RouteState.BLOCKED: CROSS,
+}  # fmt: skip
+_STATE_COUNTS = {
+    RouteState.BLOCKED: "routes_blocked", RouteState.NOT_KNOWN: "routes_not_known",
+    RouteState.DOUBTFUL: "routes_doubtful", RouteState.OPEN: "routes_open",
+}  # fmt: skip
+BY_ROUTES: Mapping[str, Sign] = {
+    "skipped": BY_CLASS["skipped"],
+    "no-routes": Sign("no-routes", "–", "#ffffff", "M-5-1.5H5V1.5H-5Z", 1),
+} | {
+    state.replace(" ", "-"): Sign(
+        state.replace(" ", "-"), state.symbol, "#2e7d5b" if state is RouteState.OPEN else state.fill,
+        _ROUTE_SHAPES[state], 2 + state.severity, is_open=state in (RouteState.OPEN, RouteState.BLOCKED),
+    )
+    for state in sorted(RouteState, key=lambda one: one.severity)
+}  # fmt: skip
+"""Signs by the worst state of the routes, likewise."""
+
+
+def sign_of_class(row: Row) -> Sign:
+    """Return the sign of a row of the table buildings by the highest class that any of its pieces has."""
+    if row["status"] != "assessed":
+        return BY_CLASS["skipped"]
+    for risk in reversed(RiskClass):
+        if row[risk.word.replace(" ", "_")]:
+            return BY_CLASS[class_name(risk)]
+    for column, key in (("unconfirmed", "unconfirmed"), ("by_formula", "by-formula"), ("anchored", "anchored")):
+        if row[column]:
+            return BY_CLASS[key]
+    return BY_CLASS["none"]
+
+
+def sign_of_routes(row: Row) -> Sign:
+    """Return the sign of a row of the table buildings by the worst state that any of its routes has."""
+    if row["status"] != "assessed":
+        return BY_ROUTES["skipped"]
+    found = next((state for state, column in _STATE_COUNTS.items() if row[column]), None)
+    return BY_ROUTES["no-routes" if found is None else found.replace(" ", "-")]
+
+
+def say_sign(sign: Sign) -> str:
+    """Return what a sign means, in the language in use."""
+    for risk in RiskClass:
+        if sign.key == class_name(risk):
+            return risk_word(risk)
+    for state in RouteState:
+        if sign.key == state.replace(" ", "-"):
+            return name_state(state)
+    return {
+        "skipped": _("not assessed"),
+        "none": _("no pieces"),
+        "no-routes": _("no routes"),
+        "anchored": _("all pieces anchored"),
+        "by-formula": _("by formula only"),
+        "unconfirmed": _("unconfirmed"),
+    }[sign.key]
+
+
+def ink_of(sign: Sign) -> str:
+    """Return the colour of the outline of a mark, or of its strokes."""
+    return sign.fill if sign.is_open else INK
+
+
+def list_records(frame: "pandas.DataFrame") -> list[Row]:
+    """Return the rows of a table as mappings, None for what is not known."""
+    names = [str(name) for name in frame.columns]
+    columns = [frame[name].astype(object).where(frame[name].notna(), None).tolist() for name in names]
+    return [dict(zip(names, values, strict=True)) for values in zip(*columns, strict=True)]

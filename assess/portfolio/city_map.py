@@ -1,0 +1,277 @@
+"""The map of a city as SVG: a mark for each building over a coastline, with scale bar, north arrow and graticule.
+
+The projection is equirectangular about the middle latitude: x = R cos(φ0) λ, y = R φ, true to scale along the middle
+parallel and along all meridians. Source: Snyder JP (1987). Map projections: a working manual. U.S. Geological Survey
+Professional Paper 1395, p. 90-91. doi:10.3133/pp1395
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+
+from assess.i18n import gettext as _
+from assess.i18n import number
+from assess.portfolio.background import Background, Place
+from assess.portfolio.building_signs import Sign, ink_of
+
+EARTH = 6371.0
+"""Mean radius of the Earth [km]."""
+WIDE, LOWEST, HIGHEST = 1000.0, 560.0, 1000.0
+"""Width of the drawing, and the least and the most height of it [px]."""
+MARGIN, LEAST = 0.07, 1.0
+"""Free space round the buildings: share of their extent, and at least [km]."""
+_STEPS = (1, 2, 5)
+_DEGREES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
+FINE = 0.4
+"""Detail of the background that is drawn [px]."""
+_EDGE = "#5d6b75"
+_THIN = 'stroke="#c3ccd3" stroke-width="0.7" fill="none"'
+_SMALL = 'fill="#454b51" font-size="11"'
+_ISOLINE = 'class="isoline" fill="none" stroke="#7a4fa3" stroke-width="1.2" stroke-dasharray="6 3"'
+
+
+@dataclass(frozen=True, slots=True)
+class MapPoint:
+    """One building: its number in the list of buildings, its name, place [deg], sign, and factor on the mark's size."""
+
+    at: int
+    name: str
+    latitude: float
+    longitude: float
+    sign: Sign
+    size: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Isoline:
+    """A line of equal PGA: what is written on it, and its longitudes and latitudes [deg]."""
+
+    label: str
+    line: tuple[Place, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What is shown: longitude of the left edge, latitude of the upper one [deg], scale [px/km], size [px]."""
+
+    west: float
+    north: float
+    middle: float
+    scale: float
+    wide: float
+    high: float
+
+    @property
+    def per_degree(self) -> tuple[float, float]:
+        """Pixels a degree of longitude and of latitude."""
+        degree = math.radians(1) * EARTH * self.scale
+        return degree * math.cos(math.radians(self.middle)), degree
+
+    def place(self, longitude: float, latitude: float) -> tuple[float, float]:
+        """Return where a place lies in the drawing [px]; longitudes count from the left edge round the globe."""
+        across, down = self.per_degree
+        east = (longitude - self.west + 180) % 360 - 180
+        return east * across, (self.north - latitude) * down
+
+
+def build_frame(places: Sequence[Place]) -> Frame:
+    """Return what to show so that all places are in it.
+
+    Places on both sides of the date line stay together.
+    """
+    longitudes, latitudes = _unwrap([place[0] for place in places]), [place[1] for place in places]
+    south, north = min(latitudes), max(latitudes)
+    middle = (south + north) / 2
+    degree = math.radians(1) * EARTH
+    along = degree * max(math.cos(math.radians(middle)), 0.01)
+    sizes = [(max(longitudes) - min(longitudes)) * along, (north - south) * degree]
+    wide, high = (max(size * (1 + 2 * MARGIN), size + 2 * LEAST) for size in sizes)
+    wide = max(wide, high * WIDE / HIGHEST)
+    high = max(high, wide * LOWEST / WIDE)
+    west = (min(longitudes) + max(longitudes)) / 2 - wide / along / 2
+    return Frame((west + 180) % 360 - 180, middle + high / degree / 2, middle, WIDE / wide, WIDE, high * WIDE / wide)
+
+
+def _unwrap(longitudes: Sequence[float]) -> list[float]:
+    """Return longitudes that lie together: those west of the date line a turn further where that is closer."""
+    if max(longitudes) - min(longitudes) <= 180:
+        return list(longitudes)
+    return [one + 360 if one < 0 else one for one in longitudes]
+
+
+def draw_map(
+    points: Sequence[MapPoint],
+    background: Background | None,
+    *,
+    title: str,
+    isolines: Sequence[Isoline] = (),
+    is_live: bool = False,
+) -> str:
+    """Return the map as an SVG element; "" where no building has a place.
+
+    Parameters
+    ----------
+    points : sequence of MapPoint
+        The worst are drawn last, so that they lie on top.
+    background : Background, optional
+        What lies behind them.
+    title : str
+        What the picture shows: its text alternative.
+    isolines : sequence of Isoline
+        Lines of equal shaking.
+    is_live : bool
+        Whether the page's script zooms it: marks then carry their place and number.
+    """
+    if not points:
+        return ""
+    frame = build_frame([(one.longitude, one.latitude) for one in points])
+    parts = [
+        f'<rect class="sea" width="{frame.wide:g}" height="{frame.high:.1f}" fill="#e3ebf1"/>',
+        *(_draw_background(background, frame) if background else ()),
+        *_draw_graticule(frame),
+        *_draw_isolines(isolines, frame),
+        *_draw_marks(points, frame, is_live=is_live),
+        _draw_scale(frame),
+        _draw_north(frame),
+    ]
+    role = 'role="group"' if is_live else 'role="img"'
+    return (
+        f'<svg class="city-map" {role} aria-label="{escape(title)}" viewBox="0 0 {frame.wide:g} {frame.high:.1f}" '
+        f'font-family="Report, sans-serif" font-size="13">{"".join(parts)}</svg>'
+    )
+
+
+# ---------------------------------------------------------------- what lies behind
+
+
+def _draw_background(background: Background, frame: Frame) -> Iterable[str]:
+    """Yield the areas and lines, cut to the frame and as fine as it shows."""
+    import shapely
+
+    box = shapely.box(-4, -4, frame.wide + 4, frame.high + 4)
+
+    def fit(shape: "shapely.Geometry") -> "shapely.Geometry":
+        cut = shapely.intersection(shapely.make_valid(shape), box)
+        return shapely.simplify(cut, FINE)
+
+    areas = [fit(_polygon(area, frame)) for area in background.areas]
+    outline = "".join(_write_path(shape, "Polygon") for shape in areas)
+    if outline:
+        yield f'<path class="land" d="{outline}" fill="#fbfaf7" stroke="{_EDGE}" stroke-width="1" fill-rule="evenodd"/>'
+    drawn = [fit(shapely.LineString([frame.place(*one) for one in line])) for line in background.lines]
+    lines = "".join(_write_path(shape, "LineString") for shape in drawn)
+    if lines:
+        yield f'<path class="lines" d="{lines}" fill="none" stroke="{_EDGE}" stroke-width="1"/>'
+
+
+def _polygon(area: Sequence[Sequence[Place]], frame: Frame) -> "shapely.Geometry":  # type: ignore[name-defined]  # noqa: F821
+    import shapely
+
+    outer, *holes = ([frame.place(*one) for one in ring] for ring in area)
+    return shapely.Polygon(outer, holes)
+
+
+def _write_path(shape: "shapely.Geometry", kind: str) -> str:  # type: ignore[name-defined]  # noqa: F821
+    """Return the outline of the parts of one kind of a shape as an SVG path."""
+    import shapely
+
+    found = [one for one in shapely.get_parts(shape) if one.geom_type == kind]
+    rings = [ring for one in found for ring in ((one.exterior, *one.interiors) if kind == "Polygon" else (one,))]
+    end = "Z" if kind == "Polygon" else ""
+    return "".join(f"M{' '.join(f'{x:.1f} {y:.1f}' for x, y in ring.coords)}{end}" for ring in rings)
+
+
+def _draw_graticule(frame: Frame) -> Iterable[str]:
+    """Yield lines of whole steps of longitude and latitude with their degrees at the frame."""
+    step = next((one for one in _DEGREES if frame.wide / frame.per_degree[0] / one >= 3), _DEGREES[-1])
+    decimals = max(0, 1 - math.floor(math.log10(step))) if step < 1 else 0
+    across, down = frame.per_degree
+    first = math.ceil(frame.west / step)
+    for at in range(first, first + math.floor(frame.wide / across / step) + 1):
+        x = (at * step - frame.west) * across
+        if 30 < x < frame.wide - 60:
+            said = _say_degree((at * step + 180) % 360 - 180, decimals, "EW")
+            yield f'<path d="M{x:.1f} 0V{frame.high:.1f}" {_THIN}/><text x="{x + 3:.1f}" y="13" {_SMALL}>{said}</text>'
+    first = math.ceil((frame.north - frame.high / down) / step)
+    for at in range(first, first + math.floor(frame.high / down / step) + 1):
+        y = (frame.north - at * step) * down
+        if 24 < y < frame.high - 24:
+            said = _say_degree(at * step, decimals, "NS")
+            yield f'<path d="M0 {y:.1f}H{frame.wide:g}" {_THIN}/><text x="4" y="{y - 3:.1f}" {_SMALL}>{said}</text>'
+
+
+def _say_degree(value: float, decimals: int, sides: str) -> str:
+    side = "" if abs(value) < 1e-9 else sides[value < 0]
+    return f"{number(abs(value), f'.{decimals}f')}° {side}".strip()
+
+
+def _draw_isolines(isolines: Sequence[Isoline], frame: Frame) -> Iterable[str]:
+    """Yield lines of equal shaking, each with its value once, where it is inside the frame."""
+    for one in isolines:
+        line = [frame.place(*place) for place in one.line]
+        path = " ".join(f"{x:.1f} {y:.1f}" for x, y in line)
+        yield f'<path {_ISOLINE} d="M{path}"/>'
+        inside = [(x, y) for x, y in line if 40 < x < frame.wide - 60 and 30 < y < frame.high - 50]
+        if len(inside) > 6:
+            x, y = inside[len(inside) // 2]
+            yield (
+                f'<text class="isoline" x="{x:.1f}" y="{y:.1f}" fill="#5c3a80" font-weight="bold" stroke="#ffffff" '
+                f'stroke-width="3" paint-order="stroke" text-anchor="middle">{escape(one.label)}</text>'
+            )
+
+
+# ---------------------------------------------------------------- buildings
+
+
+def _draw_marks(points: Sequence[MapPoint], frame: Frame, *, is_live: bool) -> Iterable[str]:
+    yield '<g class="marks">'
+    for one in sorted(points, key=lambda point: (point.sign.severity, -point.size, point.at)):
+        x, y = frame.place(one.longitude, one.latitude)
+        size = f" scale({one.size:g})" if one.size != 1 else ""
+        live = f' data-at="{one.at}" data-x="{x:.1f}" data-y="{y:.1f}" data-size="{one.size:g}"' if is_live else ""
+        title = "" if is_live else f"<title>{escape(one.name)}</title>"
+        yield f'<g transform="translate({x:.1f} {y:.1f}){size}"{live}>{draw_sign(one.sign)}{title}</g>'
+    yield "</g>"
+
+
+def draw_sign(sign: Sign) -> str:
+    """Return the mark of a building round its centre, with a light edge so that marks beside it stay apart."""
+    if sign.is_open:
+        return (
+            f'<path d="{sign.path}" fill="none" stroke="#ffffff" stroke-width="6"/>'
+            f'<path d="{sign.path}" fill="none" stroke="{ink_of(sign)}" stroke-width="3"/>'
+        )
+    dash = ' stroke-dasharray="2.5 1.8"' if sign.is_dashed else ""
+    return f'<path d="{sign.path}" fill="{sign.fill}" stroke="{ink_of(sign)}" stroke-width="1.2"{dash}/>'
+
+
+# ---------------------------------------------------------------- scale and north
+
+
+def find_bar(frame: Frame) -> float:
+    """Return the length of the scale bar [km]: 1, 2 or 5 times a power of ten, a quarter of the width at most."""
+    most = frame.wide / frame.scale / 4
+    power = 10.0 ** math.floor(math.log10(most))
+    return max(step * power for step in _STEPS if step * power <= most)
+
+
+def _draw_scale(frame: Frame) -> str:
+    length = find_bar(frame)
+    long, y = length * frame.scale, frame.high - 18
+    said = _("{length} km", length=number(length, "g")) if length >= 1 else _("{length} m", length=f"{1000 * length:g}")
+    box = f'<rect x="10" y="{y - 22:.1f}" width="{long + 24:.1f}" height="32" fill="#ffffff" fill-opacity="0.85"/>'
+    path = f"M22 {y - 5:.1f}V{y:.1f}H{22 + long:.1f}V{y - 5:.1f}"
+    return (
+        f'<g class="scale-bar">{box}<path d="{path}" fill="none" stroke="#1c1c1c" stroke-width="2"/>'
+        f'<text x="{22 + long / 2:.1f}" y="{y - 8:.1f}" text-anchor="middle" fill="#1c1c1c">{said}</text></g>'
+    )
+
+
+def _draw_north(frame: Frame) -> str:
+    x = frame.wide - 28
+    return (
+        f'<g class="north"><rect x="{x - 16:g}" y="8" width="32" height="48" fill="#ffffff" fill-opacity="0.85"/>'
+        f'<path d="M{x:g} 12L{x + 8:g} 34L{x:g} 29L{x - 8:g} 34Z" fill="#1c1c1c"/>'
+        f'<text x="{x:g}" y="51" text-anchor="middle" font-weight="bold" fill="#1c1c1c">{_("N")}</text></g>'
+    )

@@ -1,0 +1,251 @@
+"""The worked city: made-up buildings around San Francisco Bay under the ShakeMap of Loma Prieta.
+
+The ShakeMap and the coastline are real; every building, its place and all its furniture are made up, by random numbers
+that are the same on every machine.
+"""
+
+import csv
+import shutil
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from typing import Any
+
+from assess import resources
+from assess.portfolio.background import read_background
+from assess.portfolio.example_pieces import CORRIDOR, ROOMS
+from assess.workbook.catalogue import read_catalogue
+from assess.workbook.schema import CATALOGUE
+from assess.workbook.template import Content, write_workbook
+
+INDEX, GRID, COAST, README = "index.csv", "grid.xml", "coast.geojson", "README.md"
+BUILDINGS, UNSURVEYED = 220, 8
+"""Buildings of the city, and those of them that stand in the index alone, without a survey."""
+SEED = 19891017
+SCENARIO = "Loma Prieta, 17 October 1989, by the ShakeMap of the U.S. Geological Survey. The building is made up."
+HEADS = ("path", "building", "latitude", "longitude", "use", "storeys", "height_m", "floor_area_m2", "ground_pga_g")
+_TEXT = """# A made-up city under a real earthquake
+
+{buildings} buildings around San Francisco Bay. **The ground motion is real**: `grid.xml` is the ShakeMap of the U.S.
+Geological Survey for the Loma Prieta earthquake of 17 October 1989. **The buildings are made up**: their places, sizes,
+furniture, routes, occupants and costs are drawn at random and describe no building that exists.
+
+* `index.csv`: every building, with its floor area; {unsurveyed} of them have no workbook: their furniture is assumed.
+* the folders: a workbook a building. It says nothing of the shaking, which comes from the ShakeMap.
+* `coast.geojson`: the coastline of the map, from Natural Earth (public domain).
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Town:
+    name: str
+    latitude: float
+    longitude: float
+    share: int
+    spread: float
+    """How far its buildings lie from the centre, as a standard deviation [deg of latitude]."""
+
+
+TOWNS = (
+    _Town("San Francisco", 37.765, -122.435, 26, 0.018), _Town("Oakland", 37.804, -122.250, 16, 0.016),
+    _Town("Berkeley", 37.871, -122.273, 8, 0.010), _Town("San Jose", 37.335, -121.890, 22, 0.028),
+    _Town("Palo Alto", 37.440, -122.150, 6, 0.010), _Town("Hayward", 37.668, -122.080, 6, 0.012),
+    _Town("Richmond", 37.942, -122.342, 5, 0.010), _Town("Fremont", 37.545, -121.985, 7, 0.015),
+    _Town("San Mateo", 37.556, -122.320, 6, 0.010), _Town("Santa Clara", 37.354, -121.955, 5, 0.010),
+    _Town("San Rafael", 37.975, -122.535, 4, 0.010), _Town("Walnut Creek", 37.906, -122.062, 4, 0.010),
+    _Town("Redwood City", 37.480, -122.235, 4, 0.008), _Town("Los Gatos", 37.232, -121.965, 4, 0.008),
+    _Town("Concord", 37.978, -122.030, 4, 0.010), _Town("Daly City", 37.685, -122.465, 3, 0.007),
+)  # fmt: skip
+"""Towns with the coordinates of a place in their middle, and how the buildings are spread over them."""
+_USES = (("Office", 30), ("School", 25), ("Hospital", 8), ("Library", 9), ("Home", 28))
+_STOREYS: Mapping[str, tuple[int, int]] = {
+    "Office": (2, 12), "School": (1, 3), "Hospital": (3, 9), "Library": (1, 4), "Home": (1, 6),
+}  # fmt: skip
+_STOREY_HEIGHT = {"Home": 2.9}
+_ANCHORED = (("no", 70), ("unknown", 14), ("yes", 12), ("partly", 4))
+_COSTS = (("L-bracket to studs", 90), ("base angle", 140))
+OFFSHORE = 0.004
+"""Least distance to the coastline [deg], which is a generalised one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Building:
+    """One made-up building; `path` is "" where it has no workbook."""
+
+    number: int
+    path: str
+    name: str
+    town: str
+    latitude: float
+    longitude: float
+    use: str
+    storeys: int
+    height: float
+    area: int
+
+
+def write_example_city(folder: Path, buildings: int = BUILDINGS) -> None:
+    """Write workbooks, index.csv, the ShakeMap grid.xml, coast.geojson and README.md; the same bytes every time.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to; it is made where it is missing.
+    buildings : int
+        How many, of which a few have no workbook.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    city = list_buildings(buildings)
+    for one in city:
+        if one.path:
+            (folder / one.path).parent.mkdir(exist_ok=True)
+            write_workbook(folder / one.path, _fill_workbook(one), spare=10)
+    _write_index(folder / INDEX, city)
+    for name in (GRID, COAST):
+        shutil.copyfile(resources.city_file(name), folder / name)
+    unsurveyed = sum(not one.path for one in city)
+    text = _TEXT.format(buildings=len(city), unsurveyed=unsurveyed)
+    (folder / README).write_text(text, encoding="utf-8", newline="\n")
+
+
+def list_buildings(count: int) -> list[Building]:
+    """Return the buildings of the city; one more changes none of the others."""
+    import shapely
+
+    coast = read_background(resources.city_file(COAST))
+    land = shapely.union_all([shapely.Polygon(area[0], area[1:]) for area in coast.areas]).buffer(-OFFSHORE)
+    shapely.prepare(land)
+    return [_make_building(number, land) for number in range(1, count + 1)]
+
+
+def _make_building(number: int, land: Any) -> Building:
+    import shapely
+
+    draw = Random(SEED + number)  # noqa: S311 - an example, no secret
+    is_surveyed = number % (BUILDINGS // UNSURVEYED) != 0
+    town = _choose(draw, [(one, one.share) for one in TOWNS])
+    use = _choose(draw, _USES if is_surveyed else (("office", 2), ("healthcare", 1)))
+    low, high = _STOREYS.get(use, (2, 5))
+    storeys = low + int((high - low + 1) * draw.random() ** 1.8)
+    for _attempt in range(200):
+        latitude = town.latitude + town.spread * _bell(draw)
+        longitude = town.longitude + town.spread * 1.26 * _bell(draw)
+        if land.contains(shapely.Point(longitude, latitude)):
+            break
+    name = f"{use.capitalize()} {number:03}, {town.name} (made up)"
+    path = f"{town.name.lower().replace(' ', '-')}/{use.lower()}-{number:03}.xlsx" if is_surveyed else ""
+    height = round(storeys * (_STOREY_HEIGHT.get(use, 3.8) + 0.4 * draw.random()), 1)
+    area = storeys * (120 if use == "Home" else 300) * (1 + int(4 * draw.random()))
+    return Building(number, path, name, town.name, round(latitude, 5), round(longitude, 5), use, storeys, height, area)
+
+
+def _choose(draw: Random, weighted: Any) -> Any:
+    """Return one of several by their weights, of one draw: the same with every version of Python."""
+    left = draw.random() * sum(weight for _one, weight in weighted)
+    for one, weight in weighted:
+        left -= weight
+        if left < 0:
+            return one
+    return weighted[-1][0]
+
+
+def _bell(draw: Random) -> float:
+    """Return a number of mean 0 and standard deviation 1 about: the sum of twelve uniform ones, less six."""
+    return sum(draw.random() for _at in range(12)) - 6.0
+
+
+def _write_index(path: Path, city: list[Building]) -> None:
+    """Write the index: of a building with a workbook its floor area alone, which the workbook does not hold."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(HEADS)
+        for one in city:
+            known: tuple[Any, ...] = ("", "", "", "", "", "")
+            if not one.path:
+                known = (one.name, one.latitude, one.longitude, one.use, one.storeys, one.height)
+            writer.writerow((one.path, *known, one.area, ""))
+
+
+# ---------------------------------------------------------------- a workbook
+
+
+def _fill_workbook(one: Building) -> Content:
+    """Return what stands in the workbook of a building: nothing of the shaking, which the ShakeMap gives."""
+    draw = Random(SEED * 7 + one.number)  # noqa: S311 - an example, no secret
+    furnished = _choose_floors(one, draw)
+    rise = one.height / one.storeys
+    has_routes = draw.random() < 0.7
+    corridors = furnished if has_routes else ()
+    building = {
+        "building": one.name, "address": f"{one.town}, California", "latitude": one.latitude,
+        "longitude": one.longitude, "use": one.use, "storeys": one.storeys, "height": one.height,
+        "scenario": SCENARIO,
+    }  # fmt: skip
+    floors = [
+        {"floor": str(at), "name": f"Storey {at}", "elevation": round((at - 1) * rise, 2)} for at in furnished
+    ]  # fmt: skip
+    items = [*_list_pieces(one, furnished, draw), *_list_corridor(one, corridors, draw)]
+    costs = [{"detail": detail, "unit_cost": cost, "source": "made-up price"} for detail, cost in _COSTS]
+    rows = {"Building": [building], "Floors": floors, "Items": items, CATALOGUE.name: _list_types(one.use)}
+    if has_routes:
+        rows["Routes"] = [_make_segment(one, floor, draw) for floor in corridors]
+    return Content({**rows, **({"Costs": costs} if draw.random() < 0.6 else {})})
+
+
+def _list_types(use: str) -> list[dict[str, Any]]:
+    known = {one["type"]: one for one in read_catalogue("si")}
+    named = {name for _room, types in ROOMS[use] for name in types} | set(CORRIDOR[use])
+    return [row for name, row in known.items() if name in named]
+
+
+def _choose_floors(one: Building, draw: Random) -> tuple[int, ...]:
+    """Return the storeys that have been surveyed: four at most, the top one among them."""
+    if one.storeys <= 4:
+        return tuple(range(1, one.storeys + 1))
+    inner = {2 + int((one.storeys - 2) * draw.random()) for _at in range(2)}
+    return tuple(sorted({1, one.storeys} | inner))
+
+
+def _list_pieces(one: Building, floors: tuple[int, ...], draw: Random) -> Iterator[dict[str, Any]]:
+    """Yield rows of Items until the pieces are as many as were drawn: 12 to 36."""
+    left, number = 12 + int(25 * draw.random()), 0
+    while left > 0:
+        number += 1
+        floor = floors[int(len(floors) * draw.random())]
+        room, types = ROOMS[one.use][int(len(ROOMS[one.use]) * draw.random())]
+        quantity = min(left, _choose(draw, ((1, 55), (2, 25), (3, 12), (6, 8))))
+        left -= quantity
+        yield {
+            "item": f"{floor}-{number:02}", "floor": str(floor), "room": room,
+            "type": types[int(len(types) * draw.random())], "quantity": quantity,
+            "anchored": _choose(draw, _ANCHORED),
+            "importance": _choose(draw, (("property", 70), ("life safety", 18), ("function", 12))),
+        }  # fmt: skip
+
+
+def _list_corridor(one: Building, floors: tuple[int, ...], draw: Random) -> Iterator[dict[str, Any]]:
+    """Yield what stands beside the way out: one piece on a floor of the route, on some of them."""
+    for floor in floors:
+        if draw.random() < 0.6:
+            yield {
+                "item": f"{floor}-R1", "floor": str(floor), "room": "Corridor",
+                "type": CORRIDOR[one.use][int(3 * draw.random())], "quantity": 1,
+                "axis": "X" if draw.random() < 0.5 else "Y", "anchored": _choose(draw, _ANCHORED),
+                "route": f"Way out, storey {floor}", "segment": "corridor",
+                "edge_distance": round(0.6 * draw.random(), 2), "importance": "life safety",
+            }  # fmt: skip
+
+
+def _make_segment(one: Building, floor: int, draw: Random) -> dict[str, Any]:
+    wide = 1.4 if one.use == "Home" else 2.0
+    people = {"Home": 4, "School": 60, "Hospital": 30}.get(one.use, 25)
+    return {
+        "route": f"Way out, storey {floor}", "segment": "corridor", "floor": str(floor),
+        "clear_width": round(wide + 0.8 * draw.random(), 2), "occupants": 1 + int(people * (0.5 + draw.random())),
+    }  # fmt: skip

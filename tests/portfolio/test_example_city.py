@@ -1,0 +1,122 @@
+"""The worked city: on land, inside the ShakeMap, the same every time, and without a problem but the missing shaking."""
+
+import csv
+import hashlib
+import xml.etree.ElementTree as ET
+from collections import Counter
+
+import pytest
+
+import assess
+from assess import resources
+from assess.errors import WorkbookError
+from assess.portfolio.background import read_background
+from assess.portfolio.example_city import (
+    BUILDINGS,
+    COAST,
+    GRID,
+    HEADS,
+    INDEX,
+    README,
+    list_buildings,
+    write_example_city,
+)
+from tests.workbooks import UNVERIFIED
+
+
+@pytest.fixture(scope="module")
+def city():
+    return list_buildings(BUILDINGS)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("bay") / "city"
+    write_example_city(folder, 30)
+    return folder
+
+
+def test_it_has_at_least_200_buildings_of_all_uses_and_a_few_without_a_survey(city):
+    assert len(city) == BUILDINGS >= 200
+    assert len({one.path or one.name for one in city}) == BUILDINGS
+    uses = Counter(one.use for one in city if one.path)
+    assert set(uses) == {"Office", "School", "Hospital", "Library", "Home"}
+    assert min(uses.values()) >= 10
+    unsurveyed = [one for one in city if not one.path]
+    assert len(unsurveyed) == 8
+    assert {one.use for one in unsurveyed} == {"office", "healthcare"}
+    assert min(one.storeys for one in city) == 1
+    assert max(one.storeys for one in city) == 12
+
+
+def test_every_building_stands_on_land_and_inside_the_shakemap(city):
+    import shapely
+
+    coast = read_background(resources.city_file(COAST))
+    land = shapely.union_all([shapely.Polygon(area[0], area[1:]) for area in coast.areas])
+    assert [one.name for one in city if not land.contains(shapely.Point(one.longitude, one.latitude))] == []
+    space = "{http://earthquake.usgs.gov/eqcenter/shakemap}"
+    edges = ET.parse(resources.city_file(GRID)).getroot().find(f"{space}grid_specification").attrib
+    south, north, west, east = (float(edges[name]) for name in ("lat_min", "lat_max", "lon_min", "lon_max"))
+    assert all(south < one.latitude < north and west < one.longitude < east for one in city)
+
+
+def test_a_larger_city_has_the_same_buildings_and_more(city):
+    assert list_buildings(12) == city[:12]
+
+
+def test_the_folder_holds_a_workbook_a_building_the_index_and_real_ground_motion(folder):
+    with (folder / INDEX).open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert tuple(rows[0]) == HEADS
+    assert len(rows) == 30
+    assert {row["path"] for row in rows} - {""} == {
+        path.relative_to(folder).as_posix() for path in folder.rglob("*.xlsx")
+    }
+    bare = [row for row in rows if not row["path"]]
+    assert len(bare) == 1
+    assert bare[0]["use"] in {"office", "healthcare"}
+    assert all(row["latitude"] and row["storeys"] and row["height_m"] and row["floor_area_m2"] for row in bare)
+    assert (folder / GRID).read_bytes() == resources.city_file(GRID).read_bytes()
+    said = (folder / README).read_text(encoding="utf-8")
+    assert "The ground motion is real" in said
+    assert "The buildings are made up" in said
+    assert "30 buildings" in said
+
+
+def test_it_is_the_same_to_the_byte(folder, tmp_path):
+    write_example_city(tmp_path / "again", 6)
+    again = {path.relative_to(tmp_path / "again"): path for path in (tmp_path / "again").rglob("*.xlsx")}
+    assert len(again) == 6
+    for name, path in again.items():
+        first, second = (hashlib.sha256(one.read_bytes()).hexdigest() for one in (path, folder / name))
+        assert first == second, name
+
+
+def test_a_workbook_lacks_the_shaking_alone(folder):
+    for path in sorted(folder.rglob("*.xlsx"))[:12]:
+        with pytest.raises(WorkbookError) as caught:
+            assess.read_inventory(path)
+        errors = [one for one in caught.value.problems if one.severity == "error"]
+        assert errors
+        assert all("neither Ground PGA nor SDS nor Shaking" in str(one) for one in errors), errors
+
+
+def test_with_a_ground_motion_a_workbook_is_assessed(folder, tmp_path):
+    inventory = _read_shaken(sorted(folder.rglob("office-*.xlsx"))[0], tmp_path / "shaken.xlsx")
+    assert 12 <= sum(item.quantity for item in inventory.items) <= 40
+    found = assess.run(inventory, UNVERIFIED)
+    assert len(found.items) == len(inventory.items)
+    assert "made up" in inventory.building.scenario
+
+
+def _read_shaken(path, shaken):
+    """Read a workbook with a Ground PGA typed into it."""
+    import openpyxl
+
+    book = openpyxl.load_workbook(path)
+    for row in book["Building"].iter_rows(max_col=2):
+        if str(row[0].value).startswith("Ground PGA"):
+            row[1].value = 0.2
+    book.save(shaken)
+    return assess.read_inventory(shaken)
