@@ -38,8 +38,9 @@ EXAMPLES = (
     "assess fragility building.xlsx --by type --im pfv --plot types.png",
     "assess fragility building.xlsx --levels 0.1:1.5:0.1 --formats csv --out curves",
     "assess fragility building.xlsx --ideal --runs 400 --json",
+    "assess fragility building.xlsx --by type --formats csv,pelicun,nrml",
 )
-DEFAULT = "csv,json"
+DEFAULT, KNOWN = "csv,json", ("csv", "json", "pelicun", "nrml")
 
 
 class By(str, Enum):
@@ -79,9 +80,9 @@ def command(
     formats: Annotated[
         str | None,
         typer.Option(
-            help="Files to write, separated by commas: csv, json.",
+            help="Files to write, separated by commas: csv, json, pelicun, nrml.",
             show_default=DEFAULT,
-            autocompletion=list_of(DEFAULT.split(",")),
+            autocompletion=list_of(KNOWN),
         ),
     ] = None,
     out: Annotated[
@@ -108,6 +109,9 @@ def command(
     It is conditional on the floor's PFA or PFV: the uncertainty of the motion is not in it, as whoever applies it to
     a demand brings that of the demand. The uncertainty of the pieces is in it (Piece uncertainty in the sheet
     Building). The spectrum keeps its shape, so that a curve holds for motions of the PFV/PFA stated beside it.
+
+    The formats pelicun and nrml are for pelicun and OpenQuake. Curves that they cannot hold are named, with exit
+    status 1.
     """
     span = None if levels is None else SPANS[im].read(levels)
     settings = read_settings(verify="none", runs=runs, seed=seed, scenario=scenario, ideal=ideal)
@@ -119,7 +123,7 @@ def command(
         _check_folder(folder)
     check_file(plot, "figure")
     with show_progress() as progress:
-        curves = _find(path, by, im, span, settings, jobs, progress)
+        curves = _find(path, by, im, span, settings, "nrml" in wanted, jobs, progress)
     typer.echo(curves.to_json() if as_json else curves.to_text())
     _write(curves, wanted, folder, plot)
 
@@ -130,17 +134,21 @@ def _find(
     im: Measure,
     span: Sequence[float] | None,
     settings: "Settings",
+    needs_ground: bool,
     jobs: int | None,
     progress: "Progress",
 ) -> "Curves":
     from assess.cli.fragility_output import Curves
     from assess.pipeline.piece_fragility import UNITS, find_piece_fragilities
     from assess.pipeline.run import compute
+    from assess.report.interchange.nrml import find_ground_pga
     from assess.workbook.read import read_inventory
 
     inventory = replace(read_inventory(path, progress=progress), routes=())  # they play no part
     assessment = compute(inventory, settings, progress=progress)
     print_warnings(assessment.problems)
+    if needs_ground:
+        find_ground_pga(assessment, im.value)
     levels = None if span is None else [one * UNITS[im.value] for one in span]
     found = find_piece_fragilities(assessment, by=by.value, im=im.value, levels=levels, jobs=jobs, progress=progress)
     return Curves(assessment, found)
@@ -161,11 +169,16 @@ def _check_folder(folder: Path) -> None:
 
 
 def _write(curves: "Curves", formats: Sequence[str], folder: Path, plot: Path | None) -> None:
-    """Write the files and the figure, all of them or none."""
-    from assess.cli.fragility_output import FORMATS
+    """Write the files and the figure, all of them or none; exit status 1 where a format could not hold every curve."""
+    from assess.cli.fragility_output import FORMATS, say_left_out
 
-    files = {folder / name: data for one in formats for name, data in FORMATS[one](curves).items()}
+    written = [FORMATS[one](curves) for one in formats]
+    files = {folder / name: data for one in written for name, data in one.files.items()}
     save_with_figure(files, plot, partial(_draw, curves), "curve")
+    for line in (line for one in written if one.left_out for line in say_left_out(one)):
+        typer.echo(line, err=True)
+    if any(one.left_out for one in written):
+        raise typer.Exit(1)
 
 
 def _draw(curves: "Curves", kind: str) -> tuple[bytes, int]:

@@ -15,8 +15,12 @@ from assess.fragility import MOST_MISFIT, lognormal_chance
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import UNITS, FloorMotions, PieceFragilities, PieceFragility
 from assess.pipeline.versions import versions
+from assess.plain_text import plain_line
 from assess.report import words
 from assess.report.data import disarm
+from assess.report.interchange.exchange_files import LABELS, Exchange
+from assess.report.interchange.nrml import write_nrml
+from assess.report.interchange.pelicun import write_pelicun
 from assess.units import GRAVITY, LENGTH, to_edge
 from assess.version import __version__
 
@@ -24,9 +28,10 @@ SCHEMA = "1.0"
 """Version of the document's shape: the first number changes where a key goes or gets another meaning."""
 MOST_LINES = 200
 """Curves that the text lists; files and the document hold all."""
-LABELS: Mapping[str, str] = {"pfa": "g", "pfv": "cm/s"}
+MOST_NAMES = 8
+"""Names of curves that a line of those left out lists."""
 COLUMNS: Mapping[str, str] = {"pfa": "pfa_g", "pfv": "pfv_cm_s"}
-"""The unit of the levels, and their name in files."""
+"""Names of the levels in files."""
 DECIMALS = 12
 PIECES_DRAWN = (
     "Each draw has a base, height, centre of gravity and restitution of its own (Piece uncertainty of the sheet "
@@ -230,19 +235,37 @@ class Curves:
         ]
 
 
-def _write_csv(curves: Curves) -> dict[str, bytes]:
-    return {
+def _write_csv(curves: Curves) -> Exchange:
+    files = {
         "fragility.csv": curves.to_csv().encode("utf-8-sig"),
         "fragility_table.csv": curves.to_table().encode("utf-8-sig"),
     }
+    return Exchange(files, ())
 
 
-def _write_json(curves: Curves) -> dict[str, bytes]:
-    return {"fragility.json": f"{curves.to_json()}\n".encode()}
+def _write_json(curves: Curves) -> Exchange:
+    return Exchange({"fragility.json": f"{curves.to_json()}\n".encode()}, ())
 
 
-FORMATS: Mapping[str, Callable[[Curves], dict[str, bytes]]] = {"csv": _write_csv, "json": _write_json}
-"""What writes each format: the bytes of its files by their names."""
+FORMATS: Mapping[str, Callable[[Curves], Exchange]] = {
+    "csv": _write_csv,
+    "json": _write_json,
+    "pelicun": lambda curves: write_pelicun(curves.assessment, curves.found),
+    "nrml": lambda curves: write_nrml(curves.assessment, curves.found),
+}
+"""What writes each format: the bytes of its files by their names, and the curves that it has no place for."""
+
+
+def say_left_out(exchange: Exchange) -> Iterator[str]:
+    """Yield what the files of a format do not hold, a line a reason."""
+    reasons: dict[str, list[str]] = {}
+    for one in exchange.left_out:
+        reasons.setdefault(str(one.why), []).append(plain_line(one.name))
+    file = next(iter(exchange.files))
+    for why, names in reasons.items():
+        more = f", and {len(names) - MOST_NAMES:,} more" if len(names) > MOST_NAMES else ""
+        listed = ", ".join(names[:MOST_NAMES])
+        yield f"left out of {file}: {count(len(names), 'curve')} ({listed}{more}): {why}"
 
 
 def _remark(one: PieceFragility) -> Iterator[str]:

@@ -224,7 +224,7 @@ def test_where_nothing_is_fitted_the_reason_stands():
     assert " - - - 0.15 not fitted: nothing fell at any level; may be too low " in text
     (row, _) = csv.DictReader(io.StringIO(curves.to_csv()))
     assert (row["median_pfa_g"], row["beta"]) == ("", "")
-    assert set(FORMATS["csv"](curves)) == {"fragility.csv", "fragility_table.csv"}
+    assert set(FORMATS["csv"](curves).files) == {"fragility.csv", "fragility_table.csv"}
 
 
 def test_a_long_text_is_cut_and_the_document_is_not():
@@ -281,8 +281,8 @@ def test_the_figure_holds_the_shares_and_the_fits():
         (("--im", "psa"), "'psa' is not one of 'pfa', 'pfv'"),
         (("--by", "room"), "'room' is not one of 'item', 'type'"),
         (("--runs", "auto"), "--runs: auto is for assess run, as every level uses the same motions. Give a number."),
-        (("--formats", "csv,nrlm"), "--formats: 'nrlm' is an unknown format; expected some of: csv, json"),
-        (("--formats", ","), "--formats: no format is named; expected some of: csv, json"),
+        (("--formats", "csv,nrlm"), "--formats: 'nrlm' is an unknown format; expected some of: csv, json, pelicun, nrml"),
+        (("--formats", ","), "--formats: no format is named; expected some of: csv, json, pelicun, nrml"),
         (("--out", "w.xlsx"), "--out: w.xlsx is a file; name a folder"),
         (("--plot", "x.gif"), "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
         (("--scenario", "recorded"), "Floors!H3: floor '2' has no record"),

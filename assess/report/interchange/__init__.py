@@ -1,0 +1,1 @@
+"""Fragilities as the files of other programs."""

@@ -1,0 +1,211 @@
+"""Fragilities as an NRML fragility model of OpenQuake, against the PGA of the ground.
+
+Reference
+---------
+Global Earthquake Model Foundation. OpenQuake Engine manual, fragility models: NRML 0.5, ``fragilityModel``.
+
+Departures
+----------
+OpenQuake has no intensity measure of a floor, so that a curve is written once for each floor with its levels multiplied
+by ground PGA / PFA of the floor in the scenario assessed (of two axes, and of parallel records, the least: at a given
+PGA the chance is then at least that of each). The floor amplifies alike at every level, and without scatter.
+"""
+
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.errors import InputError
+from assess.i18n import Text, fill
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.demand import find_ground
+from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
+from assess.plain_text import plain_line
+from assess.report.interchange.exchange_files import (
+    Exchange,
+    LeftOut,
+    describe_curve,
+    describe_origin,
+    find_stem,
+    name_safely,
+    refuse_nothing,
+    round_number,
+    sort_out,
+)
+from assess.units import GRAVITY
+
+NAMESPACE = "http://openquake.org/xmlns/nrml/0.5"
+LIMIT_STATE = "overturned"
+REACH = 4.0
+"""Least and largest level of a lognormal, in standard deviations: beyond them lie 0.003 % of the chance each. OpenQuake
+divides this range into steps, so that a wider one would be read more coarsely."""
+ENDS = 0.02
+"""Share that may fall at the first level of a table, and stand at its last one: OpenQuake does not extrapolate."""
+BELOW = 0.1
+"""Level from which a table's chance grows from 0 to that of its first level, over that level."""
+PER_FLOOR = (
+    "One function for each type or item and floor, against the peak ground acceleration: levels of the floor's PFA "
+    "times ground PGA / PFA of the floor in the scenario. The amplification from ground to floor is that of the "
+    "scenario at every level, and its uncertainty is not in beta, nor is that of the ground motion. The functions hold "
+    "for this building only."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Function:
+    """A curve on one floor: `ratio` is ground PGA / PFA of the floor [-]."""
+
+    name: str
+    floor: str
+    one: PieceFragility
+    ratio: float
+
+
+def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
+    """Write the curves as a fragility model: NAME-nrml.xml.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        Of which the fragilities were found; its scenario gives the PGA of the ground.
+    found : PieceFragilities
+        Against PFA, by `assess.pipeline.piece_fragility.find_piece_fragilities`.
+
+    Returns
+    -------
+    Exchange
+        The file, and the curves left out. Where no lognormal stands in, the table is written.
+
+    Raises
+    ------
+    InputError
+        If the measure is PFV, the ground PGA of the scenario is not known, or there is no curve to be written.
+    """
+    pga = find_ground_pga(assessment, found.im)
+    kept, left = sort_out(found.curves, _judge)
+    refuse_nothing("OpenQuake", kept, left)
+    functions = [_Function(name, floor, one, _find_ratio(one, floor, pga)) for name, floor, one in _name(kept)]
+    stem = find_stem(assessment)
+    data = _write(assessment, found, pga, functions, left)
+    return Exchange(files={f"{stem}-nrml.xml": data}, left_out=left)
+
+
+def find_ground_pga(assessment: Assessment, im: str) -> float:
+    """Return the ground PGA to which the motions of the floors belong [m/s2].
+
+    Raises
+    ------
+    InputError
+        If it is not known, or the measure is not "pfa": then no curve can be written, whatever it is.
+    """
+    if im != "pfa":
+        raise InputError(
+            fill(
+                "formats: OpenQuake computes accelerations of the ground, which a PFV cannot be derived from: nrml is "
+                "written for curves against PFA only. Take PFA as the measure, or another format."
+            )
+        )
+    ground, sources = find_ground(assessment.inventory), {one.source for one in assessment.case_demand}
+    if ground.pga is None or ((ground.is_from_sds or ground.shaking) and sources != {"profile"}):
+        raise InputError(
+            fill(
+                "formats: nrml relates each floor to the ground, whose peak acceleration in this scenario is not "
+                "known. Fill in Ground PGA in the sheet Building, that of the same earthquake as the floors' motions."
+            )
+        )
+    return assessment.settings.scale * ground.pga
+
+
+def _find_ratio(one: PieceFragility, floor: str, pga: float) -> float:
+    return pga / max(motion.pfa for motion in one.motions if motion.floor == floor)
+
+
+def _judge(one: PieceFragility) -> Text | None:
+    """Return why a curve cannot be written; None where its lognormal stands in, or its table is whole."""
+    curve = one.curve
+    if curve.is_lognormal:
+        return None
+    if curve.levels.size < 2:
+        return curve.why
+    if curve.shares[0] > ENDS or curve.shares.max() < 1 - ENDS:
+        return fill(
+            "no lognormal stands in for its table, and OpenQuake does not continue a table: give levels from where at "
+            "most {low:.0%} overturn to where at least {high:.0%} do",
+            low=ENDS,
+            high=1 - ENDS,
+        )
+    return None
+
+
+def _name(kept: Sequence[PieceFragility]) -> Iterator[tuple[str, str, PieceFragility]]:
+    """Yield the taxonomy ``type|floor`` of each curve and floor, with that floor; no two taxonomies are alike."""
+    floors = list(dict.fromkeys(floor for one in kept for floor in one.floors))
+    level = dict(zip(floors, name_safely(floors, "_"), strict=True))
+    for name, one in zip(name_safely((one.name for one in kept), "_"), kept, strict=True):
+        for floor in one.floors:
+            yield f"{name}|{level[floor]}", floor, one
+
+
+# ---------------------------------------------------------------- the file
+
+
+def _write(
+    assessment: Assessment,
+    found: PieceFragilities,
+    pga: float,
+    functions: Sequence[_Function],
+    left: Sequence[LeftOut],
+) -> bytes:
+    root = ET.Element("nrml", {"xmlns": NAMESPACE})
+    (name,) = name_safely([f"assess {find_stem(assessment)}"], "_")
+    model = ET.SubElement(root, "fragilityModel", {"id": name, "assetCategory": "contents", "lossCategory": "contents"})
+    lines = [describe_origin(assessment, found), f"{PER_FLOOR} Ground PGA {pga / GRAVITY:.4g} g."]
+    lines += [_say_function(one, found.im) for one in functions]
+    lines += [f"Left out: {plain_line(one.name)}: {one.why}." for one in left]
+    ET.SubElement(model, "description").text = "\n".join(lines)
+    ET.SubElement(model, "limitStates").text = LIMIT_STATE
+    for one in functions:
+        (_add_lognormal if one.one.curve.is_lognormal else _add_table)(model, one)
+    ET.indent(root)
+    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return data + b"\n"
+
+
+def _say_function(one: _Function, im: str) -> str:
+    what = f"{one.name}: {plain_line(one.one.name)} on floor {plain_line(one.floor)}"
+    amplified = f"PFA / ground PGA {1 / one.ratio:.3g}."
+    return " ".join([f"{what}, {amplified}", *describe_curve(one.one, im)])
+
+
+def _add_lognormal(model: ET.Element, function: _Function) -> None:
+    """Add a continuous function; NRML gives the mean and the standard deviation of the level, not of its logarithm."""
+    curve = function.one.curve
+    median, beta = curve.median * function.ratio / GRAVITY, curve.dispersion
+    mean = median * math.exp(beta**2 / 2)
+    lowest, highest = (_write_number(median * math.exp(sign * REACH * beta)) for sign in (-1, 1))
+    own = ET.SubElement(model, "fragilityFunction", {"id": function.name, "format": "continuous", "shape": "logncdf"})
+    ET.SubElement(own, "imls", {"imt": "PGA", "noDamageLimit": lowest, "minIML": lowest, "maxIML": highest})
+    spread = mean * math.sqrt(math.expm1(beta**2))
+    ET.SubElement(own, "params", {"ls": LIMIT_STATE, "mean": _write_number(mean), "stddev": _write_number(spread)})
+
+
+def _add_table(model: ET.Element, function: _Function) -> None:
+    """Add a discrete function, whose chances do not fall where those of the draws do."""
+    curve = function.one.curve
+    levels = (curve.levels * function.ratio / GRAVITY).tolist()
+    own = ET.SubElement(model, "fragilityFunction", {"id": function.name, "format": "discrete"})
+    imls = ET.SubElement(own, "imls", {"imt": "PGA", "noDamageLimit": _write_number(BELOW * levels[0])})
+    imls.text = " ".join(_write_all(levels))
+    shares = np.maximum.accumulate(curve.shares).tolist()
+    ET.SubElement(own, "poes", {"ls": LIMIT_STATE}).text = " ".join(_write_all(shares))
+
+
+def _write_all(values: Sequence[float]) -> Iterator[str]:
+    return map(_write_number, values)
+
+
+def _write_number(value: float) -> str:
+    return repr(round_number(value))

@@ -1,0 +1,131 @@
+"""Fragilities as a damage database of pelicun: a table of components, and what they are.
+
+Reference
+---------
+Zsarnóczay A, Deierlein GG (2020). PELICUN: A computational framework for estimating damage, loss and community
+resilience. 17th World Conference on Earthquake Engineering. Format: pelicun 3.10, damage databases of SimCenter's
+DamageAndLossModelLibrary (`fragility.csv`, `fragility.json`).
+
+Departures
+----------
+Components are directional: one at location k and direction d reads ``1-PFA-(k-1)-d`` (pelicun's own offset of -1), the
+floor on which the contents of storey k stand. A component that is not directional takes 1.2 times the larger direction,
+unless ``NonDirectionalMultipliers`` says otherwise, so that its median would not be that of the curve.
+"""
+
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from assess.fragility import MOST_MISFIT
+from assess.i18n import Text, fill
+from assess.pipeline.assessment import Assessment
+from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
+from assess.plain_text import plain_line
+from assess.report.interchange.exchange_files import (
+    Exchange,
+    LeftOut,
+    describe_curve,
+    describe_origin,
+    find_stem,
+    name_safely,
+    refuse_nothing,
+    round_number,
+    say_sizes,
+    sort_out,
+)
+from assess.units import GRAVITY
+from assess.version import __version__
+
+DEMANDS: Mapping[str, tuple[str, str, float]] = {
+    "pfa": ("Peak Floor Acceleration", "g", GRAVITY),
+    "pfv": ("Peak Floor Velocity", "mps", 1.0),
+}
+"""What pelicun calls each intensity measure, its unit there, and that unit in SI."""
+HEADS = (
+    "ID", "Incomplete", "Demand-Type", "Demand-Unit", "Demand-Offset", "Demand-Directional",
+    "LS1-Family", "LS1-Theta_0", "LS1-Theta_1", "LS1-DamageStateWeights",
+)  # fmt: skip
+USE = (
+    "Demand-Directional is 1: give each component the direction along which it overturns, 1 or 2. Where that is not "
+    'known, direction 0 takes the larger one; set "NonDirectionalMultipliers": {"ALL": 1.0} then, as pelicun '
+    "multiplies by 1.2 by default. Location k reads the demand of floor k-1, on which the contents of storey k stand."
+)
+
+
+def write_pelicun(assessment: Assessment, found: PieceFragilities) -> Exchange:
+    """Write the lognormals as a damage database: NAME-pelicun.csv and NAME-pelicun.json.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        Of which the fragilities were found.
+    found : PieceFragilities
+        By `assess.pipeline.piece_fragility.find_piece_fragilities`.
+
+    Returns
+    -------
+    Exchange
+        The files, and the curves for which no lognormal can stand in: pelicun takes nothing else.
+
+    Raises
+    ------
+    InputError
+        If there is no curve to be written.
+    """
+    kept, left = sort_out(found.curves, _judge)
+    refuse_nothing("pelicun", kept, left)
+    stem = find_stem(assessment)
+    names = name_safely((f"{stem} {one.name} {found.im}" for one in kept), ".")
+    ids = [f"assess.{name}" for name in names]
+    about = _describe(assessment, found, dict(zip(ids, kept, strict=True)), left)
+    return Exchange(
+        files={
+            f"{stem}-pelicun.csv": _write_table(ids, kept, found.im).encode(),
+            f"{stem}-pelicun.json": f"{json.dumps(about, ensure_ascii=False, allow_nan=False, indent=1)}\n".encode(),
+        },
+        left_out=left,
+    )
+
+
+def _judge(one: PieceFragility) -> Text | None:
+    if one.curve.is_lognormal:
+        return None
+    if one.curve.kind != "fitted":
+        return one.curve.why
+    return fill("no lognormal stands in for its table: the misfit exceeds {most:g}", most=MOST_MISFIT)
+
+
+def _write_table(ids: Sequence[str], kept: Sequence[PieceFragility], im: str) -> str:
+    demand, unit, size = DEMANDS[im]
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(HEADS)
+    for one, curve in zip(ids, (each.curve for each in kept), strict=True):
+        theta, beta = round_number(curve.median / size), round_number(curve.dispersion)
+        writer.writerow([one, 0, demand, unit, 0, 1, "lognormal", theta, beta, ""])
+    return file.getvalue()
+
+
+def _describe(
+    assessment: Assessment, found: PieceFragilities, kept: Mapping[str, PieceFragility], left: Sequence[LeftOut]
+) -> dict[str, Any]:
+    general = {
+        "ShortName": f"assess: {plain_line(find_stem(assessment))}",
+        "Description": describe_origin(assessment, found),
+        "Version": __version__,
+        "Use": USE,
+        "LeftOut": [{"Name": plain_line(one.name), "Reason": str(one.why)} for one in left],
+    }
+    return {"_GeneralInformation": general} | {
+        name: {
+            "Description": f"{plain_line(one.name)}: {say_sizes(one)}",
+            "Comments": " ".join(describe_curve(one, found.im)),
+            "SuggestedComponentBlockSize": "1 EA",
+            "RoundUpToIntegerQuantity": "True",
+            "LimitStates": {"LS1": {"DS1": {"Description": "Overturns."}}},
+        }
+        for name, one in kept.items()
+    }
