@@ -31,6 +31,7 @@ EXAMPLES = (
     "assess run building.xlsx --scale 0.9 --ideal --seed 7 --jobs 2 --out weaker",
     "assess run building.xlsx --language it --accessible --route-risk 0.01",
     "assess run building.xlsx --method own.toml --template my-templates",
+    "assess run building.xlsx --city",
 )
 
 FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz")
@@ -79,6 +80,14 @@ def command(
         typer.Option(
             "--ideal",
             help="Adopt the chance if exactly this motion recurred, every piece exactly as given: without uncertainty.",
+        ),
+    ] = False,
+    city: Annotated[
+        bool,
+        typer.Option(
+            "--city",
+            help="Draw earthquakes by the building's place, as assess portfolio does: repeats a building of a "
+            "portfolio to the same numbers.",
         ),
     ] = False,
     methods: Annotated[
@@ -132,7 +141,7 @@ def command(
         raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
     settings = read_settings(
         verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal, scale_motions=scale_motions,
-        route_risk=route_risk, anchor=anchor,
+        route_risk=route_risk, anchor=anchor, city=city,
     )  # fmt: skip
     _check_folder(folder, wanted)
     options = _read_options(language, templates, accessible)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest, truncnorm
 
+from assess.motion.spatial_field import correlate
 from assess.risk import wilson_interval
 from assess.rocking import block
 from assess.rocking.draws import (
@@ -16,6 +17,8 @@ from assess.rocking.draws import (
     CUT,
     HEIGHT,
     RESTITUTION,
+    SHARED,
+    Earthquakes,
     Uncertainty,
     draw_bodies,
     draw_earthquakes,
@@ -140,3 +143,61 @@ def test_intervals_of_200_draws_cover_a_known_chance_in_93_to_97_percent(chance)
     low, high = wilson_interval(fallen, 200)
     covered = ((low <= chance) & (chance <= high)).mean()
     assert 0.93 <= covered <= 0.97, covered
+
+
+# --- one earthquake for many places ---
+
+MARKET_STREET, OAKLAND, SAN_JOSE = (37.7893, -122.4008), (37.8044, -122.2712), (37.3382, -121.8863)
+MANY = 16_384
+"""Draws whose waves are all kept at once."""
+
+
+def test_without_a_place_or_scenarios_a_building_takes_the_common_number():
+    assert np.array_equal(Earthquakes().draw(1, 0, 300), draw_earthquakes(1, 0, 300))
+    assert np.array_equal(Earthquakes(shared=0.1).draw(1, 0, 300), draw_earthquakes(1, 0, 300))
+
+
+def test_the_share_of_the_variance_that_places_have_in_common_is_that_of_boore_2014():
+    assert pytest.approx(0.331, abs=0.0005) == SHARED
+    assert pytest.approx(0.348**2 / (0.348**2 + 0.495**2)) == SHARED
+
+
+@pytest.mark.parametrize(("place", "distance"), [(OAKLAND, 11.51), (SAN_JOSE, 67.4)])
+def test_numbers_of_two_places_have_a_common_part_and_one_by_distance(place, distance):
+    one, other = (Earthquakes(place=at).draw(1, 0, MANY) for at in (MARKET_STREET, place))
+    wanted = SHARED + (1 - SHARED) * float(correlate(np.array(distance)))
+    assert np.corrcoef(one, other)[0, 1] == pytest.approx(wanted, abs=4 / math.sqrt(MANY))
+
+
+def test_each_place_has_the_mean_and_spread_of_a_normal_number_cut_at_three():
+    found = Earthquakes(place=OAKLAND).draw(1, 0, MANY)
+    assert found.mean() == pytest.approx(0, abs=4 / math.sqrt(MANY))
+    assert found.std() == pytest.approx(1, abs=0.03)
+    assert np.abs(found).max() == CUT
+
+
+def test_a_number_depends_on_seed_draw_and_place_alone():
+    alone = Earthquakes(place=OAKLAND).draw(1, 0, 600)
+    for other in (MARKET_STREET, SAN_JOSE):
+        Earthquakes(place=other).draw(1, 0, 600)
+    assert np.array_equal(Earthquakes(place=OAKLAND).draw(1, 300, 37), alone[300:337])
+    assert not np.array_equal(Earthquakes(place=OAKLAND).draw(2, 0, 600), alone)
+
+
+def test_scenarios_come_in_their_order_again_and_again():
+    given = (-1.2, 0.3, 0.9)
+    found = Earthquakes(given=given, given_share=1.0).draw(1, 0, 7)
+    assert found.tolist() == [*given, *given, -1.2]
+    assert Earthquakes(given=given, given_share=1.0).draw(1, 5, 2).tolist() == [0.9, -1.2]
+
+
+def test_scenarios_carry_their_share_of_the_variance_and_the_rest_is_drawn():
+    given = tuple(draw_earthquakes(9, 0, 500).tolist())
+    found = Earthquakes(given=given, given_share=0.6).draw(1, 0, MANY)
+    scenario = np.resize(given, MANY)
+    assert np.corrcoef(found, scenario)[0, 1] == pytest.approx(math.sqrt(0.6), abs=0.02)
+    assert found.std() == pytest.approx(1, abs=0.05)
+
+
+def test_a_scenario_beyond_three_standard_deviations_is_cut():
+    assert Earthquakes(given=(5.0, -4.0), given_share=1.0).draw(1, 0, 2).tolist() == [CUT, -CUT]

@@ -1,0 +1,142 @@
+"""A building of a city: its draws are those of its place, the same alone as among others, and cover the scenarios."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import assess
+from assess.errors import InputError
+from assess.i18n import fill
+from assess.motion.site_ground import SiteGround
+from assess.pipeline.city_draws import check_draws, choose_runs, find_earthquakes, number_pieces
+from assess.pipeline.draw_sums import sum_draws
+from assess.pipeline.run import build_results, compute
+from assess.rocking.draws import SHARED, Earthquakes, Uncertainty
+from assess.settings import Settings
+from tests.workbooks import write
+
+CITY = Settings(city=True, runs=40, seed=5)
+ITEMS = [{"item": "A", "floor": "1", "axis": "X", "breadth": 40, "width": 90, "height": 180}]
+FLOORS = [{"floor": "1", "pfa_x": 0.45}]
+PLACE = {"latitude": 37.79, "longitude": -122.40}
+OTHER = {"latitude": 37.34, "longitude": -121.89}
+MAP = SiteGround(
+    kind="shakemap", file="grid.xml", sha256="00", pga=1.5, dispersion=0.3, dispersion_source=fill("the map"),
+    shared=0.2,
+)  # fmt: skip
+SCENARIOS = replace(MAP, kind="scenarios", file="gmf-data.csv", shared=None, scenarios=(-1.0, 0.0, 1.0))
+TOTAL = Uncertainty(motion=0.5)
+"""0.4 of the building's own and 0.3 of the ground."""
+
+
+def inventory(folder, ground=None, name="w.xlsx", **building):
+    read = assess.read_inventory(write(folder / name, ITEMS, FLOORS, **{"period": 0.8} | building))
+    return replace(read, site_ground=ground)
+
+
+def assessed(folder, settings=CITY, **building):
+    assessment = compute(inventory(folder, **building), settings)
+    return assessment, build_results(assessment, figures=False)
+
+
+# --- which earthquake ---
+
+
+def test_a_building_alone_takes_one_number_for_every_place(tmp_path):
+    found = find_earthquakes(inventory(tmp_path, **PLACE), Settings(), Uncertainty())
+    assert found == Earthquakes(place=None, shared=SHARED)
+
+
+def test_a_building_of_a_city_draws_by_its_place(tmp_path):
+    found = find_earthquakes(inventory(tmp_path, **PLACE), CITY, Uncertainty())
+    assert found.place == (37.79, -122.40)
+    assert find_earthquakes(inventory(tmp_path), CITY, Uncertainty()).place is None
+
+
+def test_the_share_of_all_places_is_that_of_the_map_where_it_tells(tmp_path):
+    found = find_earthquakes(inventory(tmp_path, MAP, **PLACE), CITY, TOTAL)
+    assert found == Earthquakes(place=(37.79, -122.40), shared=0.2)
+    blank = find_earthquakes(inventory(tmp_path, replace(MAP, shared=None), **PLACE), CITY, TOTAL)
+    assert blank.shared == SHARED
+
+
+@pytest.mark.parametrize("settings", [Settings(), CITY])
+def test_scenarios_carry_the_variance_of_the_ground_and_the_building_s_own_is_drawn(settings, tmp_path):
+    found = find_earthquakes(inventory(tmp_path, SCENARIOS, **PLACE), settings, TOTAL)
+    assert found.given == (-1.0, 0.0, 1.0)
+    assert found.given_share == pytest.approx(0.3**2 / (0.4**2 + 0.3**2))
+
+
+def test_scenarios_of_a_building_without_uncertainty_of_its_own_decide_alone(tmp_path):
+    found = find_earthquakes(
+        inventory(tmp_path, SCENARIOS, motion_uncertainty=0.0, **PLACE), CITY, Uncertainty(motion=0.3)
+    )
+    assert found.given_share == 1
+    assert found.draw(1, 0, 4).tolist() == [-1, 0, 1, -1]
+
+
+def test_scenarios_that_serve_no_floor_decide_nothing(tmp_path):
+    """The motion is then as uncertain as the building's own says."""
+    found = find_earthquakes(inventory(tmp_path, SCENARIOS, **PLACE), CITY, Uncertainty())
+    assert (found.given, found.given_share) == ((), 0)
+
+
+# --- how many draws ---
+
+
+@pytest.mark.parametrize(("scenarios", "runs"), [(0, 200), (1, 200), (3, 201), (150, 300), (200, 200), (777, 777)])
+def test_every_scenario_counts_alike_in_at_least_200_draws(scenarios, runs):
+    assert choose_runs(scenarios) == runs
+
+
+def test_a_number_of_draws_that_was_asked_for_has_to_fit():
+    assert choose_runs(0, 64) == 64
+    assert choose_runs(0, "auto") == "auto"
+    assert choose_runs(32, 64) == 64
+    with pytest.raises(
+        InputError, match=r"runs is 100, expected a multiple of 32.* or set it to 224\."
+    ):
+        choose_runs(32, 100)
+    with pytest.raises(InputError, match="runs is auto, expected a multiple of 32"):
+        choose_runs(32, "auto")
+
+
+def test_more_scenarios_than_draws_are_refused():
+    with pytest.raises(InputError, match=r"5,001 scenarios, expected at most 5,000\. Keep fewer events"):
+        choose_runs(5001)
+
+
+def test_a_run_refuses_draws_that_do_not_fit(tmp_path):
+    read = inventory(tmp_path, SCENARIOS, **PLACE)
+    with pytest.raises(InputError, match=r"runs is 40, expected a multiple of 3"):
+        compute(read, CITY)
+    with pytest.raises(InputError, match=r"all buildings of a city need the same draws\. Set runs to a number"):
+        compute(inventory(tmp_path), Settings(city=True, runs="auto"))
+    check_draws(read, replace(CITY, verify="none"))
+
+
+# --- numbers ---
+
+
+def test_pieces_of_different_places_draw_independently_in_a_city_only(tmp_path):
+    one, other = (inventory(tmp_path, name=f"{n}.xlsx", **place) for n, place in enumerate((PLACE, OTHER)))
+    assert number_pieces(one, Settings()) == number_pieces(other, Settings())
+    assert number_pieces(one, CITY) != number_pieces(other, CITY)
+    nowhere = inventory(tmp_path)
+    assert number_pieces(nowhere, CITY) == number_pieces(nowhere, Settings())
+
+
+@pytest.mark.slow
+def test_a_building_has_the_same_draws_alone_and_after_others(tmp_path):
+    before = sum_draws(*assessed(tmp_path, **PLACE)).falls
+    other = sum_draws(*assessed(tmp_path, **OTHER)).falls
+    again = sum_draws(*assessed(tmp_path, **PLACE)).falls
+    assert before.tobytes() == again.tobytes()
+    assert not np.array_equal(before, other)
+
+
+def test_a_place_changes_what_is_drawn_but_a_building_alone_ignores_it(tmp_path):
+    alone = [assessed(tmp_path, replace(CITY, city=False), **place)[1]["A"] for place in (PLACE, OTHER)]
+    assert alone[0].adopted == alone[1].adopted
+    assert sum_draws(*assessed(tmp_path, **PLACE)).falls.sum() > 0
