@@ -66,7 +66,7 @@ class Building:
 
     Lengths in m, `period` in s, accelerations in m/s2, velocities in m/s, `azimuth_deg` clockwise from north,
     `latitude` and `longitude` in degrees, north and east positive. `shaking` is a key of `assess.intensity.SHAKINGS`,
-    `hazard` the name of the file with the curve.
+    `shakemap` and `hazard` are the names of files: of the grid of a ShakeMap, and of the curve.
     `motion_uncertainty` is a standard deviation of the natural logarithm of PFA [-], `piece_uncertainty` whether pieces
     vary from one simulated earthquake to the next; None where blank. `cells` tells in which cell of the sheet a field
     stands.
@@ -94,6 +94,7 @@ class Building:
     ground_pga: float | None = None
     ground_pgv: float | None = None
     sds: float | None = None
+    shakemap: str = ""
     shaking: str = ""
     hazard: str = ""
     friction: float | None = None
@@ -388,7 +389,7 @@ class Inventory:
     photos : mapping of str to bytes
         Photos of pieces as small JPEGs, by what the field `photo` in `Item.more` names.
     files : mapping of str to str
-        Hashes (SHA-256) of the recorded motions and of the hazard curve, by name.
+        Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
     language : str
         Code of the workbook's language: that of more than half of the sheets it has, by their names; else English.
     sheets : mapping of str to str

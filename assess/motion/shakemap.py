@@ -167,7 +167,7 @@ class ShakeMap:
             (fill("File of uncertainties"), self._cite_uncertainty()),
         )
         yield from ((label, fill("{text}", text=text)) for label, text in listed if text)
-        speed = read("SVEL") if "SVEL" in self.grid.fields else math.nan
+        speed = read("SVEL", logarithmic=True) if "SVEL" in self.grid.fields else math.nan
         if speed > 0:
             value = fill("{speed:.0f} m/s; its effect is in the map and is not applied again", speed=speed)
             yield fill("Vs30 of the map at the building"), value

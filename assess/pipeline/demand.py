@@ -3,9 +3,10 @@
 Precedence, as filled: a floor's record on an axis, then its given PFA and PFV. Where one axis alone is known it serves
 both, flagged ``one_axis_only``. A floor of which nothing is known is interpolated between the nearest floors above and
 below of which something is, flagged ``interpolated``; where it does not lie between two such, a code's profile serves
-it from Ground PGA, flagged ``code_profile``: else from 0.4 SDS, else from the published median of an assumed intensity
+it from Ground PGA, flagged ``code_profile``: else from 0.4 SDS, else from the median of a ShakeMap or of computed
+scenarios at the building, flagged ``shakemap`` or ``scenarios``, else from the published median of an assumed intensity
 (Shaking), flagged ``assumed_shaking``. A PFV that is not given is estimated from T1, flagged ``pfv_estimated``; where
-Ground PGV is known, or that of the assumed intensity, a larger estimate is capped by it, flagged ``pfv_capped``.
+Ground PGV is known, or that of the map or the intensity, a larger estimate is capped by it, flagged ``pfv_capped``.
 """
 
 import math
@@ -20,6 +21,7 @@ from assess.intensity import SHAKINGS, Shaking
 from assess.model import AXES, Axis, Floor, FloorRecord, Inventory
 from assess.motion.record import Motion, Record, treat
 from assess.motion.scenario import DEFAULT, PGA_OF_SDS, PROFILES, Profile, cap_pfv, estimate_pfv
+from assess.motion.site_ground import SiteGround
 from assess.motion.storeys import assume_elevation
 from assess.progress import SILENT, Progress
 from assess.results import MOTION_FLAGS
@@ -52,6 +54,8 @@ class Demand:
         The code's profile, with its clause, the height ratio z/h and the amplification [-] that it gave.
     shaking : Shaking, optional
         The assumed intensity from which the profile starts.
+    site : SiteGround, optional
+        The ShakeMap or the scenarios from which it starts.
     flags : tuple of str
         Keys of `assess.results.MOTION_FLAGS`.
     scale : float
@@ -72,6 +76,7 @@ class Demand:
     height_ratio: float | None = None
     amplification: float | None = None
     shaking: Shaking | None = None
+    site: SiteGround | None = None
     flags: tuple[str, ...] = ()
     scale: float = 1.0
 
@@ -100,6 +105,9 @@ class Demand:
             return fill("interpolated between {below} and {above}", below=below, above=above)
         if self.profile and self.shaking:
             return fill("Shaking {intensity}, {code}", intensity=self.shaking.name, code=self.profile.key)
+        if self.profile and self.site:
+            from_map = fill("ShakeMap, {code}", code=self.profile.key)
+            return from_map if self.site.kind == "shakemap" else fill("scenarios, {code}", code=self.profile.key)
         return self.profile.key if self.profile else self.name or fill("given")
 
     @property
@@ -127,7 +135,7 @@ class Ground:
     Parameters
     ----------
     pga : float, optional
-        Peak ground acceleration [m/s2]; None where the workbook gives neither Ground PGA nor SDS nor Shaking.
+        Peak ground acceleration [m/s2]; None where nothing gives it: Ground PGA, SDS, a ShakeMap, scenarios, Shaking.
     is_from_sds : bool
         Whether it is 0.4 SDS.
     roof : float, optional
@@ -138,6 +146,8 @@ class Ground:
         Peak ground velocity [m/s] as filled in, which caps the PFV that is estimated from T1.
     shaking : Shaking, optional
         The assumed intensity that `pga` is the median of; its PGV caps as `pgv` does, on floors that follow a profile.
+    site : SiteGround, optional
+        The ShakeMap or the scenarios whose median `pga` is, likewise.
     storeys : int, optional
         Storeys above ground, from which the elevations of numbered floors are assumed; None where a floor has its own.
     """
@@ -148,12 +158,14 @@ class Ground:
     is_highest_floor: bool
     pgv: float | None = None
     shaking: Shaking | None = None
+    site: SiteGround | None = None
     storeys: int | None = None
 
     @property
     def profile_pgv(self) -> float | None:
-        """Peak ground velocity [m/s] that belongs to `pga`: as filled in, else that of the assumed intensity."""
-        return self.shaking.pgv if self.pgv is None and self.shaking else self.pgv
+        """Peak ground velocity [m/s] that belongs to `pga`: as filled in, else of the map or the assumed intensity."""
+        source = self.site or self.shaking
+        return source.pgv if self.pgv is None and source else self.pgv
 
     def place(self, floor: Floor) -> tuple[float | None, tuple[str, ...]]:
         """Return the elevation of a floor [m] with its flags: as filled in, else by Storeys and Height, else None."""
@@ -169,14 +181,17 @@ def find_ground(inventory: Inventory) -> Ground:
     highest = max((floor.elevation for floor in inventory.floors if floor.elevation is not None), default=None)
     by_sds = building.ground_pga is None and building.sds is not None
     pga = PGA_OF_SDS * building.sds if by_sds and building.sds is not None else building.ground_pga
-    shaking = SHAKINGS.get(building.shaking) if pga is None else None
+    site = inventory.site_ground if pga is None else None
+    shaking = SHAKINGS.get(building.shaking) if pga is None and site is None else None
+    found = site or shaking
     return Ground(
-        pga=shaking.pga if shaking else pga,
+        pga=found.pga if found else pga,
         is_from_sds=by_sds,
         roof=building.height if building.height is not None or highest is None else max(highest, 0.0),
         is_highest_floor=building.height is None,
         pgv=building.ground_pgv,
         shaking=shaking,
+        site=site,
         storeys=building.storeys if highest is None else None,
     )
 
@@ -240,6 +255,12 @@ def find_shaking(demands: Demands) -> Shaking | None:
     """Return the assumed intensity that serves a floor, of which a run has one at most."""
     found = find_assumed(demands)
     return None if found is None else found[0]
+
+
+def find_site(demands: Demands) -> tuple[SiteGround, Profile] | None:
+    """Return the ShakeMap or the scenarios that serve a floor, of which a run has one at most, and the profile."""
+    every = (one for parallel in demands.values() for one in parallel)
+    return next(((one.site, one.profile) for one in every if one.site and one.profile), None)
 
 
 def scale_demands(demands: Demands, factor: float) -> Demands:
@@ -345,11 +366,11 @@ def serve_by_profile(
     amplification = profile.amplification(ratio, period, ductility_reduction=ductility_reduction)
     pfa = ground.pga * amplification
     pfv, flags = _velocity(pfa, math.nan, period, ground.profile_pgv)
-    assumed = ("assumed_shaking",) if ground.shaking else ()
+    assumed = ("assumed_shaking",) if ground.shaking else (ground.site.kind,) if ground.site else ()
     one = Demand(
         floor=floor, axis="X", source="profile", pfa=pfa, pfv=pfv, flags=("code_profile", *assumed, *placed, *flags),
         profile=profile, clause=profile.cite(period), height_ratio=ratio, amplification=amplification,
-        shaking=ground.shaking,
+        shaking=ground.shaking, site=ground.site,
     )  # fmt: skip
     return {"X": (one,), "Y": (replace(one, axis="Y"),)}
 
@@ -360,7 +381,7 @@ def serve_by_profile(
 def _check_ground(inventory: Inventory, scenario: str, ground: Ground) -> Iterable[Problem]:
     if scenario in PROFILES and ground.pga is None:
         message = fill(
-            "Ground PGA, SDS and Shaking are blank; the scenario '{scenario}' needs one of them.",
+            "Ground PGA, SDS, ShakeMap file and Shaking are blank; the scenario '{scenario}' needs one of them.",
             scenario=fill(scenario),
         )
         fix = fill("Fill in Ground PGA, choose Shaking, or choose another scenario.")

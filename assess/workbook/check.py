@@ -12,6 +12,7 @@ from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES
 from assess.motion.storeys import find_storey
 from assess.units import ROUNDING
+from assess.workbook.ground_files import SHAKEN
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turned_axis
@@ -167,13 +168,16 @@ def _report_alternative(table: Table, row: Row) -> Problem:
     return table.problem("detail", row, message, fix, "warning")
 
 
-def check_floors(tables: Tables) -> Iterator[Problem]:
-    """Check the names of the floors, and that something tells how each shakes, whatever the scenario."""
+def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem]:
+    """Check the names of the floors, and that something tells how each shakes, whatever the scenario.
+
+    `is_shaken`: whether the ground's motion is given for the run.
+    """
     table = tables["Floors"]
     yield from check_unique(table)
     yield from check_wildcards(table)
     building = tables["Building"]  # what is filled in there counts, be it usable or not
-    has_ground = any(building.says(row, "ground_pga", "sds", "shaking") for row in building.rows)
+    has_ground = is_shaken or any(building.says(row, *SHAKEN) for row in building.rows)
     has_storeys = any(building.says(row, "height") and building.says(row, "storeys") for row in building.rows)
     has_storeys = has_storeys and not any(table.says(row, "elevation") for row in table.rows)
     yield from _check_demands(table, has_ground=has_ground, has_storeys=has_storeys)
@@ -204,7 +208,7 @@ def describe_unserved(floor: str, *, has_elevation: bool) -> tuple[Text, Text]:
     if has_elevation:
         message = fill(
             "floor {floor} has neither a record nor a PFA, lies between no two floors that have one and an Elevation, "
-            "and Building gives neither Ground PGA nor SDS nor Shaking.",
+            "and Building gives neither Ground PGA nor SDS nor a ShakeMap file nor Shaking.",
             floor=floor,
         )
         fix = fill("Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building.")

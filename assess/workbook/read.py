@@ -3,15 +3,18 @@
 import hashlib
 import json
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import fill
 from assess.model import Cost, Inventory, Place, Segment
+from assess.motion.site_ground import GroundField
 from assess.progress import SILENT, Progress, Stage
 from assess.workbook import check, check_routes
 from assess.workbook.check import Check
+from assess.workbook.ground_files import fill_building, replace_ground
 from assess.workbook.held import HeldSheets, hold_cells
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.names import ENGLISH, find_near, find_sheet, key, plain, translate, versions
@@ -42,6 +45,8 @@ def read_inventory(
     source: str | Path | bytes | Rows,
     *,
     records: Mapping[str, bytes] | str | Path | None = None,
+    building: Mapping[str, Any] | None = None,
+    ground: GroundField | None = None,
     strict: bool = True,
     progress: Progress = SILENT,
 ) -> Inventory:
@@ -56,6 +61,11 @@ def read_inventory(
     records : mapping of str to bytes, or path of a folder, optional
         The recorded motions and pictures that the workbook names: their bytes by name, or the folder that holds them.
         By default they are looked for in the folder of the workbook.
+    building : mapping of str to Any, optional
+        Values for the lines of Building that the workbook leaves blank, as rows in code have them.
+    ground : GroundField, optional
+        The ground motion of the run, such as a `assess.motion.shakemap.ShakeMap`: at Latitude and Longitude it takes
+        the place of Ground PGA, SDS, Ground PGV, ShakeMap file and Shaking. Floors keep a motion of their own.
     strict : bool
         Whether an error stops the reading. If not, faulty rows are left out, and `Inventory.problems` holds the errors.
     progress : Progress
@@ -75,10 +85,13 @@ def read_inventory(
     path = Path(source) if isinstance(source, str | Path) else Path(IN_CODE)
     files = Path(records) if isinstance(records, str | Path) else records
     with progress.stage("reading", path.name) as stage:
-        return progress.wait_for(lambda: _read(source, path, files, stage, strict=strict))
+        return progress.wait_for(lambda: _read(source, path, files, stage, building, ground, strict=strict))
 
 
-def _read(source: str | Path | bytes | Rows, path: Path, files: Files, stage: Stage, *, strict: bool) -> Inventory:
+def _read(
+    source: str | Path | bytes | Rows, path: Path, files: Files, stage: Stage, building: Mapping[str, Any] | None,
+    ground: GroundField | None, *, strict: bool,
+) -> Inventory:  # fmt: skip
     data = read_file(path) if isinstance(source, str | Path) else source if isinstance(source, bytes) else None
     if isinstance(source, Mapping):
         tables, problems = _tables_in_code(source)
@@ -88,8 +101,12 @@ def _read(source: str | Path | bytes | Rows, path: Path, files: Files, stage: St
     stage.at(0.5)
     if files is None and isinstance(source, str | Path):
         files = path.resolve().parent
-    reader = FileReader(files, stage.progress)
+    reader = FileReader(files, stage.progress, ground=ground)
     pictures = PictureReader(reader.folder, stage.progress)
+    tables, problems = fill_building(tables, problems, building)
+    if ground is not None:
+        tables, notes = replace_ground(tables, ground)
+        problems += notes
     tables, problems = _check(tables, problems, _checks(reader, pictures), strict=strict)
     return _make(path, hashlib.sha256(hashed).hexdigest(), data, tables, problems, reader, pictures)
 
@@ -284,9 +301,10 @@ def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
     return (
         pictures.check_logo,
         files.check_hazard,
+        files.check_ground,
         check.check_catalogue,
         check.check_costs,
-        check.check_floors,
+        partial(check.check_floors, is_shaken=files.ground is not None),
         files.check_records,
         check.check_velocities,
         pictures.check_plans,
@@ -343,6 +361,7 @@ def _build(tables: Tables, files: FileReader, pictures: PictureReader) -> dict[s
         "catalogue": catalogue,
         "costs": build_rows(Cost, tables["Costs"], "detail", "unit_cost"),
         "hazard": files.hazard,
+        "site_ground": files.site_ground,
         "photos": pictures.photos,
         "extra_columns": tables["Items"].extra,
         "files": files.hashes,

@@ -19,8 +19,12 @@ from assess.i18n import fill
 from assess.model import AXES, NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
 from assess.motion.formats import is_archive, parse_records, read_bytes, select
 from assess.motion.record import Record
+from assess.motion.shakemap import ShakeMap, name_uncertainty, parse_shakemap
+from assess.motion.shakemap import read_file as read_grid_file
+from assess.motion.site_ground import GroundField, SiteGround
 from assess.progress import Progress
 from assess.workbook.allowance import Allowance
+from assess.workbook.ground_files import STRONGER, GroundReader, report_unplaced
 from assess.workbook.habits import CellError
 from assess.workbook.kept_files import KeptFiles, find_key
 from assess.workbook.parse import Row, Table, Tables
@@ -45,19 +49,25 @@ class FileReader:
         Checked before every file, and every member of an archive.
     kept : KeptFiles, optional
         What earlier readings of the workbook made of its files.
+    ground : GroundField, optional
+        The ground motion of the run, in place of the workbook's own.
 
     Attributes
     ----------
     hashes : dict of str to str
-        SHA-256 of the recorded motions and of the hazard curve, by the name of the file.
+        SHA-256 of the recorded motions, of the hazard curve and of the ShakeMap, by the name of the file.
     hazard : HazardCurve, optional
         The hazard curve of the site.
+    site_ground : SiteGround, optional
+        How the ground shakes at the building by a ShakeMap or scenarios.
     records : dict
         The recorded motions of the floors, by the number of their row and axis.
     """
 
-    def __init__(self, files: Files, progress: Progress, kept: KeptFiles | None = None) -> None:
-        self.kept = kept or KeptFiles()
+    def __init__(
+        self, files: Files, progress: Progress, kept: KeptFiles | None = None, ground: GroundField | None = None
+    ) -> None:
+        self.kept, self.ground = kept or KeptFiles(), ground
         self.folder = files.resolve() if isinstance(files, Path) else None
         given = files if isinstance(files, Mapping) else {}
         self.given = {posixpath.normpath(_posix(name)): data for name, data in given.items()}
@@ -65,6 +75,7 @@ class FileReader:
         self.hashes: dict[str, str] = {}
         self.records: dict[tuple[int, Axis], tuple[FloorRecord, ...]] = {}
         self.hazard: HazardCurve | None = None
+        self.site_ground: SiteGround | None = None
         self._read: dict[str, tuple[tuple[Record, ...] | CellError, str]] = {}
         self._allowance = Allowance()
 
@@ -100,6 +111,54 @@ class FileReader:
         curve: HazardCurve
         curve, self.hashes[file] = found
         return curve
+
+    def check_ground(self, tables: Tables) -> Iterator[Problem]:
+        """Find the ground motion of the run, or of the ShakeMap that is named, at the building, or report a fault."""
+        if self.ground is not None:
+            yield from self._place(tables, GroundReader(self.ground))
+            return
+        table = tables["Building"]
+        for row in table.with_all("shakemap"):
+            try:
+                map_ = self._read_shakemap(row.get("shakemap"))
+            except CellError as error:
+                yield table.problem("shakemap", row, error.message, error.fix)
+                continue
+            if table.says(row, *STRONGER):
+                continue
+            if table.lacks(row, "latitude") or table.lacks(row, "longitude"):
+                yield from report_unplaced(table, row)
+                continue
+            yield from self._place(tables, GroundReader(map_, "shakemap"))
+
+    def _place(self, tables: Tables, reader: GroundReader) -> Iterator[Problem]:
+        yield from reader.check(tables)
+        self.site_ground = reader.found
+
+    def _read_shakemap(self, file: str) -> ShakeMap:
+        content, address = self._find(file)
+        beside = self._find_beside(file)
+        keys = [None if one is None else find_key(one, "shakemap") for one in (content, beside[0])]
+        key = None if keys[0] is None else (*keys[0], keys[1])
+        found = self.kept.take(key, self._allowance, lambda: _parse_shakemap(content, address, *beside))
+        if isinstance(found, CellError):
+            raise found
+        map_: ShakeMap = found
+        self.hashes[file] = map_.grid_sha256
+        if map_.uncertainty_file:
+            self.hashes[beside[1]] = map_.uncertainty_sha256
+        return map_
+
+    def _find_beside(self, file: str) -> tuple[bytes | Path | None, str]:
+        """Return the file of uncertainties beside the grid of a ShakeMap, and its name; None where there is none."""
+        folder, _, name = _posix(file).rpartition("/")
+        for one in name_uncertainty(name):
+            path = f"{folder}/{one}" if folder else one
+            try:
+                return self._find(path)[0], path
+            except CellError:
+                continue
+        return None, ""
 
     def check_records(self, tables: Tables) -> Iterator[Problem]:
         """Read the recorded motions of the floors, or report what is wrong with them or with their direction."""
@@ -209,6 +268,19 @@ def _parse_hazard(
         fix = fill("Correct the file, or give a CSV file with the columns pga_g,annual_rate.")
         return CellError(fill("the hazard curve cannot be used: {why}.", why=error.message), fix)
     return curve, hashlib.sha256(data).hexdigest()
+
+
+def _parse_shakemap(
+    content: bytes | Path, address: str, beside: bytes | Path | None, beside_name: str
+) -> ShakeMap | CellError:
+    """Return the map of a file and of that of uncertainties beside it; what is wrong where it cannot be used."""
+    try:
+        data, more = (read_grid_file(one) if isinstance(one, Path) else one for one in (content, beside))
+        name, other = (PurePosixPath(_posix(one)).name for one in (address, beside_name))
+        return parse_shakemap(data or b"", name, uncertainty=more, uncertainty_name=other)
+    except InputError as error:
+        fix = fill("Give the grid.xml of a ShakeMap as the USGS publishes it, unchanged.")
+        return CellError(fill("the ShakeMap cannot be used: {why}.", why=error.message), fix)
 
 
 def _check_direction(

@@ -112,6 +112,10 @@ class Sheet:
     help: str
     columns: tuple[Column, ...]
 
+    def __hash__(self) -> int:
+        """Return a hash of its name: those of all columns would be found anew in each look-up of a cache."""
+        return hash(self.name)
+
     def column(self, name: str) -> Column:
         """Return the column with this field name."""
         return next(column for column in self.columns if column.name == name)
@@ -140,8 +144,8 @@ BUILDING = Sheet(
     (
         Column("building", "Building", "text", "Name of the building.", width=40),
         Column("address", "Address", "text", "Street and town."),
-        Column("latitude", "Latitude", "number", "Of the site, north positive: with Longitude, to find it in a Hazard "
-               "file of many sites.", **_DEGREES | {"low": -90, "high": 90}),
+        Column("latitude", "Latitude", "number", "Of the site, north positive: with Longitude, to find it in a "
+               "ShakeMap file, or in a Hazard file of many sites.", **_DEGREES | {"low": -90, "high": 90}),
         Column("longitude", "Longitude", "number", "Of the site, east positive.", **_DEGREES | {"low": -180, "high": 180}),
         Column("use", "Use", "text", "What the building is used for: choose from the list, or type your own.",
                offered=USES),
@@ -171,6 +175,9 @@ BUILDING = Sheet(
                **_GROUND_VELOCITY),
         Column("sds", "SDS", "number", "Design spectral acceleration at short periods: 0.4 SDS stands in for a blank "
                "Ground PGA.", **_ACCELERATION),
+        Column("shakemap", "ShakeMap file", "file", "grid.xml of a ShakeMap (USGS) beside the workbook, with its "
+               "uncertainty.xml where there is one: gives the ground motion at Latitude and Longitude where Ground PGA and "
+               "SDS are blank."),
         Column("shaking", "Shaking", "choice", "If you know none of these: the intensity of the shaking, MMI or JMA (Japan). "
                "Its published median PGA and PGV serve every floor without a motion of its own; the reports say so.",
                choices=tuple(SHAKINGS), default="no shaking is assumed"),
@@ -270,6 +277,8 @@ ITEMS = Sheet(
                quantity="force", unit="kN", imperial="lbf", low=0.01, high=200, default="not known", width=9),
         Column("photo", "Photo", "file", "Picture of the piece beside the workbook (PNG or JPEG), for the list of what "
                "to fix.", width=16),
+        Column("source_id", "Source ID", "text", "Of the piece in the building model or handover file that it was imported "
+               "from.", width=24),
         Column("notes", "Notes", "text", "Anything else.", width=30),
     ),
 )  # fmt: skip
