@@ -1,0 +1,260 @@
+"""The index of a portfolio: a CSV file that lists buildings, and fills in what their workbooks leave blank."""
+
+import csv
+import difflib
+import io
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from assess.errors import InputError
+from assess.i18n import Text, fill, join
+from assess.motion.formats.plain_csv import decode, is_comment
+from assess.plain_text import plain_line
+from assess.workbook.schema import BUILDING
+
+LARGEST_FILE = 64_000_000
+"""Bytes: some hundred thousand rows."""
+MOST_ROWS = 200_000
+LONGEST = 4000
+"""Characters of a cell."""
+MOST_FAULTS = 20
+"""Faults that one message lists."""
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+_FIELDS: Mapping[str, str] = {
+    "latitude": "latitude", "longitude": "longitude", "storeys": "storeys", "height_m": "height",
+    "ground_pga_g": "ground_pga",
+}  # fmt: skip
+"""Numbers of the index, and the line of the sheet Building that each fills in, whose limits hold."""
+_LARGEST_AREA = 10_000_000.0
+"""Gross floor area [m2] above which a number is a slip."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IndexRow:
+    """One row of an index; "" and None where it is blank.
+
+    Parameters
+    ----------
+    line : int
+        Its line in the file.
+    path : str
+        The workbook, relative to the folder of the index; "" for a building without a survey.
+    building, use : str
+        Its name and its use.
+    latitude, longitude : float, optional
+        [deg], north and east positive.
+    storeys : int, optional
+        Above ground.
+    height_m, floor_area_m2, ground_pga_g : float, optional
+        Height above the ground, gross floor area, PGA of the ground.
+    """
+
+    line: int = 0
+    path: str = ""
+    building: str = ""
+    latitude: float | None = None
+    longitude: float | None = None
+    use: str = ""
+    storeys: int | None = None
+    height_m: float | None = None
+    floor_area_m2: float | None = None
+    ground_pga_g: float | None = None
+
+    def as_building(self) -> dict[str, Any]:
+        """Return what it fills in of the sheet Building, in the units of an empty workbook, blanks left out."""
+        values = {
+            "building": self.building,
+            "latitude": self.latitude,
+            "longitude": self.longitude,
+            "use": self.use,
+            "storeys": self.storeys,
+            "height": self.height_m,
+            "ground_pga": self.ground_pga_g,
+        }
+        return {name: value for name, value in values.items() if value not in (None, "")}
+
+
+COLUMNS = (
+    "path", "building", "latitude", "longitude", "use", "storeys", "height_m", "floor_area_m2", "ground_pga_g",
+)  # fmt: skip
+_TEXTS = ("path", "building", "use")
+
+
+def read_index(file: Path) -> tuple[IndexRow, ...]:
+    """Read an index, in the order of its rows.
+
+    Cells are separated by commas, semicolons or tabs, with the last two also with decimal commas; columns are found by
+    their names, in any order; lines that begin with # are comments.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, has another column than `COLUMNS`, a cell cannot be used, or a path or the name of a
+        building without one stands there twice; the message names the file and the line.
+    """
+    try:
+        rows = list(_read_rows(_split(_read_text(file))))
+        _check_names(rows)
+    except InputError as error:
+        raise InputError(join(": ", (plain_line(file.name), error.message))) from None
+    return tuple(rows)
+
+
+# ---------------------------------------------------------------- text to cells
+
+
+def _read_text(file: Path) -> str:
+    try:
+        with file.open("rb") as opened:
+            data = opened.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:  # ValueError: a zero character in the name
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(fill("the index cannot be read: {why}.", why=why)) from None
+    if len(data) > LARGEST_FILE:
+        raise InputError(fill("the index is larger than {most:.0f} MB. Split it.", most=LARGEST_FILE / 1e6))
+    if b"\0" in data or data.startswith((b"PK", b"\xff\xfe", b"\xfe\xff")):
+        raise InputError(fill("the index is not plain text. Save it as CSV UTF-8."))
+    return decode(data)
+
+
+def _split(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the cells of each line that is neither blank nor a comment, with its number."""
+    lines = (line for line in text.splitlines() if line.strip() and not is_comment(line))
+    heading = next(lines, "")
+    mark = next((one for one in "\t;" if one in heading), ",")
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
+    before = 0
+    try:
+        for cells in reader:
+            line, before = before + 1, reader.line_num
+            if any(cell.strip() for cell in cells) and not is_comment(cells[0]):
+                yield line, [_tidy(cell, mark, line) for cell in cells]
+    except csv.Error as error:
+        raise InputError(fill("line {line} cannot be read: {why}.", line=reader.line_num, why=error)) from None
+
+
+def _tidy(cell: str, mark: str, line: int) -> str:
+    if len(cell) > LONGEST:
+        raise InputError(fill("line {line}: a cell is longer than {most:,} characters.", line=line, most=LONGEST))
+    text = cell.strip()
+    is_decimal = mark != "," and re.fullmatch(r"[+-]?\d*,\d+(e[+-]?\d+)?", text, re.IGNORECASE | re.ASCII)
+    return text.replace(",", ".") if is_decimal else text
+
+
+# ---------------------------------------------------------------- cells to rows
+
+
+def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> Iterator[IndexRow]:
+    line, heading = next(lines, (1, []))
+    names = _read_heading(line, heading)
+    faults: list[Text] = []
+    rows = list(islice(lines, MOST_ROWS + 1))
+    if not rows:
+        raise InputError(fill("no building is listed below the headings."))
+    if len(rows) > MOST_ROWS:
+        raise InputError(fill("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS))
+    found = [_read_row(number, names, cells, faults) for number, cells in rows]
+    _raise(faults)
+    yield from found
+
+
+def _raise(faults: Sequence[Text]) -> None:
+    """Raise InputError with the first faults, if there are any."""
+    if faults:
+        more = (fill("and {n:,} more.", n=len(faults) - MOST_FAULTS),) if len(faults) > MOST_FAULTS else ()
+        raise InputError(join("\n", (*faults[:MOST_FAULTS], *more)))
+
+
+def _read_heading(line: int, heading: Sequence[str]) -> list[str]:
+    """Return the columns of the index in their order."""
+    names = [cell.lower() for cell in heading]
+    while names and not names[-1]:
+        names.pop()
+    for name, cell in zip(names, heading, strict=False):
+        if name not in COLUMNS:
+            raise InputError(_describe_unknown(line, name, cell))
+        if names.count(name) > 1:
+            raise InputError(fill("line {line}: the column {name} is there twice.", line=line, name=name))
+    if not {"path", "building"} & set(names):
+        raise InputError(
+            fill("line {line}: expected the column path, or building for buildings without a survey.", line=line)
+        )
+    return names
+
+
+def _describe_unknown(line: int, name: str, cell: str) -> Text:
+    fault = fill("line {line}: {name!r} is an unknown column", line=line, name=cell[:40])
+    near = difflib.get_close_matches(name, COLUMNS, 1, 0.6)
+    if near:
+        return join(". ", (fault, fill("Did you mean {name}?", name=near[0])))
+    return join(", ", (fault, fill("expected some of: {names}", names=", ".join(COLUMNS))))
+
+
+def _read_row(line: int, names: Sequence[str], cells: Sequence[str], faults: list[Text]) -> IndexRow:
+    """Return a row; what is wrong with it is added to `faults`."""
+    if any(cells[len(names) :]):
+        faults.append(fill("line {line}: there are more cells than headings.", line=line))
+    values: dict[str, Any] = {}
+    for name, text in zip(names, cells, strict=False):
+        if text and name in _TEXTS:
+            values[name] = text
+        elif text:
+            try:
+                values[name] = _read_number(name, text)
+            except InputError as error:
+                faults.append(join(": ", (fill("line {line}", line=line), error.message)))
+    if not values.get("path") and not values.get("building"):
+        faults.append(fill("line {line}: give a path, or the name of a building without a survey.", line=line))
+    if (values.get("latitude") is None) != (values.get("longitude") is None):
+        faults.append(fill("line {line}: give both latitude and longitude, or neither.", line=line))
+    return IndexRow(line=line, **values)
+
+
+def _read_number(name: str, text: str) -> float | int:
+    """Return a number within the limits of the column; InputError if it is none."""
+    if not _NUMBER.fullmatch(text):
+        raise InputError(fill("{name} is {text!r}, not a number.", name=name, text=text[:40]))
+    low, high = _find_limits(name)
+    value = float(text)
+    if not low <= value <= high:
+        raise InputError(
+            fill("{name} is {value:g}, expected {low:g} to {high:g}.", name=name, value=value, low=low, high=high)
+        )
+    if name != "storeys":
+        return value
+    if value != int(value):
+        raise InputError(fill("{name} is {value:g}, expected a whole number.", name=name, value=value))
+    return int(value)
+
+
+def _find_limits(name: str) -> tuple[float, float]:
+    if name == "floor_area_m2":
+        return 1.0, _LARGEST_AREA
+    column = BUILDING.column(_FIELDS[name])
+    return column.low or 0.0, float("inf") if column.high is None else column.high
+
+
+def _check_names(rows: Sequence[IndexRow]) -> None:
+    """Raise InputError if a path, or the name of a building without one, stands there twice."""
+    paths = Counter(tidy_path(row.path) for row in rows if row.path)
+    names = Counter(row.building for row in rows if not row.path)
+    faults = []
+    for row in rows:
+        name = tidy_path(row.path) if row.path else row.building
+        if (paths if row.path else names)[name] > 1:
+            faults.append(fill("line {line}: {name!r} is listed more than once.", line=row.line, name=name[:80]))
+        elif not row.path and name in paths:
+            faults.append(fill("line {line}: {name!r} is also the path of a workbook.", line=row.line, name=name[:80]))
+    _raise(faults)
+
+
+def tidy_path(text: str) -> str:
+    """Return a path of the index with / alone, without empty parts and dots."""
+    parts = [one for one in text.replace("\\", "/").split("/") if one not in ("", ".")]
+    return ("/" if text.startswith(("/", "\\")) else "") + "/".join(parts)

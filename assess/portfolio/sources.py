@@ -1,0 +1,176 @@
+"""Which buildings a portfolio has: the workbooks of a folder, or the rows of an index.
+
+A name of a file is data: it is shown, and looked up below the folder, but never leads out of it. What cannot be used is
+a building as well, `refused` with the reason, so that it is reported and does not end the run.
+"""
+
+import errno
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from assess.errors import InputError
+from assess.i18n import Text, fill
+from assess.plain_text import plain_line
+from assess.portfolio.index_file import IndexRow, read_index, tidy_path
+
+ENDINGS = (".xlsx", ".xlsm")
+MOST_BUILDINGS = 200_000
+OURS = {"report.xlsx": "results.json", "ranking.xlsx": "portfolio.json", "compare.xlsx": "compare.json"}
+"""Workbooks that are results of `assess`, where the file that lists them lies next to them."""
+INDEX_ENDINGS = (".csv", ".txt", ".tsv")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """One building.
+
+    Parameters
+    ----------
+    path : str
+        What tables call it, unique: its workbook, relative to the folder, with /; or the name of a row of the index.
+    kind : "workbook" or "assumed"
+        Whether it has a workbook (also one of COBie), or its pieces are assumed by use and floor area.
+    file : Path, optional
+        The workbook.
+    index : IndexRow, optional
+        Its row of the index.
+    refused : Text
+        Why it cannot be used; "" if it can.
+    """
+
+    path: str
+    kind: Literal["workbook", "assumed"] = "workbook"
+    file: Path | None = None
+    index: IndexRow | None = None
+    refused: Text | str = ""
+
+
+def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
+    """Return the buildings of a folder, searched with the folders in it, or of an index, in the order of their paths.
+
+    Left out of a folder are hidden files and folders, lock files (~$), the folder `out` and results of `assess`. Links
+    to workbooks inside the folder count; links that lead out of it, and links to folders, are refused.
+
+    Parameters
+    ----------
+    source : Path
+        A folder, or an index (.csv).
+    out : Path, optional
+        Where results are written.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder or index, the index cannot be used, or there is no building in it.
+    """
+    root = _resolve(source)
+    if root.is_dir():
+        found = _search(root, None if out is None else _resolve(out))
+    elif source.suffix.lower() in ENDINGS:
+        text = "{path} is a workbook: name the folder that holds it, or assess it by itself with `assess run`."
+        raise InputError(fill(text, path=plain_line(str(source))))
+    elif root.is_file():
+        found = (_take_row(row, root.parent) for row in read_index(root))
+    else:
+        raise InputError(fill("{path} is neither a folder nor an index (.csv).", path=plain_line(str(source))))
+    listed = list(_take_first(found))
+    if not listed:
+        raise InputError(
+            fill("{path}: there is no workbook (.xlsx or .xlsm) in this folder.", path=plain_line(str(source)))
+        )
+    return tuple(sorted(listed, key=lambda one: one.path))
+
+
+def _resolve(path: Path) -> Path:
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError, ValueError) as error:  # links in a circle; a zero character
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(fill("{path} cannot be used: {why}.", path=plain_line(str(path)), why=why)) from None
+
+
+def _take_first(found: Iterable[Source]) -> Iterator[Source]:
+    for number, one in enumerate(found):
+        if number == MOST_BUILDINGS:
+            raise InputError(fill("there are more than {most:,} buildings. Split the folder.", most=MOST_BUILDINGS))
+        yield one
+
+
+# ---------------------------------------------------------------- a folder
+
+
+def _search(root: Path, out: Path | None) -> Iterator[Source]:
+    waiting = [root]
+    while waiting:
+        folder = waiting.pop()
+        try:
+            entries = sorted(os.scandir(folder), key=lambda one: one.name)
+        except OSError as error:
+            yield Source(
+                path=_name(folder, root), refused=fill("the folder cannot be read: {why}.", why=error.strerror)
+            )
+            continue
+        names = {one.name for one in entries}
+        for entry in entries:
+            path = folder / entry.name
+            if entry.name.startswith((".", "~$")) or path == out:
+                continue
+            if entry.is_dir(follow_symlinks=False):
+                waiting.append(path)
+            elif found := _take_entry(entry, path, root, names):
+                yield found
+
+
+def _take_entry(entry: "os.DirEntry[str]", path: Path, root: Path, names: set[str]) -> Source | None:
+    """Return the building of an entry that is no folder; None where it is no workbook."""
+    name = _name(path, root)
+    if entry.is_symlink() and path.is_dir():
+        return Source(path=name, refused=fill("it is a link to a folder, which is not searched. Copy the folder here."))
+    if not entry.name.lower().endswith(ENDINGS) or OURS.get(entry.name) in names:
+        return None
+    return Source(path=name, file=path, refused=_judge(path, root))
+
+
+def _name(path: Path, root: Path) -> str:
+    """Return a path below the folder as a text: bytes that are not UTF-8 as ``\\xe9``."""
+    text = path.relative_to(root).as_posix()
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+
+
+def _judge(path: Path, root: Path) -> Text | str:
+    """Return why a workbook below the folder cannot be used; "" if it can."""
+    try:
+        real = path.resolve(strict=True)
+    except (OSError, RuntimeError) as error:
+        if getattr(error, "errno", None) == errno.ENOENT:
+            return fill("there is no such file.")
+        return fill("the file cannot be found: {why}.", why=getattr(error, "strerror", None) or str(error))
+    if not real.is_relative_to(root):
+        return fill("it is a link that leads out of the folder. Copy the workbook here.")
+    return "" if real.is_file() else fill("it is not a file.")
+
+
+# ---------------------------------------------------------------- an index
+
+
+def _take_row(row: IndexRow, root: Path) -> Source:
+    """Return the building of a row of an index in the folder `root`."""
+    if not row.path:
+        return Source(path=row.building, kind="assumed", index=row)
+    name = tidy_path(row.path)
+    fault = _judge_text(name)
+    file = None if fault else root / name
+    return Source(path=name, file=file, index=row, refused=fault or _judge(root / name, root))
+
+
+def _judge_text(name: str) -> Text | str:
+    """Return why a path of an index cannot be used, judged before the file system sees it; "" if it can."""
+    is_absolute = name.startswith("/") or name[1:2] == ":"
+    if is_absolute or ".." in name.split("/") or "\0" in name:
+        return fill("the path leads out of the folder of the index. Write it relative to that folder.")
+    if not name.lower().endswith(ENDINGS):
+        return fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
+    return ""
