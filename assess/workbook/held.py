@@ -220,6 +220,8 @@ def hold_cells(book: Book, sheet: str) -> HeldCells:
 class HoldingCells(SheetCells):
     """The cells of one sheet, and while they are read what `Marks` tells of them."""
 
+    marks_cells = True
+
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
         self._formulas, self._unknown = set[Place](), set[Place]()

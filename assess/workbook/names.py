@@ -47,6 +47,7 @@ def fold(text: str) -> str:
     return "".join(key(text).split())
 
 
+@lru_cache(maxsize=4096)  # the same labels stand in workbook after workbook
 def plain(text: str) -> str:
     """Return a label as labels are compared in all languages: as `fold` does, and without accents."""
     return fold(_bare(text))
@@ -109,7 +110,14 @@ def versions(sheet: Sheet) -> Iterator[Sheet]:
 def find_column(sheet: Sheet, label: str) -> Column | None:
     """Return the column that a label, or an earlier one, names in any language, with its label in that language."""
     wanted = plain(label)
-    return next((one for said in versions(sheet) for one in said.columns if wanted in map(plain, one.labels)), None)
+    return next((found for code in LANGUAGES if (found := _columns_by_label(sheet, code).get(wanted))), None)
+
+
+@cache
+def _columns_by_label(sheet: Sheet, code: str) -> dict[str, Column]:
+    """Return the columns by their labels in a language; of those of one label the first."""
+    pairs = [(plain(label), one) for one in translate(sheet, code).columns for label in one.labels]
+    return dict(reversed(pairs))
 
 
 def find_near_column(sheet: Sheet, own: Sheet, header: str, labels: Collection[str]) -> Column | None:

@@ -11,7 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, Self, TypeVar
 from xml.parsers import expat
@@ -19,6 +19,7 @@ from xml.parsers import expat
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
+from assess.workbook.plain_rows import RowCutter, list_cells, list_unsaved
 
 MAX_FILE, MAX_PARTS, MAX_TOTAL, MAX_RATIO = 100 * 2**20, 2000, 128 * 2**20, 200
 MAX_ROWS, MAX_COLUMNS = 100_000, 256
@@ -56,6 +57,9 @@ UNSAVED = object()
 class Percent(float):
     """A number that its cell shows as a percentage."""
 
+
+_PLAIN_TAGS = {(False, False): set[str](), (False, True): {"v"}, (True, False): {"f"}, (True, True): {"f", "v"}}
+"""The elements of a cell by whether it holds a formula and a value; never changed."""
 
 Cells = dict[int, Any]
 """The values of a row by column, from 0; blank cells are left out."""
@@ -193,6 +197,14 @@ class Part:
     def text(self, data: str) -> None:
         """Take in text."""
 
+    def cut(self, piece: bytes) -> bytes:
+        """Return what of a piece of the part goes through the parser."""
+        return piece
+
+    def held_back(self) -> bytes:
+        """Return what `cut` has held back, at the end of the part."""
+        return b""
+
     def _refuse_entities(self, *_: object) -> None:
         message = fill("{name} declares XML entities, as an attack does.", name=self.name)
         raise unreadable(message, fill("Save it again from Excel."))
@@ -203,18 +215,20 @@ class Part:
         if self.limits and self.archive.getinfo(self.path).file_size > self.limits[0]:
             raise _bomb(self.name)
         with self.archive.open(self.path) as file:
-            while chunk := file.read(_CHUNK):
+            while piece := file.read(_CHUNK):
                 self.progress.check()
-                done, tags = done + len(chunk), tags + chunk.count(b"<")
+                tags += piece.count(b"<")
                 if self.limits and tags > self.limits[1]:
                     raise _bomb(self.name)
-                if done == len(chunk) and b"\0" in chunk[:100]:
+                if done == 0 and b"\0" in piece[:100]:
                     raise damaged(fill("{part} is not written in UTF-8", part=self.path))
+                chunk = self.cut(piece)
+                done += len(chunk)
                 self.parser.Parse(chunk, False)
                 if done - self.parser.CurrentByteIndex > MAX_TAG:  # it is scanned anew with every stretch
                     raise damaged(fill("{part} holds a tag of over {most} MB", part=self.path, most=MAX_TAG >> 20))
                 yield done
-        self.parser.Parse(b"", True)
+        self.parser.Parse(self.held_back(), True)
 
     def read(self) -> Self:
         """Read the whole part and return itself."""
@@ -316,6 +330,8 @@ class SheetCells(Part):
 
     limits = None
     header_rows, top, kept = HEADER_ROWS, "A1", None
+    marks_cells = False
+    """Whether cells without a value are looked at one by one."""
     title = ""
     """The sheet as the workbook calls it."""
 
@@ -337,6 +353,15 @@ class SheetCells(Part):
         self._texts: list[str] | None = None
         self._tags: set[str] = set()
         self._takes = False
+        self._cutter = RowCutter()
+
+    def cut(self, piece: bytes) -> bytes:
+        """Return a piece without the cells of plain rows, which are taken in at the end of their row."""
+        return self._cutter.cut(piece)
+
+    def held_back(self) -> bytes:
+        """Return what the cutter has held back."""
+        return self._cutter.finish()
 
     def rows(self) -> Iterator[tuple[int, Cells]]:
         """Yield the number and the cells of each row that holds any, from the top."""
@@ -381,6 +406,8 @@ class SheetCells(Part):
         elif tag == "rPh":
             self._tags.discard("rPh")
         elif tag == "row":
+            if self._cutter.rows and (row := self._cutter.rows.pop(str(self._number), None)):
+                self._take_plain(*row)
             self._row_start = None
             if self._cells:
                 self._ready.append((self._number, self._cells))
@@ -417,6 +444,19 @@ class SheetCells(Part):
             )
         self._kind, self._style = attributes.get("t", "n"), attributes.get("s", "")
         self._texts, self._tags = [], set()
+
+    def _take_plain(self, cells: str, is_empty: bool) -> None:
+        """Take in the cells of a plain row, as the handlers of their tags would."""
+        if is_empty and not self.marks_cells:
+            if unsaved := _unsaved_cells(*list_unsaved(cells)):
+                self.last_row = self._number
+                self._cells.update(unsaved)
+        else:
+            for letters, digits, self._style, kind, formula, value in list_cells(cells):
+                self._address, self._at, self._kind = letters + digits, _column_number(letters), kind or "n"
+                self._tags = _PLAIN_TAGS[bool(formula), bool(value)]
+                self._close_cell(value[3:-4])
+        self._texts, self._tags = None, set()
 
     def _open_formula(self, attributes: dict[str, str]) -> None:
         """Take in the beginning of a formula."""
@@ -480,6 +520,12 @@ def _column_number(letters: str) -> int:
     for letter in letters.upper():
         number = 26 * number + ord(letter) - ord("A") + 1
     return number
+
+
+@lru_cache(maxsize=64)
+def _unsaved_cells(*letters: str) -> Cells:
+    """Return the cells of a row of formulas without a saved result; they are not to be changed."""
+    return {_column_number(one) - 1: UNSAVED for one in letters}
 
 
 @cache

@@ -501,7 +501,7 @@ class _Parser:
         return found
 
     def _row(self, number: int, cells: Cells) -> Row | None:
-        if all(is_blank(cells.get(at)) for at in self.columns):
+        if cells.keys().isdisjoint(self.columns) or all(is_blank(cells.get(at)) for at in self.columns):
             stray = next((at for at in self.others if not is_blank(_shown(cells.get(at)))), None)
             if stray is not None:
                 message = fill("stands in a row without an entry; the row is left out.")
