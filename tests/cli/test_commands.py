@@ -27,6 +27,7 @@ ROOT = Path(__file__).parents[2]
 COMMANDS = [
     "new",
     "check",
+    "import",
     "open",
     "run",
     "compare",
@@ -59,7 +60,7 @@ def test_the_help_of_each_command_has_examples_with_its_own_options(name, module
         words = shlex.split(example)
         assert words[:2] == ["assess", name]
         for option in words[2:]:
-            assert not option.startswith("--") or re.search(rf"^  {option}\b", text, re.MULTILINE)
+            assert not option.startswith("--") or re.search(rf"^  (?:-\w, )?{option}\b", text, re.MULTILINE)
 
 
 SHOWN_BY_RUN = {"--jobs", "--seed", "--runs", "--scenario"}
@@ -82,7 +83,7 @@ def test_the_help_says_where_to_start():
 def test_the_options_of_each_command_are_found_by_its_arguments(name, module):
     """By these, a message of the library that begins with an argument names the option instead."""
     text, options = run(app, [name, "--help"]).output, _list_options(module.command)
-    assert set(re.findall(r"^  (--[a-z-]+)", text, re.MULTILINE)) - {"--help"} == set(options.values())
+    assert set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", text, re.MULTILINE)) - {"--help"} == set(options.values())
 
 
 def test_help_loads_nothing_heavy():

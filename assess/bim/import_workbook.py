@@ -1,0 +1,164 @@
+"""What an import found in a building, as an inventory workbook; readers of COBie and of building models share it.
+
+The workbook is that of `assess new`, filled in. Motions of the floors are not known to such files: it lacks shaking.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from assess.errors import Problem
+from assess.i18n import Text, count, fill
+from assess.pipeline.new_content import store_live
+from assess.workbook.catalogue import read_catalogue
+from assess.workbook.names import key
+from assess.workbook.schema import SHEETS
+from assess.workbook.template import Content, Rows, write_workbook
+
+LONGEST_NAME = 120
+"""Characters that are kept of a name."""
+_LONG = frozenset(
+    {"notes", "source", *(column.name for sheet in SHEETS for column in sheet.columns if column.kind == "outline")}
+)
+MOST_LIVE = 5000
+"""Rows up to which the results of the live columns are stored; a spreadsheet program works them out in any case."""
+
+
+@dataclass(frozen=True, slots=True)
+class Skipped:
+    """Pieces of one type that were left out for one reason.
+
+    Attributes
+    ----------
+    type : str
+        Type, or class, as the file names it.
+    count : int
+        How many pieces.
+    reason : Text
+        Why.
+    is_furniture : bool
+        Whether they may be furniture that should be assessed; False where the file says that they are fixed.
+    """
+
+    type: str
+    count: int
+    reason: Text
+    is_furniture: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImportedBuilding:
+    """What a file tells of a building: rows by field of `assess.workbook.schema`, in the units of SI headers.
+
+    Attributes
+    ----------
+    source : str
+        Name of the file.
+    building : mapping
+        Fields of the sheet Building.
+    floors, items, places, routes, types : sequence of mapping
+        Rows of Floors, Items, Places, Routes, and types that join the Catalogue, in place of those of their name there.
+    skipped : tuple of Skipped
+        What was left out.
+    remarks : tuple of Text
+        What was assumed, or has to be checked.
+    files : mapping of str to bytes
+        Files beside the workbook that it names, such as plans.
+    """
+
+    source: str
+    building: Mapping[str, Any] = field(default_factory=dict)
+    floors: Rows = ()
+    items: Rows = ()
+    places: Rows = ()
+    routes: Rows = ()
+    types: Rows = ()
+    skipped: tuple[Skipped, ...] = ()
+    remarks: tuple[Text, ...] = ()
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether there is furniture, and none was left out."""
+        return bool(self.items) and not any(one.is_furniture for one in self.skipped)
+
+
+def build_workbook(imported: ImportedBuilding) -> bytes:
+    """Return the workbook of an import, in the language in use.
+
+    Raises
+    ------
+    OSError
+        If there is no room for temporary files.
+    """
+    rows = {
+        "Building": [imported.building],
+        "Floors": imported.floors,
+        "Items": imported.items,
+        "Places": imported.places,
+        "Routes": imported.routes,
+        "Catalogue": _join_types(imported.types),
+    }
+    content = Content({name: [_cut_texts(row) for row in sheet] for name, sheet in rows.items()})
+    if len(imported.items) <= MOST_LIVE:
+        content = store_live(content, "si")
+    with TemporaryDirectory(prefix="assess-import-") as folder:
+        path = Path(folder) / "imported.xlsx"
+        write_workbook(path, content)
+        return path.read_bytes()
+
+
+def _join_types(types: Rows) -> list[Mapping[str, Any]]:
+    """Return the built-in types and those of a file, which take the place of built-in ones of their name."""
+    own = {key(row["type"]) for row in types}
+    return [*types, *(row for row in read_catalogue() if key(row["type"]) not in own)]
+
+
+def _cut_texts(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row with its names cut to `LONGEST_NAME`: a spreadsheet takes no cell of over 32,767 characters."""
+    return {
+        name: value[:LONGEST_NAME] if isinstance(value, str) and name not in _LONG else value
+        for name, value in row.items()
+    }
+
+
+def name_apart(names: Iterable[str]) -> list[str]:
+    """Return names cut to `LONGEST_NAME`, each its own: a second "Desk" becomes "Desk (2)"."""
+    taken: set[str] = set()
+    next_number: Counter[str] = Counter()
+    found = []
+    for name in names:
+        bare = name[:LONGEST_NAME]
+        one = bare
+        while key(one) in taken:
+            next_number[key(bare)] += 1
+            mark = f" ({next_number[key(bare)] + 1})"
+            one = bare[: LONGEST_NAME - len(mark)] + mark
+        taken.add(key(one))
+        found.append(one)
+    return found
+
+
+def list_remarks(imported: ImportedBuilding) -> tuple[Problem, ...]:
+    """Return what was left out and what has to be checked, as problems: for a table of many buildings."""
+    lines = (_say_skipped(reason, group) for reason, group in group_skipped(imported.skipped))
+    worth = [Problem("warning" if is_furniture else "note", "", "", text) for text, is_furniture in lines]
+    return (*worth, *(Problem("note", "", "", one) for one in imported.remarks))
+
+
+def group_skipped(skipped: Sequence[Skipped]) -> list[tuple[Text, list[Skipped]]]:
+    """Return what was left out by reason: what may be furniture first, the most pieces first in each group."""
+    groups: dict[Text, list[Skipped]] = {}
+    for one in sorted(skipped, key=lambda one: (not one.is_furniture, -one.count, one.type)):
+        groups.setdefault(one.reason, []).append(one)
+    return list(groups.items())
+
+
+def _say_skipped(reason: Text, group: Sequence[Skipped]) -> tuple[Text, bool]:
+    types = ", ".join(f"{one.type} ({one.count})" for one in group)
+    pieces = count(sum(one.count for one in group), "piece")
+    text = fill("{pieces} left out: {reason}: {types}", pieces=pieces, reason=reason, types=types)
+    return text, group[0].is_furniture
