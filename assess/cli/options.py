@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -13,6 +13,9 @@ from assess.cli.completion import one_of
 from assess.cli.console import count
 from assess.errors import InputError, OutputError
 from assess.settings import AUTO, MOST_SCALE, RUNS, SCENARIOS, SEED, Settings, change_settings
+
+if TYPE_CHECKING:
+    from assess.motion.site_ground import GroundField
 
 Workbook = Annotated[Path, typer.Argument(help="The inventory, an .xlsx workbook.", show_default=False)]
 Runs = Annotated[
@@ -43,6 +46,24 @@ Scenario = Annotated[
 Jobs = Annotated[
     int | None, typer.Option(min=1, help="Threads; they do not change a result.", show_default="one per CPU")
 ]
+ShakeMapFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--shakemap",
+        help="grid.xml of a ShakeMap (USGS), with its uncertainty.xml beside it: the ground motion at Latitude and "
+        "Longitude of Building, in place of the one of the workbook.",
+        show_default=False,
+    ),
+]
+GroundMotions = Annotated[
+    Path | None,
+    typer.Option(
+        "--ground-motions",
+        help="Folder with gmf-data.csv and sitemesh.csv (or sites.csv) of OpenQuake: computed scenarios of the ground "
+        "motion, in place of the one of the workbook.",
+        show_default=False,
+    ),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document instead of text.")]
 
 FIGURES = (".png", ".svg", ".pdf")
@@ -52,6 +73,27 @@ FIGURES = (".png", ".svg", ".pdf")
 def read_settings(**given: Any) -> Settings:
     """Return the settings with the options that were given; None is one that was not."""
     return change_settings(None, {name: value for name, value in given.items() if value is not None})
+
+
+def read_ground(shakemap: Path | None, scenarios: Path | None) -> "GroundField | None":
+    """Return the ground motion that --shakemap or --ground-motions names; None where neither does.
+
+    Raises
+    ------
+    InputError
+        If both are given, or a file cannot be used.
+    """
+    if shakemap is not None and scenarios is not None:
+        raise InputError("--shakemap and --ground-motions both give the ground motion: leave one out")
+    if shakemap is not None:
+        from assess.motion.shakemap import read_shakemap
+
+        return read_shakemap(shakemap)
+    if scenarios is not None:
+        from assess.motion.ground_scenarios import read_scenarios
+
+        return read_scenarios(scenarios)
+    return None
 
 
 def check_file(path: Path | None, what: str, endings: tuple[str, ...] = FIGURES) -> None:

@@ -1,0 +1,391 @@
+"""How the ground shakes in many computed scenarios of an earthquake: ground-motion fields of the OpenQuake Engine.
+
+A folder holds ``gmf-data.csv`` (``site_id`` or ``custom_site_id``, ``event_id``, ``gmv_PGA`` [g], and others such as
+``gmv_PGV`` [cm/s] and ``gmv_SA(1.0)`` [g]) and ``sitemesh.csv`` or ``sites.csv`` (the same name of a site, ``lon``,
+``lat`` [deg]). Lines that begin with # are comments. A building takes the values of the nearest site: the median is
+exp of the mean of ln PGA over the events, the dispersion their standard deviation, and each event is a scenario.
+
+The engine leaves out an event at a site where its motion is below a minimum. The scenarios of such a site would be too
+strong together, and are refused.
+
+Reference: Pagani M et al. (2014). OpenQuake Engine: an open hazard (and risk) software for the Global Earthquake Model.
+Seismological Research Letters 85(3):692-702. doi:10.1785/0220130087
+"""
+
+import csv
+import hashlib
+import io
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.errors import InputError
+from assess.hazard import FAR, find_distance
+from assess.i18n import fill, join
+from assess.motion.site_ground import SiteGround
+from assess.units import GRAVITY
+
+FloatArray = NDArray[np.float64]
+
+VALUES = "gmf-data.csv"
+SITES = ("sitemesh.csv", "sites.csv")
+LARGEST_FILE = 256_000_000
+"""Bytes; a million rows of one measure take about 30 million."""
+MOST_ROWS = 5_000_000
+MOST_COLUMNS = 50
+MOST_HEAD = 100_000
+"""Characters of the comments and the headings."""
+LARGEST_PGA = 10.0
+"""Accelerations above this [g] are a slip in the unit; 5 % damped spectra may be three times it."""
+LARGEST_PGV = 1000.0
+"""Velocities above this [cm/s] are a slip in the unit."""
+_SA = re.compile(r"gmv_SA\((\d{1,3}(?:\.\d{1,6})?)\)", re.ASCII)
+_TEXT = "custom_site_id"
+_KEYS = ("site_id", _TEXT)
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class GroundScenarios:
+    """Computed scenarios of the ground motion; it pickles as its folder and hash, and is read again, once a process.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file of the values.
+    sha256 : str
+        Hash of the hashes of both files.
+    sites_file : str
+        Name of the file of the sites.
+    hashes : tuple of two str
+        Of the values and of the sites.
+    path : Path
+        The folder.
+    latitude, longitude : (n,) array
+        Of the sites [deg].
+    start : (n + 1,) array
+        Rows of `values` of each site: those of the i-th from ``start[i]`` to ``start[i + 1]``.
+    events : (rows,) array
+        Number of the event, rising within a site.
+    values : (rows, measures) array
+        By the order of `measures` [g, cm/s].
+    measures : tuple of str
+        Names of the columns: gmv_PGA first.
+    event_count : int
+        Events that have a value anywhere.
+    """
+
+    file: str
+    sha256: str
+    sites_file: str
+    hashes: tuple[str, str]
+    path: Path
+    latitude: FloatArray
+    longitude: FloatArray
+    start: NDArray[np.intp]
+    events: NDArray[np.int64]
+    values: FloatArray
+    measures: tuple[str, ...]
+    event_count: int
+
+    def at(self, latitude: float, longitude: float) -> SiteGround:
+        """Return the motion at the site nearest to a place [deg].
+
+        Raises
+        ------
+        InputError
+            If events are missing at that site.
+        """
+        distances = find_distance(latitude, longitude, self.latitude, self.longitude)
+        nearest = int(distances.argmin())
+        rows = slice(int(self.start[nearest]), int(self.start[nearest + 1]))
+        place = {"lat": float(self.latitude[nearest]), "lon": float(self.longitude[nearest])}
+        count = rows.stop - rows.start
+        if count < self.event_count:
+            raise InputError(
+                fill(
+                    "{file}: the site at latitude {lat:.4f}, longitude {lon:.4f}, nearest to the building, has {count} "
+                    "of {events} events: the others lie below the engine's minimum. Compute the fields with "
+                    "minimum_intensity 0",
+                    file=self.file,
+                    count=count,
+                    events=self.event_count,
+                    **place,
+                )
+            )
+        return self._describe(np.log(self.values[rows]), float(distances[nearest]))
+
+    def _describe(self, logs: FloatArray, distance: float) -> SiteGround:
+        medians = dict(zip(self.measures, np.exp(logs.mean(axis=0)).tolist(), strict=True))
+        dispersion = float(logs[:, 0].std()) if len(logs) > 1 else 0.0
+        dispersion = dispersion if dispersion > 1e-9 else 0.0
+        numbers = (logs[:, 0] - logs[:, 0].mean()) / dispersion if dispersion else ()
+        source = fill("standard deviation of {count} scenarios of {file}", count=len(logs), file=self.file)
+        return SiteGround(
+            kind="scenarios",
+            file=self.file,
+            sha256=self.hashes[0],
+            pga=medians["gmv_PGA"] * GRAVITY,
+            pgv=medians["gmv_PGV"] / 100 if "gmv_PGV" in medians else None,
+            psa=tuple((period, medians[name] * GRAVITY) for name, period in _list_psa(self.measures)),
+            dispersion=dispersion,
+            dispersion_source=source,
+            distance=distance,
+            scenarios=tuple(float(one) for one in numbers),
+            facts=(
+                (fill("Scenarios"), fill("{count:,} events", count=len(logs))),
+                (fill("Distance to the nearest site"), fill("{km:.1f} km", km=distance / 1000)),
+                (fill("File of sites"), fill("{file}, SHA-256 {sha256}", file=self.sites_file, sha256=self.hashes[1])),
+            ),
+            cautions=_warn_of_distance(distance),
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _read_again, (self.path, self.sha256)
+
+
+def _warn_of_distance(distance: float) -> tuple[Any, ...]:
+    if distance <= FAR:
+        return ()
+    return (fill("the nearest site of the scenarios is {km:.0f} km from the building", km=distance / 1000),)
+
+
+@lru_cache(maxsize=2)
+def _read_again(path: Path, sha256: str) -> GroundScenarios:
+    found = read_scenarios(path)
+    if found.sha256 != sha256:
+        raise InputError(fill("{file} has changed since the run began: start it again.", file=path.name))
+    return found
+
+
+def _list_psa(measures: Sequence[str]) -> list[tuple[str, float]]:
+    """Return the columns of spectral acceleration with their periods [s], rising."""
+    found = ((name, match) for name in measures if (match := _SA.fullmatch(name)))
+    return sorted(((name, float(match[1])) for name, match in found), key=lambda one: one[1])
+
+
+# ---------------------------------------------------------------- files
+
+
+def read_scenarios(folder: Path) -> GroundScenarios:
+    """Read the scenarios of a folder.
+
+    Raises
+    ------
+    InputError
+        If a file is missing, cut off or another one, or a number in it cannot be; the message names the file, and the
+        line where there is one.
+    """
+    folder = folder.resolve()
+    sites_file = next((name for name in SITES if (folder / name).is_file()), None)
+    if not (folder / VALUES).is_file() or sites_file is None:
+        missing = VALUES if not (folder / VALUES).is_file() else " or ".join(SITES)
+        raise InputError(fill("{folder}: the folder has no {file}", folder=folder.name, file=missing))
+    texts: dict[str, int] = {}
+    sites, data = _read_table(folder / sites_file, texts), _read_table(folder / VALUES, texts)
+    try:
+        key = _find_key(data, sites, sites_file)
+        names, latitude, longitude = _read_sites(sites, key, sites_file)
+        measures = _list_measures(data)
+        _check_values(data, measures)
+        rows, order = _sort_rows(data, key, names, sites_file)
+    except InputError as error:
+        raise InputError(join(": ", (VALUES, error.message))) from None
+    events = data.numbers[order, data.column("event_id")].astype(np.int64)
+    _check_events(rows, events)
+    hashes = data.sha256, sites.sha256
+    return GroundScenarios(
+        file=VALUES,
+        sha256=hashlib.sha256("".join(hashes).encode()).hexdigest(),
+        sites_file=sites_file,
+        hashes=hashes,
+        path=folder,
+        latitude=latitude,
+        longitude=longitude,
+        start=np.searchsorted(rows, np.arange(len(names) + 1)),
+        events=events,
+        values=data.numbers[np.ix_(order, np.array([data.column(name) for name in measures]))],
+        measures=measures,
+        event_count=int(np.unique(events).size),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Table:
+    """A CSV file: its headings, its rows of numbers, (rows, columns), and the number of its first line of these."""
+
+    headings: tuple[str, ...]
+    numbers: FloatArray
+    first: int
+    sha256: str
+
+    def column(self, name: str) -> int:
+        """Return the place of a column."""
+        return self.headings.index(name)
+
+
+def _read_table(path: Path, texts: dict[str, int]) -> _Table:
+    """Return the table of a file; custom_site_id, which is a text, by the number that `texts` gives it."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+        return _parse_table(data, texts)
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None
+    except InputError as error:
+        raise InputError(join(": ", (path.name, error.message))) from None
+
+
+def _parse_table(data: bytes, texts: dict[str, int]) -> _Table:
+    if len(data) > LARGEST_FILE:
+        raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
+    if b"\0" in data or data.startswith((b"PK", b"\x89HDF", b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff")):
+        raise InputError(fill("the file is not plain text. Export it from OpenQuake as CSV"))
+    if data.count(b"\n") + data.count(b"\r") > MOST_ROWS:
+        raise InputError(fill("the file has more than {most:,} rows: keep fewer events or sites", most=MOST_ROWS))
+    start, head, first = _read_head(data)
+    if len(head) > MOST_COLUMNS or len(set(head)) < len(head):
+        raise InputError(fill("the first row has a heading twice, or more than {most} headings", most=MOST_COLUMNS))
+    if not data[start:].strip():
+        raise InputError(fill("there are no rows below the headings"))
+    if not data.endswith((b"\n", b"\r")):
+        raise InputError(fill("the last line has no end: the file is cut off. Export it again"))
+    numbers = _parse_rows(data[start:], head, first, lambda text: texts.setdefault(text.strip(), len(texts)))
+    return _Table(head, numbers, first, hashlib.sha256(data).hexdigest())
+
+
+def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
+    """Return where the rows begin, the headings, and the number of the line of the first row."""
+    at, line = 0, 0
+    while at < min(len(data), MOST_HEAD):
+        end = data.find(b"\n", at)
+        end = len(data) if end < 0 else end
+        text, at, line = data[at:end].decode("utf-8-sig", "replace").strip(), end + 1, line + 1
+        if text and not text.startswith(("#", '"#')):
+            return at, tuple(cell.strip() for cell in next(csv.reader([text]))), line + 1
+    raise InputError(fill("there is no table"))
+
+
+def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Callable[[str], int]) -> FloatArray:
+    """Return the numbers of the rows, (rows, columns)."""
+    texts = [head.index(_TEXT)] if _TEXT in head else []
+    converters = dict.fromkeys(texts, number_text)
+    try:
+        found = np.loadtxt(
+            io.BytesIO(data), delimiter=",", ndmin=2, comments=None, encoding="utf-8", converters=converters or None
+        )
+        if found.shape[1] == len(head):
+            return found
+    except (ValueError, UnicodeDecodeError):
+        pass
+    raise _describe_row(data, len(head), first, texts)
+
+
+def _describe_row(data: bytes, width: int, first: int, texts: Sequence[int]) -> InputError:
+    """Return what is wrong with the first row that has another number of cells, or a cell that is no number."""
+    for line, row in enumerate(data.decode("utf-8", "replace").splitlines(), first):
+        cells = row.split(",")
+        if row.strip() and len(cells) != width:
+            return InputError(
+                fill(
+                    "line {line}: the number of cells is {cells}, but there are {headings} headings",
+                    line=line,
+                    cells=len(cells),
+                    headings=width,
+                )
+            )
+        numbers = [cell for at, cell in enumerate(cells) if row.strip() and at not in texts]
+        bad = next((cell for cell in numbers if not _is_number(cell)), None)
+        if bad is not None:
+            return InputError(fill("line {line}: {text!r} is not a number", line=line, text=bad.strip()[:40]))
+    return InputError(fill("the rows cannot be read"))
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+# ---------------------------------------------------------------- tables to scenarios
+
+
+def _find_key(data: _Table, sites: _Table, sites_file: str) -> str:
+    """Return the column that names the site in both tables."""
+    key = next((name for name in _KEYS if name in data.headings and name in sites.headings), None)
+    if key is None:
+        raise InputError(fill("no column site_id that {file} has, too", file=sites_file))
+    missing = next((name for name in ("event_id", "gmv_PGA") if name not in data.headings), None)
+    if missing is not None:
+        raise InputError(fill("the column {name} is missing", name=missing))
+    return key
+
+
+def _read_sites(sites: _Table, key: str, file: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the numbers of the sites, rising, with latitude and longitude [deg]."""
+    missing = next((name for name in ("lon", "lat") if name not in sites.headings), None)
+    if missing is not None:
+        raise InputError(fill("{file}: the column {name} is missing", file=file, name=missing))
+    names, latitude, longitude = (sites.numbers[:, sites.column(name)] for name in (key, "lat", "lon"))
+    bad = ~((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))
+    if bad.any():
+        line = sites.first + int(bad.argmax())
+        raise InputError(fill("{file}: line {line}: lon and lat are no place on earth", file=file, line=line))
+    if np.unique(names).size < names.size:
+        raise InputError(fill("{file}: a {key} is there twice", file=file, key=key))
+    order = np.argsort(names)
+    return names[order], latitude[order], longitude[order]
+
+
+def _list_measures(data: _Table) -> tuple[str, ...]:
+    """Return the columns of measures that are used, PGA first."""
+    psa = [name for name, _ in _list_psa(data.headings)]
+    return ("gmv_PGA", *(("gmv_PGV",) if "gmv_PGV" in data.headings else ()), *psa)
+
+
+def _check_values(data: _Table, measures: Sequence[str]) -> None:
+    for name in measures:
+        values = data.numbers[:, data.column(name)]
+        most = LARGEST_PGV if name == "gmv_PGV" else LARGEST_PGA if name == "gmv_PGA" else 3 * LARGEST_PGA
+        bad = ~((values > 0) & (values <= most))  # what is no number is bad, too
+        if bad.any():
+            at = int(bad.argmax())
+            raise InputError(
+                fill(
+                    "row {row:,}: {name} is {value:g}, expected above 0 and at most {most:g} {unit}",
+                    row=at + 1,
+                    name=name,
+                    value=float(values[at]),
+                    most=most,
+                    unit="cm/s" if name == "gmv_PGV" else "g",
+                )
+            )
+
+
+def _sort_rows(data: _Table, key: str, names: FloatArray, sites_file: str) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return the place of the site of each row among `names`, and the rows, in the order of sites and events."""
+    own, events = data.numbers[:, data.column(key)], data.numbers[:, data.column("event_id")]
+    if not (np.isfinite(events) & (np.abs(events) < 2**53) & (events == np.floor(events))).all():
+        raise InputError(fill("event_id has to be a whole number in every row"))
+    at = np.searchsorted(names, own)
+    unknown = names[np.minimum(at, names.size - 1)] != own
+    if unknown.any():
+        row = int(unknown.argmax()) + 1
+        raise InputError(fill("row {row:,}: its {key} is not in {file}", row=row, key=key, file=sites_file))
+    order = np.lexsort((events, at))
+    return at[order], order
+
+
+def _check_events(rows: NDArray[np.intp], events: NDArray[np.int64]) -> None:
+    again = (np.diff(rows) == 0) & (np.diff(events) == 0)
+    if again.any():
+        event = int(events[int(again.argmax())])
+        raise InputError(fill("{file}: event {event} is there twice at a site", file=VALUES, event=event))
