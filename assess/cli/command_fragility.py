@@ -30,6 +30,7 @@ from assess.settings import AUTO
 if TYPE_CHECKING:
     from assess.cli.fragility_output import Curves
     from assess.progress import Progress
+    from assess.report.interchange.exchange_files import Exchange
     from assess.settings import Settings
 
 ORDER = 4
@@ -124,8 +125,9 @@ def command(
     check_file(plot, "figure")
     with show_progress() as progress:
         curves = _find(path, by, im, span, settings, "nrml" in wanted, jobs, progress)
+    written = _render(curves, wanted)
     typer.echo(curves.to_json() if as_json else curves.to_text())
-    _write(curves, wanted, folder, plot)
+    _write(curves, written, folder, plot)
 
 
 def _find(
@@ -168,16 +170,22 @@ def _check_folder(folder: Path) -> None:
     check_folder(folder)
 
 
-def _write(curves: "Curves", formats: Sequence[str], folder: Path, plot: Path | None) -> None:
-    """Write the files and the figure, all of them or none; exit status 1 where a format could not hold every curve."""
-    from assess.cli.fragility_output import FORMATS, say_left_out
+def _render(curves: "Curves", formats: Sequence[str]) -> "list[Exchange]":
+    from assess.cli.fragility_output import FORMATS
 
-    written = [FORMATS[one](curves) for one in formats]
+    return [FORMATS[one](curves) for one in formats]
+
+
+def _write(curves: "Curves", written: "Sequence[Exchange]", folder: Path, plot: Path | None) -> None:
+    """Write the files and the figure, all of them or none; exit status 1 where a format could not hold every curve."""
+    from assess.cli.fragility_output import say_left_out
+
     files = {folder / name: data for one in written for name, data in one.files.items()}
     save_with_figure(files, plot, partial(_draw, curves), "curve")
-    for line in (line for one in written if one.left_out for line in say_left_out(one)):
+    lines = [line for one in written for line in say_left_out(one)]
+    for line in lines:
         typer.echo(line, err=True)
-    if any(one.left_out for one in written):
+    if lines:
         raise typer.Exit(1)
 
 

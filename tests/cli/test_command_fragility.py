@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 import assess
 from assess.cli.fragility_figure import A_PANEL, MOST_PANELS, choose_drawn, paint, size
-from assess.cli.fragility_output import FORMATS, MOST_LINES, Curves
+from assess.cli.fragility_output import FORMATS, MOST_LINES, Curves, say_left_out
 from assess.fragility import fit_fragility, lognormal_chance
 from assess.model import Item
 from assess.pipeline.piece_fragility import FloorMotions, PieceFragilities, PieceFragility, find_piece_fragilities
@@ -281,7 +281,10 @@ def test_the_figure_holds_the_shares_and_the_fits():
         (("--im", "psa"), "'psa' is not one of 'pfa', 'pfv'"),
         (("--by", "room"), "'room' is not one of 'item', 'type'"),
         (("--runs", "auto"), "--runs: auto is for assess run, as every level uses the same motions. Give a number."),
-        (("--formats", "csv,nrlm"), "--formats: 'nrlm' is an unknown format; expected some of: csv, json, pelicun, nrml"),
+        (
+            ("--formats", "csv,nrlm"),
+            "--formats: 'nrlm' is an unknown format; expected some of: csv, json, pelicun, nrml",
+        ),
         (("--formats", ","), "--formats: no format is named; expected some of: csv, json, pelicun, nrml"),
         (("--out", "w.xlsx"), "--out: w.xlsx is a file; name a folder"),
         (("--plot", "x.gif"), "the figure x.gif has an unsupported file type: end its name in .png, .svg or .pdf"),
@@ -348,3 +351,65 @@ def test_the_command_loads_nothing_heavy_before_it_is_used():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+# --- for other programs ---
+
+GROUND = [{"ground_pga": 0.25, "height": 9}]
+
+
+TYPES = ("--by", "type", "--runs", 200)
+
+
+def test_files_for_pelicun_and_openquake(tmp_path):
+    """What a format has no place for is named with its reason, and the exit status tells; the files are written."""
+    path, out = write(tmp_path, Building=GROUND), tmp_path / "out"
+    done = run("fragility", path, *TYPES, "--formats", "pelicun,nrml", "--out", out)
+    assert done.exit_code == 1
+    assert sorted(one.name for one in out.iterdir()) == ["w-nrml.xml", "w-pelicun.csv", "w-pelicun.json"]
+    table = csv.DictReader(io.StringIO((out / "w-pelicun.csv").read_text(encoding="utf-8")))
+    assert [row["ID"] for row in table] == ["assess.w.Shelf.pfa"]
+    (left,) = json.loads((out / "w-pelicun.json").read_text(encoding="utf-8"))["_GeneralInformation"]["LeftOut"]
+    assert left["Name"] == "60 x 180 cm"
+    lines = [line for line in done.stderr.splitlines() if line.startswith("left out of ")]
+    assert lines == [f"left out of w-pelicun.csv: 1 curve (60 x 180 cm): {left['Reason']}"]
+    taxonomies = re.findall(r'fragilityFunction id="(.+?)" format="(.+?)"', (out / "w-nrml.xml").read_text("utf-8"))
+    assert taxonomies == [
+        ("Shelf|1", "continuous"), ("Shelf|2", "continuous"), ("60_x_180_cm|1", "discrete"),
+    ]  # fmt: skip
+
+
+def test_every_curve_in_the_file_is_success(tmp_path):
+    done = run("fragility", write(tmp_path, Items=ITEMS[:2]), *TYPES, "--formats", "pelicun", "--out", tmp_path)
+    assert (done.exit_code, "left out" in done.stderr) == (0, False)
+
+
+def test_many_that_are_left_out_are_counted():
+    curves = curves_of([0.0, 0.16, 0.4, 0.6, 0.75, 0.85, 0.9], *[[0.0, 0.0]] * 20)
+    written = FORMATS["pelicun"](curves)
+    (line,) = say_left_out(written)
+    assert line == (
+        "left out of w-pelicun.csv: 20 curves (p1, p2, p3, p4, p5, p6, p7, p8, and 12 more): "
+        "not fitted: nothing fell at any level"
+    )
+
+
+def test_nrml_needs_the_ground_and_pfa(tmp_path):
+    """It is refused before anything is rocked."""
+    path = write(tmp_path)
+    text = error(run("fragility", path, "--formats", "nrml", "--out", tmp_path / "out"))
+    assert "--formats: nrml relates each floor to the ground, whose peak acceleration in this scenario is not " in text
+    assert "Fill in Ground PGA in the sheet Building" in text
+    text = error(run("fragility", path, "--im", "pfv", "--formats", "nrml", "--out", tmp_path / "out"))
+    assert "--formats: OpenQuake computes accelerations of the ground" in text
+    assert not (tmp_path / "out").exists()
+
+
+def test_nothing_is_written_where_a_format_has_no_curve_at_all(tmp_path):
+    path = write(tmp_path)
+    words = ("--levels", "0.01:0.02:0.01", "--runs", 5, "--formats", "csv,pelicun", "--out", tmp_path / "out")
+    text = error(run("fragility", path, *words))
+    assert (
+        "--formats: none of the 3 curves can be written for pelicun. The first is a1: not fitted: nothing fell" in text
+    )
+    assert not (tmp_path / "out").exists()

@@ -176,7 +176,7 @@ def _write(
 
 def _say_function(one: _Function, im: str) -> str:
     what = f"{one.name}: {plain_line(one.one.name)} on floor {plain_line(one.floor)}"
-    amplified = f"PFA / ground PGA {1 / one.ratio:.3g}."
+    amplified = f"PFA / ground PGA {1 / one.ratio:.4g}."
     return " ".join([f"{what}, {amplified}", *describe_curve(one.one, im)])
 
 

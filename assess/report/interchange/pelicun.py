@@ -95,7 +95,11 @@ def _judge(one: PieceFragility) -> Text | None:
         return None
     if one.curve.kind != "fitted":
         return one.curve.why
-    return fill("no lognormal stands in for its table: the misfit exceeds {most:g}", most=MOST_MISFIT)
+    return fill(
+        "no lognormal stands in for its table: the misfit exceeds {most:g}. More draws lessen the part of it that is "
+        "chance; the table itself is in the formats csv and json",
+        most=MOST_MISFIT,
+    )
 
 
 def _write_table(ids: Sequence[str], kept: Sequence[PieceFragility], im: str) -> str:
