@@ -1,0 +1,164 @@
+"""Sums over a city: never over inventories or bases that differ, with what a reader has to know beside them."""
+
+import pytest
+
+from assess.portfolio.city_totals import FIRST, CityView, build_totals
+from assess.risk import RiskClass
+from assess.route_results import RouteState
+from assess.settings import Settings
+from tests.portfolio.city_samples import frame
+
+BUILDING = {
+    "status": "assessed", "inventory": "surveyed", "basis": "simulated", "draws": 4, "pieces": 10, "low": 4,
+    "medium": 3, "high": 1, "very_high": 0, "unconfirmed": 1, "by_formula": 0, "anchored": 1, "expected_falls": 1.0,
+    "is_placed": True, "own_motions": 0, "works": 2, "works_without_cost": 1, "cost": 150.0, "falls_avoided": 0.75,
+    "routes": 2, "routes_open": 1, "routes_doubtful": 0, "routes_blocked": 0, "routes_not_known": 1, "occupants": 50,
+    "people_blocked": 6.0, "warnings": 3,
+}  # fmt: skip
+PIECE = {"inventory": "surveyed", "basis": "simulated", "is_held": False, "quantity": 2, "probability": 0.25,
+         "breadth_cm": 38.0, "height_cm": 195.0}  # fmt: skip
+
+
+def view(buildings, pieces=(), routes=(), draws=None):
+    """Return a city of these rows; `draws` are falls and blocked people of each path."""
+    rows = [
+        {"path": path, "draw": k, "falls": falls, "people_blocked": people, "routes_blocked": 0}
+        for path, every in (draws or {}).items()
+        for k, (falls, people) in enumerate(every)
+    ]
+    return CityView(
+        buildings=frame("buildings", [BUILDING | one for one in buildings]),
+        pieces=frame("pieces", [PIECE | one for one in pieces]),
+        routes=frame("routes", routes),
+        problems=frame("problems", []),
+        draws=frame("draws", rows),
+        settings=Settings(city=True),
+    )
+
+
+DRAWS = [(0, 0), (0, 0), (1, 10), (3, 10)]
+
+
+@pytest.fixture(scope="module")
+def totals():
+    buildings = [
+        {"path": "a.xlsx"},
+        {"path": "b.xlsx", "is_placed": False, "cost": None, "works_without_cost": 2},
+        {"path": "formula.xlsx", "basis": "formula", "draws": 0, "expected_falls": 40.0, "own_motions": 2},
+        {"path": "cobie.xlsx", "inventory": "handover", "basis": "formula", "draws": 0, "expected_falls": 7.0},
+        {"path": "assumed", "inventory": "assumed", "basis": "simulated", "expected_falls": 20.0, "is_placed": None,
+         "falls_low_inventory": 5.0, "falls_high_inventory": 60.0, "people_blocked": None, "occupants": None},
+        {"path": "bad.xlsx", "status": "skipped", "inventory": None, "basis": None, "pieces": None},
+    ]  # fmt: skip
+    routes = [
+        {"path": "a.xlsx", "route": "A", "state": "open", "probability": 0.01, "occupants": 20},
+        {"path": "a.xlsx", "route": "B", "state": "not known", "probability": None, "occupants": 30},
+    ]
+    draws = {"a.xlsx": DRAWS, "b.xlsx": DRAWS, "assumed": [(10, 0), (20, 0), (20, 0), (30, 0)]}
+    return build_totals(view(buildings, routes=routes, draws=draws))
+
+
+def find(totals, inventory, basis):
+    return next(one for one in totals.groups if (one.inventory, one.basis) == (inventory, basis))
+
+
+def test_inventories_and_bases_are_never_in_one_sum(totals):
+    assert [(one.inventory, one.basis, one.buildings, one.falls.expected) for one in totals.groups] == [
+        ("surveyed", "simulated", 2, 2.0),
+        ("surveyed", "formula", 1, 40.0),
+        ("handover", "formula", 1, 7.0),
+        ("assumed", "simulated", 1, 20.0),
+    ]
+    assert (totals.assessed, totals.skipped) == (5, 1)
+
+
+def test_falls_have_a_range_over_earthquakes_where_they_were_simulated(totals):
+    surveyed = find(totals, "surveyed", "simulated").falls
+    assert (surveyed.low, surveyed.high, surveyed.draws, surveyed.apart) == (0, 6, 4, 0)
+    formula = find(totals, "surveyed", "formula").falls
+    assert (formula.low, formula.draws, formula.apart) == (None, 0, 40.0)
+
+
+def test_people_on_routes_without_joint_outcomes_stand_apart(totals):
+    """Of 12 expected people 10 are in the draws."""
+    people = find(totals, "surveyed", "simulated").people
+    assert (people.expected, people.apart, people.high) == (12, pytest.approx(2), 20)
+
+
+def test_people_on_routes_that_are_not_known_are_told_apart(totals):
+    group = find(totals, "surveyed", "simulated")
+    assert (group.occupants, group.people_not_known) == (100, 30)
+    assert group.routes[RouteState.NOT_KNOWN] == 2
+    assert group.routes[RouteState.OPEN] == 2
+
+
+def test_pieces_are_counted_by_class_and_outside_them(totals):
+    group = find(totals, "surveyed", "simulated")
+    assert (group.pieces, group.counted, group.unconfirmed, group.anchored) == (20, 16, 2, 2)
+    assert group.by_class == {
+        RiskClass.LOW: 8, RiskClass.MEDIUM: 6, RiskClass.HIGH: 2, RiskClass.VERY_HIGH: 0
+    }  # fmt: skip
+
+
+def test_costs_that_are_not_known_are_counted_not_taken_as_nothing(totals):
+    group = find(totals, "surveyed", "simulated")
+    assert (group.cost, group.works, group.works_without_cost) == (150, 4, 3)
+    blank = build_totals(view([{"path": "a", "cost": None, "draws": 0, "basis": "formula"}]))
+    assert blank.groups[0].cost is None
+
+
+def test_buildings_that_are_not_of_this_earthquake_or_without_a_place_are_counted(totals):
+    assert find(totals, "surveyed", "simulated").unplaced == 1
+    assert find(totals, "assumed", "simulated").unplaced == 1
+    own = find(totals, "surveyed", "formula")
+    assert (own.own_motions, own.own_motion_falls) == (1, 40)
+
+
+def test_assumed_inventories_have_a_low_and_a_high_quantity(totals):
+    assumed = find(totals, "assumed", "simulated")
+    assert (assumed.falls_low_inventory, assumed.falls_high_inventory) == (5, 60)
+    assert find(totals, "surveyed", "simulated").falls_low_inventory is None
+    assert assumed.people.expected == 0
+
+
+def test_a_city_of_skipped_buildings_has_no_sums():
+    found = build_totals(view([{"path": "bad", "status": "skipped", "inventory": None, "basis": None}]))
+    assert (found.groups, found.skipped) == ((), 1)
+
+
+# --- what to start with ---
+
+
+def test_buildings_with_most_people_on_blocked_routes_come_first_then_most_falls():
+    rows = [
+        {"path": "few people", "people_blocked": 1.6, "expected_falls": 1.0},
+        {"path": "a tenth of a person", "people_blocked": 0.1, "expected_falls": 2.0},
+        {"path": "falls", "people_blocked": None, "expected_falls": 90.0},
+        {"path": "people", "people_blocked": 30.0, "expected_falls": 0.5},
+        {"path": "nothing", "people_blocked": 0.0, "expected_falls": 0.0},
+    ]
+    found = build_totals(view([one | {"basis": "formula"} for one in rows])).groups[0].first_buildings
+    assert [one.path for one in found] == ["people", "few people", "falls", "a tenth of a person"]
+    assert (found[0].people_blocked, found[0].expected_falls, found[0].occupants) == (30, 0.5, 50)
+
+
+def test_ten_buildings_are_named_in_the_order_of_paths_where_alike():
+    rows = [{"path": f"{at:02d}", "basis": "formula"} for at in reversed(range(25))]
+    found = build_totals(view(rows)).groups[0].first_buildings
+    assert [one.path for one in found] == [f"{at:02d}" for at in range(FIRST)]
+
+
+def test_types_with_most_expected_falls_come_first_and_blank_ones_by_size():
+    pieces = [
+        {"path": "a", "type": "Bookcase", "quantity": 2},
+        {"path": "b", "type": "bookcase ", "quantity": 4},
+        {"path": "a", "type": None, "quantity": 20},
+        {"path": "a", "type": "Shelf", "quantity": 100, "is_held": True},
+        {"path": "a", "type": "Shelf", "quantity": 100, "basis": "unconfirmed"},
+        {"path": "a", "type": "Desk", "quantity": 100, "probability": 0.0},
+    ]
+    first = build_totals(view([{"path": "a"}, {"path": "b"}], pieces, draws={})).groups[0].first_types
+    assert [(str(one.label), one.pieces, one.buildings, one.expected_falls) for one in first] == [
+        ("no Type: Breadth 30 to 40 cm, Height 180 to 200 cm", 20, 1, 5.0),
+        ("Bookcase", 6, 2, 1.5),
+    ]
