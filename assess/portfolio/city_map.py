@@ -27,7 +27,7 @@ FINE = 0.4
 """Detail of the background that is drawn [px]."""
 _EDGE = "#5d6b75"
 _THIN = 'stroke="#c3ccd3" stroke-width="0.7" fill="none"'
-_SMALL = 'fill="#454b51" font-size="11"'
+_SMALL = 'class="degree" fill="#454b51" font-size="11"'
 _ISOLINE = 'class="isoline" fill="none" stroke="#7a4fa3" stroke-width="1.2" stroke-dasharray="6 3"'
 
 
@@ -263,7 +263,8 @@ def _draw_scale(frame: Frame) -> str:
     box = f'<rect x="10" y="{y - 22:.1f}" width="{long + 24:.1f}" height="32" fill="#ffffff" fill-opacity="0.85"/>'
     path = f"M22 {y - 5:.1f}V{y:.1f}H{22 + long:.1f}V{y - 5:.1f}"
     return (
-        f'<g class="scale-bar">{box}<path d="{path}" fill="none" stroke="#1c1c1c" stroke-width="2"/>'
+        f'<g class="scale-bar" data-km="{length:g}">{box}'
+        f'<path d="{path}" fill="none" stroke="#1c1c1c" stroke-width="2"/>'
         f'<text x="{22 + long / 2:.1f}" y="{y - 8:.1f}" text-anchor="middle" fill="#1c1c1c">{said}</text></g>'
     )
 

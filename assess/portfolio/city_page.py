@@ -1,0 +1,169 @@
+"""The page of a city: one HTML file with the answer, a map, a ranking and a page a building; nothing is fetched."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from assess.i18n import LANGUAGES
+from assess.i18n import gettext as _
+from assess.portfolio import city_words as say
+from assess.portfolio.background import Background
+from assess.portfolio.building_signs import Sign, say_sign
+from assess.portfolio.city_content import CityContent, build_content
+from assess.portfolio.city_map import Isoline, draw_map, draw_sign
+from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
+from assess.portfolio.page_data import STOREYS, list_heads, write_data
+from assess.progress import SILENT, Progress
+from assess.report import words
+from assess.report.pages.html import build_style, hash_script, render_page
+from assess.report.report_options import ReportOptions
+from assess.version import __version__
+
+TEMPLATE, STYLE, SCRIPT = "city.html.j2", "city.css", "script/city.js"
+
+
+def render_city(
+    view: CityView,
+    background: Background | None = None,
+    *,
+    options: ReportOptions | None = None,
+    isolines: Sequence[Isoline] = (),
+    repeat: str = "",
+    progress: Progress = SILENT,
+) -> bytes:
+    """Return the page of a city as HTML, in the language of the options.
+
+    Parameters
+    ----------
+    view : CityView
+        The tables of the portfolio.
+    background : Background, optional
+        What lies behind the map.
+    options : ReportOptions, optional
+        Language and templates.
+    isolines : sequence of Isoline
+        Lines of equal shaking on the map.
+    repeat : str
+        Command that assesses one building alone, with ``{path}`` in place of its workbook.
+
+    Raises
+    ------
+    InputError
+        If a template cannot be used.
+    CancelledError
+        If the work was cancelled.
+    """
+    options = options or ReportOptions()
+    with options.spoken():
+        content = progress.wait_for(lambda: build_content(view))
+        context = progress.wait_for(lambda: build_context(content, background, isolines, options, is_live=True))
+        script = options.read(SCRIPT)
+        context |= {
+            "for_print": False, "style": build_style(options, False, STYLE), "script": script,
+            "script_hash": hash_script(script), "data": progress.wait_for(lambda: write_data(content, repeat)),
+        }  # fmt: skip
+        return render_page(TEMPLATE, context, options, progress).encode()
+
+
+def build_context(
+    content: CityContent,
+    background: Background | None,
+    isolines: Sequence[Isoline],
+    options: ReportOptions,
+    *,
+    is_live: bool,
+) -> dict[str, Any]:
+    """Return what the templates of the page and of the summary show; in the language in use."""
+    view, totals = content.view, content.totals
+    return {
+        "language": options.language or LANGUAGES[0],
+        "version": __version__,
+        "title": say.say_title(view),
+        "ground": say.say_ground(view),
+        "facts": say.list_facts(view),
+        "cautions": say.list_cautions(view, totals),
+        "groups": [_show_group(group) for group in totals.groups],
+        "total_heads": say.list_total_heads(),
+        "total_rows": say.list_total_rows(totals),
+        "method": say.list_method(view, totals),
+        "references": say.list_references(totals),
+        "map": draw_map(content.points, background, title=_say_map(content), isolines=isolines, is_live=is_live),
+        "background": background.file if background else "",
+        "has_isolines": bool(isolines),
+        "legend": _list_legend(content.legend),
+        "route_legend": _list_legend(content.route_legend),
+        "building_rule": _(BUILDING_RULE),
+        "type_rule": _(TYPE_RULE),
+        "heads": list_heads(),
+        "filters": _list_filters(content),
+        "skipped": _list_skipped(content),
+        "count": len(content.buildings),
+    }
+
+
+def _say_map(content: CityContent) -> str:
+    return _("Map of {placed:,} buildings; the table of the buildings holds the same", placed=len(content.points))
+
+
+def _show_group(group: Any) -> dict[str, Any]:
+    return {
+        "name": say.name_group(group),
+        "is_assumed": group.inventory == "assumed",
+        "lines": say.list_group_lines(group),
+        "tiles": [
+            (words.class_name(risk), words.risk_label(risk), say.say_whole(count))
+            for risk, count in group.by_class.items()
+        ],
+        "apart": say.say_whole(group.unconfirmed + group.by_formula) if group.unconfirmed + group.by_formula else "",
+        "anchored": say.say_whole(group.anchored),
+        "buildings": [
+            (words.cut(one.building or one.path, 80), say.say_number(one.expected_falls),
+             say.say_number(one.people_blocked) if one.occupants else words.DASH, say.say_whole(one.routes_blocked))
+            for one in group.first_buildings
+        ],
+        "types": [
+            (words.cut(_(one.label), 80), say.say_whole(one.pieces), say.say_whole(one.buildings),
+             say.say_number(one.expected_falls))
+            for one in group.first_types
+        ],
+    }  # fmt: skip
+
+
+def _list_legend(signs: Sequence[tuple[Sign, int]]) -> list[tuple[str, str, str, str]]:
+    """Return key, drawing, words and number of buildings of each sign."""
+    return [(sign.key, draw_sign(sign), say_sign(sign), say.say_whole(count)) for sign, count in signs]
+
+
+def _list_filters(content: CityContent) -> list[tuple[str, str, list[tuple[str, str]]]]:
+    """Return the filters: key, label, and the choices that are in use as value and words."""
+    uses = sorted({words.cut(str(row["use"]), 60) for row in content.buildings if row["use"]})
+    inventories = [one for one in ("surveyed", "handover", "assumed") if _is_used(content, one)]
+    return [
+        ("use", _("Use"), [(use, use) for use in uses]),
+        ("kind", _("Class"), [(sign.key, say_sign(sign)) for sign, _count in content.legend]),
+        ("state", _("Routes"), [(sign.key, say_sign(sign)) for sign, _count in content.route_legend]),
+        ("inventory", _("Inventory"), [(one, say.name_inventory(one)) for one in inventories]),
+        ("storeys", _("Storeys"), [(f"{low}-{high}", _say_storeys(low, high)) for low, high in STOREYS]),
+    ]
+
+
+def _is_used(content: CityContent, inventory: str) -> bool:
+    return any(row["inventory"] == inventory for row in content.buildings)
+
+
+def _say_storeys(low: int, high: int) -> str:
+    if low == high:
+        return str(low)
+    return _("{low} or more", low=low) if high >= STOREYS[-1][1] else _("{low} to {high}", low=low, high=high)
+
+
+def _list_skipped(content: CityContent) -> list[tuple[str, str]]:
+    """Return path and reason of each building that could not be assessed; of several problems the first."""
+    found = []
+    for row in content.skipped:
+        errors = [one for one in content.problems.get(row["path"], []) if one["severity"] == "error"]
+        first = errors[0] if errors else None
+        reason = (
+            " ".join(str(first[name]) for name in ("sheet", "cell", "message", "fix") if first[name]) if first else ""
+        )
+        found.append((words.cut(row["path"], 120), words.cut(reason or words.DASH, 240)))
+    return found

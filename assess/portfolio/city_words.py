@@ -1,0 +1,297 @@
+"""What the page, the summary and the ranking of a city say in words: sums with their ranges, what they leave out."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from assess.i18n import gettext as _
+from assess.i18n import ngettext, number
+from assess.motion.spatial_field import RANGE
+from assess.portfolio.city_spread import Spread
+from assess.portfolio.city_totals import CityTotals, CityView, Group
+from assess.report import words
+from assess.risk import LIMITS, RiskClass
+from assess.rocking.draws import SHARED
+
+REFERENCES = (
+    "Jayaram N, Baker JW (2009). Correlation model for spatially distributed ground-motion intensities. Earthquake "
+    "Engineering and Structural Dynamics 38(15):1687-1708. doi:10.1002/eqe.922",
+    "Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014). NGA-West2 equations for predicting PGA, PGV, and 5% damped "
+    "PSA for shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M",
+)
+"""Sources of the draws of an earthquake that differ from place to place; named where anything was drawn."""
+P58 = (
+    "FEMA (2018). Seismic performance assessment of buildings, FEMA P-58, second edition, volume 1: normative "
+    "quantities of components by occupancy. Federal Emergency Management Agency"
+)
+"""Source of assumed inventories."""
+
+
+def say_number(value: float | None) -> str:
+    """Return a sum as people read it: whole from 100, else with one decimal; a small one that is not 0 is no 0."""
+    if value is None or value != value:
+        return words.DASH
+    if 0 < value < 0.05:
+        return _("below {limit:.2f}", limit=0.05)
+    return number(value, ",.0f" if abs(value) >= 100 else ",.1f")
+
+
+def say_whole(value: float | None) -> str:
+    """Return a whole number with its thousands marked."""
+    return words.DASH if value is None else number(value, ",.0f")
+
+
+def say_range(low: float | None, high: float | None) -> str:
+    """Return a range of whole numbers, ``120 to 340``; a dash where nothing was drawn."""
+    if low is None or high is None:
+        return words.DASH
+    return _("{low} to {high}", low=number(low, ",.0f"), high=number(high, ",.0f"))
+
+
+def say_interval(spread: Spread) -> str:
+    """Return the sampling interval of an expected number; a dash where nothing was drawn."""
+    if spread.sampling_low is None or spread.sampling_high is None:
+        return words.DASH
+    return _("{low} to {high}", low=say_number(spread.sampling_low), high=say_number(spread.sampling_high))
+
+
+def name_inventory(inventory: str | None) -> str:
+    """Return where the pieces of a building come from."""
+    return {
+        "surveyed": _("surveyed"),
+        "handover": _("handover file (COBie)"),
+        "assumed": _("inventory assumed"),
+    }.get(inventory or "", words.DASH)
+
+
+def name_basis(basis: str | None) -> str:
+    """Return what the numbers of a building rest on."""
+    return {"simulated": _("simulated"), "formula": _("by formula only")}.get(basis or "", words.DASH)
+
+
+def name_group(group: Group) -> str:
+    """Return the name of a group of buildings: where their pieces come from, and what their numbers rest on."""
+    heads = {
+        "surveyed": _("Surveyed buildings"),
+        "handover": _("Buildings from a handover file (COBie)"),
+        "assumed": _("Buildings with an assumed inventory"),
+    }
+    return _("{inventory}, {basis}", inventory=heads[group.inventory], basis=name_basis(group.basis))
+
+
+def say_title(view: CityView) -> str:
+    """Return the title: how many buildings."""
+    n = len(view.buildings)
+    return ngettext("Furniture in an earthquake: {n:,} building", "Furniture in an earthquake: {n:,} buildings", n)
+
+
+def say_ground(view: CityView) -> str:
+    """Return in one sentence what earthquake it is."""
+    if view.ground is None:
+        return _("Every building has the ground motion of its own workbook or row of the index: the buildings are not "
+                 "under one earthquake.")  # fmt: skip
+    if view.ground.kind == "shakemap":
+        return _("Ground motion: the ShakeMap {file}.", file=view.ground.file)
+    return _("Ground motion: the scenarios of {file}.", file=view.ground.file)
+
+
+def list_facts(view: CityView) -> list[tuple[str, str]]:
+    """Return what is to be known of the ground motion, as label and value."""
+    return [(_(label), _(value)) for label, value in view.ground.facts] if view.ground else []
+
+
+# ---------------------------------------------------------------- the answer
+
+
+def list_group_lines(group: Group) -> list[str]:
+    """Return the answer of one group in sentences: falls, people, what fixing helps, money, what is assumed."""
+    return [*_say_falls(group), *_say_people(group), *_say_works(group), *_say_assumed(group)]
+
+
+def _say_falls(group: Group) -> Iterator[str]:
+    spread = group.falls
+    texts = {
+        "expected": say_number(spread.expected), "counted": say_whole(group.counted),
+        "buildings": ngettext("{n:,} building", "{n:,} buildings", group.buildings),
+    }  # fmt: skip
+    yield _("Expected to overturn: {expected} of {counted} free-standing pieces in {buildings}.", **texts)
+    if spread.draws:
+        yield _("In nine of ten earthquakes like this one between {low} and {high} of them overturn.",
+                low=say_whole(spread.low), high=say_whole(spread.high))  # fmt: skip
+    else:
+        yield _("No range is known, as nothing was simulated.")
+    if spread.draws and spread.apart > 0:
+        yield _("Expected falls that are in no range, as they were not simulated: {apart}.",
+                apart=say_number(spread.apart))  # fmt: skip
+    apart = [
+        *(ngettext("{n:,} unconfirmed", "{n:,} unconfirmed", n) for n in (group.unconfirmed,) if n),
+        *(ngettext("{n:,} by formula only", "{n:,} by formula only", n) for n in (group.by_formula,) if n),
+    ]
+    if apart:
+        yield _("Pieces that could fall as well and are in none of these numbers: {apart}.", apart=", ".join(apart))
+
+
+def _say_people(group: Group) -> Iterator[str]:
+    if not group.occupants:
+        if sum(group.routes.values()):
+            yield _("How many people use the routes is not filled in.")
+        return
+    people = group.people
+    yield _("Expected on blocked evacuation routes: {expected} of {occupants} people.",
+            expected=say_number(people.expected), occupants=say_whole(group.occupants))  # fmt: skip
+    if people.draws:
+        yield _("In nine of ten earthquakes like this one between {low} and {high}.",
+                low=say_whole(people.low), high=say_whole(people.high))  # fmt: skip
+    if people.draws and people.apart > 0:
+        yield _("Of the people expected on blocked routes, {apart} are in no range: their routes have no joint draws.",
+                apart=say_number(people.apart))  # fmt: skip
+    if group.people_not_known:
+        yield ngettext("{n:,} person is on a route whose state is not known, and is in no number.",
+                       "{n:,} people are on routes whose state is not known, and are in no number.",
+                       group.people_not_known)  # fmt: skip
+
+
+def _say_works(group: Group) -> Iterator[str]:
+    if not group.works:
+        return
+    yield ngettext("Fixing the {n:,} piece on the work list avoids {avoided} falls, if the anchors hold.",
+                   "Fixing the {n:,} pieces on the work lists avoids {avoided} falls, if the anchors hold.",
+                   group.works, avoided=say_number(group.falls_avoided))  # fmt: skip
+    if group.cost is not None:
+        yield _("Known costs of the work: {cost}, in the currencies of the workbooks.", cost=say_whole(group.cost))
+    if group.works_without_cost:
+        yield ngettext("{n:,} piece on the work lists has no cost.", "{n:,} pieces on the work lists have no cost.",
+                       group.works_without_cost)  # fmt: skip
+
+
+def _say_assumed(group: Group) -> Iterator[str]:
+    if group.falls_low_inventory is not None and group.falls_high_inventory is not None:
+        yield _("The furniture is assumed from the use and the floor area. With few pieces everywhere (10 % "
+                "quantities) {low} falls are expected, with many (90 %) {high}.",
+                low=say_number(group.falls_low_inventory), high=say_number(group.falls_high_inventory))  # fmt: skip
+
+
+# ---------------------------------------------------------------- what is not in it
+
+
+def list_cautions(view: CityView, totals: CityTotals) -> list[str]:
+    """Return what a reader has to know before the numbers: what is left out, and what is in none of them."""
+    return [text for text in (*_of_buildings(view, totals), *_of_groups(totals)) if text]
+
+
+def _of_buildings(view: CityView, totals: CityTotals) -> Iterator[str]:
+    if totals.skipped:
+        yield ngettext("{n:,} building could not be assessed and is in no number: see the list of skipped buildings.",
+                       "{n:,} buildings could not be assessed and are in no number: see the list of skipped buildings.",
+                       totals.skipped)  # fmt: skip
+    if len(totals.groups) > 1:
+        yield _("Surveyed, handed-over and assumed inventories, and simulated and formula results, are not added up: "
+                "their uncertainties differ.")  # fmt: skip
+    if view.settings.scale != 1:
+        yield _("The motion of every floor is multiplied by {scale:g}.", scale=view.settings.scale)
+    if view.settings.ideal:
+        yield _("The uncertainty of the earthquake and of the pieces is left out, as the settings ask.")
+
+
+def _of_groups(totals: CityTotals) -> Iterator[str]:
+    own = sum(group.own_motions for group in totals.groups)
+    if own:
+        yield ngettext("{n:,} building has floors with a record or a PFA of their own, which may not be of this "
+                       "earthquake; its falls are in the sums.",
+                       "{n:,} buildings have floors with a record or a PFA of their own, which may not be of this "
+                       "earthquake; their falls are in the sums.", own)  # fmt: skip
+    unplaced = sum(group.unplaced for group in totals.groups)
+    if unplaced:
+        yield ngettext("{n:,} building has no Latitude and Longitude: it is not on the map.",
+                       "{n:,} buildings have no Latitude and Longitude: they are not on the map, and their draws are "
+                       "fully correlated with each other, which widens the ranges.", unplaced)  # fmt: skip
+
+
+def list_method(view: CityView, totals: CityTotals) -> list[str]:
+    """Return how the numbers were made, in short paragraphs."""
+    return list(_list_method(view, totals))
+
+
+def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
+    yield _("Every percentage and every expected number is for this scenario, not per year. Classes by the chance of "
+            "overturning: low below {low}, medium below {medium}, high below {high}, very high above.",
+            low=_share(LIMITS[0]), medium=_share(LIMITS[1]), high=_share(LIMITS[2]))  # fmt: skip
+    drawn = next((group.falls for group in totals.groups if group.falls.draws), None)
+    if drawn is not None:
+        yield _say_draws(view, drawn)
+        yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}: "
+                "that is not so, and the difference shows why ranges of buildings must not be added up.",
+                alone=say_range(drawn.independent_low, drawn.independent_high),
+                together=say_range(drawn.low, drawn.high))  # fmt: skip
+        yield _("The expected number itself is known within the sampling interval, by the number of draws alone "
+                "(95 %): {interval}.", interval=say_interval(drawn))  # fmt: skip
+    if any(group.basis == "formula" for group in totals.groups):
+        yield _("Results by formula only are chances from a published formula; nothing was simulated, so that no range "
+                "is given.")  # fmt: skip
+    if any(group.inventory == "assumed" for group in totals.groups):
+        yield _("Assumed inventories: pieces by use and floor area from the normative quantities of FEMA P-58; low, "
+                "median and high are its 10, 50 and 90 % quantities. No piece of them has been seen.")  # fmt: skip
+
+
+def _say_draws(view: CityView, drawn: Spread) -> str:
+    """Return what the draws of a city have in common."""
+    ends = _("The range from 5 to 95 % of the draws is that of the sum over buildings, draw by draw.")
+    if view.settings.ideal:
+        start = _("Each of the {draws:,} draws is one motion of each floor, without the uncertainty of the earthquake.",
+                  draws=drawn.draws)  # fmt: skip
+    elif view.ground is not None and view.ground.kind == "scenarios":
+        start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings.",
+                  draws=drawn.draws)  # fmt: skip
+    else:
+        start = _("Each of the {draws:,} draws is one earthquake for all buildings. Of the variance of ln PGA, "
+                  "{shared} is common to all of them (Boore et al. 2014) unless the ShakeMap gives that share itself; "
+                  "the rest differs from place to place, with the correlation exp(-3 h / {range:g} km) at the distance "
+                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
+    return f"{start} {ends}"
+
+
+def _share(value: float) -> str:
+    return f"{number(100 * value, '.0f')} %"
+
+
+def list_references(totals: CityTotals) -> list[str]:
+    """Return the publications that the numbers rest on."""
+    drawn = any(group.falls.draws for group in totals.groups)
+    assumed = any(group.inventory == "assumed" for group in totals.groups)
+    return [*(REFERENCES if drawn else ()), *((P58,) if assumed else ())]
+
+
+# ---------------------------------------------------------------- tables
+
+
+def list_total_heads() -> list[str]:
+    """Return the headings of the table of groups."""
+    classes = [words.risk_label(risk) for risk in RiskClass]
+    return [_("Buildings by inventory and basis"), _("Buildings"), _("Pieces"), *classes, _("apart"), _("anchored"),
+            _("Expected falls"), _("5 to 95 % of earthquakes"), _("People on blocked routes"),
+            _("5 to 95 % of earthquakes")]  # fmt: skip
+
+
+def list_total_rows(totals: CityTotals) -> list[list[str]]:
+    """Return the table of groups; there is no line of all, as groups are never added up."""
+    return [
+        [
+            name_group(group), say_whole(group.buildings), say_whole(group.pieces),
+            *(say_whole(group.by_class[risk]) for risk in RiskClass), say_whole(group.unconfirmed + group.by_formula),
+            say_whole(group.anchored), say_number(group.falls.expected), say_range(group.falls.low, group.falls.high),
+            say_number(group.people.expected) if group.occupants else words.DASH,
+            say_range(group.people.low, group.people.high) if group.occupants else words.DASH,
+        ]
+        for group in totals.groups
+    ]  # fmt: skip
+
+
+def say_place(row: dict[str, Any] | Any) -> str:
+    """Return the place of a building in degrees; a dash where it is not known."""
+    if row["latitude"] is None or row["longitude"] is None:
+        return words.DASH
+    return f"{number(row['latitude'], '.5f')}, {number(row['longitude'], '.5f')}"
+
+
+def join_names(names: Sequence[str]) -> str:
+    """Return names with commas between them."""
+    return ", ".join(names)

@@ -1,0 +1,256 @@
+"""What the page of a city holds as data: every building in short, and its rows, with texts each only once.
+
+The page's script makes rows of it when a building is opened, as text alone: nothing of it is ever read as HTML.
+"""
+
+import json
+import shlex
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import Any
+
+from assess.i18n import gettext as _
+from assess.portfolio.building_signs import Row, sign_of_class, sign_of_routes
+from assess.portfolio.city_content import CityContent, name_building
+from assess.portfolio.city_words import name_basis, name_inventory, say_number, say_place, say_range, say_whole
+from assess.portfolio.piece_words import (
+    find_state,
+    label_piece,
+    label_state,
+    order_pieces,
+    say_count,
+    say_kind,
+    say_probability,
+    say_severity,
+    say_size,
+    say_spot,
+)
+from assess.report import words
+
+MOST_ROWS = 150
+"""Rows of one table of a building that the page holds; the tables of the portfolio have all."""
+LONGEST = 300
+"""Characters of a text that the page holds."""
+STOREYS = ((1, 1), (2, 3), (4, 7), (8, 300))
+"""Groups of storeys in the filter."""
+Cells = Sequence[str]
+
+
+class Table:
+    """Rows of all buildings: per column its distinct texts, and per row their numbers."""
+
+    def __init__(self, heads: Cells, numeric: Iterable[int]) -> None:
+        self.heads, self.numeric = heads, sorted(numeric)
+        self.known: list[dict[str, int]] = [{} for _head in heads]
+        self.columns: list[list[int]] = [[] for _head in heads]
+        self.starts, self.left_out = [0], list[int]()
+
+    def add(self, rows: Sequence[Any], read: Callable[[Any], Cells]) -> None:
+        """Add the rows of the next building."""
+        for row in rows[:MOST_ROWS]:
+            for known, column, text in zip(self.known, self.columns, read(row), strict=True):
+                column.append(known.setdefault(words.cut(text, LONGEST), len(known)))
+        self.starts.append(len(self.columns[0]))
+        self.left_out.append(max(0, len(rows) - MOST_ROWS))
+
+    def pack(self) -> dict[str, Any]:
+        """Return what the page holds of it."""
+        return {
+            "heads": self.heads, "numeric": self.numeric, "texts": [list(known) for known in self.known],
+            "columns": self.columns, "starts": self.starts, "left": self.left_out,
+        }  # fmt: skip
+
+
+def write_data(content: CityContent, repeat: str) -> str:
+    """Return the data of the page as JSON that may stand inside a script element.
+
+    `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none.
+    """
+    data = {
+        "heads": [label for label, _read in _FACTS()],
+        "buildings": [_pack_building(row, content, repeat) for row in content.buildings],
+        "tables": _pack_tables(content),
+        "styles": _list_styles(),
+        "texts": _list_texts(),
+    }
+    text = json.dumps(data, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _pack_building(row: Row, content: CityContent, repeat: str) -> dict[str, Any]:
+    is_assessed = row["status"] == "assessed"
+    return {
+        "name": words.cut(name_building(row), LONGEST),
+        "path": words.cut(row["path"], LONGEST),
+        "kind": sign_of_class(row).key,
+        "state": sign_of_routes(row).key,
+        "use": words.cut(str(row["use"] or ""), 60),
+        "inventory": row["inventory"] or "",
+        "basis": row["basis"] or "",
+        "storeys": row["storeys"],
+        "cells": _list_cells(row),
+        "facts": [words.cut(read(row), LONGEST) for _label, read in _FACTS()] if is_assessed else [],
+        "command": _write_command(row, repeat),
+    }
+
+
+def _write_command(row: Row, repeat: str) -> str:
+    """Return the command that assesses a building alone; "" of one without a workbook."""
+    if not repeat or row["inventory"] == "assumed" or any(not sign.isprintable() for sign in row["path"]):
+        return ""
+    return repeat.replace("{path}", shlex.quote(row["path"]))
+
+
+def list_heads() -> list[str]:
+    """Return the headings of the ranking, whose cells `write_data` holds for each building."""
+    return [_("Building"), _("Use"), _("Inventory"), _("Class"), _("Pieces"), _("Expected falls"),
+            _("5 to 95 % of earthquakes"), _("People on blocked routes"), _("Routes blocked")]  # fmt: skip
+
+
+def _list_cells(row: Row) -> list[str]:
+    """Return the cells of the ranking after the first; the class is written by its sign."""
+    if row["status"] != "assessed":
+        return [str(row["use"] or ""), "", "", *("" for _at in range(5))]
+    inventory = name_inventory(row["inventory"])
+    basis = "" if row["basis"] == "simulated" else f", {name_basis(row['basis'])}"
+    return [
+        words.cut(str(row["use"] or ""), 60), f"{inventory}{basis}", "", say_count(row["pieces"]),
+        say_number(row["expected_falls"]), say_range(row["falls_p05"], row["falls_p95"]),
+        _say_people(row), say_count(row["routes_blocked"]) if row["routes"] else words.DASH,
+    ]  # fmt: skip
+
+
+def _say_people(row: Row) -> str:
+    if not row["occupants"]:
+        return words.DASH
+    return _("{people} of {occupants}", people=say_number(row["people_blocked"]), occupants=say_whole(row["occupants"]))
+
+
+def _FACTS() -> list[tuple[str, Callable[[Row], str]]]:  # noqa: N802 - a table, in the language in use
+    """Return what the page of a building says of it: label, and how it is read from its row."""
+    return [
+        (_("File"), lambda row: str(row["path"])),
+        (_("Inventory"), lambda row: name_inventory(row["inventory"])),
+        (_("Results"), lambda row: name_basis(row["basis"])),
+        (_("Use"), lambda row: str(row["use"] or words.DASH)),
+        (_("Place"), say_place),
+        (_("Storeys"), lambda row: say_count(row["storeys"])),
+        (_("Height [m]"), lambda row: words.fixed(row["height_m"], 1)),
+        (_("Ground motion"), _say_ground),
+        (_("Largest PFA of its floors [g]"), lambda row: words.in_g(row["largest_pfa_g"])),
+        (_("Standard deviation of ln PFA"), lambda row: words.fixed(row["motion_uncertainty"], 2)),
+        (_("Pieces by class"), _say_classes),
+        (_("Expected falls"), _say_falls),
+        (_("Falls with few and with many pieces (10 and 90 % quantities)"), _say_assumed),
+        (_("People on blocked routes"), _say_people),
+        (_("Falls that the work list avoids"), lambda row: say_number(row["falls_avoided"])),
+        (_("Known costs"), _say_cost),
+    ]
+
+
+def _say_ground(row: Row) -> str:
+    if row["ground_pga_g"] is None:
+        return _("the floors have motions of their own")
+    source = {
+        "shakemap": _("ShakeMap"), "scenarios": _("scenarios"), "ground_pga": _("Ground PGA as given"),
+        "sds": _("SDS as given"), "shaking": _("assumed from the intensity"),
+    }.get(row["ground_source"] or "", "")  # fmt: skip
+    own = _("; {floors} floors keep a motion of their own", floors=row["own_motions"]) if row["own_motions"] else ""
+    return _("PGA {pga} g ({source}){own}", pga=words.in_g(row["ground_pga_g"]), source=source, own=own)
+
+
+def _say_classes(row: Row) -> str:
+    named = {
+        "low": _("low"), "medium": _("medium"), "high": _("high"), "very_high": _("very high"),
+        "unconfirmed": _("unconfirmed"), "by_formula": _("by formula only"), "anchored": _("anchored"),
+    }  # fmt: skip
+    return "; ".join(f"{label} {say_whole(row[name])}" for name, label in named.items() if row[name])
+
+
+def _say_falls(row: Row) -> str:
+    if row["falls_p05"] is None or row["falls_p95"] is None:
+        return say_number(row["expected_falls"])
+    return _("{expected}; in nine of ten earthquakes like this one {range}",
+             expected=say_number(row["expected_falls"]),
+             range=say_range(row["falls_p05"], row["falls_p95"]))  # fmt: skip
+
+
+def _say_assumed(row: Row) -> str:
+    if row["inventory"] != "assumed":
+        return ""
+    return _(
+        "{low} to {high}", low=say_number(row["falls_low_inventory"]), high=say_number(row["falls_high_inventory"])
+    )
+
+
+def _say_cost(row: Row) -> str:
+    if row["cost"] is None:
+        return _("not known") if row["works"] else ""
+    missing = say_count(row["works_without_cost"]) if row["works_without_cost"] else ""
+    return say_whole(row["cost"]) + (_(" and {pieces} pieces without a cost", pieces=missing) if missing else "")
+
+
+# ---------------------------------------------------------------- rows of a building
+
+
+def _pack_tables(content: CityContent) -> dict[str, Any]:
+    pieces = Table([_("Item"), _("Floor"), _("Room"), _("What"), _("Size [cm]"), _("Pieces"), _("Class"), _("Chance"),
+                    _("Fix: place"), _("How to fix it")], (5, 7, 8))  # fmt: skip
+    routes = Table([_("Route"), _("State"), _("Chance of a blockage"), _("People"), _("Pieces that may block it"),
+                    _("To fill in")], (2, 3))  # fmt: skip
+    problems = Table([_("Severity"), _("Place"), _("What"), _("How to fix it")], ())
+    for building in content.buildings:
+        path, basis = building["path"], building["basis"]
+        pieces.add(order_pieces(content.pieces.get(path, [])), partial(_read_piece, basis))
+        routes.add(content.routes.get(path, []), _read_route)
+        problems.add(content.problems.get(path, []), _read_problem)
+    return {"pieces": pieces.pack(), "routes": routes.pack(), "problems": problems.pack()}
+
+
+def _read_piece(basis: str | None, row: Row) -> list[str]:
+    place = "" if row["work_place"] is None else say_count(row["work_place"])
+    return [
+        row["item"] or "", row["floor"] or "", row["room"] or "", say_kind(row), say_size(row),
+        say_count(row["quantity"]), label_piece(row, basis)[0], say_probability(row), place, row["detail"] or "",
+    ]  # fmt: skip
+
+
+def _read_route(row: Row) -> list[str]:
+    return [row["route"] or "", label_state(row["state"]), say_probability(row), say_count(row["occupants"]),
+            row["blockers"] or "", row["to_fill_in"] or ""]  # fmt: skip
+
+
+def _read_problem(row: Row) -> list[str]:
+    return [say_severity(row["severity"] or ""), say_spot(row), row["message"] or "", row["fix"] or ""]
+
+
+def _list_styles() -> dict[str, str]:
+    """Return the style of a cell by the sign that it begins with."""
+    risks = ("low", "medium", "high", "very-high")
+    signs = dict(zip("○◇▲■", risks, strict=True))
+    apart = {words.ANCHORED: "anchored", words.UNCONFIRMED: "apart-unconfirmed", words.BY_FORMULA: "apart-formula"}
+    states = {find_state(state).symbol: f"way-state {state.replace(' ', '-')}"
+              for state in ("open", "doubtful", "blocked", "not known")}  # fmt: skip
+    return signs | apart | states
+
+
+def _list_texts() -> dict[str, str]:
+    """Return what the script says."""
+    return {
+        "all": _("Buildings: {total}, all shown"),
+        "some": _("Buildings: {shown} of {total}; {filters}"),
+        "more": _("Show {count} more"),
+        "fixes": _("What to fix first"),
+        "pieces": _("All pieces"),
+        "routes": _("Evacuation routes"),
+        "problems": _("Problems of the workbook"),
+        "left": _("{count} more rows are in the tables of the portfolio."),
+        "alone": _("To assess this building alone, to the same numbers"),
+        "index": _("What the index fills in has to be typed into its workbook before."),
+        "skipped": _("This building could not be assessed."),
+        "assumed": _("The furniture of this building is assumed; no piece of it has been seen."),
+        "kilometres": _("{length} km"),
+        "metres": _("{length} m"),
+        "title": _("Building {place} of {total} in the ranking"),
+        "text": _("Text"),
+    }

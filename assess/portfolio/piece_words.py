@@ -1,0 +1,92 @@
+"""How the rows of the tables pieces, routes and problems read, on the page and in the ranking."""
+
+from assess.i18n import gettext as _
+from assess.i18n import number
+from assess.portfolio.building_signs import BY_ROUTES, Row, Sign, say_sign
+from assess.report import words
+from assess.risk import RiskClass
+
+_CLASSES = {risk.word: risk for risk in RiskClass}
+
+
+def find_class(word: str | None) -> RiskClass | None:
+    """Return the class that a table names."""
+    return _CLASSES.get(word or "")
+
+
+def label_piece(row: Row, basis: str | None) -> tuple[str, str]:
+    """Return the class of a piece as sign and words, and its style.
+
+    `basis` is that of its building: where this is simulated, a piece that was not stands outside the classes.
+    """
+    risk = find_class(row["risk_class"])
+    if row["is_held"]:
+        return f"{words.ANCHORED} {_('anchored')}", "anchored"
+    if risk is None:
+        return words.DASH, ""
+    if row["basis"] == "unconfirmed":
+        said = _("unconfirmed (formula: {risk})", risk=words.risk_word(risk))
+        return f"{words.UNCONFIRMED} {said}", "apart-unconfirmed"
+    if row["basis"] == "formula" and basis != "formula":
+        said = _("{risk} by formula only", risk=words.risk_word(risk))
+        return f"{words.BY_FORMULA} {said}", "apart-formula"
+    upper = find_class(row["risk_class_upper"])
+    note = f", {words.could_be(words.risk_word(upper))}" if upper is not None and upper > risk else ""
+    return f"{words.risk_label(risk)}{note}", words.class_name(risk)
+
+
+def say_probability(row: Row) -> str:
+    """Return a chance with its interval where it has one: ``12.3 % (10.1 to 15.0 %)``."""
+    value, low, high = row["probability"], row["probability_low"], row["probability_high"]
+    if value is None:
+        return words.DASH
+    if low is None or high is None:
+        return words.percent(value)
+    interval = _("({low} to {high} %)", low=words.in_percent(low), high=words.in_percent(high))
+    return f"{words.percent(value)} {interval}"
+
+
+def say_size(row: Row) -> str:
+    """Return breadth, width and height [cm], a dash for what is not known."""
+    return " × ".join(words.in_cm(row[name]) for name in ("breadth_cm", "width_cm", "height_cm"))
+
+
+def say_kind(row: Row) -> str:
+    """Return what a piece is: its description, else its type."""
+    return str(row["description"] or row["type"] or "")
+
+
+def find_state(state: str | None) -> Sign:
+    """Return the sign of the state of a route."""
+    return BY_ROUTES.get((state or "").replace(" ", "-"), BY_ROUTES["not-known"])
+
+
+def label_state(state: str | None) -> str:
+    """Return the state of a route as sign and words."""
+    sign = find_state(state)
+    return f"{sign.symbol} {say_sign(sign)}"
+
+
+def say_severity(severity: str) -> str:
+    """Return how grave a problem is."""
+    return {"error": _("error"), "warning": _("warning"), "note": _("note")}.get(severity, severity)
+
+
+def say_spot(row: Row) -> str:
+    """Return where a problem is: sheet and cell."""
+    return " ".join(str(row[name]) for name in ("sheet", "cell") if row[name])
+
+
+def say_count(value: float | None) -> str:
+    """Return a whole number of a row; a dash for what is not known."""
+    return words.DASH if value is None else number(value, ",.0f")
+
+
+def order_pieces(rows: list[Row]) -> list[Row]:
+    """Return pieces as the building's work list has them, then the others, the likeliest to fall first."""
+    return sorted(rows, key=_order)
+
+
+def _order(row: Row) -> tuple[float, float, int]:
+    place = float("inf") if row["work_place"] is None else row["work_place"]
+    return place, -(row["probability"] or 0.0), row["row"] or 0
