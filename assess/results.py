@@ -797,6 +797,37 @@ class SuiteInfo:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class EarthquakeDraws:
+    """How the number by which a draw of an earthquake scales the motions depends on the place and on scenarios.
+
+    Parameters
+    ----------
+    is_city : bool
+        Whether it depends on the place where that is known, as buildings of a portfolio need it.
+    is_placed : bool
+        Whether the place is known, and it does.
+    shared : float
+        Share of its variance that is common to all places [-]; what scenarios carry is left out.
+    is_shared_given : bool
+        Whether the ShakeMap gives that share; else it is that of Boore et al. (2014).
+    range_km : float
+        Distance at which the correlation of the rest has fallen to exp(-3).
+    scenarios : int
+        Scenarios of the ground that were computed elsewhere; 0 for none.
+    scenario_share : float
+        Share of the variance that they carry [-].
+    """
+
+    is_city: bool
+    is_placed: bool
+    shared: float
+    is_shared_given: bool
+    range_km: float
+    scenarios: int
+    scenario_share: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AssumedShaking:
     """The intensity that stands in for a known motion of the ground.
 
@@ -852,6 +883,8 @@ class Provenance:
         Where the floor motion came from, one of `assess.settings.SCENARIOS`.
     uncertainty : Uncertainty
         What was drawn of the earthquake and of the pieces.
+    earthquakes : EarthquakeDraws, optional
+        How draws of the earthquake depend on the place and on scenarios; None where they do not.
     shaking : AssumedShaking, optional
         The intensity that was assumed; None where no floor rests on one.
     suite : SuiteInfo, optional
@@ -879,6 +912,7 @@ class Provenance:
     files: Mapping[str, str]
     scenario: str
     uncertainty: Uncertainty
+    earthquakes: EarthquakeDraws | None
     shaking: AssumedShaking | None
     suite: SuiteInfo | None
     language: str

@@ -24,6 +24,7 @@ SETTINGS: Mapping[str, Text] = {
     "scale": fill("Factor on the motion of every floor"),
     "ideal": fill("Exactly this motion and these pieces"),
     "scale_motions": fill("Own motions scaled to each floor's PFA"),
+    "city": fill("Earthquakes drawn by the building's place"),
     "zeta_acceleration": fill("Kaneko and Hayashi: dispersion of PFA"),
     "zeta_velocity": fill("Kaneko and Hayashi: dispersion of PFV"),
     "slide_coefficient": fill("Ishiyama: sliding coefficient"),

@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from assess.errors import InputError
 from assess.i18n import fill, join
 from assess.model import Inventory
+from assess.motion.spatial_field import RANGE
+from assess.results import EarthquakeDraws
 from assess.rocking.draws import SHARED, Earthquakes, Uncertainty, name_number
 from assess.settings import AUTO, RUNS, Settings
 
@@ -53,6 +55,22 @@ def number_pieces(inventory: Inventory, settings: Settings) -> Mapping[str, int]
     place = _find_place(inventory) if settings.city else None
     before = "" if place is None else f"{place[0]:.6f} {place[1]:.6f} "
     return {item.item: name_number(f"{before}{item.item}") for item in inventory.items}
+
+
+def describe_draws(inventory: Inventory, settings: Settings, earthquakes: Earthquakes) -> EarthquakeDraws | None:
+    """Return how draws depend on the place and on scenarios; None where they do not."""
+    if not settings.city and not earthquakes.given:
+        return None
+    ground = inventory.site_ground
+    return EarthquakeDraws(
+        is_city=settings.city,
+        is_placed=earthquakes.place is not None,
+        shared=earthquakes.shared,
+        is_shared_given=ground is not None and ground.shared is not None,
+        range_km=RANGE,
+        scenarios=len(earthquakes.given),
+        scenario_share=earthquakes.given_share,
+    )
 
 
 # ---------------------------------------------------------------- how many draws

@@ -15,6 +15,7 @@ from assess.motion.record import Record, treatment
 from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED, Profile, cap_pfv, estimate_pfv
 from assess.pipeline.anchors import Anchors
 from assess.pipeline.assessment import Assessment
+from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import Demand, Demands, Ground, find_assumed, find_ground
 from assess.pipeline.versions import versions
 from assess.results import (
@@ -310,6 +311,7 @@ def build_provenance(assessment: Assessment) -> Provenance:
         files=dict(inventory.files),
         scenario=assessment.scenario,
         uncertainty=assessment.cases.uncertainty,
+        earthquakes=describe_draws(assessment.inventory, assessment.settings, assessment.cases.earthquakes),
         shaking=_describe_shaking(assessment.demands),
         suite=_suite(assessment.suite, assessment.settings.scale_motions),
         language=inventory.report_language,

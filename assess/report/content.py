@@ -17,6 +17,7 @@ from assess.report.findings.annual_chances import AnnualChances, build_annual
 from assess.report.findings.apart import list_apart, list_parts
 from assess.report.findings.assumed_intensity import say_shaking
 from assess.report.findings.disagreements import Disagreements, find_disagreements
+from assess.report.findings.earthquake_draws import list_references
 from assess.report.findings.ground import PEAKS, say_ground
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
@@ -189,9 +190,9 @@ class Content(ByBasis):
 
     @property
     def references(self) -> Sequence[str]:
-        """Publications of the methods, of the interval, and of an assumed intensity."""
+        """Publications of the methods, of the interval, of draws by place, and of an assumed intensity."""
         shaking = self.run.provenance.shaking
-        others = (WILSON, *(shaking.references if shaking else ()))
+        others = (WILSON, *list_references(self.run), *(shaking.references if shaking else ()))
         return list(dict.fromkeys((*(say_reference(method.reference) for method in self.methods), *others)))
 
     @property

@@ -84,6 +84,7 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
             "seed": results.settings.seed,
             "settings": results.settings.as_record() | {"scenario": origin.scenario},
             "uncertainty": asdict(origin.uncertainty),
+            "earthquakes": origin.earthquakes and asdict(origin.earthquakes),
             "shaking": origin.shaking and asdict(origin.shaking),
             "platform": dict(origin.platform),
             "inputs": {

@@ -20,7 +20,7 @@ from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import Problem
 from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
 from assess.model import AXES
-from assess.results import AssumedShaking, Provenance
+from assess.results import AssumedShaking, EarthquakeDraws, Provenance
 from assess.risk import RiskClass
 from assess.schedule_fields import ENTRY_FIELDS, STATE_FIELDS, WORK_FIELDS
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
@@ -194,6 +194,8 @@ def _assess() -> Schema:
             "seed": COUNT | {"description": "Of the generated motions."},
             "settings": _of_row(Settings),
             "uncertainty": _of_row(UNCERTAINTY) | {"description": "What the draws of the simulation vary."},
+            "earthquakes": _or_null(_of_row(EarthquakeDraws))
+            | {"description": "How draws of the earthquake depend on the place and on scenarios; null: they do not."},
             "shaking": _or_null(_of_row(AssumedShaking))
             | {"description": "The assumed intensity that stands in for a known motion of the ground; null: none."},
             "platform": _map(TEXT),

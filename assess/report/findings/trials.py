@@ -8,6 +8,7 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.natural import natural_key
 from assess.report import words
+from assess.report.findings.earthquake_draws import list_draw_assumptions, say_draws
 from assess.report.findings.motions import describe_suite, say_signs
 from assess.report.findings.uncertain import say_source
 from assess.report.findings.verified import Verified, name_some
@@ -130,6 +131,7 @@ def _describe_draws(results: Results) -> str:
             "({source}).",
             dispersion=number(uncertainty.motion, "g"), source=say_source(results),
         ))  # fmt: skip
+    parts += filter(None, [say_draws(results)])
     if uncertainty.piece:
         parts.append(_(
             "Each piece draws its base × N({mean}, {base}), its height × N(1, {height}), its centre of gravity N(as "
@@ -274,5 +276,6 @@ def _list_uncertainties(results: Results) -> list[tuple[str, str]]:
         motion, piece = (_("{text}; left out in this run", text=text) for text in (motion, piece))
     return [
         (_("Motion uncertainty (standard deviation of ln amplitude, one draw for the whole building)"), motion),
+        *list_draw_assumptions(results),
         (_("Piece uncertainty"), piece),
     ]
