@@ -94,6 +94,17 @@ def build_workbook(imported: ImportedBuilding) -> bytes:
     OSError
         If there is no room for temporary files.
     """
+    content = Content(list_rows(imported))
+    if len(imported.items) <= MOST_LIVE:
+        content = store_live(content, "si")
+    with TemporaryDirectory(prefix="assess-import-") as folder:
+        path = Path(folder) / "imported.xlsx"
+        write_workbook(path, content)
+        return path.read_bytes()
+
+
+def list_rows(imported: ImportedBuilding) -> dict[str, Rows]:
+    """Return the rows of the workbook by sheet, as `assess.workbook.read.read_inventory` takes them, too."""
     rows = {
         "Building": [imported.building],
         "Floors": imported.floors,
@@ -102,13 +113,7 @@ def build_workbook(imported: ImportedBuilding) -> bytes:
         "Routes": imported.routes,
         "Catalogue": _join_types(imported.types),
     }
-    content = Content({name: [_cut_texts(row) for row in sheet] for name, sheet in rows.items()})
-    if len(imported.items) <= MOST_LIVE:
-        content = store_live(content, "si")
-    with TemporaryDirectory(prefix="assess-import-") as folder:
-        path = Path(folder) / "imported.xlsx"
-        write_workbook(path, content)
-        return path.read_bytes()
+    return {name: [_cut_texts(row) for row in sheet] for name, sheet in rows.items()}
 
 
 def _join_types(types: Rows) -> list[Mapping[str, Any]]:

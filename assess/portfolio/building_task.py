@@ -18,7 +18,7 @@ from assess.errors import AssessError, Problem, WorkbookError
 from assess.i18n import fill
 from assess.model import Inventory
 from assess.motion.site_ground import GroundField
-from assess.portfolio.building_rows import Origin, build_skipped, build_tables
+from assess.portfolio.building_rows import build_skipped, build_tables
 from assess.portfolio.part_files import Part, find_key, find_place, is_done, read_part, write_part, write_whole
 from assess.portfolio.sources import Source
 from assess.settings import Settings
@@ -163,8 +163,9 @@ def _keep_traceback(task: Task, key: str) -> None:
 def _assess(task: Task, key: str, data: bytes | None) -> Part:
     from assess.pipeline.draw_sums import sum_draws
     from assess.pipeline.run import build_results, compute
+    from assess.portfolio.building_inventory import read_building
 
-    origin, inventory = _read(task, data)
+    origin, inventory = read_building(task.source, data, task.ground)
     assessment = compute(inventory, task.settings, jobs=1)
     results = build_results(assessment, figures=False)
     sums = sum_draws(assessment, results)
@@ -183,17 +184,6 @@ def _assess(task: Task, key: str, data: bytes | None) -> Part:
         draws=draws,
         files=_list_files(inventory, task.source.file),
     )
-
-
-def _read(task: Task, data: bytes | None) -> tuple[Origin, Inventory]:
-    """Return where the pieces of a building come from, and its inventory."""
-    from assess.workbook.read import read_inventory
-
-    source = task.source
-    if source.file is None:
-        raise WorkbookError([Problem("error", "", "", fill("it has no workbook."))])
-    inventory = read_inventory(source.file)
-    return Origin(path=source.path, inventory="surveyed", index=source.index), inventory
 
 
 def _list_files(inventory: Inventory, file: Path | None) -> Mapping[str, str]:
