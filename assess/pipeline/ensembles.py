@@ -3,13 +3,13 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from assess.model import Building
-from assess.motion.record import FloatArray
+from assess.motion.record import FloatArray, treat
 from assess.pipeline.demand import Demand, Demands
 from assess.pipeline.phase_signs import find_phase_signs
 from assess.progress import SILENT, Progress
@@ -80,30 +80,51 @@ class GeneratedEnsemble:
         """The recorded motion as treated [m/s2], and its time step [s]."""
         return _record(self.demand)
 
+    @property
+    def factor(self) -> float:
+        """What the floor's motions are of those for `build_target` [-]: its PFA [m/s2], or the scale of its record."""
+        if self.demand.motion is None:
+            return self.demand.pfa
+        return 1.0 if self.demand.record is None else self.demand.scale
+
     def build_target(self) -> "Target":
-        """Return what the motions are to match."""
+        """Return what the motions are to match, but for `factor`.
+
+        It is that of the record as it is, or a generic one of a PFA of 1 m/s2: floors with targets of one shape take
+        the same motions. The ratio of PFV to PFA, T1 and the height are taken to six digits, so that rounding errors of
+        products make no shape of its own.
+        """
         from assess.motion.target import generic_target, recorded_target
 
         demand = self.demand
         if demand.motion is not None:
-            return recorded_target(demand.motion, self.grid)
-        pfv = math.nan if "pfv_estimated" in demand.flags else demand.pfv
-        return generic_target(demand.pfa, self.grid, pfv=pfv, period=self.period, height=self.height)
+            own = demand.motion if demand.record is None or demand.scale == 1.0 else treat(demand.record)
+            return recorded_target(own, self.grid)
+        pfv = math.nan if "pfv_estimated" in demand.flags else _round(demand.pfv / demand.pfa)
+        return generic_target(1.0, self.grid, pfv=pfv, period=_round(self.period), height=_round(self.height))
 
     def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
         """Find the filter and the corrections that meet the target; the motions are in single precision."""
-        from assess.motion.generate import build_generator
+        from assess.motion.shared_motions import share_motions
 
-        generator = build_generator(
-            self.build_target(), self.grid, seed=self.seed, axis=self.demand.axis, threads=threads, progress=progress,
-            signs=self.signs,
+        shared = share_motions(
+            self.build_target(), self.grid, factor=self.factor, seed=self.seed, axis=self.demand.axis, threads=threads,
+            progress=progress, signs=self.signs,
         )  # fmt: skip
         step = self.grid.time_step
-        fit = generator.fit
-        is_weak = fit is not None and fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
+        is_weak = shared.fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
         return OpenMotions(
-            lambda first, count: [(generator.realise(first, count), step)], fit, generator.spectra, is_weak
+            lambda first, count: [(shared.realise(first, count), step)], shared.fit, shared.spectra, is_weak
         )
+
+
+@overload
+def _round(value: None) -> None: ...
+@overload
+def _round(value: float) -> float: ...
+def _round(value: float | None) -> float | None:
+    """Return a number to six digits."""
+    return None if value is None else float(f"{value:.6g}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,213 @@
+"""Motions that several floors share, of one building or of many: made once in a process, and scaled.
+
+What a generator finds for a target holds for every target in proportion to it: a spectrum twice as high has the same
+motions twice as large. So floors whose targets have one shape, and whose motions have the same samples, phases and
+signs, take the same motions, each by a factor of its own. Whether they are shared or made anew, and in which order,
+does not change a number: the target of one shape is always made at one height.
+
+The latest are kept, in so many bytes. Several threads may ask at once; one of them makes what the others wait for.
+"""
+
+import hashlib
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from assess.motion.generate import Generator, build_generator
+from assess.motion.noise import Signs
+from assess.motion.rows import GROUP
+from assess.motion.sweep import Single
+from assess.motion.target import Grid, Target
+from assess.motion.target_fit import Fit, Spectra
+from assess.progress import SILENT, Progress
+
+KEPT = 160_000_000
+"""Motions that are kept for further floors, in bytes: 200 motions of 30 s take 5 million."""
+MOST_GROUPS = 25
+"""Groups of motions that are kept of one target; whoever wants more has them made anew."""
+ASKED_EVERY = 0.05
+"""Time [s] after which a thread that waits for another asks whether to stop."""
+
+
+@dataclass(slots=True, eq=False)
+class _Entry:
+    """A generator, and the groups of motions that it made after its first, by their number."""
+
+    generator: Generator
+    groups: dict[int, Single] = field(default_factory=dict)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        made = self.generator.made.nbytes + self.generator.spectra.ordinates.nbytes
+        return made + self.generator.recipe.gains.nbytes + sum(one.nbytes for one in [*self.groups.values()])
+
+
+@dataclass(slots=True)
+class _Store:
+    """What has been made, the latest used last; what is over `KEPT` is dropped."""
+
+    held: OrderedDict[bytes, _Entry] = field(default_factory=OrderedDict)
+    busy: dict[bytes, threading.Lock] = field(default_factory=dict)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def find(self, key: bytes) -> _Entry | None:
+        with self.lock:
+            if key in self.held:
+                self.held.move_to_end(key)
+            return self.held.get(key)
+
+    def keep(self, key: bytes, entry: _Entry) -> None:
+        with self.lock:
+            self.held[key] = entry
+            self.held.move_to_end(key)
+            while sum(one.size for one in self.held.values()) > KEPT:
+                self.held.popitem(last=False)
+
+    def find_or_make(self, key: bytes, make: Callable[[], Generator], progress: Progress) -> _Entry:
+        with self.lock:
+            own = self.busy.setdefault(key, threading.Lock())
+        try:
+            with _waiting(own, progress):
+                entry = self.find(key)
+                if entry is None:
+                    entry = _Entry(make())
+                    self.keep(key, entry)
+                return entry
+        finally:
+            with self.lock:
+                self.busy.pop(key, None)
+
+
+_STORE = _Store()
+
+
+def forget() -> None:
+    """Drop the motions that are kept."""
+    with _STORE.lock:
+        _STORE.held.clear()
+
+
+def count_kept() -> int:
+    """Return how many bytes of motions are kept."""
+    with _STORE.lock:
+        return sum(one.size for one in _STORE.held.values())
+
+
+@contextmanager
+def _waiting(lock: threading.Lock, progress: Progress) -> Iterator[None]:
+    """Hold a lock; raise CancelledError while waiting for it if the work is to stop."""
+    while not lock.acquire(timeout=ASKED_EVERY):
+        progress.check()
+    try:
+        yield
+    finally:
+        lock.release()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SharedMotions:
+    """The motions of one floor along one axis: those of its shape, multiplied by a factor [-].
+
+    Parameters
+    ----------
+    generator : Generator
+        Of the shape, in the threads and under the progress of the caller.
+    factor : float
+        Of the floor [-].
+    """
+
+    generator: Generator
+    factor: float
+    _key: bytes
+    _entry: _Entry
+
+    @property
+    def fit(self) -> Fit:
+        """How they meet the target: ratios, which a factor does not change."""
+        return self.generator.fit
+
+    @property
+    def spectra(self) -> Spectra:
+        """The spectra of the first realisations [m/s2], and their target."""
+        found, factor = self.generator.spectra, self.factor
+        target = None if found.target is None else factor * found.target
+        return replace(found, ordinates=found.ordinates * np.float32(factor), target=target)
+
+    def realise(self, first: int, count: int) -> Single:
+        """Return realisations `first` to `first + count - 1`: accelerations [m/s2], (count, n), in single precision.
+
+        They may be changed. Errors as of `Generator.realise`.
+        """
+        start, end = first // GROUP, -(-(first + count) // GROUP)
+        with _waiting(self._entry.lock, self.generator.progress):
+            motions = self._find_groups(start, end)
+        _STORE.keep(self._key, self._entry)
+        motions *= np.float32(self.factor)
+        return motions[first - start * GROUP :][:count]
+
+    def _find_groups(self, start: int, end: int) -> Single:
+        """Return the motions of groups `start` to `end` - 1, and keep those that are new."""
+        known, made = self._entry.groups, len(self.generator.made) // GROUP
+        lacking = [at for at in range(start, end) if at >= made and at not in known]
+        if not lacking:
+            rows = [self._first(at) if at < made else known[at] for at in range(start, end)]
+            return np.concatenate(rows) if rows else self.generator.realise(0, 0)
+        motions = self.generator.realise(start * GROUP, (end - start) * GROUP)
+        for at in (one for one in lacking if one < MOST_GROUPS):
+            known[at] = motions[(at - start) * GROUP :][:GROUP].copy()
+        return motions
+
+    def _first(self, group: int) -> Single:
+        return self.generator.made[group * GROUP : (group + 1) * GROUP]
+
+
+def share_motions(
+    target: Target,
+    grid: Grid,
+    *,
+    factor: float,
+    seed: int,
+    axis: str,
+    threads: int = 1,
+    progress: Progress = SILENT,
+    signs: Signs | None = None,
+) -> SharedMotions:
+    """Return the motions of a floor whose target is `factor` times another, which floors share.
+
+    Parameters
+    ----------
+    target : Target
+        Of the shape.
+    factor : float
+        That of the floor over it [-].
+    grid, seed, axis, threads, progress, signs
+        As of `assess.motion.generate.build_generator`; errors likewise.
+    """
+
+    def make() -> Generator:
+        found = build_generator(target, grid, seed=seed, axis=axis, threads=threads, progress=progress, signs=signs)
+        found.made.flags.writeable = False
+        return replace(found, threads=1, progress=SILENT)
+
+    key = _name(target, grid, seed, axis, signs)
+    entry = _STORE.find_or_make(key, make, progress)
+    return SharedMotions(replace(entry.generator, threads=threads, progress=progress), factor, key, entry)
+
+
+def _name(target: Target, grid: Grid, seed: int, axis: str, signs: Signs | None) -> bytes:
+    """Return the hash of all that the motions depend on."""
+    envelopes, signs = target.envelopes, signs if signs is not None and min(signs) < 0 else None
+    found = hashlib.sha256(repr((grid, seed, axis, signs, target.is_generic)).encode())
+    numbers = target.pfa, target.pfv, target.velocity_level, envelopes.half_time
+    arrays = target.periods, target.pseudo, envelopes.centres, envelopes.values, target.acceleration
+    for one in (numbers, *arrays):
+        values = np.ascontiguousarray(() if one is None else one, np.float64)
+        found.update(repr(values.shape).encode())
+        found.update(values.tobytes())
+    return found.digest()
