@@ -49,7 +49,7 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("own_motions", "count", fill("floors that keep a record or a PFA of their own")),
         ("largest_pfa_g", "number", fill("largest PFA of its floors")),
         ("motion_uncertainty", "number", fill("standard deviation of ln PFA that was used")),
-        ("is_placed", "flag", fill("whether latitude and longitude are known; else its draws are fully correlated with all")),
+        ("is_placed", "flag", fill("whether latitude and longitude are known; else its draws are fully correlated with those of others without them")),
         ("basis", "text", fill("what its sums rest on: simulated or formula")),
         ("draws", "count", fill("draws of an earthquake; 0 where nothing was simulated")),
         ("pieces", "count", fill("pieces of furniture, quantities counted")),
