@@ -37,6 +37,7 @@ QUIET, REPEAT, LOOK = 2.0, 5.0, 0.5
 """Away from a terminal: silence at first, a line so often after that, and how often it is looked at [s]."""
 STAGES = {
     "reading": "Reading",
+    "buildings": "Assessing",
     "motions": "Preparing motions",
     "verification": "Simulating",
     "rocking": "Rocking",
@@ -212,7 +213,7 @@ class _Line:
     def __call__(self, report: Report) -> None:
         with self._lock:
             before, self._report = self._report, report if report.share < 1.0 else _NOTHING
-            is_new = (report.stage, report.detail) != (before.stage, before.detail)
+            is_new = (report.stage, _without_numbers(report)) != (before.stage, _without_numbers(before))
             now = time.monotonic()
             if report.share >= 1.0:
                 self._clear()
@@ -246,6 +247,11 @@ class _Line:
         self._stream.write(text)
         self._stream.flush()
         self._written, self._due = now, now + REPEAT
+
+
+def _without_numbers(report: Report) -> str:
+    """Return what is worked on without its numbers, which count on while the work is the same."""
+    return re.sub(r"\d[\d,]*", "", report.detail)
 
 
 _NOTHING = Report("", 1.0, "", None)

@@ -135,7 +135,7 @@ def _take_entry(entry: "os.DirEntry[str]", path: Path, root: Path, names: set[st
 
 
 def _name(path: Path, root: Path) -> str:
-    """Return a path below the folder as a text: bytes that are not UTF-8 as ``\\xe9``."""
+    """Return a path below the folder as a text; bytes that are not UTF-8 stand as escapes of their number."""
     text = path.relative_to(root).as_posix()
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 

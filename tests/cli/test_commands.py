@@ -30,6 +30,7 @@ COMMANDS = [
     "import",
     "open",
     "run",
+    "portfolio",
     "compare",
     "fragility",
     "routes",

@@ -1,0 +1,235 @@
+"""``assess portfolio``: many buildings under one earthquake."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from assess.cli.completion import list_of, one_of
+from assess.cli.console import InterruptedWorkError, count, print_error, show_progress
+from assess.cli.options import (
+    GroundMotions,
+    Runs,
+    Scale,
+    Scenario,
+    Seed,
+    ShakeMapFile,
+    read_formats,
+    read_ground,
+    read_settings,
+)
+from assess.errors import CancelledError, InputError
+from assess.i18n import LANGUAGES, find_language
+from assess.plain_text import plain_line
+from assess.settings import ROUTE_RISK, VERIFY, Settings
+
+if TYPE_CHECKING:
+    from assess.motion.site_ground import GroundField
+    from assess.portfolio.background import Background
+    from assess.portfolio.city_totals import CityTotals, Group
+    from assess.portfolio.run_portfolio import PortfolioResult
+
+ORDER = 3.5
+EXAMPLES = (
+    "assess portfolio buildings --shakemap grid.xml",
+    "assess portfolio bay --example --verify none",
+    "assess portfolio index.csv --ground-motions oq-export --out city --background coast.geojson",
+    "assess portfolio buildings --formats parquet,html --language it --scale 1.2 --ideal --route-risk 0.01",
+    "assess portfolio /share/buildings --out /share/city --scheduler tcp://10.0.0.5:8786",
+    "assess portfolio buildings --jobs 4",
+)
+FORMATS = ("parquet", "xlsx", "html", "pdf")
+"""Those of `assess.portfolio.run_portfolio`, which takes long to import."""
+MOST_SKIPPED = 10
+"""Buildings that were skipped that are named at the end."""
+EXAMPLE_MAP, EXAMPLE_COAST, EXAMPLE_INDEX = "grid.xml", "coast.geojson", "index.csv"
+"""Files of the worked city that are used where no others are named."""
+
+
+def command(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FOLDER|INDEX.csv",
+            help="A folder of workbooks, searched with the folders in it, or an index that lists them.",
+            show_default=False,
+        ),
+    ],
+    out: Annotated[Path | None, typer.Option(help="Folder of the results.", show_default="NAME-portfolio")] = None,
+    shakemap: ShakeMapFile = None,
+    ground_motions: GroundMotions = None,
+    verify: Annotated[
+        str,
+        typer.Option(
+            help="Pieces to simulate by integration: all, high (high risk, doubtful, on routes), none.",
+            autocompletion=one_of(VERIFY),
+        ),
+    ] = "all",
+    runs: Runs = None,
+    seed: Seed = None,
+    scenario: Scenario = None,
+    scale: Scale = 1.0,
+    ideal: Annotated[
+        bool,
+        typer.Option(
+            "--ideal",
+            help="Adopt the chance if exactly this motion recurred, every piece exactly as given: without uncertainty.",
+        ),
+    ] = False,
+    route_risk: Annotated[
+        float, typer.Option(help="Limit on the chance that an evacuation route is blocked, above 0 and below 1.")
+    ] = ROUTE_RISK,
+    background: Annotated[
+        Path | None,
+        typer.Option(help="Coastline, streets or the like of the map, as GeoJSON.", show_default=False),
+    ] = None,
+    formats: Annotated[
+        str,
+        typer.Option(
+            help="Results to write, separated by commas: parquet are the tables, xlsx the ranking, html the page with "
+            "a map, pdf the summary.",
+            autocompletion=list_of(FORMATS),
+        ),
+    ] = ",".join(FORMATS),
+    jobs: Annotated[
+        int | None,
+        typer.Option(min=1, help="Processes on this machine; they do not change a result.", show_default="one per CPU"),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Have the workers of this dask scheduler do the work; only in a network that you trust.",
+            show_default=False,
+        ),
+    ] = None,
+    language: Annotated[
+        str,
+        typer.Option(help="Language of the reports: en, it.", autocompletion=one_of(LANGUAGES)),
+    ] = LANGUAGES[0],
+    example: Annotated[
+        bool,
+        typer.Option(
+            "--example",
+            help="First write a made-up city around San Francisco Bay to FOLDER, which has to be new or empty.",
+        ),
+    ] = False,
+) -> None:
+    """Assess many buildings under one earthquake, with tables, a ranking, a map and a summary.
+
+    What is done is kept: a run that was interrupted goes on when the same command is given again. A building that
+    cannot be assessed is named and skipped.
+    """
+    wanted = read_formats(formats, FORMATS)
+    code = find_language(language)
+    if scheduler is not None and jobs is not None:
+        raise InputError("--jobs: the workers of --scheduler do the work; leave out one of them.")
+    if ideal and verify == "none":
+        raise InputError("--ideal is about the simulation: leave out --ideal or --verify none")
+    given = read_settings(verify=verify, runs=runs, seed=seed, scenario=scenario, scale=scale, ideal=ideal,
+                          route_risk=route_risk)  # fmt: skip
+    folder = out or Path(f"{source.resolve().stem}-portfolio")
+    if example:
+        source, shakemap, background = _prepare_example(source, folder, shakemap, ground_motions, background)
+    ground = read_ground(shakemap, ground_motions)
+    settings = given if runs is not None else _fit_runs(given, ground)
+    with show_progress() as progress:
+        try:
+            from assess.portfolio.run_portfolio import run_portfolio
+
+            result = run_portfolio(
+                source, folder, settings, ground=ground, jobs=jobs, scheduler=scheduler, formats=wanted,
+                background=_read_background(background), language=code, progress=progress,
+            )  # fmt: skip
+        except CancelledError:
+            kept = f"the buildings that are done are kept in {plain_line(str(folder))}; the same command goes on"
+            raise InterruptedWorkError(kept) from None
+    _tell(result, settings)
+
+
+def _prepare_example(
+    folder: Path, out: Path, shakemap: Path | None, ground_motions: Path | None, background: Path | None
+) -> tuple[Path, Path | None, Path | None]:
+    """Write the worked city; return its index, and the ground motion and background that are used."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(f"--example: {folder} is not empty; name a folder that does not exist yet")
+    if out.resolve().is_relative_to(folder.resolve()):
+        raise InputError(f"--out: {out} lies in the folder of the example; name another one")
+    from assess.portfolio.example_city import write_example_city
+
+    write_example_city(folder)
+    typer.echo(f"wrote {folder}", err=True)
+    shaken = shakemap if shakemap or ground_motions else folder / EXAMPLE_MAP
+    return folder / EXAMPLE_INDEX, shaken, background or folder / EXAMPLE_COAST
+
+
+def _fit_runs(settings: Settings, ground: "GroundField | None") -> Settings:
+    """Return the settings with as many draws as count every scenario of the ground alike."""
+    from assess.pipeline.city_draws import choose_runs
+    from assess.settings import change_settings
+
+    scenarios = getattr(ground, "event_count", 0)
+    return change_settings(settings, {"runs": choose_runs(scenarios)}) if scenarios else settings
+
+
+def _read_background(file: Path | None) -> "Background | None":
+    if file is None:
+        return None
+    from assess.portfolio.background import read_background
+
+    return read_background(file)
+
+
+# ---------------------------------------------------------------- what is printed at the end
+
+
+def _tell(result: "PortfolioResult", settings: Settings) -> None:
+    """Print what was found; exit status 1 where a building was skipped."""
+    from assess.portfolio.city_totals import build_totals
+
+    for line in describe_city(build_totals(result.view), result, settings):
+        typer.echo(line)
+    for file in result.files:
+        typer.echo(f"wrote {file}", err=True)
+    for path, why in result.skipped[:MOST_SKIPPED]:
+        print_error(f"{plain_line(path)}: skipped. {plain_line(why)}")
+    if len(result.skipped) > MOST_SKIPPED:
+        more = count(len(result.skipped) - MOST_SKIPPED, "more building")
+        typer.echo(f"... and {more} skipped: see the table problems.", err=True)
+    if result.skipped:
+        raise typer.Exit(1)
+
+
+def describe_city(totals: "CityTotals", result: "PortfolioResult", settings: Settings) -> Iterator[str]:
+    """Yield what was assessed, what is expected to fall, apart by inventory and basis, and what was skipped."""
+    earlier = f" ({result.kept:,} of them by an earlier run)" if result.kept else ""
+    yield f"{count(totals.assessed, 'building')} assessed{earlier}, {totals.skipped:,} skipped."
+    for group in totals.groups:
+        yield from _describe_group(group)
+    if totals.groups:
+        yield "Falls and people are expected numbers in this scenario, not per year."
+    if settings.verify == "none" and totals.groups:
+        yield "Not simulated: no ranges over the city are known."
+
+
+_BASES = {"simulated": "simulated", "formula": "by formula"}
+_INVENTORIES = {"surveyed": "surveyed", "handover": "from handover files (COBie)", "assumed": "inventory assumed"}
+
+
+def _describe_group(group: "Group") -> Iterator[str]:
+    falls, people = group.falls, group.people
+    span = "" if falls.low is None else f" ({falls.low:,.0f} to {falls.high:,.0f} in 90 % of the draws)"
+    yield (
+        f"{_INVENTORIES[group.inventory]}, {_BASES[group.basis]}: {count(group.buildings, 'building')}, "
+        f"{count(group.pieces, 'piece')}; {falls.expected:,.1f} expected to fall{span}."
+    )
+    if group.falls_low_inventory is not None and group.falls_high_inventory is not None:
+        low, high = group.falls_low_inventory, group.falls_high_inventory
+        yield f"  With few or many pieces in all of them: {low:,.1f} to {high:,.1f}."
+    if group.occupants:
+        yield f"  People whose route is blocked: {people.expected:,.1f} expected, of {group.occupants:,}."
+    if apart := [f"{number:,} {what}" for number, what in (
+        (group.unconfirmed, "unconfirmed"), (group.by_formula, "by formula only"), (group.anchored, "anchored")
+    ) if number]:  # fmt: skip
+        yield f"  Not counted above: {', '.join(apart)}."

@@ -1,0 +1,315 @@
+"""Tasks on the workers of a dask scheduler, on one machine or many that share the folders.
+
+Before any work every worker is asked for its versions, its threads, and whether it sees the folder of the results and
+the workbooks. Each batch asks again, as workers may come later. A worker that dies is the business of dask: its batch
+is given to another one; a batch that keeps killing workers is done building by building, and the one that kills alone
+is skipped. Whoever can reach a scheduler can run code on its workers: it belongs in a trusted network.
+"""
+
+import hashlib
+import os
+import platform
+import time
+from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from assess.errors import InputError, OutputError
+from assess.i18n import fill, join
+from assess.plain_text import plain_line
+from assess.portfolio.building_task import Summary, Task, run_task
+from assess.portfolio.local_pool import give_up
+from assess.portfolio.part_files import FOLDER
+from assess.progress import SILENT, Progress
+from assess.version import __version__
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+BATCH = 16
+"""Buildings of one dask task where nothing is simulated; else one."""
+WINDOW = 2
+"""Batches that are handed to the scheduler at once, a worker."""
+CONNECTING, JOINING = 10.0, 30.0
+"""Times [s] that the scheduler, and its first worker, are waited for."""
+_ASKED_EVERY = 0.5
+_RETRIES = 2
+_PROBE = ".probe-"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Site:
+    """What every worker has to agree with: versions, a probe in the folder of the results, files to find."""
+
+    versions: tuple[tuple[str, str], ...]
+    probe: Path
+    token: str
+    seen: tuple[Path, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Some tasks that are one task of dask; `attempt` counts how often they were handed over."""
+
+    tasks: tuple[Task, ...]
+    attempt: int = 0
+
+    @property
+    def key(self) -> str:
+        """A name that no other batch of this run, and of another one on the scheduler, has."""
+        text = "\n".join([str(self.tasks[0].out), *(one.source.path for one in self.tasks)])
+        return f"assess-{hashlib.sha256(text.encode()).hexdigest()[:20]}-{self.attempt}-{os.getpid()}"
+
+
+def list_versions() -> tuple[tuple[str, str], ...]:
+    """Return the versions that results depend on."""
+    import numba
+    import numpy
+    import scipy
+
+    return (
+        ("assess", __version__),
+        ("Python", ".".join(platform.python_version_tuple()[:2])),
+        ("numpy", numpy.__version__),
+        ("scipy", scipy.__version__),
+        ("numba", numba.__version__),
+    )
+
+
+def check_cluster() -> None:
+    """Raise InputError unless dask is installed."""
+    try:
+        import distributed  # noqa: F401
+    except ImportError:
+        raise InputError(
+            fill("scheduler: dask is needed, which is not installed. Install it: pip install 'assess[cluster]'")
+        ) from None
+
+
+def run_on_cluster(
+    tasks: Sequence[Task], scheduler: str, *, is_simulated: bool, progress: Progress = SILENT
+) -> Iterator[Summary]:
+    """Yield the summaries of tasks as they are done, in no order.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        What to do; their paths have to be the same on every machine.
+    scheduler : str
+        Its address, ``tcp://10.0.0.5:8786``.
+    is_simulated : bool
+        Whether a task takes seconds, so that each is handed over by itself.
+    progress : Progress
+        Checked for a cancel.
+
+    Raises
+    ------
+    InputError
+        If dask is not installed, the scheduler cannot be reached or has no workers, or a worker has another version of
+        a package, several threads, or does not see the folders.
+    OutputError
+        If the scheduler is lost; parts that are written stay.
+    CancelledError
+        If the work was cancelled; parts that are written stay.
+    """
+    check_cluster()
+    size = 1 if is_simulated else BATCH
+    batches = deque(Batch(tuple(tasks[at : at + size])) for at in range(0, len(tasks), size))
+    with _connect(scheduler) as client, _probe(tasks) as site:
+        _wait_for_worker(client, scheduler, progress)
+        check_workers(client, site)
+        yield from _hand_over(client, site, batches, scheduler, progress)
+
+
+@contextmanager
+def _connect(scheduler: str) -> Iterator["Client"]:
+    from distributed import Client
+
+    try:
+        client = Client(scheduler, timeout=CONNECTING, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        why = plain_line(str(error)).strip() or type(error).__name__
+        raise InputError(
+            fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why)
+        ) from None
+    try:
+        yield client
+    finally:
+        with suppress(Exception):  # a scheduler that is gone
+            client.close(timeout=2)
+
+
+def _wait_for_worker(client: "Client", scheduler: str, progress: Progress) -> None:
+    latest = time.monotonic() + JOINING
+    while not client.nthreads():
+        progress.check()
+        if time.monotonic() > latest:
+            text = "scheduler {address} has no workers. Start some: dask worker {address} --nthreads 1"
+            raise InputError(fill(text, address=scheduler))
+        time.sleep(_ASKED_EVERY)
+
+
+# ---------------------------------------------------------------- what workers have to have
+
+
+@contextmanager
+def _probe(tasks: Sequence[Task]) -> Iterator[Site]:
+    """Write a probe that every worker has to read, and answer beside it."""
+    token = os.urandom(8).hex()
+    folder = tasks[0].out / FOLDER
+    place = folder / f"{_PROBE}{token}"
+    workbook = next((one.source.file for one in tasks if one.source.file is not None and not one.source.refused), None)
+    files = (workbook, getattr(tasks[0].ground, "path", None))
+    seen = tuple(one for one in files if one is not None)
+    place.write_text(token, encoding="ascii")
+    try:
+        yield Site(versions=list_versions(), probe=place, token=token, seen=seen)
+    finally:
+        for path in folder.glob(f"{_PROBE}{token}*"):
+            with suppress(OSError):
+                path.unlink()
+
+
+def check_workers(client: "Client", site: Site) -> None:
+    """Raise InputError unless every worker can do the work."""
+    answers = client.run(answer_probe, site, on_error="return")
+    faults = []
+    for address, answer in sorted(answers.items()):
+        fault = _judge(answer, site)
+        if fault:
+            faults.append(fill("worker {address}: {fault}", address=plain_line(str(address)), fault=fault))
+    if faults:
+        raise InputError(join("\n", faults[:10]))
+
+
+def answer_probe(site: Site, dask_worker: Any = None) -> dict[str, Any]:
+    """Return, on a worker, what it has: versions, threads, and whether it sees the folders; answer the probe."""
+    found: dict[str, Any] = {"versions": list_versions(), "fault": "", "name": ""}
+    if dask_worker is not None:
+        found["threads"] = dask_worker.state.nthreads
+    try:
+        is_seen = site.probe.read_text(encoding="ascii") == site.token
+        if is_seen:
+            answer = site.probe.with_name(f"{site.probe.name}-{os.urandom(6).hex()}")
+            answer.write_text(site.token, encoding="ascii")
+            found["name"] = answer.name
+    except OSError as error:
+        is_seen, found["fault"] = False, error.strerror or str(error)
+    found["is_seen"] = is_seen
+    found["unseen"] = next((str(path) for path in site.seen if not path.exists()), "")
+    return found
+
+
+def _judge(answer: Any, site: Site) -> str:
+    """Return why a worker cannot do the work; "" if it can."""
+    if isinstance(answer, ImportError):
+        return fill("assess is not installed there, or in another version ({why}).", why=str(answer)[:100])
+    if not isinstance(answer, dict):
+        return fill("it does not answer ({why}).", why=f"{type(answer).__name__}: {str(answer)[:200]}")
+    others = [
+        fill("{name} {theirs} there, {ours} here", name=name, theirs=dict(answer["versions"]).get(name, "?"), ours=ours)
+        for name, ours in site.versions
+        if dict(answer["versions"]).get(name) != ours
+    ]
+    if others:
+        return fill("other versions: {list}. Install the same everywhere.", list=join("; ", others))
+    if answer.get("threads", 1) != 1:
+        return fill("it has {n} threads. Start it with: --nthreads 1", n=answer["threads"])
+    if not answer["is_seen"] or not (site.probe.parent / answer["name"]).is_file():
+        why = answer["fault"] or fill("it sees another folder of this name")
+        text = "it does not share the folder {folder} ({why}). Name a folder that all machines see under one path."
+        return fill(text, folder=site.probe.parent, why=why)
+    if answer["unseen"]:
+        return fill("it does not see {file}. Put it in a folder that all machines share.", file=answer["unseen"])
+    return ""
+
+
+class WorkerUnfitError(Exception):
+    """A worker that came later cannot do the work."""
+
+
+def run_batch(site: Site, tasks: Sequence[Task]) -> list[Summary]:
+    """Do tasks on a worker, if it can.
+
+    Raises
+    ------
+    WorkerUnfitError
+        If it has other versions, or does not see the folders.
+    """
+    answer = answer_probe(site)
+    if fault := _judge(answer, site):
+        raise WorkerUnfitError(f"{platform.node()}: {fault}")
+    with suppress(OSError):
+        (site.probe.parent / answer["name"]).unlink()
+    return [run_task(one) for one in tasks]
+
+
+# ---------------------------------------------------------------- the work
+
+
+def _hand_over(
+    client: "Client", site: Site, batches: "deque[Batch]", scheduler: str, progress: Progress
+) -> Iterator[Summary]:
+    """Keep a window of batches with the scheduler, and yield what comes back."""
+    running: dict[Future, Batch] = {}
+    try:
+        while batches or running:
+            _fill_window(client, site, batches, running)
+            for future in _wait(client, running, scheduler, progress):
+                yield from _take(future, running.pop(future), batches, scheduler)
+    finally:
+        with suppress(Exception):  # a scheduler that is gone
+            client.cancel(list(running), force=True)
+
+
+def _fill_window(client: "Client", site: Site, batches: "deque[Batch]", running: "dict[Future, Batch]") -> None:
+    most = WINDOW * max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
+    while batches and len(running) < most:
+        batch = batches.popleft()
+        future = client.submit(run_batch, site, batch.tasks, key=batch.key, pure=False, retries=_RETRIES)
+        running[future] = batch
+
+
+def _wait(client: "Client", running: "dict[Future, Batch]", scheduler: str, progress: Progress) -> "list[Future]":
+    """Return batches that have ended.
+
+    Raises
+    ------
+    OutputError
+        If the scheduler is gone.
+    """
+    while True:
+        progress.check()
+        done = [future for future in running if future.status not in ("pending",)]
+        if done:
+            return done
+        if client.status != "running":
+            raise _describe_loss(scheduler)
+        time.sleep(_ASKED_EVERY / 10)
+
+
+def _describe_loss(scheduler: str) -> OutputError:
+    text = "the scheduler {address} is gone. What is done is kept: start it and run the same command again."
+    return OutputError(fill(text, address=scheduler))
+
+
+def _take(future: "Future", batch: Batch, batches: "deque[Batch]", scheduler: str) -> Iterator[Summary]:
+    """Yield the summaries of a batch; hand one that killed its workers over again, building by building."""
+    from distributed import KilledWorker
+
+    if future.status in ("cancelled", "lost"):
+        raise _describe_loss(scheduler)
+    error = future.exception() if future.status == "error" else None
+    if error is None:
+        yield from future.result()
+    elif isinstance(error, KilledWorker) and len(batch.tasks) > 1:
+        batches.extendleft(Batch((one,), batch.attempt + 1) for one in reversed(batch.tasks))
+    elif isinstance(error, KilledWorker):
+        yield give_up(batch.tasks[0])
+    elif isinstance(error, WorkerUnfitError):
+        raise InputError(fill("a worker that joined later cannot do the work: {why}", why=error)) from None
+    else:
+        raise OutputError(fill("a worker failed: {why}", why=f"{type(error).__name__}: {str(error)[:300]}")) from error

@@ -1,0 +1,192 @@
+"""Tasks on processes of this machine, each of which may die without harm to the others.
+
+A process that dies is replaced, and its building tried again by the new one; a building under which `MOST_DEATHS`
+processes have died is skipped with that reason. Each process works on one building at a time, so that it is known which
+one it died of. They are started as commands, not by `multiprocessing`, which would run the script of the user again.
+"""
+
+import os
+import pickle
+import queue
+import subprocess
+import sys
+import threading
+from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+import assess
+from assess.errors import OutputError, Problem
+from assess.i18n import fill
+from assess.portfolio.building_task import Summary, Task, skip
+from assess.portfolio.local_worker import ALONE, receive, send
+from assess.progress import SILENT, Progress
+
+MOST_DEATHS = 3
+"""Processes that may die of one building before it is skipped."""
+MOST_STARTS = 5
+"""Processes that may end before they have worked at all: then none can be started here."""
+_ASKED_EVERY = 0.1
+"""Time [s] after which it is looked whether the work is to stop."""
+
+
+def run_local(tasks: Sequence[Task], jobs: int, progress: Progress = SILENT) -> Iterator[Summary]:
+    """Yield the summaries of tasks as they are done, in no order.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+        What to do.
+    jobs : int
+        Processes.
+    progress : Progress
+        Checked for a cancel, which ends the processes at once.
+
+    Raises
+    ------
+    CancelledError
+        If the work was cancelled; parts that are written stay.
+    OutputError
+        If no process can be started.
+    """
+    desk = _Desk(tasks)
+    seats = [threading.Thread(target=desk.work, daemon=True) for _ in range(min(jobs, len(tasks)))]
+    for one in seats:
+        one.start()
+    try:
+        for _ in tasks:
+            yield desk.take_answer(progress)
+    finally:
+        desk.close()
+        for one in seats:
+            one.join()
+
+
+class _Desk:
+    """The tasks that are left, and the processes that work on them, one a thread."""
+
+    def __init__(self, tasks: Sequence[Task]) -> None:
+        self._left = deque((task, 0) for task in tasks)
+        self._answers: queue.SimpleQueue[Summary | Exception] = queue.SimpleQueue()
+        self._workers: set[subprocess.Popen[bytes]] = set()
+        self._lock, self._is_closed, self._idle_deaths = threading.Lock(), False, 0
+
+    def take_answer(self, progress: Progress) -> Summary:
+        """Return the next summary; raise what kept a thread from working."""
+        while True:
+            progress.check()
+            with suppress(queue.Empty):
+                found = self._answers.get(timeout=_ASKED_EVERY)
+                if isinstance(found, Exception):
+                    raise found
+                return found
+
+    def close(self) -> None:
+        """End the processes, whatever they are doing."""
+        with self._lock:
+            self._is_closed = True
+            self._left.clear()
+            for one in self._workers:
+                one.kill()
+
+    def work(self) -> None:
+        """Have one process after another do tasks, until none is left."""
+        try:
+            while worker := self._start():
+                self._serve(worker)
+        except Exception as error:  # raised in the thread that waits
+            self._answers.put(error)
+
+    def _start(self) -> "subprocess.Popen[bytes] | None":
+        """Return a new process; None where nothing is left to do."""
+        with self._lock:
+            if self._is_closed or not self._left:
+                return None
+            worker = start_worker()
+            self._workers.add(worker)
+            return worker
+
+    def _serve(self, worker: "subprocess.Popen[bytes]") -> None:
+        """Hand tasks to a process until none is left, or it dies."""
+        served = 0
+        try:
+            while self._left:
+                try:
+                    task, deaths = self._left.popleft()
+                except IndexError:  # another thread took the last one
+                    return
+                summary = ask(worker, task)
+                if isinstance(summary, Exception):
+                    raise summary
+                if summary is None:
+                    self._note_death(task, deaths + 1, worker, is_first=not served)
+                    return
+                self._answers.put(summary)
+                served += 1
+        finally:
+            with self._lock:
+                self._workers.discard(worker)
+            end_worker(worker)
+
+    def _note_death(self, task: Task, deaths: int, worker: "subprocess.Popen[bytes]", *, is_first: bool) -> None:
+        """Have a task tried again by another process, or skip it."""
+        if self._is_closed:
+            return
+        how = worker.wait()
+        self._idle_deaths = self._idle_deaths + 1 if is_first and how >= 0 else 0
+        if self._idle_deaths >= MOST_STARTS:
+            raise OutputError(fill("processes end as soon as they are started (exit status {how}).", how=how))
+        if deaths < MOST_DEATHS:
+            self._left.appendleft((task, deaths))
+        else:
+            self._answers.put(give_up(task))
+
+
+def start_worker() -> "subprocess.Popen[bytes]":
+    """Return a new process; Ctrl-C in the terminal does not reach it, as the process that started it ends it."""
+    package = str(Path(assess.__file__).parents[1])
+    path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
+    apart = (
+        {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
+        if sys.platform == "win32"
+        else {"start_new_session": True}
+    )
+    return subprocess.Popen(
+        [sys.executable, "-m", "assess.portfolio.local_worker"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env=os.environ | dict.fromkeys(ALONE, "1") | {"PYTHONPATH": path},
+        **apart,  # type: ignore[call-overload]
+    )
+
+
+def ask(worker: "subprocess.Popen[bytes]", task: Task) -> Summary | Exception | None:
+    """Have a process do a task; None if it dies, an error if it cannot do any."""
+    assert worker.stdin is not None and worker.stdout is not None  # noqa: S101, PT018 - both are pipes
+    try:
+        send(worker.stdin, pickle.dumps(task))
+        data = receive(worker.stdout)
+    except OSError:
+        return None
+    return None if data is None else pickle.loads(data)  # type: ignore[no-any-return]  # noqa: S301 - of our own process
+
+
+def end_worker(worker: "subprocess.Popen[bytes]") -> None:
+    """End a process that has nothing left to do."""
+    worker.kill()
+    for stream in (worker.stdin, worker.stdout):
+        if stream is not None:
+            with suppress(OSError):
+                stream.close()
+    worker.wait()
+
+
+def give_up(task: Task) -> Summary:
+    """Return the summary of a building that every process died of."""
+    fault = fill(
+        "every process that assessed it was ended by the system: its workbook may need more memory than there is."
+    )
+    fix = fill("Assess it by itself with `assess run`, on a machine with more memory.")
+    part = skip(task.source, "", [Problem("error", "", "", fault, fix)])
+    return Summary(path=task.source.path, key="", status="skipped", part=part)

@@ -1,0 +1,62 @@
+"""A process that assesses buildings for `local_pool`: tasks come in by standard input, summaries go out.
+
+It ends as soon as its standard input does, whatever it is doing: so it does not outlive the process that started it.
+"""
+
+import os
+import pickle
+import queue
+import sys
+import threading
+from typing import BinaryIO
+
+ALONE = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""Variables by which libraries take no more than one thread."""
+
+
+def main() -> None:
+    """Assess what comes in, one building after another."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a library prints must not stand among the answers
+    waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, waiting), daemon=True).start()
+    while True:
+        send(answers, pickle.dumps(_answer(waiting.get())))
+
+
+def _answer(data: bytes) -> object:
+    """Return the summary of a task, or the error if its ground motion is not what it was."""
+    from assess.errors import AssessError
+    from assess.portfolio.building_task import run_task
+
+    try:
+        task = pickle.loads(data)  # noqa: S301 - from the process that started this one
+    except AssessError as error:
+        return type(error)(str(error))
+    return run_task(task)
+
+
+def _listen(stream: BinaryIO, waiting: "queue.SimpleQueue[bytes]") -> None:
+    """Hand on what comes in; end the process where nothing more can come."""
+    while (data := receive(stream)) is not None:
+        waiting.put(data)
+    os._exit(0)
+
+
+def send(stream: BinaryIO, data: bytes) -> None:
+    """Write a message: its length, then its bytes. OSError if nobody reads any more."""
+    stream.write(len(data).to_bytes(8, "big") + data)
+    stream.flush()
+
+
+def receive(stream: BinaryIO) -> bytes | None:
+    """Return the next message; None where the stream has ended."""
+    head = stream.read(8)
+    if len(head) < 8:
+        return None
+    data = stream.read(size := int.from_bytes(head, "big"))
+    return data if len(data) == size else None
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,416 @@
+"""A portfolio from end to end: buildings found, assessed, and written as tables and reports, all of them or none.
+
+What was done stays in the folder of parts, so that a run that was killed goes on where it was.
+"""
+
+import json
+import re
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from threading import Event
+from typing import TYPE_CHECKING, Any
+
+from assess.delivery.deliver import check_moves, deliver, explain_fault, stage_for
+from assess.delivery.disk import find_digest, write_through
+from assess.delivery.folder_lock import FolderLock
+from assess.delivery.stages import NEW
+from assess.errors import InputError, OutputError
+from assess.i18n import fill
+from assess.motion.site_ground import GroundField
+from assess.plain_text import plain_line
+from assess.portfolio.building_task import Summary, Task
+from assess.portfolio.part_files import ENDING, FOLDER, Part, read_part, sweep_parts
+from assess.portfolio.sources import Source, find_sources
+from assess.portfolio.table_schemas import TABLES
+from assess.progress import Listener, Progress, Report
+from assess.report import check_folder
+from assess.report.ownership import find_reports
+from assess.report.report_options import ReportOptions
+from assess.settings import AUTO, Settings, count_processors
+from assess.version import __version__
+
+if TYPE_CHECKING:
+    from assess.portfolio.background import Background
+    from assess.portfolio.city_totals import CityView, RunGround
+    from assess.portfolio.tables import TableWriter
+
+VERSION = "1"
+"""Of the shape of portfolio.json."""
+DATA = "portfolio.json"
+FILES: Mapping[str, str] = {"xlsx": "ranking.xlsx", "html": "city.html", "pdf": "city.pdf"}
+"""Reports by their format; the format parquet gives files of the names of `TABLES`."""
+FORMATS = ("parquet", *FILES)
+STAGE = "buildings"
+_KEY = re.compile(r"[0-9a-f]{64}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PortfolioResult:
+    """What a portfolio gave.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the results.
+    files : tuple of Path
+        What was written.
+    kept : int
+        Buildings whose part of an earlier run was there.
+    skipped : tuple of pairs of str
+        Buildings that could not be assessed, with the reason.
+    view : CityView
+        The tables, and what the run rests on.
+    """
+
+    folder: Path
+    files: tuple[Path, ...]
+    kept: int
+    skipped: tuple[tuple[str, str], ...]
+    view: "CityView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Job:
+    """What a run works on."""
+
+    sources: tuple[Source, ...]
+    out: Path
+    settings: Settings
+    ground: GroundField | None
+    formats: tuple[str, ...]
+    background: "Background | None"
+    options: ReportOptions
+    progress: Progress
+
+
+def run_portfolio(
+    source: str | Path,
+    out: str | Path,
+    settings: Settings | None = None,
+    *,
+    ground: GroundField | None = None,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    formats: Sequence[str] = FORMATS,
+    background: "Background | None" = None,
+    language: str = "en",
+    progress: "Progress | Listener | None" = None,
+    cancel: Event | None = None,
+) -> PortfolioResult:
+    """Assess many buildings under one earthquake.
+
+    Parameters
+    ----------
+    source : str or Path
+        A folder of workbooks, or an index (.csv).
+    out : str or Path
+        Folder of the results. The files of an earlier run in it are replaced, other files are left alone; buildings
+        that an earlier run has assessed in the same way are taken from it.
+    settings : Settings, optional
+        Of the run; `city` is set.
+    ground : GroundField, optional
+        A ShakeMap, or computed scenarios: they take the place of the ground motions of the workbooks.
+    jobs : int, optional
+        Processes; as many as there are processors by default. They do not change a result.
+    scheduler : str, optional
+        Address of a dask scheduler whose workers do the work.
+    formats : sequence of str
+        Some of `FORMATS`.
+    background : Background, optional
+        Of the map.
+    language : str
+        Code of the language of the reports.
+    progress : Progress or callable, optional
+        Notified of how far the work is.
+    cancel : threading.Event, optional
+        Stops the work; what is done is kept for the next run.
+
+    Raises
+    ------
+    InputError
+        If a setting, the folder, the index or the scheduler cannot be used, or a format needs a package that is not
+        installed.
+    OutputError
+        If the results cannot be written; those of an earlier run are left as they were.
+    CancelledError
+        If the work was cancelled; nothing was written, but the buildings that are done are kept.
+    """
+    source, out = Path(source), Path(out).absolute()
+    check_formats(formats)
+    _check_out(source, out, formats)
+    job = _Job(
+        sources=find_sources(source, out),
+        out=out,
+        settings=_check_settings(settings or Settings()),
+        ground=_locate(ground),
+        formats=tuple(name for name in FORMATS if name in formats),
+        background=background,
+        options=ReportOptions(language=language),
+        progress=Progress.of(progress, cancel),
+    )
+    with _reserving(out):
+        summaries = _assess_all(job, jobs or count_processors(), scheduler)
+        result = _write(job, summaries)
+        _remove_unused(out, {one.key for one in summaries.values()})
+    return result
+
+
+# ---------------------------------------------------------------- before the work
+
+
+def check_formats(formats: Sequence[str]) -> None:
+    """Raise InputError if a format is unknown, or needs a package that is not installed."""
+    for name in formats:
+        if name not in FORMATS:
+            known = ", ".join(FORMATS)
+            raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=name, known=known))
+    if "parquet" in formats:
+        from assess.portfolio.tables import check_tables
+
+        check_tables()
+
+
+def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
+    """Raise unless results can be written to the folder."""
+    shown = plain_line(str(out))
+    if out.exists() and not out.is_dir():
+        raise InputError(fill("out: {folder} is a file; name a folder.", folder=shown))
+    if out.resolve() == source.resolve():
+        raise InputError(fill("out: {folder} holds the workbooks; name another folder.", folder=shown))
+    check_folder(out)
+    if out.is_dir():
+        check_moves(out)
+        find_reports(out, _list_names(formats), DATA)
+
+
+def _list_names(formats: Sequence[str]) -> list[str]:
+    tables = [f"{name}.parquet" for name in TABLES] if "parquet" in formats else []
+    return [*tables, *(FILES[name] for name in formats if name in FILES), DATA]
+
+
+def _check_settings(settings: Settings) -> Settings:
+    if settings.runs == AUTO and settings.verify != "none":
+        raise InputError(
+            fill("runs is {runs}: all buildings of a city need the same draws. Give a number, such as 200.", runs=AUTO)
+        )
+    return replace(settings, city=True)
+
+
+def _locate(ground: GroundField | None) -> GroundField | None:
+    """Return the ground motion with the whole path of its file, as other processes may stand elsewhere."""
+    path = getattr(ground, "path", None)
+    return ground if path is None else replace(ground, path=path.resolve())  # type: ignore[type-var]
+
+
+@contextmanager
+def _reserving(out: Path) -> Iterator[None]:
+    """Keep other runs from the folder of parts, and remove what killed ones have left.
+
+    Raises
+    ------
+    OutputError
+        If another run works there, or the folder cannot be made.
+    """
+    try:
+        (out / FOLDER).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise explain_fault(out, error, ()) from None
+    lock = FolderLock(out / FOLDER)
+    if not lock.take():
+        raise OutputError(fill("{folder} is in use: another run is writing to it.", folder=plain_line(str(out))))
+    try:
+        if lock.is_held:
+            sweep_parts(out)
+        yield
+    finally:
+        lock.release()
+
+
+# ---------------------------------------------------------------- the work
+
+
+@dataclass(slots=True)
+class _Count:
+    """How far the buildings are."""
+
+    total: int
+    start: float = field(default_factory=time.monotonic)
+    done: int = 0
+    kept: int = 0
+    skipped: int = 0
+
+    def take(self, summary: Summary) -> None:
+        self.done += 1
+        self.kept += summary.is_kept
+        self.skipped += summary.status == "skipped"
+
+    def report(self) -> Report:
+        detail = f"{self.done:,} of {self.total:,} buildings; {self.skipped:,} skipped"
+        computed, spent = self.done - self.kept, time.monotonic() - self.start
+        left = spent / computed * (self.total - self.done) if computed > 0 else None
+        return Report(STAGE, min(self.done / self.total, 0.9999), detail, left)
+
+
+def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summary]:
+    """Return the summary of every building by its path."""
+    tasks = [Task(source=one, settings=job.settings, ground=job.ground, out=job.out) for one in job.sources]
+    found: dict[str, Summary] = {}
+    count = _Count(len(tasks))
+    job.progress.tell(count.report())
+    for summary in _run(tasks, jobs, scheduler, job):
+        found[summary.path] = summary
+        count.take(summary)
+        job.progress.tell(count.report())
+    job.progress.check()
+    return found
+
+
+def _run(tasks: Sequence[Task], jobs: int, scheduler: str | None, job: _Job) -> Iterator[Summary]:
+    if scheduler is None:
+        from assess.portfolio.local_pool import run_local
+
+        return run_local(tasks, jobs, job.progress)
+    from assess.portfolio.cluster import run_on_cluster
+
+    is_simulated = job.settings.verify != "none"
+    return run_on_cluster(tasks, scheduler, is_simulated=is_simulated, progress=job.progress)
+
+
+# ---------------------------------------------------------------- results
+
+
+def _write(job: _Job, summaries: Mapping[str, Summary]) -> PortfolioResult:
+    """Write tables and reports, all of them or none."""
+    names: list[str] = []
+    try:
+        with stage_for(job.out) as stage, job.options.spoken(), job.progress.stage("rendering", ", ".join(job.formats)):
+            writers = _write_tables(job, summaries, stage / NEW)
+            view = _build_view(job, writers)
+            for name in job.formats:
+                if name in FILES:
+                    job.progress.check()
+                    data = job.progress.wait_for(lambda name=name: _RENDERERS[name](view, job.background))  # type: ignore[misc]
+                    write_through(stage / NEW / FILES[name], data)
+            names = sorted(path.name for path in (stage / NEW).iterdir())
+            write_through(stage / NEW / DATA, _describe_run(job, view, stage / NEW, names))
+            names.append(DATA)
+            deliver(stage, job.out, lambda target: find_reports(target, names, DATA), job.progress)
+    except OSError as error:
+        raise explain_fault(job.out, error, names) from None
+    return PortfolioResult(
+        folder=job.out,
+        files=tuple(job.out / name for name in names),
+        kept=sum(one.is_kept for one in summaries.values()),
+        skipped=tuple(_list_skipped(view)),
+        view=view,
+    )
+
+
+def _write_tables(job: _Job, summaries: Mapping[str, Summary], folder: Path) -> "dict[str, TableWriter]":
+    from assess.portfolio.tables import write_tables
+
+    parts = (_find_part(job.out, summaries[one.path]) for one in job.progress.checked(job.sources))
+    return write_tables(parts, folder if "parquet" in job.formats else None)
+
+
+def _find_part(out: Path, summary: Summary) -> Part:
+    part = summary.part or read_part(out, summary.key)
+    if part is None:
+        text = "{folder}: what was found of {path} is gone, or damaged. Run the same command again."
+        raise OutputError(fill(text, folder=plain_line(str(out / FOLDER)), path=plain_line(summary.path)))
+    return part
+
+
+def _build_view(job: _Job, writers: "Mapping[str, TableWriter]") -> "CityView":
+    from assess.portfolio.city_totals import CityView
+
+    frames = {name: writer.frame for name, writer in writers.items()}
+    return CityView(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
+
+
+def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround | None":
+    """Return the ground motion of the run, with the facts that hold for all its buildings."""
+    if ground is None:
+        return None
+    from assess.portfolio.city_totals import RunGround
+
+    placed = buildings[
+        buildings["ground_source"].isin(("shakemap", "scenarios")) & buildings["is_placed"].fillna(False)
+    ]
+    sites = []
+    for latitude, longitude in zip(placed["latitude"], placed["longitude"], strict=True):
+        with suppress(InputError):
+            sites.append(ground.at(float(latitude), float(longitude)))
+    common = [fact for fact in sites[0].facts if all(fact in one.facts for one in sites)] if sites else []
+    kind = sites[0].kind if sites else "scenarios" if hasattr(ground, "scenarios") else "shakemap"
+    return RunGround(kind=kind, file=ground.file, sha256=ground.sha256, facts=tuple(common))
+
+
+def _list_skipped(view: "CityView") -> Iterator[tuple[str, str]]:
+    """Yield the buildings that were skipped, each with its first problem."""
+    skipped = view.buildings[view.buildings["status"] == "skipped"]
+    first = view.problems.drop_duplicates("path").set_index("path")
+    for path in skipped["path"]:
+        row = first.loc[path] if path in first.index else None
+        place = "" if row is None else "!".join(one for one in (row["sheet"], row["cell"]) if one)
+        text = "" if row is None else f"{place}: {row['message']}" if place else str(row["message"])
+        yield path, text
+
+
+# What writes each format is imported only when it is wanted.
+
+
+def _render_ranking(view: "CityView", _background: "Background | None") -> bytes:
+    from assess.portfolio.ranking_workbook import render_ranking
+
+    return render_ranking(view)
+
+
+def _render_page(view: "CityView", background: "Background | None") -> bytes:
+    from assess.portfolio.city_page import render_page
+
+    return render_page(view, background)
+
+
+def _render_summary(view: "CityView", background: "Background | None") -> bytes:
+    from assess.portfolio.city_summary import render_summary
+
+    return render_summary(view, background)
+
+
+_RENDERERS: Mapping[str, "Callable[[CityView, Background | None], bytes]"] = {
+    "xlsx": _render_ranking,
+    "html": _render_page,
+    "pdf": _render_summary,
+}
+
+
+def _describe_run(job: _Job, view: "CityView", folder: Path, names: Sequence[str]) -> bytes:
+    """Return portfolio.json: what the run rests on, and its files with their hashes."""
+    ground = view.ground
+    record = {
+        "schema": VERSION,
+        "assess": {
+            "version": __version__,
+            "settings": job.settings.as_record(),
+            "ground": None if ground is None else {
+                "kind": ground.kind, "file": ground.file, "sha256": ground.sha256,
+                "facts": [[str(label), str(value)] for label, value in ground.facts],
+            },
+            "files": {name: find_digest(folder / name) for name in names},
+        },
+        "buildings": {status: int((view.buildings["status"] == status).sum()) for status in ("assessed", "skipped")},
+        "tables": {name: [[one.name, one.type, str(one.help)] for one in columns] for name, columns in TABLES.items()},
+    }  # fmt: skip
+    return (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode("utf-8", "replace")
+
+
+def _remove_unused(out: Path, keys: set[str]) -> None:
+    """Remove parts that this run has no use for: of buildings that are gone, or of other settings."""
+    for path in (out / FOLDER).glob("??/*"):
+        if _KEY.fullmatch(path.stem) and path.suffix in (ENDING, ".txt") and path.stem not in keys:
+            with suppress(OSError):
+                path.unlink()
