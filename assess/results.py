@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +75,8 @@ MOTION_FLAGS: Mapping[str, str] = {
     "assumed_shaking": fill(
         "the ground motion is the published median of an assumed intensity (Shaking), not a value known for this site"
     ),
+    "shakemap": fill("the ground motion is the median of a ShakeMap at the building: estimated, not recorded there"),
+    "scenarios": fill("the ground motion is the median of computed scenarios of one earthquake"),
     "assumed_elevation": fill(
         "Elevation is blank: assumed as the floor's number, the ground floor being 0, times Height over Storeys"
     ),
@@ -868,6 +870,87 @@ class AssumedShaking:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class GroundPsa:
+    """Spectral acceleration of the ground.
+
+    Parameters
+    ----------
+    period_s : float
+        Period.
+    psa_g : float
+        Median, 5 % damping.
+    """
+
+    period_s: float
+    psa_g: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GroundFact:
+    """What is known of the origin of a ground motion.
+
+    Parameters
+    ----------
+    label, value : str
+        What is told, and what it is.
+    """
+
+    label: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SiteGroundInfo:
+    """The ground motion at the building by a ShakeMap, or by computed scenarios of an earthquake.
+
+    Parameters
+    ----------
+    kind : "shakemap" or "scenarios"
+        Which of the two.
+    file, sha256 : str
+        Name and hash of its file.
+    pga_g, pgv_cm_s : float
+        Medians at the building, before the settings' factor; `pgv_cm_s` is null where it is not known.
+    psa : tuple of GroundPsa
+        Spectral accelerations, as far as they are known; the floors' motion does not follow from them.
+    dispersion : float
+        Standard deviation of ln PGA at the building [-].
+    dispersion_source : str
+        Where that comes from.
+    own_dispersion : float
+        Motion uncertainty without it [-]; both together are the root of the sum of squares.
+    shared : float, optional
+        Share of its variance that is common to all places in one earthquake [-]; null where that is not known.
+    distance_km : float, optional
+        From the building to the site of the scenarios.
+    scenarios : int
+        Number of scenarios; 0 for a map.
+    profile : str
+        The code's design profile over the height.
+    facts : tuple of GroundFact
+        The earthquake, version and status of the map, and the like.
+    cautions : tuple of str
+        What makes it less certain than its dispersion tells.
+    """
+
+    kind: Literal["shakemap", "scenarios"]
+    file: str
+    sha256: str
+    pga_g: float
+    pgv_cm_s: float | None
+    psa: tuple[GroundPsa, ...]
+    dispersion: float
+    dispersion_source: str
+    own_dispersion: float
+    shared: float | None
+    distance_km: float | None
+    scenarios: int
+    profile: str
+    facts: tuple[GroundFact, ...]
+    cautions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Provenance:
     """What a run is made again from.
 
@@ -878,7 +961,7 @@ class Provenance:
     workbook, sha256 : str
         Name and hash of the workbook.
     files : mapping of str to str
-        Hashes (SHA-256) of the recorded motions, by name.
+        Hashes (SHA-256) of the recorded motions, of the hazard curve and of the ShakeMap, by name.
     scenario : str
         Where the floor motion came from, one of `assess.settings.SCENARIOS`.
     uncertainty : Uncertainty
@@ -887,6 +970,8 @@ class Provenance:
         How draws of the earthquake depend on the place and on scenarios; None where they do not.
     shaking : AssumedShaking, optional
         The intensity that was assumed; None where no floor rests on one.
+    site_ground : SiteGroundInfo, optional
+        The ShakeMap or the scenarios at the building; None where no floor rests on them.
     suite : SuiteInfo, optional
         The user's own motions.
     language : str
@@ -914,6 +999,7 @@ class Provenance:
     uncertainty: Uncertainty
     earthquakes: EarthquakeDraws | None
     shaking: AssumedShaking | None
+    site_ground: SiteGroundInfo | None
     suite: SuiteInfo | None
     language: str
     sheets: Mapping[str, str]

@@ -9,14 +9,27 @@ import typer
 from assess.cli.completion import list_of, one_of
 from assess.cli.console import print_warnings, show_progress
 from assess.cli.opening import open_file
-from assess.cli.options import Jobs, Runs, Scale, Scenario, Seed, Workbook, read_formats, read_settings
+from assess.cli.options import (
+    GroundMotions,
+    Jobs,
+    Runs,
+    Scale,
+    Scenario,
+    Seed,
+    ShakeMapFile,
+    Workbook,
+    read_formats,
+    read_ground,
+    read_settings,
+)
 from assess.errors import InputError
 from assess.i18n import LANGUAGES
 from assess.progress import Progress
-from assess.settings import ROUTE_RISK, VERIFY, Settings
+from assess.settings import ROUTE_RISK, VERIFY, Settings, change_settings
 
 if TYPE_CHECKING:
     from assess.methods import Method
+    from assess.model import Inventory
     from assess.report.report_options import ReportOptions
     from assess.results import Results
     from assess.route_results import RouteTables
@@ -32,6 +45,8 @@ EXAMPLES = (
     "assess run building.xlsx --language it --accessible --route-risk 0.01",
     "assess run building.xlsx --method own.toml --template my-templates",
     "assess run building.xlsx --city",
+    "assess run building.xlsx --shakemap grid.xml",
+    "assess run building.xlsx --ground-motions oq-export --out scenarios",
 )
 
 FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz")
@@ -65,6 +80,8 @@ def command(
     scale_motions: Annotated[
         bool, typer.Option("--scale-motions", help="Scale the records of --motions to each floor's PFA.")
     ] = False,
+    shakemap: ShakeMapFile = None,
+    ground_motions: GroundMotions = None,
     scenario: Scenario = None,
     scale: Scale = 1.0,
     anchor: Annotated[
@@ -146,7 +163,9 @@ def command(
     _check_folder(folder, wanted)
     options = _read_options(language, templates, accessible)
     with show_progress() as progress:
-        results = _assess(path, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
+        inventory = _read_inventory(path, shakemap, ground_motions, progress)
+        settings = settings if runs or motions else _fit_runs(settings, inventory)
+        results = _assess(inventory, settings, motions, methods or (), jobs, not set(wanted) <= PLAIN, progress)
         written = _write(results, folder, wanted, options, progress)
     for line in describe_result(results):
         typer.echo(line)
@@ -156,8 +175,25 @@ def command(
         _open(written)
 
 
+def _read_inventory(
+    path: Path, shakemap: Path | None, ground_motions: Path | None, progress: Progress
+) -> "Inventory":
+    from assess.workbook.read import read_inventory
+
+    ground = read_ground(shakemap, ground_motions)
+    return read_inventory(path, ground=ground, progress=progress)
+
+
+def _fit_runs(settings: Settings, inventory: "Inventory") -> Settings:
+    """Return the settings with as many draws as count every scenario of the ground alike."""
+    from assess.pipeline.city_draws import choose_runs
+
+    scenarios = 0 if inventory.site_ground is None else len(inventory.site_ground.scenarios)
+    return change_settings(settings, {"runs": choose_runs(scenarios)}) if scenarios else settings
+
+
 def _assess(
-    path: Path,
+    inventory: "Inventory",
     settings: Settings,
     motions: Path | None,
     models: Sequence[Path],
@@ -166,9 +202,8 @@ def _assess(
     progress: Progress,
 ) -> "Results":
     from assess.pipeline.run import run
-    from assess.workbook.read import read_inventory
 
-    methods, inventory, suite = _read_methods(models), read_inventory(path, progress=progress), None
+    methods, suite = _read_methods(models), None
     if motions is not None:
         from assess.motion.suite import read_suite
 

@@ -275,9 +275,9 @@ def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
 def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Callable[[str], int]) -> FloatArray:
     """Return the numbers of the rows, (rows, columns)."""
     texts = [head.index(_TEXT)] if _TEXT in head else []
-    converters = dict.fromkeys(texts, number_text)
+    converters: dict[int | str, Callable[[str], Any]] = dict.fromkeys(texts, number_text)
     try:
-        found = np.loadtxt(
+        found: FloatArray = np.loadtxt(
             io.BytesIO(data), delimiter=",", ndmin=2, comments=None, encoding="utf-8", converters=converters or None
         )
         if found.shape[1] == len(head):

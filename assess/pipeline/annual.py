@@ -67,7 +67,7 @@ def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
     if suite is not None and not assessment.settings.scale_motions:
         return fill("the user's own motions are not scaled to the floors, so that their ground PGA is not known")
     sources = {assessment.case_demand[case].source for case in np.flatnonzero(cases.ensemble >= 0)}
-    if ground.pga is None or ((ground.is_from_sds or ground.shaking) and sources != {"profile"}):
+    if ground.pga is None or ((ground.is_from_sds or ground.shaking or ground.site) and sources != {"profile"}):
         return fill(
             "the peak ground acceleration of this scenario is not known: fill in Ground PGA in Building, that of the "
             "same earthquake as the floors' motions"
@@ -98,7 +98,7 @@ class _Annual:
     @property
     def cases(self) -> Cases:
         """The cases, with the dispersion of the floors' motions at a ground PGA, which is never none."""
-        own = find_uncertainty(self.assessment.inventory.building)  # at a PGA: without its scatter given an intensity
+        own = find_uncertainty(self.assessment.inventory.building)  # at a PGA: without that of PGA itself
         return replace(self.assessment.cases, uncertainty=Uncertainty(motion=own.motion or MOTION, piece=own.piece))
 
     @property

@@ -17,9 +17,9 @@ def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Proble
         return
     cell, used = building.cell("shaking"), find_shaking(demands)
     if used is None:
-        why = fill("no floor follows a profile")
-        if find_ground(inventory).shaking is None:
-            why = fill("Ground PGA or SDS is filled in")
+        ground, why = find_ground(inventory), fill("no floor follows a profile")
+        if ground.shaking is None:
+            why = fill("a ShakeMap gives the ground motion") if ground.site else fill("Ground PGA or SDS is filled in")
         yield Problem("note", "Building", cell, fill("{what} is not used: {why}.", what=fill("Shaking"), why=why))
         return
     message = fill(

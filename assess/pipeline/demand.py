@@ -257,10 +257,9 @@ def find_shaking(demands: Demands) -> Shaking | None:
     return None if found is None else found[0]
 
 
-def find_site(demands: Demands) -> tuple[SiteGround, Profile] | None:
-    """Return the ShakeMap or the scenarios that serve a floor, of which a run has one at most, and the profile."""
-    every = (one for parallel in demands.values() for one in parallel)
-    return next(((one.site, one.profile) for one in every if one.site and one.profile), None)
+def find_site(demands: Demands) -> SiteGround | None:
+    """Return the ShakeMap or the scenarios that serve a floor, of which a run has one at most."""
+    return next((one.site for parallel in demands.values() for one in parallel if one.site), None)
 
 
 def scale_demands(demands: Demands, factor: float) -> Demands:

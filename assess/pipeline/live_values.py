@@ -15,7 +15,7 @@ from assess.methods import Cases, adopted_formula
 from assess.methods._method import ALIKE
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.adopt import find_can_rock
-from assess.pipeline.demand import Demand, Demands, build_demands, find_shaking
+from assess.pipeline.demand import Demand, Demands, build_demands
 from assess.pipeline.verify import find_uncertainty
 from assess.risk import classify
 from assess.settings import SCENARIOS, Settings
@@ -50,7 +50,7 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
         pfa=np.array([np.nan if one is None else one.pfa for one in governing], dtype=np.float64),
         pfv=np.array([np.nan if one is None else one.pfv for one in governing], dtype=np.float64),
         centre=np.array([item.centre_of_gravity for item in inventory.items], dtype=np.float64),
-        uncertainty=find_uncertainty(inventory.building, find_shaking(demands)),
+        uncertainty=find_uncertainty(inventory.building, demands),
     )
     outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}
     formula = outcomes[adopted_formula().key]

@@ -14,6 +14,7 @@ from assess.motion.scenario import PGA_OF_SDS, Profile, cap_pfv
 from assess.motion.target import estimate_period
 from assess.pipeline.assumed_shaking import remark_on_shaking
 from assess.pipeline.demand import Demands, find_ground, serve_by_profile
+from assess.pipeline.site_remarks import remark_on_site
 from assess.units import GRAVITY, ROUNDING, VELOCITY
 
 LOSS_TO_NOTE = 0.02
@@ -52,6 +53,7 @@ def remark(
     """Yield warnings and notes on the motion of the floors and on the ground's."""
     yield from _losses(demands)
     yield from _on_shaking(inventory, demands, scenario, ductility_reduction)
+    yield from remark_on_site(inventory, demands)
     if list_floors(demands, "profile"):
         yield from _above_roof(inventory, demands)
         yield from _assumed_elevations(inventory, demands)

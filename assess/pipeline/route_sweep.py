@@ -245,7 +245,7 @@ def _choose(assessment: Assessment, beside: NDArray[np.intp]) -> Cases:
     """Return the cases with the motions under which the pieces `beside` routes are to be rocked."""
     chosen = np.isin(assessment.case_item, beside) & ~assessment.cases.is_stocky
     inventory, settings = assessment.inventory, assessment.settings
-    uncertainty = find_uncertainty(inventory.building)  # at a PFA: without the scatter of PGA given an intensity
+    uncertainty = find_uncertainty(inventory.building)  # at a PFA: without the scatter of PGA
     drawn = replace(assessment.cases.earthquakes, given=())  # nor are there scenarios of it
     cases = replace(assessment.cases, uncertainty=uncertainty, earthquakes=drawn)
     return choose_motions(cases, chosen, assessment.case_demand, assessment.demands, inventory.building, settings, None)

@@ -22,7 +22,7 @@ from assess.pipeline.adopt import adopt, build_falls, choose_items, find_governi
 from assess.pipeline.anchors import find_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
-from assess.pipeline.demand import Demand, Demands, build_demands, find_shaking, scale_demands
+from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
 from assess.pipeline.either_axis import unite_axes
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.schedule import build_schedule, hold, list_entries
@@ -330,7 +330,7 @@ def _cases(
         return np.array(values, dtype=np.float64)
 
     items, building = [inventory.items[index] for index in case_item], inventory.building
-    names, uncertainty = number_pieces(inventory, settings), find_uncertainty(building, find_shaking(demands))
+    names, uncertainty = number_pieces(inventory, settings), find_uncertainty(building, demands)
     return Cases(
         breadth=column([item.breadth for item in items]),
         height=column([item.height for item in items]),

@@ -17,6 +17,7 @@ from assess.pipeline.anchors import Anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import Demand, Demands, Ground, find_assumed, find_ground
+from assess.pipeline.site_remarks import describe_site
 from assess.pipeline.versions import versions
 from assess.results import (
     AssumedShaking,
@@ -313,6 +314,7 @@ def build_provenance(assessment: Assessment) -> Provenance:
         uncertainty=assessment.cases.uncertainty,
         earthquakes=describe_draws(assessment.inventory, assessment.settings, assessment.cases.earthquakes),
         shaking=_describe_shaking(assessment.demands),
+        site_ground=describe_site(inventory.building, assessment.demands),
         suite=_suite(assessment.suite, assessment.settings.scale_motions),
         language=inventory.report_language,
         sheets=dict(inventory.sheets),

@@ -1,5 +1,6 @@
 """The simulation: which pieces are integrated, and under which motions."""
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -8,12 +9,11 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError, Problem
 from assess.i18n import Text, count, fill, join
-from assess.intensity import Shaking
 from assess.methods import LOOKS, Cases, Outcome, simulation
 from assess.methods._beside import may_slide
 from assess.methods._method import BoolArray
 from assess.model import Building
-from assess.pipeline.demand import Demand, Demands
+from assess.pipeline.demand import Demand, Demands, find_shaking, find_site
 from assess.pipeline.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
 from assess.progress import SILENT, Progress
 from assess.rocking.draws import Uncertainty
@@ -28,16 +28,20 @@ MOST_PAIRS = 400_000_000
 """Results of one motion on one piece that are kept at most: they take five bytes each."""
 
 
-def find_uncertainty(building: Building, shaking: Shaking | None = None) -> Uncertainty:
+def find_uncertainty(building: Building, demands: Demands | None = None) -> Uncertainty:
     """Return what is taken to be uncertain: what the workbook says, else the defaults.
 
-    Where an assumed intensity serves a floor, the motion is at least as uncertain as PGA is given that intensity. That
-    scatter is the total one, of earthquakes and sites alike: it stands in for a smaller value, and adds to none.
+    With the demands also what the ground motion adds on which they rest; that of a known peak adds nothing. Where an
+    assumed intensity serves a floor, the motion is at least as uncertain as PGA is given that intensity. That scatter
+    is the total one, of earthquakes and sites alike: it stands in for a smaller value, and adds to none. Where a
+    ShakeMap or scenarios serve one, that of their PGA is independent of the building's own and adds to its variance.
     """
-    default, motion, piece = Uncertainty(), building.motion_uncertainty, building.piece_uncertainty
-    own = default.motion if motion is None else motion
+    default, given, piece = Uncertainty(), building.motion_uncertainty, building.piece_uncertainty
+    own = default.motion if given is None else given
+    shaking, site = (find_shaking(demands), find_site(demands)) if demands else (None, None)
+    motion = max(own, shaking.scatter) if shaking else own
     return Uncertainty(
-        motion=max(own, shaking.scatter) if shaking else own, piece=default.piece if piece is None else piece
+        motion=math.hypot(own, site.dispersion) if site else motion, piece=default.piece if piece is None else piece
     )
 
 

@@ -15,10 +15,10 @@ from assess.report.counts import Bars, CannotRock, Counts, build_bars, count, co
 from assess.report.findings import cautions, motions, trials
 from assess.report.findings.annual_chances import AnnualChances, build_annual
 from assess.report.findings.apart import list_apart, list_parts
-from assess.report.findings.assumed_intensity import say_shaking
 from assess.report.findings.disagreements import Disagreements, find_disagreements
 from assess.report.findings.earthquake_draws import list_references
 from assess.report.findings.ground import PEAKS, say_ground
+from assess.report.findings.ground_source import say_ground_source
 from assess.report.findings.trials import Trials
 from assess.report.findings.verified import WILSON, Verified, build_verified
 from assess.report.provenance import report_time, say_date, say_reference
@@ -136,8 +136,8 @@ class Content(ByBasis):
 
     @property
     def shaking(self) -> str:
-        """What an assumed intensity stands for, and whose relations say so; "" where none is assumed."""
-        return say_shaking(self.run)
+        """What a ShakeMap, scenarios or an assumed intensity gives, and whose; "" where the motion rests on none."""
+        return say_ground_source(self.run)
 
     @property
     def by_floor(self) -> Sequence[Counts]:

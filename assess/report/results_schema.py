@@ -20,13 +20,13 @@ from assess.annual_results import AnnualRow, AnnualTables
 from assess.errors import Problem
 from assess.fields import MOTION_FIELDS, SIMULATION_FIELDS, Field, arrange_item_fields
 from assess.model import AXES
-from assess.results import AssumedShaking, EarthquakeDraws, Provenance
+from assess.results import AssumedShaking, EarthquakeDraws, Provenance, SiteGroundInfo
 from assess.risk import RiskClass
 from assess.schedule_fields import ENTRY_FIELDS, STATE_FIELDS, WORK_FIELDS
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
-VERSION = "5.0"
+VERSION = "5.1"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
@@ -198,6 +198,8 @@ def _assess() -> Schema:
             | {"description": "How draws of the earthquake depend on the place and on scenarios; null: they do not."},
             "shaking": _or_null(_of_row(AssumedShaking))
             | {"description": "The assumed intensity that stands in for a known motion of the ground; null: none."},
+            "site_ground": _or_null(_of_row(SiteGroundInfo))
+            | {"description": "The ground motion at the building by a ShakeMap or scenarios; null: none."},
             "platform": _map(TEXT),
             "inputs": _object({"workbook": TEXT, "sha256": HASH, "records": _map(HASH), "motions": _map(HASH)}),
             "fitted_models": _map(fitted)
@@ -272,7 +274,7 @@ def _of_type(hint: Any, number: Schema) -> Schema:
     if get_origin(hint) is tuple:
         return _list(_of_type(parts[0], number))
     if is_dataclass(hint):
-        return _ref(_ROWS[hint])  # type: ignore[index]
+        return _ref(_ROWS[hint]) if hint in _ROWS else _of_row(hint)  # type: ignore[index]
     if issubclass(hint, StrEnum):
         return {"enum": [str(one) for one in hint]}
     return {bool: {"type": "boolean"}, int: COUNT, float: number, str: TEXT}[hint]

@@ -8,7 +8,7 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.pipeline.anchors import BRACKET
 from assess.report import words
-from assess.report.findings import assumed_intensity, motions
+from assess.report.findings import assumed_intensity, ground_source, motions
 from assess.report.findings.route_words import say_risk
 from assess.results import MOTION_FLAGS, PIECE_FLAG_TEXTS, Results
 from assess.route_results import FLAGS as ROUTE_FLAGS
@@ -47,7 +47,8 @@ def list_flags(results: Results) -> dict[str, str]:
 
 def list_assumptions(results: Results) -> Lines:
     """Return what was assumed, and for how many rows or where."""
-    lines = [*assumed_intensity.list_assumptions(results), *motions.list_assumptions(results)]
+    lines = [*assumed_intensity.list_assumptions(results), *ground_source.list_assumptions(results)]
+    lines += motions.list_assumptions(results)
     items = results.item_rows
     counted = Counter(name for item in items for name in item.assumed)
     for name, text in _assumed().items():

@@ -9,8 +9,8 @@ from assess.natural import natural_key
 from assess.report import words
 from assess.report.counts import Counts
 from assess.report.findings.apart import say_apart
-from assess.report.findings.assumed_intensity import say_shaking_shortly
 from assess.report.findings.at_risk import RouteAtRisk, list_routes_at_risk, say_routes
+from assess.report.findings.ground_source import say_ground_source_shortly
 from assess.report.findings.schedule_words import Entry, list_entries, say_doubtful_brackets
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
@@ -28,8 +28,8 @@ class Summary:
     """A paragraph in plain words, the worst pieces, what to fix first, and the routes at risk.
 
     `apart` are sentences on the pieces that are counted apart, with what settles them; `shaking` is a sentence
-    on an assumed shaking, none where none is assumed; `of_routes` are sentences on the routes, none where the workbook
-    names none.
+    on a ShakeMap, scenarios or an assumed shaking, if any; `of_routes` are sentences on the routes, none where the
+    workbook names none.
     """
 
     plainly: Sequence[str]
@@ -48,7 +48,7 @@ def build_summary(results: Results, rows: Sequence[ItemResult], total: Counts) -
     return Summary(
         plainly=say_plainly(total, could_be, worst, fixes, rows),
         apart=say_apart(rows),
-        shaking=[text for text in (say_shaking_shortly(results),) if text],
+        shaking=[text for text in (say_ground_source_shortly(results),) if text],
         worst=worst,
         fixes=fixes,
         routes=list_routes_at_risk(results),

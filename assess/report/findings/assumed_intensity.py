@@ -23,7 +23,7 @@ def say_shaking_shortly(results: Results) -> str:
         "intensity": _(found.choice), "pga": words.in_g(found.pga_g), "pgv": words.fixed(found.pgv_cm_s, 1),
         "sources": ", ".join(found.sources), "code": found.profile, "scatter": number(found.scatter, "g"),
     }  # fmt: skip
-    if _uses_scatter(results):
+    if uses_scatter(results):
         text = _(
             "Assumed shaking: {intensity}, by its published median PGA of {pga} g and PGV of {pgv} cm/s, scatter of "
             "ln PGA {scatter} ({sources}), and the design profile of {code}.",
@@ -35,10 +35,10 @@ def say_shaking_shortly(results: Results) -> str:
             "and the design profile of {code}; scatter is not in the results.",
             **values,
         )
-    return " ".join((text, *_say_factor(results)))
+    return " ".join((text, *say_factor(results)))
 
 
-def _uses_scatter(results: Results) -> bool:
+def uses_scatter(results: Results) -> bool:
     """Return whether motions are drawn with the scatter of the intensity: the formulas take the median alone."""
     return results.has_simulated and not results.settings.ideal
 
@@ -50,12 +50,13 @@ def _say(found: AssumedShaking, results: Results) -> Iterator[str]:
         intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
         sources=", ".join(found.sources),
     )  # fmt: skip
-    yield from _say_factor(results)
+    yield from say_factor(results)
     yield _say_scatter(found, results)
     yield _("Over the height the motion follows the design profile of {code}.", code=found.profile)
 
 
-def _say_factor(results: Results) -> Iterator[str]:
+def say_factor(results: Results) -> Iterator[str]:
+    """Yield by which factor the settings multiply the medians, where they do."""
     if results.settings.scale != 1:
         factor = number(results.settings.scale, "g")
         yield _("The results are for these medians times {factor}.", factor=factor)
@@ -64,7 +65,7 @@ def _say_factor(results: Results) -> Iterator[str]:
 def _say_scatter(found: AssumedShaking, results: Results) -> str:
     """Return what is made of the scatter of PGA given the intensity."""
     scatter = number(found.scatter, "g")
-    if _uses_scatter(results):
+    if uses_scatter(results):
         return _(
             "PGA scatters about this median by {scatter} (standard deviation of ln PGA); Motion uncertainty is set to "
             "at least this value.",

@@ -6,6 +6,7 @@ from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
 from assess.model import AXES
 from assess.report import words
+from assess.report.findings.ground_source import name_source
 from assess.results import MOTION_FLAGS, MotionRow, ProfileInfo, Results
 
 ENVELOPES = fill(
@@ -21,6 +22,8 @@ MOST_PLACES = 20
 _OWN = {
     "one_axis_only": MOTION_FLAGS["one_axis_only"],
     "assumed_shaking": fill("assumed shaking"),
+    "shakemap": fill("ShakeMap"),
+    "scenarios": fill("scenarios"),
     "assumed_elevation": fill("assumed elevation"),
     "pfv_estimated": fill("PFV estimated from T1"),
     "pfv_capped": fill("PFV capped by Ground PGV"),
@@ -181,6 +184,8 @@ def list_assumptions(results: Results) -> list[tuple[str, str]]:
     source = _("0.4 SDS, as Ground PGA is blank") if is_from_sds else _("Ground PGA")
     if shaking := results.provenance.shaking:
         source = _("assumed: the median of {intensity}, as Ground PGA and SDS are blank", intensity=_(shaking.choice))
+    if site := results.provenance.site_ground:
+        source = _("{source} at the building, as the median", source=name_source(site))
     lines = [
         (_("Motion of floors {floors}", floors=words.clip(floors, 300)), chosen),
         (_("Ground motion of the profile"),

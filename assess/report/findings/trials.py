@@ -129,7 +129,7 @@ def _describe_draws(results: Results) -> str:
         parts.append(_(
             "In draw k, motion k is scaled by exp({dispersion} ε), with one normal number ε for the whole building "
             "({source}).",
-            dispersion=number(uncertainty.motion, "g"), source=say_source(results),
+            dispersion=number(uncertainty.motion, ".3g"), source=say_source(results),
         ))  # fmt: skip
     parts += filter(None, [say_draws(results)])
     if uncertainty.piece:
@@ -268,7 +268,7 @@ def list_assumptions(results: Results, verified: Verified) -> list[tuple[str, st
 def _list_uncertainties(results: Results) -> list[tuple[str, str]]:
     """Return what is assumed of the uncertainty of the motion and of the pieces."""
     uncertainty = results.provenance.uncertainty
-    motion = _("{dispersion}, {source}", dispersion=number(uncertainty.motion, "g"), source=say_source(results))
+    motion = _("{dispersion}, {source}", dispersion=number(uncertainty.motion, ".3g"), source=say_source(results))
     piece = _("base, height, centre of gravity and restitution are drawn, with assumed dispersions")
     if not uncertainty.piece:
         piece = _("none: every piece is exactly as given")

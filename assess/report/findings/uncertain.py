@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.report import words
+from assess.report.findings.ground_source import name_source, say_dispersion
 from assess.results import ItemResult, Results, Simulation
 from assess.risk import RiskClass, classify
 
@@ -13,10 +14,12 @@ NAMED = 4
 
 
 def list_conditions(results: Results) -> list[str]:
-    """Return what every page of a report says: assumed shaking, nothing varied, motions times a factor."""
+    """Return what every page of a report says: source of the ground motion, nothing varied, motions times a factor."""
     texts = []
     if shaking := results.provenance.shaking:
         texts.append(_("Assumed shaking: {intensity}", intensity=_(shaking.choice)))
+    if site := results.provenance.site_ground:
+        texts.append(_("Ground motion: {source}", source=name_source(site)))
     if results.settings.ideal and results.has_simulated:
         texts.append(_("Assumed: exactly this motion, and every piece exactly as given"))
     if results.settings.scale != 1:
@@ -59,7 +62,7 @@ def say_condition(results: Results) -> str:
     if dispersion:
         motion = _(
             "for an earthquake like this one (dispersion {dispersion}, {source})",
-            dispersion=number(dispersion, "g"), source=say_source(results),
+            dispersion=number(dispersion, ".3g"), source=say_source(results),
         )  # fmt: skip
     if not results.provenance.uncertainty.piece:
         return _("{motion} and pieces exactly as given", motion=motion)
@@ -73,7 +76,7 @@ def _say_motion(results: Results) -> str:
     return _(
         "Chances hold for an earthquake like this one: each draw scales the motions of the whole building by one "
         "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
-        dispersion=number(dispersion, "g"), source=say_source(results),
+        dispersion=number(dispersion, ".3g"), source=say_source(results),
     )  # fmt: skip
 
 
@@ -82,6 +85,8 @@ def say_source(results: Results) -> str:
     shaking, given = results.provenance.shaking, results.building.motion_uncertainty
     if shaking and shaking.scatter == results.provenance.uncertainty.motion != given:
         return _("scatter of ln PGA given the intensity, {sources}", sources=", ".join(shaking.sources))
+    if site := results.provenance.site_ground:
+        return say_dispersion(site)
     return _("assumed") if results.building.motion_uncertainty is None else _("as filled in")
 
 
@@ -105,19 +110,19 @@ def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
         changes = _count((one, found.ideal.probability, found.probability) for one, found in simulated)
         return _(
             "In an earthquake like this one (dispersion {dispersion}), {changes}.",
-            dispersion=number(results.provenance.uncertainty.motion, "g"), changes=_say_changes(*changes),
+            dispersion=number(results.provenance.uncertainty.motion, ".3g"), changes=_say_changes(*changes),
         )  # fmt: skip
     return " ".join(_list_tried(results, simulated))
 
 
 def _list_tried(results: Results, simulated: Sequence[tuple[ItemResult, Simulation]]) -> Iterator[str]:
     """Yield what other dispersions would change; none below the scatter that a published relation gives."""
-    assumed = results.provenance.shaking
-    least = 0.0 if assumed is None else assumed.scatter
+    assumed, site = results.provenance.shaking, results.provenance.site_ground
+    least = assumed.scatter if assumed else site.dispersion if site else 0.0
     for dispersion in simulated[0][1].tried:
         if dispersion >= least and dispersion != results.provenance.uncertainty.motion:
             changes = _count((one, found.probability, found.tried[dispersion]) for one, found in simulated)
-            yield _("With a dispersion of {dispersion}, {changes}.", dispersion=number(dispersion, "g"),
+            yield _("With a dispersion of {dispersion}, {changes}.", dispersion=number(dispersion, ".3g"),
                     changes=_say_changes(*changes))  # fmt: skip
 
 

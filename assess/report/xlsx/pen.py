@@ -10,6 +10,7 @@ from assess.fields import Field
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
+from assess.report.findings.ground_source import name_source
 from assess.report.findings.verified import say_scenario
 from assess.report.xlsx.item_formulas import Terms, build_terms
 from assess.results import Results
@@ -276,6 +277,8 @@ def _say_conditions_shortly(run: Results) -> str:
     settings, texts = run.settings, []
     if run.provenance.shaking:
         texts.append(_("assumed shaking, {intensity}", intensity=run.provenance.shaking.name))
+    if run.provenance.site_ground:
+        texts.append(name_source(run.provenance.site_ground))
     if settings.scale != 1:
         texts.append(_("motion × {scale:g}", scale=settings.scale))
     if settings.ideal:

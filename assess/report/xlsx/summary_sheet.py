@@ -14,8 +14,8 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext
 from assess.report import words
 from assess.report.content import Content
-from assess.report.findings.assumed_intensity import say_shaking
 from assess.report.findings.at_risk import describe_at_risk
+from assess.report.findings.ground_source import say_ground_source
 from assess.report.findings.verified import INTERVAL, say_scenario
 from assess.report.summary import ROUTES
 from assess.report.xlsx import charts
@@ -146,7 +146,7 @@ def _lines(pen: Pen, content: Content, areas: Mapping[str, str], bases: Sequence
     scenario, verified = content.run.building.scenario, content.verified
     if scenario:
         yield _("Scenario: {scenario}", scenario=words.cut(scenario, 300)), ""
-    if shaking := say_shaking(content.run):
+    if shaking := say_ground_source(content.run):
         yield shaking, ""
     yield from ((text, "") for text in say_conditions(content.run.settings))
     if not content.run.has_simulated:
