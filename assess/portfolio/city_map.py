@@ -19,6 +19,8 @@ EARTH = 6371.0
 """Mean radius of the Earth [km]."""
 WIDE, LOWEST, HIGHEST = 1000.0, 560.0, 1000.0
 """Width of the drawing, and the least and the most height of it [px]."""
+TALLEST = 46.0
+"""Height on a screen at most [rem]."""
 MARGIN, LEAST = 0.07, 1.0
 """Free space round the buildings: share of their extent, and at least [km]."""
 _STEPS = (1, 2, 5)
@@ -135,10 +137,12 @@ def draw_map(
         _draw_scale(frame),
         _draw_north(frame),
     ]
-    role = 'role="group"' if is_live else 'role="img"'
+    role = "group" if is_live else "img"
+    widest = f"max-width: {TALLEST * frame.wide / frame.high:.1f}rem"
     return (
-        f'<svg class="city-map" {role} aria-label="{escape(title)}" viewBox="0 0 {frame.wide:g} {frame.high:.1f}" '
-        f'font-family="Report, sans-serif" font-size="13">{"".join(parts)}</svg>'
+        f'<svg class="city-map" role="{role}" aria-label="{escape(title)}" style="{widest}" '
+        f'viewBox="0 0 {frame.wide:g} {frame.high:.1f}" font-family="Report, sans-serif" font-size="13">'
+        f"{''.join(parts)}</svg>"
     )
 
 

@@ -103,8 +103,9 @@ def list_facts(view: CityView) -> list[tuple[str, str]]:
 
 
 def list_group_lines(group: Group) -> list[str]:
-    """Return the answer of one group in sentences: falls, people, what fixing helps, money, what is assumed."""
-    return [*_say_falls(group), *_say_people(group), *_say_works(group), *_say_assumed(group)]
+    """Return the answer of one group, a paragraph each: falls, people, what fixing helps with its cost, assumptions."""
+    parts = (_say_falls(group), _say_people(group), _say_works(group), _say_assumed(group))
+    return [text for text in (" ".join(part) for part in parts) if text]
 
 
 def _say_falls(group: Group) -> Iterator[str]:
@@ -157,7 +158,8 @@ def _say_works(group: Group) -> Iterator[str]:
                    "Fixing the {n:,} pieces on the work lists avoids {avoided} falls, if the anchors hold.",
                    group.works, avoided=say_number(group.falls_avoided))  # fmt: skip
     if group.cost is not None:
-        yield _("Known costs of the work: {cost}, in the currencies of the workbooks.", cost=say_whole(group.cost))
+        yield _("Known costs of that work: {cost}, as the workbooks give them, taken as one currency.",
+                cost=say_whole(group.cost))  # fmt: skip
     if group.works_without_cost:
         yield ngettext("{n:,} piece on the work lists has no cost.", "{n:,} pieces on the work lists have no cost.",
                        group.works_without_cost)  # fmt: skip

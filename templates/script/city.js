@@ -28,20 +28,22 @@
   const full = svg ? { x: 0, y: 0, wide: svg.viewBox.baseVal.width, high: svg.viewBox.baseVal.height } : null;
   let view = full && { ...full };
 
+  // On a small screen signs and letters are drawn larger, in half steps, so that the scale bar keeps a round length.
+  const enlarge = () => Math.max(1, Math.round((1.6 * full.wide) / Math.max(svg.clientWidth, 1)) / 2);
   const placeFixed = (scale) => {
     const kilometres = svg.querySelector(".scale-bar");
-    for (const fixed of svg.querySelectorAll(".scale-bar, .north")) {
-      fixed.setAttribute("transform", `translate(${view.x} ${view.y}) scale(${scale})`);
-    }
+    const north = svg.querySelector(".north");
+    kilometres.setAttribute("transform", `translate(${view.x} ${view.y + view.high}) scale(${scale}) translate(0 ${-full.high})`);
+    north.setAttribute("transform", `translate(${view.x + view.wide} ${view.y}) scale(${scale}) translate(${-full.wide} 0)`);
     const length = Number(kilometres.dataset.km) * scale;
     const text = length >= 1 ? texts.kilometres : texts.metres;
     const value = length >= 1 ? length : 1000 * length;
     kilometres.querySelector("text").textContent = write(text, { length: Number(value.toPrecision(3)).toLocaleString(language) });
   };
   const show = () => {
-    const scale = view.wide / full.wide;
+    const scale = (view.wide / full.wide) * enlarge();
     svg.setAttribute("viewBox", `${view.x} ${view.y} ${view.wide} ${view.high}`);
-    svg.classList.toggle("near", scale < 1);
+    svg.classList.toggle("near", view.wide < full.wide);
     for (const mark of marks) {
       const { x, y, size } = mark.dataset;
       mark.setAttribute("transform", `translate(${x} ${y}) scale(${Number(size) * scale})`);
@@ -130,10 +132,14 @@
       mark.append(title);
     });
   };
-  if (svg) startMap();
+  if (svg) {
+    startMap();
+    show();
+    window.addEventListener("resize", show);
+  }
 
   // ---------------------------------------------------------------- the ranking
-  const STEP = 100;
+  const STEP = window.matchMedia("(max-width: 48rem)").matches ? 20 : 100;
   const FIELDS = ["use", "kind", "state", "inventory", "storeys"];
   const heads = Array.from(byId("ranked").tHead.rows[0].cells, (head) => head.textContent);
   const body = byId("ranked").tBodies[0];

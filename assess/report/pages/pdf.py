@@ -8,6 +8,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import IO, Any
 
@@ -88,18 +89,29 @@ def _build_job(html: str, content: Content, path: Path, options: ReportOptions, 
 
 
 def print_page(
-    html: str, path: Path, files: Sequence[Attached], options: ReportOptions, progress: Progress = SILENT
+    html: str,
+    path: Path,
+    files: Sequence[Attached],
+    options: ReportOptions,
+    progress: Progress = SILENT,
+    *,
+    moment: datetime | None = None,
 ) -> None:
-    """Write a page that was rendered for print as a PDF that carries `files`; raises what `write_pdf` does."""
-    _lay_out(progress.wait_for(lambda: _pack_job(html, files, path, options)), progress)
+    """Write a page that was rendered for print as a PDF that carries `files`; raises what `write_pdf` does.
+
+    `moment` is its date, in place of that of the report: for files that are the same whenever they are made.
+    """
+    _lay_out(progress.wait_for(lambda: _pack_job(html, files, path, options, moment)), progress)
 
 
-def _pack_job(html: str, files: Sequence[Attached], path: Path, options: ReportOptions) -> bytes:
+def _pack_job(
+    html: str, files: Sequence[Attached], path: Path, options: ReportOptions, moment: datetime | None = None
+) -> bytes:
     job = {
         "html": replace_signs(html, find_nowhere(find_missing(html))),
         "path": str(path),
         "variant": ACCESSIBLE if options.accessible else ARCHIVAL,
-        "time": report_time().isoformat(),
+        "time": (moment or report_time()).isoformat(),
         "attachments": [asdict(file) for file in files],
     }
     return json.dumps(job).encode()
