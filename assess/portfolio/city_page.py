@@ -14,14 +14,15 @@ from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
 from assess.portfolio.page_data import STOREYS, list_heads, write_data
 from assess.progress import SILENT, Progress
 from assess.report import words
-from assess.report.pages.html import build_style, hash_script, render_page
+from assess.report.pages.html import build_style, hash_script
+from assess.report.pages.html import render_page as render_template
 from assess.report.report_options import ReportOptions
 from assess.version import __version__
 
 TEMPLATE, STYLE, SCRIPT = "city.html.j2", "city.css", "script/city.js"
 
 
-def render_city(
+def render_page(
     view: CityView,
     background: Background | None = None,
     *,
@@ -61,7 +62,7 @@ def render_city(
             "for_print": False, "style": build_style(options, False, STYLE), "script": script,
             "script_hash": hash_script(script), "data": progress.wait_for(lambda: write_data(content, repeat)),
         }  # fmt: skip
-        return render_page(TEMPLATE, context, options, progress).encode()
+        return render_template(TEMPLATE, context, options, progress).encode()
 
 
 def build_context(
