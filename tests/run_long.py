@@ -21,7 +21,7 @@ BUILD = ROOT / "build"
 QUICK = "not (slow or browser or libreoffice or verapdf or long)"
 SEEDS = range(1, 6)
 CLOSING = re.compile(r"(\d+ (?:passed|failed|error|skipped|xfailed).*) in [\d.]+s")
-FUZZED = ("records", "xml", "workbooks", "models", "pictures")
+FUZZED = ("records", "xml", "workbooks", "models", "pictures", "ground")
 FUZZ_SECONDS = 60
 LISTED = ("numpy", "scipy", "numba", "openpyxl", "xlsxwriter", "weasyprint", "matplotlib", "shapely", "pandas", "typer")
 

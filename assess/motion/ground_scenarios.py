@@ -268,8 +268,15 @@ def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
         end = len(data) if end < 0 else end
         text, at, line = data[at:end].decode("utf-8-sig", "replace").strip(), end + 1, line + 1
         if text and not text.startswith(("#", '"#')):
-            return at, tuple(cell.strip() for cell in next(csv.reader([text]))), line + 1
+            return at, _split_head(text, line), line + 1
     raise InputError(fill("there is no table"))
+
+
+def _split_head(text: str, line: int) -> tuple[str, ...]:
+    try:
+        return tuple(cell.strip() for cell in next(csv.reader([text])))
+    except csv.Error:  # an end of line of its own in the middle
+        raise InputError(fill("line {line}: the headings cannot be read", line=line)) from None
 
 
 def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Callable[[str], int]) -> FloatArray:

@@ -88,7 +88,9 @@ class ShakeMap:
         event = self.grid.event
         name = event.get("event_description") or self.event_id or self.file
         magnitude = event.get("magnitude", "")
-        return fill("{name}, magnitude {magnitude}", name=name, magnitude=magnitude) if magnitude else fill(name)
+        if not magnitude:
+            return fill("{name}", name=name)
+        return fill("{name}, magnitude {magnitude}", name=name, magnitude=magnitude)
 
     @property
     def event_id(self) -> str:

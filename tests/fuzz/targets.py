@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tests.fuzz.engine import Target
+from tests.fuzz.ground_target import GroundMotions
 from tests.fuzz.plain_targets import Models, Pictures, Records, Xml
 from tests.fuzz.plan_target import Plans
 from tests.fuzz.workbook_target import Workbooks
@@ -15,6 +16,7 @@ TARGETS: Mapping[str, Target] = {
     "models": Models(),
     "pictures": Pictures(),
     "plans": Plans(),
+    "ground": GroundMotions(),
 }
 CORPUS = Path(__file__).parent / "corpus"
 """A folder for each target: every file broke a rule once, or reaches what the seeds do not."""
