@@ -8,6 +8,7 @@ import pytest
 import assess
 from assess.errors import InputError
 from assess.i18n import fill
+from assess.motion.ground_scenarios import read_scenarios
 from assess.motion.site_ground import SiteGround
 from assess.pipeline.city_draws import check_draws, choose_runs, find_earthquakes, number_pieces
 from assess.pipeline.draw_sums import sum_draws
@@ -94,9 +95,7 @@ def test_a_number_of_draws_that_was_asked_for_has_to_fit():
     assert choose_runs(0, 64) == 64
     assert choose_runs(0, "auto") == "auto"
     assert choose_runs(32, 64) == 64
-    with pytest.raises(
-        InputError, match=r"runs is 100, expected a multiple of 32.* or set it to 224\."
-    ):
+    with pytest.raises(InputError, match=r"runs is 100, expected a multiple of 32.* or set it to 224\."):
         choose_runs(32, 100)
     with pytest.raises(InputError, match="runs is auto, expected a multiple of 32"):
         choose_runs(32, "auto")
@@ -140,3 +139,21 @@ def test_a_place_changes_what_is_drawn_but_a_building_alone_ignores_it(tmp_path)
     alone = [assessed(tmp_path, replace(CITY, city=False), **place)[1]["A"] for place in (PLACE, OTHER)]
     assert alone[0].adopted == alone[1].adopted
     assert sum_draws(*assessed(tmp_path, **PLACE)).falls.sum() > 0
+
+
+def test_draw_k_takes_scenario_k_and_again_from_the_first(tmp_path):
+    """Weak, median, strong: by a building and a piece without uncertainty of their own."""
+    lines = ["# three events", "site_id,event_id,gmv_PGA", "0,0,0.12", "0,1,0.24", "0,2,0.48"]
+    (tmp_path / "gmf-data.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    (tmp_path / "sites.csv").write_text("site_id,lon,lat\n0,-122.40,37.79\n", encoding="utf-8")
+    path = write(
+        tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "elevation": 0}], period=0.8, height=12, motion_uncertainty=0.0,
+        piece_uncertainty="no", **PLACE,
+    )  # fmt: skip
+    assessment = compute(assess.read_inventory(path, ground=read_scenarios(tmp_path)), Settings(runs=60))
+    earthquakes = assessment.cases.earthquakes
+    assert earthquakes.draw(1, 0, 6) == pytest.approx([-1.2247, 0, 1.2247] * 2, abs=1e-4)
+    assert assessment.cases.uncertainty.motion == pytest.approx(0.566, abs=0.001)
+    falls = sum_draws(assessment, build_results(assessment, figures=False)).falls
+    weak, median, strong = (falls[at::3].sum() for at in range(3))
+    assert weak < median < strong
