@@ -1,0 +1,155 @@
+"""Motions that floors share: the same numbers whether they are shared or made anew, and no more kept than allowed."""
+
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from assess.errors import CancelledError
+from assess.motion import shared_motions
+from assess.motion.generate import CALIBRATED, build_generator
+from assess.motion.shared_motions import SharedMotions, share_motions
+from assess.motion.sweep import Single
+from assess.motion.target import Grid, Target, generic_target
+from assess.progress import Progress
+
+GRID = Grid(0.005, 1601)
+TARGET = generic_target(1.0, GRID, period=0.5)
+
+
+@pytest.fixture(autouse=True)
+def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Start from an empty store; return the list that grows with every generator that is built."""
+    monkeypatch.setattr(shared_motions, "_STORE", shared_motions._Store())
+    built: list[int] = []
+
+    def count(*given, **named):
+        built.append(1)
+        return build_generator(*given, **named)
+
+    monkeypatch.setattr(shared_motions, "build_generator", count)
+    return built
+
+
+def share(target: Target = TARGET, factor: float = 1.0, axis: str = "X", threads: int = 1) -> SharedMotions:
+    return share_motions(target, GRID, factor=factor, seed=1, axis=axis, threads=threads)
+
+
+def alone(first: int, count: int) -> Single:
+    return build_generator(TARGET, GRID, seed=1, axis="X").realise(first, count)
+
+
+def test_shared_motions_are_those_made_alone(nothing_kept: list[int]) -> None:
+    one, other = share(), share(factor=2.5)
+    assert len(nothing_kept) == 1
+    for first, count in ((0, CALIBRATED + 30), (3, 2), (CALIBRATED - 5, 50), (170, 7)):
+        np.testing.assert_array_equal(one.realise(first, count), alone(first, count))
+        np.testing.assert_array_equal(other.realise(first, count), alone(first, count) * np.float32(2.5))
+    assert one.fit == other.fit
+    np.testing.assert_array_equal(other.spectra.ordinates, one.spectra.ordinates * np.float32(2.5))
+    np.testing.assert_allclose(other.spectra.target, 2.5 * one.spectra.target)
+
+
+def test_the_order_in_which_floors_come_changes_nothing() -> None:
+    late = share(factor=0.3).realise(120, 20), share(factor=4.0).realise(0, 140)
+    shared_motions.forget()
+    early = share(factor=4.0).realise(0, 140), share(factor=0.3).realise(120, 20)
+    np.testing.assert_array_equal(late[0], early[1])
+    np.testing.assert_array_equal(late[1], early[0])
+
+
+def test_what_is_handed_out_may_be_changed() -> None:
+    kept = share().realise(0, 130)
+    share().realise(0, 130)[:] = 0.0
+    share().spectra.ordinates[:] = 0.0
+    np.testing.assert_array_equal(share().realise(0, 130), kept)
+    assert share().spectra.ordinates.all()
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        generic_target(1.0, GRID, period=0.500001),
+        generic_target(1.0, GRID, height=10.0),
+        generic_target(1.0, GRID, period=0.5, pfv=0.1),
+        Target(periods=TARGET.periods, pseudo=TARGET.pseudo, velocity_level=TARGET.velocity_level, pfa=1.0,
+               pfv=TARGET.pfv, envelopes=replace(TARGET.envelopes, values=TARGET.envelopes.values**2)),
+    ],
+    ids=["period", "height", "pfv", "envelope"],
+)  # fmt: skip
+def test_targets_that_differ_at_all_share_nothing(other: Target, nothing_kept: list[int]) -> None:
+    first = share().realise(0, 2)
+    assert not np.array_equal(share(other).realise(0, 2), first)
+    assert len(nothing_kept) == 2
+
+
+def test_axes_seeds_and_signs_share_nothing(nothing_kept: list[int]) -> None:
+    share()
+    share(axis="Y")
+    share_motions(TARGET, GRID, factor=1.0, seed=2, axis="X")
+    share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", signs=(1, 1, 1, -1, 1, 1, 1, 1, 1))
+    assert len(nothing_kept) == 4
+    share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", signs=(1,) * 9)  # signs that turn nothing
+    assert len(nothing_kept) == 4
+
+
+def test_threads_that_ask_at_once_wait_for_one(nothing_kept: list[int]) -> None:
+    with ThreadPoolExecutor(6) as pool:
+        found = list(pool.map(lambda at: share(factor=1.0 + at % 2).realise(0, 120), range(12)))
+    assert len(nothing_kept) == 1
+    for at, motions in enumerate(found):
+        np.testing.assert_array_equal(motions, alone(0, 120) * np.float32(1.0 + at % 2))
+
+
+def test_whoever_waits_can_stop(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, go_on, cancel = threading.Event(), threading.Event(), threading.Event()
+
+    def slow(*given, **named):
+        begun.set()
+        go_on.wait(60)
+        return build_generator(*given, **named)
+
+    monkeypatch.setattr(shared_motions, "build_generator", slow)
+    with ThreadPoolExecutor(1) as pool:
+        first = pool.submit(share)
+        assert begun.wait(60)
+        cancel.set()
+        with pytest.raises(CancelledError):
+            share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", progress=Progress(cancel=cancel))
+        go_on.set()
+        np.testing.assert_array_equal(first.result().realise(0, 3), alone(0, 3))
+
+
+def test_a_failure_is_not_kept(nothing_kept: list[int]) -> None:
+    cancel = threading.Event()
+    cancel.set()
+    with pytest.raises(CancelledError):
+        share_motions(TARGET, GRID, factor=1.0, seed=1, axis="X", progress=Progress(cancel=cancel))
+    np.testing.assert_array_equal(share().realise(0, 3), alone(0, 3))
+
+
+def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch, nothing_kept: list[int]) -> None:
+    size = 2_000_000  # room for the first 100 motions of two targets, not of three
+    monkeypatch.setattr(shared_motions, "KEPT", size)
+    first = share().realise(0, 140)
+    for period in (0.6, 0.7, 0.8):
+        share(generic_target(1.0, GRID, period=period)).realise(0, 140)
+        assert 0 < shared_motions.count_kept() <= size
+    built = len(nothing_kept)
+    np.testing.assert_array_equal(share().realise(0, 140), first)
+    assert len(nothing_kept) == built + 1
+
+
+def test_what_exceeds_the_room_alone_is_made_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shared_motions, "KEPT", 1000)
+    np.testing.assert_array_equal(share().realise(0, 120), alone(0, 120))
+    assert shared_motions.count_kept() == 0
+
+
+def test_only_the_first_motions_of_many_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(shared_motions, "MOST_GROUPS", 6)
+    found = share().realise(0, 180)
+    assert shared_motions.count_kept() < 140 * GRID.count * 4
+    np.testing.assert_array_equal(share().realise(100, 80), found[100:])
