@@ -69,12 +69,12 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
     """
     sheets = read_sheets(source, name, progress)
     unit = find_unit(sheets["Facility"])
-    floors, remarks = read_floors(sheets["Floor"], unit)
+    floors, faults = read_floors(sheets["Floor"], unit)
     found = _Sorted(types=read_types(sheets["Type"], unit), floors=floors, spaces=_read_spaces(sheets["Space"], floors))
     for _, row in sheets["Component"].rows:
         found.take(row)
     used = {piece.floor.name for piece in found.pieces}
-    rows, building, more = list_rows(floors, used)
+    rows, building, doubts = list_rows(floors, used)
     return ImportedBuilding(
         source=name,
         building=_describe_building(sheets["Facility"]) | building,
@@ -82,7 +82,8 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
         items=list(_list_items(found.pieces)),
         types=list(_list_types(found.pieces, name)),
         skipped=tuple(found.list_skipped()),
-        remarks=(*_note_facilities(sheets["Facility"]), *remarks, *more, *_note_pieces(found)),
+        warnings=(*faults, *doubts),
+        remarks=(*_note_facilities(sheets["Facility"]), *_note_pieces(found)),
     )
 
 

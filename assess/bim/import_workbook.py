@@ -23,6 +23,8 @@ LONGEST_NAME = 120
 _LONG = frozenset(
     {"notes", "source", *(column.name for sheet in SHEETS for column in sheet.columns if column.kind == "outline")}
 )
+MOST_NAMED, FEW_NAMED = 500, 5
+"""Types that a text names, of what may be furniture, and of what is none."""
 MOST_LIVE = 5000
 """Rows up to which the results of the live columns are stored; a spreadsheet program works them out in any case."""
 
@@ -63,8 +65,8 @@ class ImportedBuilding:
         Rows of Floors, Items, Places, Routes, and types that join the Catalogue, in place of those of their name there.
     skipped : tuple of Skipped
         What was left out.
-    remarks : tuple of Text
-        What was assumed, or has to be checked.
+    warnings, remarks : tuple of Text
+        What may distort the results until it is corrected, and what else is worth checking.
     files : mapping of str to bytes
         Files beside the workbook that it names, such as plans.
     """
@@ -77,6 +79,7 @@ class ImportedBuilding:
     routes: Rows = ()
     types: Rows = ()
     skipped: tuple[Skipped, ...] = ()
+    warnings: tuple[Text, ...] = ()
     remarks: tuple[Text, ...] = ()
     files: Mapping[str, bytes] = field(default_factory=dict)
 
@@ -149,9 +152,13 @@ def name_apart(names: Iterable[str]) -> list[str]:
 
 def list_remarks(imported: ImportedBuilding) -> tuple[Problem, ...]:
     """Return what was left out and what has to be checked, as problems: for a table of many buildings."""
-    lines = (_say_skipped(reason, group) for reason, group in group_skipped(imported.skipped))
-    worth = [Problem("warning" if is_furniture else "note", "", "", text) for text, is_furniture in lines]
-    return (*worth, *(Problem("note", "", "", one) for one in imported.remarks))
+    groups = [group for _, group in group_skipped(imported.skipped)]
+    return (
+        *(Problem("warning", "", "", say_skipped(one, MOST_NAMED)) for one in groups if one[0].is_furniture),
+        *(Problem("warning", "", "", text) for text in imported.warnings),
+        *(Problem("note", "", "", text) for text in imported.remarks),
+        *(Problem("note", "", "", say_skipped(one, FEW_NAMED)) for one in groups if not one[0].is_furniture),
+    )
 
 
 def group_skipped(skipped: Sequence[Skipped]) -> list[tuple[Text, list[Skipped]]]:
@@ -162,8 +169,11 @@ def group_skipped(skipped: Sequence[Skipped]) -> list[tuple[Text, list[Skipped]]
     return list(groups.items())
 
 
-def _say_skipped(reason: Text, group: Sequence[Skipped]) -> tuple[Text, bool]:
-    types = ", ".join(f"{one.type} ({one.count})" for one in group)
-    pieces = count(sum(one.count for one in group), "piece")
-    text = fill("{pieces} left out: {reason}: {types}", pieces=pieces, reason=reason, types=types)
-    return text, group[0].is_furniture
+def say_skipped(group: Sequence[Skipped], most: int) -> Text:
+    """Return what was left out for one reason: the first types with their numbers, and how many types more."""
+    pieces = count(sum(one.count for one in group), "piece" if group[0].is_furniture else "component")
+    types = ", ".join(f"{one.type} ({one.count:,})" for one in group[:most])
+    values = {"pieces": pieces, "reason": group[0].reason, "types": types}
+    if len(group) <= most:
+        return fill("{pieces} left out ({reason}): {types}.", **values)
+    return fill("{pieces} left out ({reason}): {types} and {n:,} more types.", n=len(group) - most, **values)

@@ -11,7 +11,7 @@ from assess.cli.options import save_file
 from assess.errors import InputError, OutputError
 
 if TYPE_CHECKING:
-    from assess.bim.import_workbook import ImportedBuilding, Skipped
+    from assess.bim.import_workbook import ImportedBuilding
 
 ORDER = 2
 EXAMPLES = (
@@ -19,8 +19,6 @@ EXAMPLES = (
     "assess import handover-cobie.xlsx --out building.xlsx --force",
 )
 COBIE = (".xlsx", ".xlsm")
-MOST_NAMED = 200
-"""Types of one reason that are listed; the rest are counted."""
 
 
 def command(
@@ -77,21 +75,12 @@ def _check_names(source: Path, out: Path, *, replaces: bool) -> None:
 
 def describe_import(found: "ImportedBuilding") -> Iterator[str]:
     """Yield what was taken, what was left out by reason and type, and what has to be checked."""
-    from assess.bim.import_workbook import group_skipped
+    from assess.bim.import_workbook import MOST_NAMED, group_skipped, say_skipped
 
-    kinds = {row["type"] for row in found.types}
+    kinds = {row["type"] for row in found.items}
     taken = f"{count(len(found.items), 'piece')} of {count(len(kinds), 'type')} on {count(len(found.floors), 'floor')}"
     yield f"{found.source}: {taken} taken."
     if not found.items:
         yield "No furniture was found: fill in Items by hand."
-    for reason, group in group_skipped(found.skipped):
-        yield _describe_group(str(reason), group)
-    yield from (f"check: {remark}" for remark in found.remarks)
-
-
-def _describe_group(reason: str, group: "list[Skipped]") -> str:
-    """Return what was left out for one reason: every type with its number of pieces."""
-    noun = "piece" if group[0].is_furniture else "component"
-    listed = ", ".join(f"{one.type} ({one.count:,})" for one in group[:MOST_NAMED])
-    more = f" and {count(len(group) - MOST_NAMED, 'more type')}" if len(group) > MOST_NAMED else ""
-    return f"left out, {reason}: {count(sum(one.count for one in group), noun)}: {listed}{more}"
+    yield from (say_skipped(group, MOST_NAMED) for _, group in group_skipped(found.skipped))
+    yield from (f"Check: {text}" for text in (*found.warnings, *found.remarks))

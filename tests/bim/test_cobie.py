@@ -1,0 +1,215 @@
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from assess.bim.cobie import convert, read_cobie
+from assess.bim.import_workbook import ImportedBuilding
+from assess.workbook.read import read_inventory
+from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, one_type, write_cobie
+
+SHAKEN = {"ground_pga": 0.3}
+
+
+def _read(folder: Path, **rows: Any) -> ImportedBuilding:
+    path = write_cobie(folder / "handover.xlsx", **rows)
+    return read_cobie(path, path.name)
+
+
+def _skipped(found: ImportedBuilding) -> list[tuple[str, int, str, bool]]:
+    return [(one.type, one.count, str(one.reason), one.is_furniture) for one in found.skipped]
+
+
+def test_moveable_components_become_pieces_with_room_floor_and_identifier(tmp_path: Path) -> None:
+    found = _read(tmp_path)
+    assert found.items == [
+        {"item": "Bookcase A:1", "floor": "Ground", "room": "G01", "description": "Bookcase A", "type": "Bookcase A",
+         "breadth": 30.3, "width": 90.0, "height": 200.0, "source_id": "3rGjfVfe$JIh3c7s8Nfdyk"},
+        {"item": "Bookcase A:2", "floor": "Upper", "room": "U01", "description": "Bookcase A", "type": "Bookcase A",
+         "breadth": 30.3, "width": 90.0, "height": 200.0, "source_id": "Bookcase A:2"},
+    ]  # fmt: skip
+    assert found.building == {"building": "East wing", "address": "1 Main Street", "use": "Hospital", "height": 8.0}
+    assert found.floors == [{"floor": "Ground", "elevation": 0.0}, {"floor": "Upper", "elevation": 4.0}]
+
+
+def test_fixed_types_are_listed_with_their_number_and_count_as_no_furniture(tmp_path: Path) -> None:
+    found = _read(tmp_path)
+    assert _skipped(found) == [("Door B", 1, "AssetType is Fixed", False)]
+    assert found.is_complete
+
+
+def test_the_workbook_of_a_conversion_is_an_inventory(tmp_path: Path) -> None:
+    path = write_cobie(tmp_path / "handover.xlsx")
+    (tmp_path / "building.xlsx").write_bytes(convert(path.read_bytes(), path.name))
+    inventory = read_inventory(tmp_path / "building.xlsx", building=SHAKEN)
+    assert [(one.item, one.breadth, one.width, one.height) for one in inventory.items] == [
+        ("Bookcase A:1", pytest.approx(0.303), pytest.approx(0.9), pytest.approx(2.0)),
+        ("Bookcase A:2", pytest.approx(0.303), pytest.approx(0.9), pytest.approx(2.0)),
+    ]
+    assert inventory.items[0].more["source_id"] == "3rGjfVfe$JIh3c7s8Nfdyk"
+    assert inventory.items[0].anchored == "unknown"
+
+
+# ---------------------------------------------------------------- units and sizes
+
+
+@pytest.mark.parametrize(
+    ("unit", "size", "cm"),
+    [
+        ("millimeters", 2000, 200),
+        ("Millimetres", "2000.0", 200),
+        ("mm", 2000, 200),
+        ("centimeters", 200, 200),
+        ("Meters", 2, 200),
+        ("metre", "2.0", 200),
+        ("feet", 6, 182.88),
+        ("Inches", 81, 205.74),
+        ("millimeters", "914.400", 91.44),  # of a program: a point, never thousands
+        ("millimeters", "2e3", 200),
+    ],
+)
+def test_units_and_numbers_stored_as_texts(tmp_path: Path, unit: str, size: Any, cm: float) -> None:
+    sizes = dict.fromkeys(("NominalLength", "NominalWidth", "NominalHeight"), size)
+    found = _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
+    assert found.items[0]["height"] == found.items[0]["breadth"] == cm
+
+
+@pytest.mark.parametrize("blank", ["n/a", None, "", 0, "0.0", "N/A", "-"])
+def test_a_type_without_a_height_is_named_with_its_number(tmp_path: Path, blank: Any) -> None:
+    found = _read(tmp_path, **one_type(NominalHeight=blank))
+    assert _skipped(found) == [("Bookcase A", 1, "no NominalHeight", True)]
+    assert not found.items
+    assert not found.is_complete
+
+
+def test_a_type_without_any_size_says_so_in_one_line(tmp_path: Path) -> None:
+    found = _read(tmp_path, **one_type(NominalLength="n/a", NominalWidth=0, NominalHeight=None))
+    assert _skipped(found) == [("Bookcase A", 1, "no NominalLength, NominalWidth, NominalHeight", True)]
+
+
+@pytest.mark.parametrize(
+    ("size", "reason"),
+    [
+        (-2000, "NominalHeight is -2000 mm, expected 50 to 6000 mm"),
+        ("-2000", "NominalHeight is -2000 mm, expected 50 to 6000 mm"),
+        (20, "NominalHeight is 20 mm, expected 50 to 6000 mm"),
+        (20000000, "NominalHeight is 2e+07 mm, expected 50 to 6000 mm"),
+        ("1e400", "NominalHeight is the text '1e400', expected a number"),
+        ("nan", "NominalHeight is the text 'nan', expected a number"),
+        ("tall", "NominalHeight is the text 'tall', expected a number"),
+        ("#VALUE!", "NominalHeight holds the error #VALUE!"),
+        (True, "NominalHeight is TRUE, expected a number"),
+    ],
+)
+def test_a_size_that_cannot_be_is_the_reason(tmp_path: Path, size: Any, reason: str) -> None:
+    ((kind, number, why, is_furniture),) = _skipped(_read(tmp_path, **one_type(NominalHeight=size)))
+    assert (kind, number, is_furniture) == ("Bookcase A", 1, True)
+    assert why.startswith(reason)
+
+
+@pytest.mark.parametrize("typed", ["Movable", "MOVEABLE", " moveable "])
+def test_spellings_of_moveable(tmp_path: Path, typed: str) -> None:
+    assert len(_read(tmp_path, **one_type(AssetType=typed)).items) == 1
+
+
+@pytest.mark.parametrize(
+    ("typed", "reason"),
+    [
+        ("n/a", "AssetType is blank, so that it is not known whether they are furniture"),
+        ("Loose", "AssetType is 'Loose', expected Fixed or Moveable"),
+    ],
+)
+def test_an_asset_type_that_does_not_tell_is_reported(tmp_path: Path, typed: str, reason: str) -> None:
+    assert _skipped(_read(tmp_path, **one_type(AssetType=typed))) == [("Bookcase A", 1, reason, True)]
+
+
+# ---------------------------------------------------------------- components, spaces and floors
+
+
+@pytest.mark.parametrize(
+    ("change", "kind", "reason"),
+    [
+        ({"TypeName": "Bookcase Z"}, "Bookcase Z", "not in the sheet Type"),
+        ({"TypeName": None}, "-", "TypeName is blank"),
+        ({"Space": "n/a"}, "Bookcase A", "Space is blank, so that the floor is not known"),
+        ({"Space": "X99"}, "Bookcase A", "its Space is not in the sheet Space"),
+    ],
+)
+def test_components_that_lead_nowhere_are_reported(tmp_path: Path, change: Any, kind: str, reason: str) -> None:
+    found = _read(tmp_path, components=({**COMPONENTS[0], **change}, COMPONENTS[1]))
+    ((own, number, why, is_furniture),) = _skipped(found)
+    assert (own, number, is_furniture) == (kind, 1, True)
+    assert why.startswith(reason)
+    assert len(found.items) == 1
+
+
+def test_names_are_compared_without_letter_case(tmp_path: Path) -> None:
+    found = _read(tmp_path, components=({**COMPONENTS[0], "TypeName": "BOOKCASE  a", "Space": "g01"},))
+    assert [(one["type"], one["room"]) for one in found.items] == [("Bookcase A", "G01")]
+
+
+def test_of_several_spaces_the_first_known_is_taken_and_said(tmp_path: Path) -> None:
+    found = _read(tmp_path, components=({**COMPONENTS[0], "Space": "Site, U01, G01"},))
+    assert found.items[0]["floor"] == "Upper"
+    assert "1 piece names several spaces; the first that is known was taken." in found.remarks
+
+
+def test_elevations_from_another_datum_are_kept_and_warned_of(tmp_path: Path) -> None:
+    """Counted from the lowest floor, the pieces of upper floors handed over alone would shake as at the ground."""
+    floors = tuple({**one, "Elevation": 100_000 + one["Elevation"]} for one in FLOORS)
+    found = _read(tmp_path, floors=floors)
+    assert [row["elevation"] for row in found.floors] == [100.0, 104.0]
+    assert found.building["height"] == 108.0
+    (warning,) = found.warnings
+    assert warning.startswith("The lowest floor, Ground, is at 100 m in the file. If it lies at the ground, subtract")
+
+
+def test_basements_are_kept_below_the_ground_and_warned_of(tmp_path: Path) -> None:
+    floors = ({"Name": "Cellar", "Category": "Floor", "Elevation": -3500}, *FLOORS)
+    found = _read(tmp_path, floors=floors)
+    assert [row["elevation"] for row in found.floors] == [-3.5, 0.0, 4.0]
+    assert found.warnings[0].startswith("Below the ground by their elevation, so that they shake as the ground does: Cell")
+
+
+@pytest.mark.parametrize(("elevation", "count"), [("n/a", 1), ("high", 2), (10**9, 2)])
+def test_an_elevation_that_is_missing_or_wrong_stays_blank(tmp_path: Path, elevation: Any, count: int) -> None:
+    found = _read(tmp_path, floors=(FLOORS[0], {**FLOORS[1], "Elevation": elevation}))
+    assert [row.get("elevation") for row in found.floors if row["floor"] == "Upper"] == [None]
+    assert found.warnings[-1] == "No Elevation is given of: Upper."
+    assert len(found.warnings) == count
+
+
+def test_thin_pieces_are_named_as_what_may_hang_on_a_wall(tmp_path: Path) -> None:
+    found = _read(tmp_path, **one_type(NominalWidth=60))
+    assert any("Thinner than 10 cm" in text and "Bookcase A" in text for text in found.remarks)
+
+
+def test_components_of_one_name_are_told_apart(tmp_path: Path) -> None:
+    components = tuple({**COMPONENTS[0], "ExtIdentifier": f"id{at}"} for at in range(3))
+    found = _read(tmp_path, components=components)
+    assert [one["item"] for one in found.items] == ["Bookcase A:1", "Bookcase A:1 (2)", "Bookcase A:1 (3)"]
+    assert [one["source_id"] for one in found.items] == ["id0", "id1", "id2"]
+
+
+def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) -> None:
+    types = ({**TYPES[0], "Name": "Sideboard"},)
+    path = write_cobie(tmp_path / "c.xlsx", types=types, components=({**COMPONENTS[0], "TypeName": "Sideboard"},))
+    inventory = read_inventory(convert(path.read_bytes()), building=SHAKEN)
+    (kind,) = (one for one in inventory.catalogue if one.type == "Sideboard")
+    assert kind.breadth == pytest.approx(0.303)
+    assert kind.source == "COBie file COBie.xlsx, sheet Type: nominal sizes"
+
+
+def test_a_file_without_furniture_gives_its_floors(tmp_path: Path) -> None:
+    found = _read(tmp_path, types=(), components=())
+    assert (len(found.floors), found.items, found.is_complete) == (2, [], False)
+
+
+def test_several_facilities_are_remarked(tmp_path: Path) -> None:
+    from tests.bim.cobie_files import make_sheets
+    from tests.workbook.books import write_book
+
+    sheets = make_sheets()
+    sheets["Facility"].append(sheets["Facility"][1])
+    path = write_book(tmp_path / "c.xlsx", sheets)
+    assert read_cobie(path, path.name).remarks[0] == "The sheet Facility has 2 rows; the first was taken."
