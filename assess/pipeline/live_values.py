@@ -15,7 +15,7 @@ from assess.methods import Cases, adopted_formula
 from assess.methods._method import ALIKE
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.adopt import find_can_rock
-from assess.pipeline.demand import Demand, Demands, build_demands
+from assess.pipeline.demand import Demand, Demands, build_demands, find_site
 from assess.pipeline.verify import find_uncertainty
 from assess.risk import classify
 from assess.settings import SCENARIOS, Settings
@@ -58,6 +58,8 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     outside = formula.flags["extrapolated"].tolist()
     classes = list(map(_say_class, inventory.items, governing, formula.value.tolist(), outside))
     rocks = [gettext(YES if one else NO) for one in find_can_rock(cases, settings)]
+    if find_site(demands):  # the sheet does not know the scatter of a ShakeMap
+        rocks = [gettext(RUN_ASSESS)] * len(rocks)
     rows = zip(cases.breadth_to_height.tolist(), governing, values, classes, rocks, strict=True)
     return [_write_row(*row) for row in rows]
 

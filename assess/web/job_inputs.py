@@ -120,6 +120,7 @@ def list_stale(before: Inventory, now: Inventory) -> list[int]:
     is_other = not (
         _is_alike(before.building, now.building, BUILDING_INPUTS)
         and before.hazard == now.hazard
+        and before.site_ground == now.site_ground
         and len(before.floors) == len(now.floors)
         and all(_is_alike(one, other, FLOOR_INPUTS) for one, other in zip(before.floors, now.floors, strict=True))
     )

@@ -10,11 +10,12 @@ from assess.model import split_names
 from assess.web.columns import PageSheet
 from assess.workbook.habits import CellError
 from assess.workbook.held import HeldSheets
-from assess.workbook.records import find_place
+from assess.workbook.records import find_place, list_beside
 from assess.workbook.values import is_blank, read_text
 
 FILES = {
-    ("Building", "logo"): "logo", ("Building", "hazard"): "hazard", ("Floors", "plan"): "plan",
+    ("Building", "logo"): "logo", ("Building", "hazard"): "hazard",
+    ("Building", "shakemap"): "hazard", ("Floors", "plan"): "plan",
     ("Floors", "record_x"): "record", ("Floors", "record_y"): "record", ("Items", "photo"): "photo",
 }  # fmt: skip
 """What a file is for, by the sheet and the field that name it."""
@@ -36,8 +37,13 @@ def list_missing(held: HeldSheets, sheets: Mapping[str, PageSheet], folder: Path
 
 
 def list_present(held: HeldSheets, sheets: Mapping[str, PageSheet], folder: Path) -> dict[str, Path]:
-    """Return the files that a workbook names and that are in its folder, by their names."""
-    names = dict.fromkeys(name for name, _, _ in _list_named(held, sheets))
+    """Return the files that a workbook names and that are in its folder, by their names.
+
+    With the grid of a ShakeMap the file of its uncertainties is listed, which lies beside it and is named by nobody.
+    """
+    named = [(name, kind) for name, kind, _ in _list_named(held, sheets)]
+    beside = [other for name, kind in named if kind == "hazard" for other in list_beside(name)]
+    names = dict.fromkeys([*(name for name, _ in named), *beside])
     return {name: path for name in names if (path := _find_present(name, folder)) is not None}
 
 

@@ -169,7 +169,7 @@ class ListsWriter:
         factor = f"EXP({CUT!r}*MAX(shaking_scatter,{uncertainty}))"
         given = f'IF(AND(ISNUMBER({uncertainty}),{uncertainty}>=0),{factor},"{gettext(WRONG)}")'
         assumed = f"EXP({CUT!r}*MAX(shaking_scatter,{default.motion!r}))"
-        formula = f'=IF(TRIM({uncertainty})="",{assumed},{given})'
+        formula = f'=IF(shakemap_serves,"{gettext(RUN_ASSESS)}",IF(TRIM({uncertainty})="",{assumed},{given}))'
         self._define("strongest", at, row, gettext("largest factor on the motion"), formula, default.largest)
 
     def _write_largest_estimate(self, row: int, at: int) -> None:
@@ -191,7 +191,7 @@ class ListsWriter:
 
     def _write_shaking(self, row: int, at: int) -> None:
         """Write what follows from an assumed intensity."""
-        fields = ("ground_pga", "ground_pgv", "sds", "shaking", "height", "storeys")
+        fields = ("ground_pga", "ground_pgv", "sds", "shakemap", "shaking", "height", "storeys")
         building = {name: f"{gettext(BUILDING.name)}!$B${_line(name)}" for name in fields}
         letter, last = LETTERS["Floors", "elevation"], self.last["Floors"]
         floors = gettext("Floors")

@@ -76,7 +76,8 @@ class LiveRow:
         """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 beta) >= 0.85 g b/z."""
         units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
         starts = f"{pfa}*strongest>={STILL!r}*{ratio}/(2*{self._centre(units[0], kind)})"
-        fault = f"IF(OR({','.join(f'ISTEXT({unit})' for unit in units)}),{_say(NO_UNIT)},{_say(WRONG)})"
+        unread = f"OR({','.join(f'ISTEXT({unit})' for unit in units)})"
+        fault = f"IF({unread},{_say(NO_UNIT)},IF(ISTEXT(strongest),strongest,{_say(WRONG)}))"
         return f"IFERROR(IF({starts},{_say(YES)},{_say(NO)}),{fault})"
 
     def _centre(self, unit: str, kind: str) -> str:

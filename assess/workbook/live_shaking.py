@@ -1,8 +1,8 @@
 """The live columns of a building of which only an intensity is known: Excel formulas for the sheet Lists.
 
-They serve where Shaking is chosen, Ground PGA and SDS are blank, and no floor has a motion of its own: every floor then
-follows the default profile, ASCE 7-22, from its Elevation. With a floor that has a motion of its own others may be
-interpolated, which is the program's task.
+They serve where Shaking is chosen, Ground PGA, SDS and ShakeMap file are blank, and no floor has a motion of its own:
+every floor then follows the default profile, ASCE 7-22, from its Elevation. With a floor that has a motion of its own
+others may be interpolated, which is the program's task, as is a ShakeMap.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -47,18 +47,22 @@ def list_names(building: Mapping[str, str], elevations: str) -> Iterator[tuple[s
         The column Elevation of Floors.
     """
     blank = f'{building["ground_pga"]}="",{building["sds"]}="",OR(scenario_kind="",scenario_kind="asfilled")'
-    yield "shaking_at", f"IF(AND({blank}),IFERROR(MATCH(TRIM({building['shaking']}),list_shaking,0),0),0)"
+    yield "shakemap_named", f'TRIM({building["shakemap"]})<>""'
+    chosen = f"IFERROR(MATCH(TRIM({building['shaking']}),list_shaking,0),0)"
+    yield "shaking_at", f"IF(AND({blank},NOT(shakemap_named)),{chosen},0)"
     # The helper columns of the floors begin with their headers, which count as neither.
     yield "floors_owning", 'SUMPRODUCT((floor_key<>0)*(1-(floor_own_pfa_x="")*(floor_own_pfa_y="")))'
     yield "floors_lacking", 'SUMPRODUCT((floor_key<>0)*(floor_own_pfa_x="")*(floor_own_pfa_y=""))'
     yield "shaking_scatter", "IF(AND(shaking_at>0,floors_lacking>0),INDEX(shakings_scatter,shaking_at),0)"
+    # The program alone reads the map and its scatter, which counts for every floor of the building.
+    yield "shakemap_serves", f"AND({blank},shakemap_named,floors_lacking>0)"
     yield "shaking_pga", 'IF(AND(shaking_at>0,floors_owning=0),INDEX(shakings_pga,shaking_at),"")'
     highest = f"MAX(0,MAX({elevations})*unit_floors_elevation)"
     height = f"{building['height']}*unit_building_height"
     yield "shaking_roof", f'IFERROR(IF({building["height"]}="",{highest},{height}),"")'
     yield "shaking_has_cap", f"NOT(ISNUMBER({building['ground_pgv']}))"
     yield "shaking_largest", f'IF(shaking_at>0,INDEX(shakings_pgv,shaking_at)*{cap_pfv(1)!r},"")'
-    given = ",".join(f'TRIM({building[name]})<>""' for name in ("ground_pga", "sds", "shaking"))
+    given = ",".join(f'TRIM({building[name]})<>""' for name in ("ground_pga", "sds", "shakemap", "shaking"))
     yield "profile_serves", f'AND(scenario_kind<>"recorded",scenario_kind<>"given",OR({given}))'
     numbered = ",".join(f'TRIM({building[name]})<>""' for name in ("height", "storeys"))
     yield "storeys_serve", f"AND({numbered},COUNT({elevations})=0)"

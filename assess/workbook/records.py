@@ -151,9 +151,7 @@ class FileReader:
 
     def _find_beside(self, file: str) -> tuple[bytes | Path | None, str]:
         """Return the file of uncertainties beside the grid of a ShakeMap, and its name; None where there is none."""
-        folder, _, name = _posix(file).rpartition("/")
-        for one in name_uncertainty(name):
-            path = f"{folder}/{one}" if folder else one
+        for path in list_beside(file):
             try:
                 return self._find(path)[0], path
             except CellError:
@@ -341,6 +339,12 @@ def find_place(text: str, folder: Path) -> Path:
         message = fill("the file {name} is a link that leads outside the workbook's folder.", name=name)
         raise CellError(message, fill("Copy it next to the workbook."))
     return path
+
+
+def list_beside(file: str) -> list[str]:
+    """Return how the file of uncertainties beside the grid of a ShakeMap may be called, as a workbook would name it."""
+    folder, _, name = _posix(file).rpartition("/")
+    return [f"{folder}/{one}" if folder else one for one in name_uncertainty(name)]
 
 
 def _posix(text: str) -> str:
