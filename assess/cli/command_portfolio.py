@@ -1,5 +1,6 @@
 """``assess portfolio``: many buildings under one earthquake."""
 
+import shlex
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -140,7 +141,8 @@ def command(
 
             result = run_portfolio(
                 source, folder, settings, ground=ground, jobs=jobs, scheduler=scheduler, formats=wanted,
-                background=_read_background(background), language=code, progress=progress,
+                background=_read_background(background), language=code,
+                repeat=_say_repeat(settings, shakemap, ground_motions), progress=progress,
             )  # fmt: skip
         except CancelledError:
             kept = f"the buildings that are done are kept in {plain_line(str(folder))}; the same command goes on"
@@ -171,6 +173,19 @@ def _fit_runs(settings: Settings, ground: "GroundField | None") -> Settings:
 
     scenarios = getattr(ground, "event_count", 0)
     return change_settings(settings, {"runs": choose_runs(scenarios)}) if scenarios else settings
+
+
+def _say_repeat(settings: Settings, shakemap: Path | None, ground_motions: Path | None) -> str:
+    """Return the command that assesses one building of the run alone, with {path} in place of its workbook."""
+    default = Settings()
+    named = {
+        "--shakemap": shakemap, "--ground-motions": ground_motions,
+        **{f"--{name.replace('_', '-')}": getattr(settings, name)
+           for name in ("verify", "runs", "seed", "scenario", "scale", "route_risk")
+           if getattr(settings, name) != getattr(default, name)},
+    }  # fmt: skip
+    options = [f"{option} {shlex.quote(str(value))}" for option, value in named.items() if value is not None]
+    return " ".join(["assess run {path} --city", *options, *(["--ideal"] if settings.ideal else [])])
 
 
 def _read_background(file: Path | None) -> "Background | None":

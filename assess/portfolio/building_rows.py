@@ -9,6 +9,7 @@ import numpy as np
 
 from assess.details import DETAILS
 from assess.errors import Problem
+from assess.i18n import fill
 from assess.model import Inventory
 from assess.pipeline.demand import find_ground
 from assess.pipeline.draw_sums import DrawSums, count_people
@@ -324,5 +325,6 @@ def list_problems(path: str, problems: Sequence[Problem]) -> Iterator[Record]:
             "fix": one.fix,
         }
     if len(shown) > MOST_PROBLEMS:
-        more = f"and {len(shown) - MOST_PROBLEMS:,} more problems; assess check lists them all."
+        left = len(shown) - MOST_PROBLEMS
+        more = fill("and {left:,} more problems; `assess check` lists them all.", left=left)
         yield {"path": path, "severity": "note", "message": more}

@@ -147,8 +147,12 @@ def _wait_for_worker(client: "Client", scheduler: str, progress: Progress) -> No
     while not client.nthreads():
         progress.check()
         if time.monotonic() > latest:
-            text = "scheduler {address} has no workers. Start some: dask worker {address} --nthreads 1"
-            raise InputError(fill(text, address=scheduler))
+            raise InputError(
+                fill(
+                    "scheduler {address} has no workers. Start some with one thread each, by the command: dask worker",
+                    address=scheduler,
+                )
+            )
         time.sleep(_ASKED_EVERY)
 
 
@@ -217,11 +221,14 @@ def _judge(answer: Any, site: Site) -> str:
     if others:
         return fill("other versions: {list}. Install the same everywhere.", list=join("; ", others))
     if answer.get("threads", 1) != 1:
-        return fill("it has {n} threads. Start it with: --nthreads 1", n=answer["threads"])
+        return fill("it has {n} threads. Start it with one thread.", n=answer["threads"])
     if not answer["is_seen"] or not (site.probe.parent / answer["name"]).is_file():
         why = answer["fault"] or fill("it sees another folder of this name")
-        text = "it does not share the folder {folder} ({why}). Name a folder that all machines see under one path."
-        return fill(text, folder=site.probe.parent, why=why)
+        return fill(
+            "it does not share the folder {folder} ({why}). Name a folder that all machines see under one path.",
+            folder=site.probe.parent,
+            why=why,
+        )
     if answer["unseen"]:
         return fill("it does not see {file}. Put it in a folder that all machines share.", file=answer["unseen"])
     return ""
@@ -292,8 +299,12 @@ def _wait(client: "Client", running: "dict[Future, Batch]", scheduler: str, prog
 
 
 def _describe_loss(scheduler: str) -> OutputError:
-    text = "the scheduler {address} is gone. What is done is kept: start it and run the same command again."
-    return OutputError(fill(text, address=scheduler))
+    return OutputError(
+        fill(
+            "the scheduler {address} is gone. What is done is kept: start it and run the same command again.",
+            address=scheduler,
+        )
+    )
 
 
 def _take(future: "Future", batch: Batch, batches: "deque[Batch]", scheduler: str) -> Iterator[Summary]:

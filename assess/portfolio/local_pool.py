@@ -16,7 +16,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-import assess
 from assess.errors import OutputError, Problem
 from assess.i18n import fill
 from assess.portfolio.building_task import Summary, Task, skip
@@ -145,19 +144,15 @@ class _Desk:
 
 def start_worker() -> "subprocess.Popen[bytes]":
     """Return a new process; Ctrl-C in the terminal does not reach it, as the process that started it ends it."""
-    package = str(Path(assess.__file__).parents[1])
+    package = str(Path(__file__).parents[2])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
-    apart = (
-        {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-        if sys.platform == "win32"
-        else {"start_new_session": True}
-    )
     return subprocess.Popen(
         [sys.executable, "-m", "assess.portfolio.local_worker"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         env=os.environ | dict.fromkeys(ALONE, "1") | {"PYTHONPATH": path},
-        **apart,  # type: ignore[call-overload]
+        start_new_session=True,
+        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # of Windows alone
     )
 
 
@@ -169,7 +164,7 @@ def ask(worker: "subprocess.Popen[bytes]", task: Task) -> Summary | Exception | 
         data = receive(worker.stdout)
     except OSError:
         return None
-    return None if data is None else pickle.loads(data)  # type: ignore[no-any-return]  # noqa: S301 - of our own process
+    return None if data is None else pickle.loads(data)  # noqa: S301 - of our own process
 
 
 def end_worker(worker: "subprocess.Popen[bytes]") -> None:

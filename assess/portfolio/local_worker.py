@@ -8,7 +8,7 @@ import pickle
 import queue
 import sys
 import threading
-from typing import BinaryIO
+from typing import IO
 
 ALONE = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Variables by which libraries take no more than one thread."""
@@ -36,20 +36,20 @@ def _answer(data: bytes) -> object:
     return run_task(task)
 
 
-def _listen(stream: BinaryIO, waiting: "queue.SimpleQueue[bytes]") -> None:
+def _listen(stream: IO[bytes], waiting: "queue.SimpleQueue[bytes]") -> None:
     """Hand on what comes in; end the process where nothing more can come."""
     while (data := receive(stream)) is not None:
         waiting.put(data)
     os._exit(0)
 
 
-def send(stream: BinaryIO, data: bytes) -> None:
+def send(stream: IO[bytes], data: bytes) -> None:
     """Write a message: its length, then its bytes. OSError if nobody reads any more."""
     stream.write(len(data).to_bytes(8, "big") + data)
     stream.flush()
 
 
-def receive(stream: BinaryIO) -> bytes | None:
+def receive(stream: IO[bytes]) -> bytes | None:
     """Return the next message; None where the stream has ended."""
     head = stream.read(8)
     if len(head) < 8:

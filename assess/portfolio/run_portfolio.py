@@ -3,46 +3,35 @@
 What was done stays in the folder of parts, so that a run that was killed goes on where it was.
 """
 
-import json
 import re
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from threading import Event
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from assess.delivery.deliver import check_moves, deliver, explain_fault, stage_for
-from assess.delivery.disk import find_digest, write_through
+from assess.delivery.deliver import check_moves, explain_fault
 from assess.delivery.folder_lock import FolderLock
-from assess.delivery.stages import NEW
 from assess.errors import InputError, OutputError
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
 from assess.plain_text import plain_line
 from assess.portfolio.building_task import Summary, Task
-from assess.portfolio.part_files import ENDING, FOLDER, Part, read_part, sweep_parts
-from assess.portfolio.sources import Source, find_sources
-from assess.portfolio.table_schemas import TABLES
+from assess.portfolio.part_files import ENDING, FOLDER, sweep_parts
+from assess.portfolio.portfolio_output import DATA, FORMATS, Output, list_names, list_skipped, write_output
+from assess.portfolio.sources import find_sources
 from assess.progress import Listener, Progress, Report
 from assess.report import check_folder
 from assess.report.ownership import find_reports
 from assess.report.report_options import ReportOptions
 from assess.settings import AUTO, Settings, count_processors
-from assess.version import __version__
 
 if TYPE_CHECKING:
     from assess.portfolio.background import Background
-    from assess.portfolio.city_totals import CityView, RunGround
-    from assess.portfolio.tables import TableWriter
+    from assess.portfolio.city_totals import CityView
 
-VERSION = "1"
-"""Of the shape of portfolio.json."""
-DATA = "portfolio.json"
-FILES: Mapping[str, str] = {"xlsx": "ranking.xlsx", "html": "city.html", "pdf": "city.pdf"}
-"""Reports by their format; the format parquet gives files of the names of `TABLES`."""
-FORMATS = ("parquet", *FILES)
 STAGE = "buildings"
 _KEY = re.compile(r"[0-9a-f]{64}")
 
@@ -72,20 +61,6 @@ class PortfolioResult:
     view: "CityView"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Job:
-    """What a run works on."""
-
-    sources: tuple[Source, ...]
-    out: Path
-    settings: Settings
-    ground: GroundField | None
-    formats: tuple[str, ...]
-    background: "Background | None"
-    options: ReportOptions
-    progress: Progress
-
-
 def run_portfolio(
     source: str | Path,
     out: str | Path,
@@ -97,6 +72,7 @@ def run_portfolio(
     formats: Sequence[str] = FORMATS,
     background: "Background | None" = None,
     language: str = "en",
+    repeat: str = "",
     progress: "Progress | Listener | None" = None,
     cancel: Event | None = None,
 ) -> PortfolioResult:
@@ -123,6 +99,8 @@ def run_portfolio(
         Of the map.
     language : str
         Code of the language of the reports.
+    repeat : str
+        Command that assesses one building alone, with ``{path}`` in place of its workbook: the page shows it.
     progress : Progress or callable, optional
         Notified of how far the work is.
     cancel : threading.Event, optional
@@ -141,21 +119,28 @@ def run_portfolio(
     source, out = Path(source), Path(out).absolute()
     check_formats(formats)
     _check_out(source, out, formats)
-    job = _Job(
+    job = Output(
         sources=find_sources(source, out),
         out=out,
         settings=_check_settings(settings or Settings()),
         ground=_locate(ground),
         formats=tuple(name for name in FORMATS if name in formats),
         background=background,
+        repeat=repeat,
         options=ReportOptions(language=language),
         progress=Progress.of(progress, cancel),
     )
     with _reserving(out):
         summaries = _assess_all(job, jobs or count_processors(), scheduler)
-        result = _write(job, summaries)
+        files, view = write_output(job, summaries)
         _remove_unused(out, {one.key for one in summaries.values()})
-    return result
+    return PortfolioResult(
+        folder=out,
+        files=files,
+        kept=sum(one.is_kept for one in summaries.values()),
+        skipped=tuple(list_skipped(view)),
+        view=view,
+    )
 
 
 # ---------------------------------------------------------------- before the work
@@ -168,7 +153,7 @@ def check_formats(formats: Sequence[str]) -> None:
             known = ", ".join(FORMATS)
             raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=name, known=known))
     if "parquet" in formats:
-        from assess.portfolio.tables import check_tables
+        from assess.portfolio.city_tables import check_tables
 
         check_tables()
 
@@ -183,12 +168,7 @@ def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
     check_folder(out)
     if out.is_dir():
         check_moves(out)
-        find_reports(out, _list_names(formats), DATA)
-
-
-def _list_names(formats: Sequence[str]) -> list[str]:
-    tables = [f"{name}.parquet" for name in TABLES] if "parquet" in formats else []
-    return [*tables, *(FILES[name] for name in formats if name in FILES), DATA]
+        find_reports(out, list_names(formats), DATA)
 
 
 def _check_settings(settings: Settings) -> Settings:
@@ -254,7 +234,7 @@ class _Count:
         return Report(STAGE, min(self.done / self.total, 0.9999), detail, left)
 
 
-def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summary]:
+def _assess_all(job: Output, jobs: int, scheduler: str | None) -> dict[str, Summary]:
     """Return the summary of every building by its path."""
     tasks = [Task(source=one, settings=job.settings, ground=job.ground, out=job.out) for one in job.sources]
     found: dict[str, Summary] = {}
@@ -268,7 +248,7 @@ def _assess_all(job: _Job, jobs: int, scheduler: str | None) -> dict[str, Summar
     return found
 
 
-def _run(tasks: Sequence[Task], jobs: int, scheduler: str | None, job: _Job) -> Iterator[Summary]:
+def _run(tasks: Sequence[Task], jobs: int, scheduler: str | None, job: Output) -> Iterator[Summary]:
     if scheduler is None:
         from assess.portfolio.local_pool import run_local
 
@@ -277,135 +257,6 @@ def _run(tasks: Sequence[Task], jobs: int, scheduler: str | None, job: _Job) -> 
 
     is_simulated = job.settings.verify != "none"
     return run_on_cluster(tasks, scheduler, is_simulated=is_simulated, progress=job.progress)
-
-
-# ---------------------------------------------------------------- results
-
-
-def _write(job: _Job, summaries: Mapping[str, Summary]) -> PortfolioResult:
-    """Write tables and reports, all of them or none."""
-    names: list[str] = []
-    try:
-        with stage_for(job.out) as stage, job.options.spoken(), job.progress.stage("rendering", ", ".join(job.formats)):
-            writers = _write_tables(job, summaries, stage / NEW)
-            view = _build_view(job, writers)
-            for name in job.formats:
-                if name in FILES:
-                    job.progress.check()
-                    data = job.progress.wait_for(lambda name=name: _RENDERERS[name](view, job.background))  # type: ignore[misc]
-                    write_through(stage / NEW / FILES[name], data)
-            names = sorted(path.name for path in (stage / NEW).iterdir())
-            write_through(stage / NEW / DATA, _describe_run(job, view, stage / NEW, names))
-            names.append(DATA)
-            deliver(stage, job.out, lambda target: find_reports(target, names, DATA), job.progress)
-    except OSError as error:
-        raise explain_fault(job.out, error, names) from None
-    return PortfolioResult(
-        folder=job.out,
-        files=tuple(job.out / name for name in names),
-        kept=sum(one.is_kept for one in summaries.values()),
-        skipped=tuple(_list_skipped(view)),
-        view=view,
-    )
-
-
-def _write_tables(job: _Job, summaries: Mapping[str, Summary], folder: Path) -> "dict[str, TableWriter]":
-    from assess.portfolio.tables import write_tables
-
-    parts = (_find_part(job.out, summaries[one.path]) for one in job.progress.checked(job.sources))
-    return write_tables(parts, folder if "parquet" in job.formats else None)
-
-
-def _find_part(out: Path, summary: Summary) -> Part:
-    part = summary.part or read_part(out, summary.key)
-    if part is None:
-        text = "{folder}: what was found of {path} is gone, or damaged. Run the same command again."
-        raise OutputError(fill(text, folder=plain_line(str(out / FOLDER)), path=plain_line(summary.path)))
-    return part
-
-
-def _build_view(job: _Job, writers: "Mapping[str, TableWriter]") -> "CityView":
-    from assess.portfolio.city_totals import CityView
-
-    frames = {name: writer.frame for name, writer in writers.items()}
-    return CityView(**frames, settings=job.settings, ground=_describe_ground(job.ground, frames["buildings"]))
-
-
-def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround | None":
-    """Return the ground motion of the run, with the facts that hold for all its buildings."""
-    if ground is None:
-        return None
-    from assess.portfolio.city_totals import RunGround
-
-    placed = buildings[
-        buildings["ground_source"].isin(("shakemap", "scenarios")) & buildings["is_placed"].fillna(False)
-    ]
-    sites = []
-    for latitude, longitude in zip(placed["latitude"], placed["longitude"], strict=True):
-        with suppress(InputError):
-            sites.append(ground.at(float(latitude), float(longitude)))
-    common = [fact for fact in sites[0].facts if all(fact in one.facts for one in sites)] if sites else []
-    kind = sites[0].kind if sites else "scenarios" if hasattr(ground, "scenarios") else "shakemap"
-    return RunGround(kind=kind, file=ground.file, sha256=ground.sha256, facts=tuple(common))
-
-
-def _list_skipped(view: "CityView") -> Iterator[tuple[str, str]]:
-    """Yield the buildings that were skipped, each with its first problem."""
-    skipped = view.buildings[view.buildings["status"] == "skipped"]
-    first = view.problems.drop_duplicates("path").set_index("path")
-    for path in skipped["path"]:
-        row = first.loc[path] if path in first.index else None
-        place = "" if row is None else "!".join(one for one in (row["sheet"], row["cell"]) if one)
-        text = "" if row is None else f"{place}: {row['message']}" if place else str(row["message"])
-        yield path, text
-
-
-# What writes each format is imported only when it is wanted.
-
-
-def _render_ranking(view: "CityView", _background: "Background | None") -> bytes:
-    from assess.portfolio.ranking_workbook import render_ranking
-
-    return render_ranking(view)
-
-
-def _render_page(view: "CityView", background: "Background | None") -> bytes:
-    from assess.portfolio.city_page import render_page
-
-    return render_page(view, background)
-
-
-def _render_summary(view: "CityView", background: "Background | None") -> bytes:
-    from assess.portfolio.city_summary import render_summary
-
-    return render_summary(view, background)
-
-
-_RENDERERS: Mapping[str, "Callable[[CityView, Background | None], bytes]"] = {
-    "xlsx": _render_ranking,
-    "html": _render_page,
-    "pdf": _render_summary,
-}
-
-
-def _describe_run(job: _Job, view: "CityView", folder: Path, names: Sequence[str]) -> bytes:
-    """Return portfolio.json: what the run rests on, and its files with their hashes."""
-    ground = view.ground
-    record = {
-        "schema": VERSION,
-        "assess": {
-            "version": __version__,
-            "settings": job.settings.as_record(),
-            "ground": None if ground is None else {
-                "kind": ground.kind, "file": ground.file, "sha256": ground.sha256,
-                "facts": [[str(label), str(value)] for label, value in ground.facts],
-            },
-            "files": {name: find_digest(folder / name) for name in names},
-        },
-        "buildings": {status: int((view.buildings["status"] == status).sum()) for status in ("assessed", "skipped")},
-        "tables": {name: [[one.name, one.type, str(one.help)] for one in columns] for name, columns in TABLES.items()},
-    }  # fmt: skip
-    return (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode("utf-8", "replace")
 
 
 def _remove_unused(out: Path, keys: set[str]) -> None:

@@ -70,8 +70,12 @@ def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
     if root.is_dir():
         found = _search(root, None if out is None else _resolve(out))
     elif source.suffix.lower() in ENDINGS:
-        text = "{path} is a workbook: name the folder that holds it, or assess it by itself with `assess run`."
-        raise InputError(fill(text, path=plain_line(str(source))))
+        raise InputError(
+            fill(
+                "{path} is a workbook: name the folder that holds it, or assess it by itself with `assess run`.",
+                path=plain_line(str(source)),
+            )
+        )
     elif root.is_file():
         found = (_take_row(row, root.parent) for row in read_index(root))
     else:
