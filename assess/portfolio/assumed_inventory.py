@@ -38,7 +38,7 @@ STOREY_HEIGHT = 4.0
 BOOKCASE_WIDTH = 91.4
 """3 ft [cm], as the component of P-58 is named."""
 USES: Mapping[str, tuple[str, ...]] = {
-    "office": ("office", "offices", "commercial office"),
+    "office": ("office", "offices", "commercial office", "ufficio"),
     "healthcare": ("healthcare", "health care", "hospital", "hospitals", "clinic", "medical"),
     "laboratory": ("laboratory", "laboratories", "research laboratory"),
 }

@@ -168,7 +168,9 @@ def test_basements_are_kept_below_the_ground_and_warned_of(tmp_path: Path) -> No
     floors = ({"Name": "Cellar", "Category": "Floor", "Elevation": -3500}, *FLOORS)
     found = _read(tmp_path, floors=floors)
     assert [row["elevation"] for row in found.floors] == [-3.5, 0.0, 4.0]
-    assert found.warnings[0].startswith("Below the ground by their elevation, so that they shake as the ground does: Cell")
+    assert found.warnings[0].startswith(
+        "Below the ground by their elevation, so that they shake as the ground does: Cell"
+    )
 
 
 @pytest.mark.parametrize(("elevation", "count"), [("n/a", 1), ("high", 2), (10**9, 2)])

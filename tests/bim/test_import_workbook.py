@@ -33,7 +33,7 @@ def test_rows_of_every_sheet_come_back() -> None:
         _building(
             building={"building": "House", "latitude": 45.5, "longitude": 9.2},
             items=[PIECE | {"x": 2.0, "y": 3.0, "angle_deg": 90.0}],
-            places=[{"place": "Hall", "floor": "1", "x": 1.0, "y": 1.0, "kind": "room", "outline": "0 0; 6 0; 6 4; 0 4"},
+            places=[{"place": "Hall", "floor": "1", "x": 1.0, "y": 1.0, "outline": "0 0; 6 0; 6 4; 0 4"},
                     {"place": "Door", "floor": "1", "x": 0.0, "y": 1.0, "kind": "exit"}],
             routes=[{"route": "R", "segment": "a", "floor": "1", "start": "Hall", "end": "Door"}],
         )
