@@ -379,7 +379,7 @@ class _Reading:
 
 def _locate(grid: Grid, latitude: float, longitude: float) -> _Reading:
     """Return the points around a place [deg] with their weights; InputError where it lies outside the grid."""
-    turned = find_turn(longitude, grid)
+    turned = find_turn(longitude, grid) if math.isfinite(longitude) else math.nan
     limits = [float(grid.latitude[0]), float(grid.latitude[-1]), float(grid.longitude[0]), float(grid.longitude[-1])]
     if not (limits[0] <= latitude <= limits[1] and limits[2] <= turned <= limits[3]):
         place = describe_place(latitude, longitude)

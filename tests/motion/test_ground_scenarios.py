@@ -1,0 +1,136 @@
+"""Ground-motion fields of OpenQuake: scenarios at the nearest site, and files that cannot be used.
+
+The files are made here, in the form in which OpenQuake exports them.
+"""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from assess.errors import InputError
+from assess.motion.ground_scenarios import read_scenarios
+from assess.units import GRAVITY
+
+SITES = "site_id,lon,lat\n0,-122.40,37.80\n1,-122.20,37.80\n"
+VALUES = "site_id,event_id,gmv_PGA\n0,0,0.1\n0,1,0.2\n0,2,0.4\n1,0,0.3\n1,1,0.3\n1,2,0.3\n"
+COMMENT = "#,,\"generated_by='OpenQuake engine 3.16.3', start_date='2023-01-01T00:00:00'\"\n"
+
+
+def _write(folder: Path, values: str = VALUES, sites: str = SITES, name: str = "sitemesh.csv") -> Path:
+    (folder / "gmf-data.csv").write_text(COMMENT + values, encoding="utf-8")
+    (folder / name).write_text(COMMENT + sites, encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("name", ["sitemesh.csv", "sites.csv"])
+def test_the_nearest_site_gives_median_dispersion_and_scenarios(tmp_path, name):
+    site = read_scenarios(_write(tmp_path, name=name)).at(37.79, -122.41)
+    assert site.pga == pytest.approx(0.2 * GRAVITY), "exp of the mean of ln PGA"
+    assert site.dispersion == pytest.approx(np.log(2) * np.sqrt(2 / 3)), "of all scenarios: the population's"
+    assert site.scenarios == pytest.approx((-(1.5**0.5), 0, 1.5**0.5)), "in the order of events"
+    assert site.dispersion_source == "standard deviation of 3 scenarios of gmf-data.csv"
+    assert site.shared is None
+    assert site.distance == pytest.approx(1417, abs=5)
+    assert site.cautions == ()
+
+
+def test_the_order_of_rows_and_columns_does_not_matter(tmp_path):
+    values = "gmv_SA(1.0),event_id,gmv_PGA,gmv_PGV,site_id\n.1,2,.4,20,0\n.1,0,.3,20,1\n.1,1,.2,20,0\n.2,1,.3,20,1\n"
+    values += ".4,0,.1,20,0\n.1,2,.3,20,1\n"
+    site = read_scenarios(_write(tmp_path, values)).at(37.8, -122.4)
+    assert site.scenarios == pytest.approx((-(1.5**0.5), 0, 1.5**0.5))
+    assert site.pgv == pytest.approx(0.2)
+    assert site.psa == ((1.0, pytest.approx((0.1 * 0.1 * 0.4) ** (1 / 3) * GRAVITY)),)
+
+
+def test_sites_may_be_named_by_texts(tmp_path):
+    values = VALUES.replace("site_id", "custom_site_id").replace("\n0,", "\n9q8yy,").replace("\n1,", "\n9q9nf,")
+    sites = SITES.replace("site_id", "custom_site_id").replace("\n0,", "\n9q8yy,").replace("\n1,", "\n9q9nf,")
+    assert read_scenarios(_write(tmp_path, values, sites)).at(37.8, -122.4).pga == pytest.approx(0.2 * GRAVITY)
+
+
+@pytest.mark.parametrize("latitude", [37.8, 38.5])
+def test_a_far_site_is_warned_of(tmp_path, latitude):
+    cautions = read_scenarios(_write(tmp_path)).at(latitude, -122.4).cautions
+    far = ("the nearest site of the scenarios is 78 km from the building",)
+    assert cautions == (far if latitude > 38 else ())
+
+
+def test_one_scenario_alone_or_equal_ones_do_not_scatter(tmp_path):
+    site = read_scenarios(_write(tmp_path, "site_id,event_id,gmv_PGA\n0,7,0.25\n1,7,0.3\n")).at(37.8, -122.4)
+    assert (site.pga, site.dispersion, site.scenarios) == (pytest.approx(0.25 * GRAVITY), 0.0, ())
+    assert read_scenarios(_write(tmp_path)).at(37.8, -122.2).dispersion == 0.0
+
+
+def test_a_site_without_some_event_is_refused(tmp_path):
+    found = read_scenarios(_write(tmp_path, VALUES.replace("0,2,0.4\n", "")))
+    assert found.at(37.8, -122.2).pga == pytest.approx(0.3 * GRAVITY)
+    match = r"has 2 of 3 events: the others lie below the engine's minimum.*minimum_intensity 0"
+    with pytest.raises(InputError, match=match):
+        found.at(37.8, -122.4)
+
+
+def test_it_travels_by_its_folder_and_hash(tmp_path):
+    packed = pickle.dumps(read_scenarios(_write(tmp_path)))
+    assert len(packed) < 1000
+    assert pickle.loads(packed).at(37.8, -122.4).pga == pytest.approx(0.2 * GRAVITY)
+    (tmp_path / "two").mkdir()
+    packed = pickle.dumps(read_scenarios(_write(tmp_path / "two")))
+    _write(tmp_path / "two", sites=SITES.replace("37.80", "37.81"))
+    with pytest.raises(InputError, match="two has changed since the run began"):
+        pickle.loads(packed)
+
+
+BAD_VALUES = {
+    "zero": (VALUES.replace("0.4", "0.0"), r"gmf-data\.csv: row 3: gmv_PGA is 0, expected above 0 and at most 10 g"),
+    "negative": (VALUES.replace("0.4", "-0.4"), "row 3: gmv_PGA is -0.4"),
+    "NaN": (VALUES.replace("0.4", "nan"), "row 3: gmv_PGA is nan"),
+    "in cm/s2": (VALUES.replace("0.4", "392"), "row 3: gmv_PGA is 392"),
+    "a text": (VALUES.replace("0.4", "high"), "line 5: 'high' is not a number"),
+    "cut off in a row": (VALUES[:-6], "the last line has no end: the file is cut off"),
+    "cut off before a cell": (VALUES[:-4].rstrip() + "\n", "line 8: '' is not a number"),
+    "a cell too many": (VALUES.replace("0.4", "0.4,1"), "line 5: the number of cells is 4, but there are 3 headings"),
+    "no PGA": (VALUES.replace("gmv_PGA", "gmv_PGV"), "the column gmv_PGA is missing"),
+    "no events": (VALUES.replace("event_id", "rupture"), "the column event_id is missing"),
+    "no sites": (VALUES.replace("site_id", "place"), r"no column site_id that sitemesh\.csv has, too"),
+    "an unknown site": (VALUES.replace("\n1,2,", "\n5,2,"), r"row 6: its site_id is not in sitemesh\.csv"),
+    "an event twice": (VALUES.replace("0,2,", "0,1,"), "event 1 is there twice at a site"),
+    "half an event": (VALUES.replace("0,2,", "0,1.5,"), "event_id has to be a whole number"),
+    "a heading twice": (VALUES.replace("event_id", "site_id"), "has a heading twice"),
+    "no rows": ("site_id,event_id,gmv_PGA\n", "there are no rows below the headings"),
+    "nothing": ("", "there is no table"),
+}
+
+
+@pytest.mark.parametrize(("values", "match"), BAD_VALUES.values(), ids=BAD_VALUES)
+def test_values_that_cannot_be_used(tmp_path, values, match):
+    with pytest.raises(InputError, match=match):
+        read_scenarios(_write(tmp_path, values))
+
+
+@pytest.mark.parametrize(
+    ("sites", "match"),
+    [
+        (SITES.replace("lon", "x"), r"sitemesh\.csv: the column lon is missing"),
+        (SITES.replace("\n1,", "\n0,"), r"sitemesh\.csv: a site_id is there twice"),
+        (SITES.replace("37.80", "97.80"), r"sitemesh\.csv: line 3: lon and lat are no place on earth"),
+        (SITES.replace("37.80", "nan"), r"sitemesh\.csv: line 3: lon and lat are no place on earth"),
+    ],
+)
+def test_sites_that_cannot_be_used(tmp_path, sites, match):
+    with pytest.raises(InputError, match=match):
+        read_scenarios(_write(tmp_path, sites=sites))
+
+
+def test_files_of_another_kind_or_missing(tmp_path):
+    with pytest.raises(InputError, match=r"the folder has no gmf-data\.csv"):
+        read_scenarios(tmp_path)
+    _write(tmp_path)
+    (tmp_path / "gmf-data.csv").write_bytes(b"PK\x03\x04")
+    with pytest.raises(InputError, match=r"gmf-data\.csv: the file is not plain text"):
+        read_scenarios(tmp_path)
+    (tmp_path / "sitemesh.csv").unlink()
+    with pytest.raises(InputError, match=r"the folder has no sitemesh\.csv or sites\.csv"):
+        read_scenarios(tmp_path)

@@ -1,0 +1,226 @@
+"""ShakeMaps: values at a place, their scatter, what is told of the map, and files that cannot be used."""
+
+import pickle
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from assess.errors import InputError
+from assess.motion.shakemap import TOTAL, name_uncertainty, parse_shakemap, read_shakemap
+from assess.units import GRAVITY
+from tests.motion.grids import BAY, EPICENTRE, LATITUDES, MARKET_STREET, build_grid
+
+PGA = (10.0, 20.0, 10.0, 20.0, 40.0, 80.0)
+PLAIN = {"PGA": ("pctg", PGA)}
+
+
+def _at(data: bytes, latitude: float = 37.5, longitude: float = -122.0, **more):
+    return parse_shakemap(data, "grid.xml", **more).at(latitude, longitude)
+
+
+# ---------------------------------------------------------------- the published grid
+
+
+def test_loma_prieta_at_575_market_street():
+    """The map has 0.1525 g where 0.139 g was recorded on the ground; sigma, PGV and Vs30 as published."""
+    site = read_shakemap(BAY).at(*MARKET_STREET)
+    assert site.pga / GRAVITY == pytest.approx(0.1525, abs=5e-5)
+    assert site.dispersion == pytest.approx(0.09, abs=5e-4)
+    assert site.pgv == pytest.approx(0.196, abs=5e-4)
+    assert abs(np.log(site.pga / GRAVITY / 0.139)) < 1.1 * site.dispersion
+    facts = dict(site.facts)
+    assert facts["Earthquake"] == "Loma Prieta, California, magnitude 6.9"
+    assert facts["Status of the map"] == "RELEASED"
+    assert facts["Kind of event"] == "ACTUAL"
+    assert facts["Vs30 of the map at the building"].startswith("363 m/s; its effect is in the map")
+    assert site.cautions == ()
+
+
+def test_uncertainty_beside_gives_the_share_of_all_places():
+    """At a point of the grid: inter 0.26, intra 0.48; sigma is that of the grid, which has its own."""
+    site = read_shakemap(EPICENTRE).at(37.2, -122.25)
+    assert site.shared == pytest.approx(0.26**2 / (0.26**2 + 0.48**2))
+    assert site.dispersion == pytest.approx(0.3245)
+    assert site.dispersion_source == "STDPGA of grid.xml"
+    assert "File of uncertainties" in dict(site.facts)
+
+
+def test_outside_the_map_nothing_is_taken():
+    place = r"latitude 37\.7893, longitude -122\.4008"
+    limits = r"latitude 36\.5000 to 37\.2000 and longitude -122\.5000 to -121\.3000"
+    with pytest.raises(InputError, match=rf"^grid\.xml: {place} is outside the map, which covers {limits}$"):
+        read_shakemap(EPICENTRE).at(*MARKET_STREET)
+
+
+def test_it_travels_by_its_path_and_hash_and_notices_a_change(tmp_path):
+    path = Path(shutil.copy(BAY, tmp_path / "grid.xml"))
+    packed = pickle.dumps(read_shakemap(path))
+    assert len(packed) < 1000
+    assert pickle.loads(packed).at(*MARKET_STREET) == read_shakemap(path).at(*MARKET_STREET)
+    other = pickle.dumps(read_shakemap(Path(shutil.copy(BAY, tmp_path / "grid2.xml"))))
+    (tmp_path / "grid2.xml").write_bytes(build_grid(PLAIN))
+    with pytest.raises(InputError, match=r"grid2\.xml has changed since the run began"):
+        pickle.loads(other)
+
+
+# ---------------------------------------------------------------- interpolation
+
+
+def test_between_points_the_logarithm_is_interpolated():
+    assert _at(build_grid(PLAIN), 38.0, -121.75).pga == pytest.approx(0.1 * 2**0.5 * GRAVITY)
+    assert _at(build_grid(PLAIN), 37.25, -121.75).pga == pytest.approx((0.1 * 0.2 * 0.4 * 0.8) ** 0.25 * GRAVITY)
+    assert _at(build_grid(PLAIN), 37.0, -121.5).pga == pytest.approx(0.8 * GRAVITY), "a corner of the map"
+
+
+def test_rows_may_run_south_to_north_and_east_to_west():
+    turned = build_grid({"PGA": ("pctg", PGA[::-1])}, LATITUDES[::-1], (-121.5, -122.0))
+    assert _at(turned, 37.3, -121.9).pga == pytest.approx(_at(build_grid(PLAIN), 37.3, -121.9).pga, rel=1e-12)
+
+
+@pytest.mark.parametrize("longitudes", [(179.5, -180.0, -179.5), (179.5, 180.0, 180.5), (-180.5, -180.0, -179.5)])
+def test_a_map_across_the_date_line(longitudes):
+    data = build_grid({"PGA": ("%g", (10, 20, 40, 10, 20, 40))}, (1.0, 0.0), longitudes)
+    for east in (179.75, -180.25):
+        assert _at(data, 0.5, east).pga == pytest.approx(0.1 * 2**0.5 * GRAVITY)
+    for west in (-179.75, 180.25):
+        assert _at(data, 0.5, west).pga == pytest.approx(0.2 * 2**0.5 * GRAVITY)
+    with pytest.raises(InputError, match="outside the map"):
+        _at(data, 0.5, 0.0)
+
+
+@pytest.mark.parametrize("unit", ["pctg", "%g", ""])
+@pytest.mark.parametrize("speed", ["cms", "cm/s", ""])
+def test_both_spellings_of_units_and_none(unit, speed):
+    fields = {"PGA": (unit, PGA), "PGV": (speed, PGA), "PSA03": (unit, PGA), "PSA10": (unit, PGA)}
+    site = _at(build_grid(fields))
+    assert (site.pga, site.pgv) == pytest.approx((0.1 * GRAVITY, 0.1))
+    assert site.psa == ((0.3, pytest.approx(0.1 * GRAVITY)), (1.0, pytest.approx(0.1 * GRAVITY)))
+
+
+def test_a_pgv_that_is_rounded_to_0_is_not_known_and_a_pga_is_refused():
+    site = _at(build_grid(PLAIN | {"PGV": ("cms", (0.0,) * 6)}))
+    assert site.pgv is None
+    with pytest.raises(InputError, match=r"the PGA of the map is 0 at latitude 37\.5000"):
+        _at(build_grid({"PGA": ("pctg", (1, 1, 0.0, 1, 1, 1))}))
+
+
+# ---------------------------------------------------------------- scatter
+
+
+def test_without_any_uncertainty_one_is_assumed_and_said_to_be():
+    site = _at(build_grid(PLAIN))
+    assert site.dispersion == TOTAL
+    assert site.dispersion_source.startswith(
+        "assumed, as the map has none at this place: the total of Boore et al. 2014"
+    )
+
+
+def test_sigma_is_interpolated_linearly():
+    assert _at(build_grid(PLAIN | {"STDPGA": ("ln(pctg)", (0.1, 0.3) * 3)}), 37.5, -121.75).dispersion == pytest.approx(
+        0.2
+    )
+
+
+@pytest.mark.parametrize("name", ["uncertainty.xml", "my-uncertainty.xml"])
+def test_sigma_of_the_file_beside(tmp_path, name):
+    (tmp_path / "my-grid.xml").write_bytes(build_grid(PLAIN))
+    (tmp_path / name).write_bytes(build_grid({"STDPGA": ("", (0.25,) * 6)}))
+    found = read_shakemap(tmp_path / "my-grid.xml")
+    alone = parse_shakemap((tmp_path / "my-grid.xml").read_bytes(), "my-grid.xml")
+    assert found.at(37.5, -122.0).dispersion == 0.25
+    assert found.at(37.5, -122.0).dispersion_source == f"STDPGA of {name}"
+    assert found.sha256 != alone.sha256, "a part of a portfolio is computed again where the file beside is another one"
+    assert found.at(37.5, -122.0).sha256 == alone.sha256
+
+
+def test_the_file_beside_may_not_be_of_another_earthquake():
+    with pytest.raises(InputError, match=r"uncertainty\.xml: it is of the event 'ev2', but the grid of 'ev1'"):
+        parse_shakemap(
+            build_grid(PLAIN),
+            "grid.xml",
+            uncertainty=build_grid({"STDPGA": ("", (0.2,) * 6)}, event="ev2"),
+            uncertainty_name="uncertainty.xml",
+        )
+
+
+def test_names_of_the_file_beside():
+    assert name_uncertainty("grid.xml") == ("uncertainty.xml",)
+    assert name_uncertainty("ev1_grid.xml") == ("ev1_uncertainty.xml", "uncertainty.xml")
+
+
+@pytest.mark.parametrize(
+    ("status", "text"), [("AUTOMATIC", "nobody had reviewed it"), ("CANCELLED", "has withdrawn it")]
+)
+def test_a_map_that_is_not_reviewed_is_warned_of(status, text):
+    (caution,) = _at(build_grid(PLAIN, status=status)).cautions
+    assert text in caution
+
+
+# ---------------------------------------------------------------- files that cannot be used
+
+GOOD = build_grid(PLAIN)
+BAD = {
+    "empty": (b"", "the file is empty"),
+    "zip": (b"PK\x03\x04" + bytes(50), r"no XML.*Download grid\.xml"),
+    "HDF": (b"\x89HDF\r\n\x1a\n" + bytes(50), "no XML"),
+    "JSON": (b'{"input": {}}', "no XML"),
+    "text": (b"lon,lat,pga\n1,2,3\n", "no XML of a ShakeMap"),
+    "another XML": (b"<?xml version='1.0'?><svg/>", "its first element is svg, expected shakemap_grid"),
+    "cut off in a row": (GOOD[:-60], "line 6: the XML is damaged or cut off"),
+    "cut off in the head": (GOOD[:200], "damaged or cut off|no XML of a ShakeMap"),
+    "entities": (GOOD.replace(b"<shakemap", b'<!DOCTYPE a [<!ENTITY b "c">]><shakemap', 1), "declares XML entities"),
+    "a huge claim": (build_grid(PLAIN, size=(10**9, 3)), "1,000,000,000 x 3 points are more than"),
+    "no count": (GOOD.replace(b'nlon="2"', b'nlon="two"'), "nlon is 'two', expected 2 or more"),
+    "rows are missing": (build_grid(PLAIN, size=(2, 4)), "6 whole rows of 3 numbers, expected 8"),
+    "too many rows": (build_grid(PLAIN, size=(2, 2)), "more than 4 rows"),
+    "no number": (build_grid({"PGA": ("pctg", (1, 2, "high", 4, 5, 6))}), "row 3: number 3 is 'high'"),
+    "underscores": (build_grid({"PGA": ("pctg", (1, 2, "1_0", 4, 5, 6))}), "holds what is no number"),
+    "NaN": (build_grid({"PGA": ("pctg", (1, 2, "NaN", 4, 5, 6))}), "PGA is nan at latitude 37.5000, longitude -122"),
+    "infinite": (build_grid({"PGA": ("pctg", (1, 2, "inf", 4, 5, 6))}), "PGA is inf at"),
+    "negative": (build_grid({"PGA": ("pctg", (1, 2, -3, 4, 5, 6))}), "PGA is -3 at .* expected 0 to 1000 %g"),
+    "cm/s2": (build_grid({"PGA": ("cm/s2", PGA)}), "the field PGA has the unit 'cm/s2', expected %g"),
+    "log10": (build_grid(PLAIN | {"STDPGA": ("log10(%g)", (0.1,) * 6)}), "STDPGA has the unit 'log10"),
+    "sigma NaN": (build_grid(PLAIN | {"STDPGA": ("", ("nan",) * 6)}), "STDPGA is nan at"),
+    "no PGA": (build_grid({"MMI": ("intensity", PGA)}), "the field PGA is missing"),
+    "a field twice": (GOOD.replace(b'name="LAT"', b'name="PGA"'), "the field PGA is there twice"),
+    "no latitude": (GOOD.replace(b'name="LAT"', b'name="UP"'), "the field LAT is missing"),
+    "fields not numbered": (GOOD.replace(b'index="3"', b'index="7"'), "not numbered from 1 on"),
+    "no event": (GOOD.replace(b"<event ", b"<happening "), "the element event is missing"),
+    "data twice": (GOOD.replace(b"<grid_data>", b"<grid_data></grid_data><grid_data>"), "grid_data is there twice"),
+    "uneven": (build_grid(PLAIN, (38.0, 37.6, 37.0)), "not those of a regular grid"),
+    "one place twice": (build_grid(PLAIN, longitudes=(-122.0, -122.0)), "not those of a regular grid"),
+    "off the earth": (build_grid(PLAIN, (98.0, 97.5, 97.0)), "row 1: LON -122 and LAT 98 are no place on earth"),
+}
+
+
+@pytest.mark.parametrize(("data", "match"), BAD.values(), ids=BAD)
+def test_a_file_that_cannot_be_used_is_named_with_the_reason(data, match):
+    with pytest.raises(InputError, match=rf"(?s)^grid\.xml: .*(?:{match})"):
+        parse_shakemap(data, "grid.xml")
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(InputError, match=r"grid\.xml: the file cannot be read \(No such file"):
+        read_shakemap(tmp_path / "grid.xml")
+
+
+def test_whatever_is_done_to_the_bytes_it_is_read_or_refused():
+    """Bytes lost, doubled and changed anywhere: a value that could be, or a message that names the file."""
+    whole, random = build_grid(PLAIN | {"PGV": ("cms", PGA), "STDPGA": ("", (0.3,) * 6)}), np.random.default_rng(4)
+    refused = read = 0
+    for _ in range(400):
+        at, length = random.integers(len(whole), size=2) // (1, 20)
+        piece = random.choice([b"", whole[at : at + length] * 2, random.bytes(int(length) % 9), b"<!--", b"nan "])
+        data = whole[:at] + bytes(piece) + whole[at + length :]
+        try:
+            site = _at(data, 37.6, -121.7)
+        except InputError as error:
+            refused += error.message.startswith("grid.xml: ")
+        else:
+            assert 0 < site.pga <= 10 * GRAVITY
+            assert 0 <= site.dispersion <= 3
+            read += 1
+    assert refused + read == 400, "what is wrong is told of the file"
+    assert min(refused, read) > 20
