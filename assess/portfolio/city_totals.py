@@ -195,9 +195,7 @@ def build_totals(view: CityView) -> CityTotals:
 def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str) -> Group:
     draws, routes = (_rows_of(table, rows) for table in (view.draws, view.routes))
     by_class = {risk: _count(rows, column) for risk, column in CLASS_COLUMNS.items()}
-    unknown = routes[(routes["state"] == RouteState.NOT_KNOWN.value) | routes["probability"].isna()]
     own, occupants = rows[_numbers(rows, "own_motions") > 0], _count(rows, "occupants")
-    is_assumed = inventory == "assumed"
     return Group(
         inventory=inventory,
         basis=basis,
@@ -208,12 +206,12 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
         by_formula=_count(rows, "by_formula"),
         anchored=_count(rows, "anchored"),
         falls=build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values())),
-        falls_low_inventory=_sum(rows, "falls_low_inventory") if is_assumed else None,
-        falls_high_inventory=_sum(rows, "falls_high_inventory") if is_assumed else None,
+        falls_low_inventory=_sum(rows, "falls_low_inventory") if inventory == "assumed" else None,
+        falls_high_inventory=_sum(rows, "falls_high_inventory") if inventory == "assumed" else None,
         falls_avoided=_sum(rows, "falls_avoided"),
         people=build_spread(draws, "people_blocked", _sum(rows, "people_blocked"), occupants),
         occupants=occupants,
-        people_not_known=_count(unknown, "occupants"),
+        people_not_known=_count_not_known(routes),
         routes={state: _count(rows, column) for state, column in STATE_COLUMNS.items()},
         works=_count(rows, "works"),
         works_without_cost=_count(rows, "works_without_cost"),
@@ -225,6 +223,12 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
         first_buildings=tuple(_list_buildings(rows)),
         first_types=tuple(_list_types(_rows_of(view.pieces, rows), basis)),
     )
+
+
+def _count_not_known(routes: pd.DataFrame) -> int:
+    """Return how many people use routes whose state is not known, or that have no chance."""
+    unknown = (routes["state"] == RouteState.NOT_KNOWN.value) | routes["probability"].isna()
+    return _count(routes[unknown], "occupants")
 
 
 def _rows_of(table: pd.DataFrame, buildings: pd.DataFrame) -> pd.DataFrame:
