@@ -2,7 +2,7 @@
 
 Counted are the pieces that the classes count: free-standing ones whose simulated chance is adopted. All pieces of a row
 fall together in a draw. Of routes those are counted draw by draw that have joint outcomes; of others only the expected
-number is known, which is kept apart.
+number is known, which is kept apart. People are counted once for each route that they leave by.
 """
 
 from collections.abc import Iterable, Mapping

@@ -26,6 +26,10 @@ BUILDING_RULE = fill(
     "Buildings come first whose routes are expected to be blocked for most people, in whole people; then those with "
     "most expected falls."
 )
+PEOPLE_RULE = fill(
+    "People are counted once for each route that they leave by, as the sheet Routes has them: who takes the route of a "
+    "floor and then that of a stair is counted twice."
+)
 TYPE_RULE = fill(
     "Types come first of which most pieces are expected to fall; pieces without a Type are grouped by their size."
 )
@@ -108,7 +112,7 @@ class Group:
     falls_avoided : float
         Expected falls that the work lists avoid.
     people : Spread
-        Number of people whose route is blocked.
+        Number of people whose route is blocked, by `PEOPLE_RULE`.
     occupants, people_not_known : int
         People on all routes, and those on routes whose state is not known, who are in no other number.
     routes : mapping of RouteState to int

@@ -74,8 +74,8 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("routes_doubtful", "count", fill("likewise")),
         ("routes_blocked", "count", fill("likewise")),
         ("routes_not_known", "count", fill("likewise")),
-        ("occupants", "count", fill("people on its routes, as filled in")),
-        ("people_blocked", "number", fill("expected number of people whose route is blocked")),
+        ("occupants", "count", fill("people on its routes, as filled in: counted once for each route")),
+        ("people_blocked", "number", fill("expected number of people whose route is blocked: counted once for each route")),
         ("warnings", "count", fill("warnings in the table problems")),
     ),
     "pieces": _columns(
