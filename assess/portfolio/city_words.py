@@ -7,7 +7,7 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.motion.spatial_field import RANGE
 from assess.portfolio.city_spread import Spread
-from assess.portfolio.city_totals import CityTotals, CityView, Group
+from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group
 from assess.report import words
 from assess.risk import LIMITS, RiskClass
 from assess.rocking.draws import SHARED
@@ -226,6 +226,8 @@ def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
                 together=say_range(drawn.low, drawn.high))  # fmt: skip
         yield _("The expected number itself is known within the sampling interval, by the number of draws alone "
                 "(95 %): {interval}.", interval=say_interval(drawn))  # fmt: skip
+    if any(group.occupants for group in totals.groups):
+        yield _(PEOPLE_RULE)
     if any(group.basis == "formula" for group in totals.groups):
         yield _("Results by formula only are chances from a published formula; nothing was simulated, so that no range "
                 "is given.")  # fmt: skip
@@ -241,8 +243,10 @@ def _say_draws(view: CityView, drawn: Spread) -> str:
         start = _("Each of the {draws:,} draws is one motion of each floor, without the uncertainty of the earthquake.",
                   draws=drawn.draws)  # fmt: skip
     elif view.ground is not None and view.ground.kind == "scenarios":
-        start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings.",
-                  draws=drawn.draws)  # fmt: skip
+        start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings. The "
+                  "uncertainty of the buildings' own motions is drawn besides: {shared} of its variance is common to "
+                  "all of them (Boore et al. 2014), the rest is correlated by exp(-3 h / {range:g} km) at the distance "
+                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
     else:
         start = _("Each of the {draws:,} draws is one earthquake for all buildings. Of the variance of ln PGA, "
                   "{shared} is common to all of them (Boore et al. 2014) unless the ShakeMap gives that share itself; "
