@@ -67,7 +67,7 @@ def _name(site: SiteGround) -> Text:
 def _say_used(building: Building, site: SiteGround, demands: Demands) -> Text:
     return fill(
         "{what} gives the ground a PGA of {pga:.3f} g at the building. The standard deviation of ln PGA there is "
-        "{sigma:.2f} ({source}); with {own:.2f} of the building's own motion the dispersion is {motion:.2f}, the root "
+        "{sigma:.3g} ({source}); with {own:.3g} of the building's own motion the dispersion is {motion:.3g}, the root "
         "of the sum of their squares.",
         what=_name(site),
         pga=site.pga / GRAVITY,

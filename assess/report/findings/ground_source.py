@@ -33,7 +33,7 @@ def say_dispersion(found: SiteGroundInfo) -> str:
     """Return what the dispersion of the motions is made of."""
     return _(
         "root of the sum of squares of {own} of the building's motion and {sigma} of ln PGA at the building",
-        own=words.fixed(found.own_dispersion, 2), sigma=words.fixed(found.dispersion, 2),
+        own=number(found.own_dispersion, ".3g"), sigma=number(found.dispersion, ".3g"),
     )  # fmt: skip
 
 
@@ -60,13 +60,13 @@ def _say_median(found: SiteGroundInfo) -> str:
 
 
 def _say_scatter(found: SiteGroundInfo, results: Results) -> str:
-    values = {"sigma": words.fixed(found.dispersion, 2), "source": _(found.dispersion_source)}
+    values = {"sigma": number(found.dispersion, ".3g"), "source": _(found.dispersion_source)}
     if uses_scatter(results):
         return _(
             "The standard deviation of ln PGA there is {sigma} ({source}); with {own} of the building's own motion the "
             "dispersion of the motions is {motion}, the root of the sum of their squares.",
-            own=words.fixed(found.own_dispersion, 2),
-            motion=words.fixed(results.provenance.uncertainty.motion, 2), **values,
+            own=number(found.own_dispersion, ".3g"),
+            motion=number(results.provenance.uncertainty.motion, ".3g"), **values,
         )  # fmt: skip
     return _(
         "The standard deviation of ln PGA there is {sigma} ({source}); the chances hold for the median alone and leave "

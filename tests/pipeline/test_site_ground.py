@@ -1,0 +1,160 @@
+"""A ShakeMap or scenarios: which floors follow them, how uncertain the motion is, and what is said of it."""
+
+import math
+import shutil
+
+import pytest
+
+import assess
+from assess.motion.ground_scenarios import read_scenarios
+from assess.motion.scenario import cap_pfv, estimate_pfv
+from assess.motion.shakemap import parse_shakemap, read_shakemap
+from assess.pipeline.annual import evaluate_annual
+from assess.pipeline.demand import build_demands, find_ground, find_site
+from assess.pipeline.live_values import live_values
+from assess.pipeline.run import compute
+from assess.pipeline.verify import find_uncertainty
+from assess.settings import Settings
+from assess.units import GRAVITY
+from tests.hazards import write_hazard
+from tests.motion.grids import BAY, build_grid
+from tests.workbooks import UNVERIFIED, write
+
+FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 12}]
+PLACE = {"latitude": 37.7893, "longitude": -122.4008}
+PGA = 0.1525 * GRAVITY
+
+
+def _read(folder, floors=FLOORS, ground=None, **building):
+    items = [{"item": floor["floor"], "floor": floor["floor"], "breadth": 40, "height": 180} for floor in floors]
+    named = {} if ground else {"shakemap": "grid.xml"}
+    shutil.copy(BAY, folder / "grid.xml")
+    path = write(folder / "w.xlsx", items, floors, **PLACE | named | building)
+    return assess.read_inventory(path, ground=ground)
+
+
+def _messages(inventory, severity="note"):
+    return [one.message for one in compute(inventory, UNVERIFIED).problems if one.severity == severity]
+
+
+def test_floors_follow_the_profile_from_the_median_of_the_map(tmp_path):
+    demands = build_demands(_read(tmp_path), "as filled")
+    ground, roof = demands["1", "X"][0], demands["2", "Y"][0]
+    assert ground.pfa == pytest.approx(PGA, rel=1e-3)
+    assert roof.pfa == pytest.approx(3.5 * ground.pfa)
+    assert {one.label for parallel in demands.values() for one in parallel} == {"ShakeMap, ASCE 7-22"}
+    assert roof.flags == ("code_profile", "shakemap")
+
+
+def test_it_comes_after_sds_and_before_shaking(tmp_path):
+    assert find_ground(_read(tmp_path, sds=1.0)).site is None
+    with_both = _read(tmp_path, shaking="MMI X, extreme")
+    assert find_ground(with_both).shaking is None
+    assert find_ground(with_both).pga == pytest.approx(PGA, rel=1e-3)
+    assert "Shaking is not used: a ShakeMap gives the ground motion." in _messages(with_both)
+
+
+def test_its_pgv_caps_an_estimated_pfv_unless_a_ground_pgv_is_given(tmp_path):
+    own = build_demands(_read(tmp_path, period=4.0), "as filled")["2", "X"][0]
+    assert own.pfv == pytest.approx(cap_pfv(0.1964), rel=1e-3)
+    assert own.pfv < estimate_pfv(own.pfa, 4.0)
+    given = build_demands(_read(tmp_path, period=4.0, ground_pgv=10), "as filled")["2", "X"][0]
+    assert given.pfv == pytest.approx(cap_pfv(0.1))
+
+
+@pytest.mark.parametrize(("own", "expected"), [(None, 0.4), (0.0, 0.0), (0.3, 0.3)])
+def test_its_scatter_adds_to_the_buildings_own(tmp_path, own, expected):
+    inventory = _read(tmp_path, motion_uncertainty=own)
+    demands = build_demands(inventory, "as filled")
+    found = find_uncertainty(inventory.building, demands).motion
+    assert found == pytest.approx(math.sqrt(expected**2 + 0.0904**2), abs=1e-4)
+    assert compute(inventory, UNVERIFIED).cases.uncertainty.motion == found
+
+
+def test_where_no_floor_follows_it_nothing_is_added_and_a_note_says_so(tmp_path):
+    floors = [one | {"pfa_x": 0.4} for one in FLOORS]
+    inventory = _read(tmp_path, floors)
+    assert compute(inventory, UNVERIFIED).cases.uncertainty.motion == 0.4
+    assert "The ShakeMap grid.xml is not used: no floor follows a profile." in _messages(inventory)
+
+
+def test_floors_with_a_motion_of_their_own_keep_it(tmp_path):
+    inventory = _read(tmp_path, [FLOORS[0] | {"pfa_x": 0.4}, FLOORS[1]])
+    demands = build_demands(inventory, "as filled")
+    assert demands["1", "X"][0].source == "given"
+    assert demands["2", "X"][0].flags == ("code_profile", "shakemap")
+    assert "floor 1 keeps its own motion, which could be that of another earthquake." in _messages(inventory)
+
+
+def test_what_is_used_is_told_with_its_scatter_and_where_it_comes_from(tmp_path):
+    text = next(one for one in _messages(_read(tmp_path)) if one.startswith("The ShakeMap grid.xml gives"))
+    assert (
+        "a PGA of 0.153 g at the building. The standard deviation of ln PGA there is 0.0904 (STDPGA of grid.xml)"
+        in text
+    )
+    assert "with 0.4 of the building's own motion the dispersion is 0.41, the root of the sum of their squares" in text
+
+
+def test_an_automatic_map_is_warned_of(tmp_path):
+    data = build_grid({"PGA": ("pctg", (20,) * 4)}, (38.0, 37.0), (-123.0, -122.0), status="AUTOMATIC")
+    inventory = _read(tmp_path, ground=parse_shakemap(data, "made.xml"))
+    assert any("AUTOMATIC: nobody had reviewed it" in one for one in _messages(inventory, "warning"))
+    text = next(one for one in _messages(inventory) if one.startswith("The ShakeMap made.xml gives"))
+    assert "0.605 (assumed, as the map has none at this place: the total of Boore et al. 2014" in text
+
+
+def test_annual_chances_go_by_the_pga_and_leave_its_scatter_out(tmp_path):
+    write_hazard(tmp_path)
+    inventory = _read(tmp_path, hazard="hazard.csv")
+    settings = Settings(runs=25)
+    found = evaluate_annual(compute(inventory, settings), jobs=1, progress=assess.progress.SILENT)
+    assert found is not None
+    assert found.tables.ground_pga_g == pytest.approx(0.1525, rel=1e-3)
+    assert found.tables.motion_dispersion == 0.4
+
+
+def test_live_columns_leave_it_to_the_program(tmp_path):
+    inventory = _read(tmp_path, [FLOORS[0] | {"pfa_x": 0.4}, FLOORS[1]])
+    one, two = live_values(inventory)
+    assert one[1] == pytest.approx(0.4), "the floor's own PFA"
+    assert one[-1] == "run assess", "whether it can rock goes by the scatter of the map, too"
+    assert two[1:] == ["run assess"] * (len(two) - 1)
+
+
+def test_the_chances_of_a_simulation_hold_the_scatter(tmp_path):
+    """The same piece under a map without scatter and with much: chances lie nearer to one half."""
+    fields = {"PGA": ("pctg", (15,) * 4)}
+    chances = []
+    for sigma in (0.0, 0.9):
+        data = build_grid(fields | {"STDPGA": ("", (sigma,) * 4)}, (38.0, 37.0), (-123.0, -122.0))
+        inventory = _read(
+            tmp_path, FLOORS[:1], ground=parse_shakemap(data, "grid.xml"), motion_uncertainty=0.0, period=0.5
+        )
+        results = assess.run(inventory, Settings(runs=100))
+        chances.append(results["1"].adopted.probability)
+    assert chances[0] == 0
+    assert 0.02 < chances[1] < 0.5
+
+
+def test_scenarios_carry_their_part_of_the_dispersion(tmp_path):
+    (tmp_path / "sites.csv").write_text("site_id,lon,lat\n0,-122.4008,37.7893\n", encoding="utf-8")
+    (tmp_path / "gmf-data.csv").write_text(
+        "site_id,event_id,gmv_PGA\n" + "".join(f"0,{at},{value}\n" for at, value in enumerate((0.1, 0.2, 0.4))),
+        encoding="utf-8",
+    )
+    inventory = _read(tmp_path, ground=read_scenarios(tmp_path))
+    demands, sigma = build_demands(inventory, "as filled"), math.log(2) * math.sqrt(2 / 3)
+    site = find_site(demands)
+    assert site is not None
+    assert site.dispersion == pytest.approx(sigma)
+    assert demands["1", "X"][0].label == "scenarios, ASCE 7-22"
+    earthquakes = compute(inventory, UNVERIFIED).cases.earthquakes
+    assert earthquakes.given == pytest.approx((-(1.5**0.5), 0, 1.5**0.5))
+    assert earthquakes.given_share == pytest.approx(sigma**2 / (sigma**2 + 0.16))
+
+
+def test_a_run_with_a_map_equals_the_same_map_in_the_workbook(tmp_path):
+    named, given = _read(tmp_path), _read(tmp_path, ground=read_shakemap(BAY))
+    one, two = (assess.run(each, UNVERIFIED) for each in (named, given))
+    assert [each.adopted.probability for each in one] == [each.adopted.probability for each in two]
+    assert one.provenance.site_ground == two.provenance.site_ground

@@ -1,0 +1,122 @@
+"""Reports of a building under a ShakeMap: source, scatter and provenance stand where the numbers are."""
+
+import json
+import re
+import shutil
+from html import unescape
+
+import openpyxl
+import pytest
+
+from assess.report import write_reports
+from assess.report.findings.ground_source import say_ground_source
+from assess.settings import Settings
+from tests.cli.calling import run
+from tests.motion.grids import BAY
+from tests.workbooks import assessed, write
+
+FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 6}]
+PLACE = {"latitude": 37.7893, "longitude": -122.4008}
+SENTENCE = (
+    "Ground motion: ShakeMap grid.xml of the earthquake Loma Prieta, California, magnitude 6.9, with a median PGA of "
+    "0.153 g and PGV of 19.6 cm/s at the building."
+)
+SCATTER = (
+    "The standard deviation of ln PGA there is 0.0904 (STDPGA of grid.xml); with 0.4 of the building's own motion the "
+    "dispersion of the motions is 0.41, the root of the sum of their squares."
+)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """The reports of a run from the command line with a ShakeMap, of a workbook that lacks only shaking."""
+    folder = tmp_path_factory.mktemp("shakemap")
+    path = write(folder / "w.xlsx", floors=FLOORS, period=0.4, **PLACE)
+    done = run("run", path, "--out", folder / "out", "--formats", "json,html,xlsx", "--runs", "25", "--shakemap", BAY)
+    assert done.exit_code == 0, done.stderr
+    assert "Ground motion: ShakeMap grid.xml." in done.stdout
+    return folder / "out"
+
+
+def _plain(html):
+    return " ".join(unescape(re.sub(r"<[^>]+>", " ", html)).split())
+
+
+def test_the_html_report_says_so_on_cover_summary_and_among_the_assumptions(written):
+    html = (written / "report.html").read_text(encoding="utf-8")
+    cover = _plain(html[html.index('<header class="cover">') : html.index("</header>")])
+    assert f"{SENTENCE} {SCATTER} Over the height" in cover
+    assert html.count("Ground motion: ShakeMap grid.xml") > 1
+    text = _plain(html)
+    assert "dispersion of 0.41 (standard deviation of ln amplitude; root of the sum of squares of 0.4 of the" in text
+    for fact in ("19891018000415", "1, 3.5.1277", "2014-10-25T13:28:48Z", "363 m/s; its effect is in the map"):
+        assert fact in text
+    assert f"SHA-256 {_hash(written)}" in text
+    assert "0.308 g at 0.3 s" in text
+
+
+def _hash(folder):
+    return json.loads((folder / "results.json").read_text(encoding="utf-8"))["assess"]["site_ground"]["sha256"]
+
+
+def test_the_excel_report_says_so(written):
+    book = openpyxl.load_workbook(written / "report.xlsx")
+    texts = [str(cell.value) for row in book["Summary"].iter_rows(max_row=12) for cell in row if cell.value]
+    assert any(one.startswith(f"{SENTENCE} {SCATTER}") for one in texts)
+    assert "ShakeMap grid.xml" in (book["Summary"].oddHeader.center.text or "")
+    book.close()
+
+
+def test_the_json_holds_map_scatter_and_provenance(written):
+    found = json.loads((written / "results.json").read_text(encoding="utf-8"))
+    site = found["assess"]["site_ground"]
+    assert (site["kind"], site["file"], site["profile"], site["scenarios"]) == ("shakemap", "grid.xml", "ASCE 7-22", 0)
+    assert (site["pga_g"], site["pgv_cm_s"], site["dispersion"], site["own_dispersion"]) == pytest.approx(
+        (0.1525, 19.64, 0.0904, 0.4), rel=1e-3
+    )
+    assert [one["period_s"] for one in site["psa"]] == [0.3, 1.0, 3.0]
+    assert {"label": "Status of the map", "value": "RELEASED"} in site["facts"]
+    assert found["assess"]["uncertainty"]["motion"] == pytest.approx(0.41, abs=1e-3)
+    assert {one["pfa_source"] for one in found["items"]} == {"ShakeMap, ASCE 7-22"}
+    assert all("shakemap" in one["adopted"]["flags"] for one in found["items"])
+
+
+def test_a_report_without_one_says_nothing_of_it(tmp_path):
+    results = assessed(tmp_path / "w.xlsx")
+    write_reports(results, tmp_path, ["json"])
+    assert json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["assess"]["site_ground"] is None
+    assert say_ground_source(results) == ""
+
+
+@pytest.mark.parametrize(
+    ("settings", "text"),
+    [(Settings(verify="none"), "the median alone and leave it out"), (Settings(runs=25, ideal=True), "leave it out")],
+)
+def test_where_the_scatter_is_not_in_the_results_they_say_so(tmp_path, settings, text):
+    shutil.copy(BAY, tmp_path / "grid.xml")
+    results = assessed(tmp_path / "w.xlsx", floors=FLOORS, shakemap="grid.xml", settings=settings, **PLACE)
+    assert text in say_ground_source(results)
+
+
+def test_options_that_contradict_or_cannot_be_used(tmp_path):
+    path = write(tmp_path / "w.xlsx", floors=FLOORS, **PLACE)
+    both = run("run", path, "--shakemap", BAY, "--ground-motions", tmp_path)
+    assert (both.exit_code, "leave one out" in both.stderr) == (2, True)
+    none = run("run", path, "--shakemap", tmp_path / "gone.xml", "--out", tmp_path / "out")
+    assert (none.exit_code, "gone.xml: the file cannot be read" in none.stderr) == (2, True)
+    empty = run("run", path, "--ground-motions", tmp_path, "--out", tmp_path / "out")
+    assert (empty.exit_code, "has no gmf-data.csv" in empty.stderr) == (2, True)
+    assert not (tmp_path / "out").exists()
+
+
+def test_scenarios_set_the_number_of_draws(tmp_path):
+    """Three scenarios: 201 draws, the least multiple from 200 on, so that each counts alike."""
+    (tmp_path / "sites.csv").write_text("site_id,lon,lat\n0,-122.4008,37.7893\n", encoding="utf-8")
+    rows = "".join(f"0,{at},{value}\n" for at, value in enumerate((0.1, 0.2, 0.4)))
+    (tmp_path / "gmf-data.csv").write_text(f"site_id,event_id,gmv_PGA\n{rows}", encoding="utf-8")
+    path = write(tmp_path / "w.xlsx", [{"item": "A", "floor": "1", "breadth": 40, "height": 190}], FLOORS, **PLACE)
+    done = run("run", path, "--ground-motions", tmp_path, "--out", tmp_path / "out", "--formats", "json")
+    assert done.exit_code == 0, done.stderr
+    found = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    assert found["assess"]["settings"]["runs"] == 201
+    assert found["assess"]["site_ground"]["scenarios"] == 3
