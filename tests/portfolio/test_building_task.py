@@ -1,0 +1,156 @@
+"""One building: its rows are those of its results, and whatever goes wrong is a reason to skip it."""
+
+import shutil
+from dataclasses import replace
+
+import pytest
+
+import assess
+from assess.portfolio import building_inventory
+from assess.portfolio.building_task import Task, run_task
+from assess.portfolio.index_file import IndexRow
+from assess.portfolio.part_files import FOLDER, find_place, read_part
+from assess.portfolio.sources import Source, find_sources
+from assess.portfolio.table_schemas import TABLES
+from assess.settings import Settings
+from tests.portfolio.staged import StagedGround, write_building, write_city
+from tests.workbooks import write
+
+SETTINGS = Settings(verify="none", city=True)
+
+
+@pytest.fixture
+def task(tmp_path):
+    """Return the task of a building whose shaking is that of the run."""
+    (source,) = find_sources(write_city(tmp_path / "city", [40.0]))
+    return Task(source=source, settings=SETTINGS, ground=StagedGround(tmp_path), out=tmp_path / "out")
+
+
+def _rows(task, name, summary=None):
+    part = (summary or run_task(task)).part or read_part(task.out, run_task(task).key)
+    return [dict(zip([one.name for one in TABLES[name]], row, strict=True)) for row in part.rows(name)]
+
+
+def test_rows_are_those_of_the_results(task):
+    (building,), pieces = _rows(task, "buildings"), _rows(task, "pieces")
+    inventory = assess.read_inventory(task.source.file, ground=task.ground)
+    results = assess.run(inventory, SETTINGS)
+    assert [one["probability"] for one in pieces] == [one.adopted.probability for one in results]
+    assert [one["risk_class"] for one in pieces] == [one.adopted.risk.word for one in results]
+    assert building["expected_falls"] == sum(
+        one["probability"] * one["quantity"] for one in pieces if not one["is_held"]
+    )
+    assert (building["pieces"], building["anchored"]) == (5, 1)
+    assert building["low"] + building["medium"] + building["high"] + building["very_high"] == 4
+    assert (building["ground_source"], building["latitude"], building["is_placed"]) == ("shakemap", 40.0, True)
+    assert building["ground_pga_g"] == pytest.approx(3 / 9.80665)
+    assert (building["inventory"], building["basis"], building["draws"]) == ("surveyed", "formula", 0)
+    assert building["works"] == sum(one["quantity"] for one in pieces if one["work_place"])
+
+
+def test_a_building_that_is_done_is_not_assessed_again(task, monkeypatch):
+    first = run_task(task)
+    monkeypatch.setattr(building_inventory, "read_building", None)
+    second = run_task(task)
+    assert (first.is_kept, second.is_kept, second.key) == (False, True, first.key)
+
+
+def test_whatever_a_building_depends_on_has_it_assessed_again(task, tmp_path):
+    keys = {run_task(task).key}
+    row = IndexRow(path=task.source.path, use="Office")
+    for other in (
+        replace(task, settings=replace(SETTINGS, scale=1.1)),
+        replace(task, ground=StagedGround(tmp_path, sha256="1" * 64)),
+        replace(task, source=replace(task.source, index=row)),
+        replace(task, source=replace(task.source, path="other.xlsx")),
+    ):
+        keys.add(run_task(other).key)
+    write_building(task.source.file, latitude=41.0, longitude=10.0)
+    keys.add(run_task(task).key)
+    assert len(keys) == 6
+    moved = replace(task, source=replace(task.source, index=replace(row, line=7)))
+    assert run_task(moved).key == run_task(replace(task, source=replace(task.source, index=row))).key
+
+
+def test_a_record_that_changes_has_its_building_assessed_again(tmp_path):
+    folder = tmp_path / "city"
+    folder.mkdir()
+    record = assess.resources.record("1103.HN2.NP.RE_a.smc")
+    shutil.copyfile(record, folder / "motion.smc")
+    write(folder / "a.xlsx", floors=[{"floor": "1", "record_x": "motion.smc"}, {"floor": "2", "pfa_x": 0.3}])
+    (source,) = find_sources(folder)
+    task = Task(source=source, settings=SETTINGS, ground=None, out=tmp_path / "out")
+    assert [run_task(task).is_kept for _ in range(2)] == [False, True]
+    text = (folder / "motion.smc").read_bytes()
+    (folder / "motion.smc").write_bytes(text + b"\n")
+    assert [run_task(task).is_kept for _ in range(2)] == [False, True]
+
+
+def test_the_index_fills_in_blanks_alone(task):
+    row = IndexRow(path=task.source.path, building="Hall", latitude=1.5, longitude=1.5, use="Office", floor_area_m2=90)
+    (building,) = _rows(replace(task, source=replace(task.source, index=row)), "buildings")
+    assert (building["building"], building["use"], building["floor_area_m2"]) == ("Hall", "Office", 90.0)
+    assert building["latitude"] == 40.0
+
+
+def test_a_workbook_that_cannot_be_used_is_skipped_with_its_problems(task):
+    write_building(task.source.file, latitude=40.0, longitude=10.0, storeys=-3)
+    summary = run_task(task)
+    assert summary.status == "skipped"
+    (problem,) = [one for one in _rows(task, "problems") if one["severity"] == "error"]
+    assert problem["sheet"] == "Building"
+    assert "-3" in problem["message"]
+    (building,) = _rows(task, "buildings")
+    assert (building["status"], building["pieces"], building["expected_falls"]) == ("skipped", None, None)
+
+
+@pytest.mark.parametrize("data", [b"", b"junk", b"PK\x03\x04junk"])
+def test_what_is_no_workbook_is_skipped(task, data):
+    task.source.file.write_bytes(data)
+    (problem,) = _rows(task, "problems")
+    assert "b00.xlsx is" in problem["message"]
+
+
+def test_a_refused_source_is_skipped_with_the_reason(task):
+    refused = replace(task, source=Source(path="x.xlsx", refused="it is a link that leads out of the folder."))
+    assert [one["message"] for one in _rows(refused, "problems")] == ["it is a link that leads out of the folder."]
+
+
+@pytest.mark.parametrize(("error", "message"), [(MemoryError, "memory of this machine"), (KeyError("x"), "KeyError")])
+def test_an_unforeseen_error_skips_the_building_and_keeps_its_traceback_in_the_parts(task, monkeypatch, error, message):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr(building_inventory, "read_building", fail)
+    summary = run_task(task)
+    (problem,) = _rows(task, "problems")
+    assert message in problem["message"]
+    assert "Traceback" not in problem["message"] + problem["fix"]
+    trace = find_place(task.out, summary.key).with_suffix(".txt")
+    assert trace.exists() is (error is not MemoryError)
+    if trace.exists():
+        assert trace.name in problem["fix"]
+        assert "in fail" in trace.read_text(encoding="utf-8")
+
+
+def test_a_part_that_cannot_be_written_is_told_and_tried_again(task):
+    task.out.mkdir()
+    (task.out / FOLDER).write_bytes(b"a file where the folder is to be")
+    summary = run_task(task)
+    assert (summary.status, summary.part.status) == ("skipped", "skipped")
+    (problem,) = _rows(task, "problems", summary)
+    assert "what was found could not be written to" in problem["message"]
+    assert "run the same command again" in problem["fix"]
+    (task.out / FOLDER).unlink()
+    assert run_task(task).status == "assessed"
+
+
+def test_simulated_draws_are_summed_draw_by_draw(task):
+    task = replace(task, settings=Settings(verify="all", runs=20, city=True))
+    part = read_part(task.out, run_task(task).key)
+    (building,), draws = _rows(task, "buildings"), _rows(task, "draws")
+    assert [one["draw"] for one in draws] == list(range(20))
+    falls = sorted(one["falls"] for one in draws)
+    assert sum(falls) / 20 == pytest.approx(building["expected_falls"])
+    assert (building["falls_p05"], building["falls_p95"]) == (falls[0], falls[18])
+    assert part.draws["people_blocked"] == [0] * 20

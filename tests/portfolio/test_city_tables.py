@@ -1,0 +1,87 @@
+"""The tables as Parquet: fixed types, the same bytes, several files for many rows."""
+
+import sys
+
+import pandas as pd
+import pytest
+
+from assess.errors import InputError
+from assess.portfolio import city_tables
+from assess.portfolio.building_rows import to_row
+from assess.portfolio.city_tables import TableWriter, build_frame, check_tables, find_files, read_table
+from assess.portfolio.table_schemas import TABLES
+
+
+def _rows(count):
+    texts = ("=1+1", "<script>", 'a"b', "a\nb", "é'", None)
+    return [
+        to_row("pieces", {"path": texts[at % 6], "quantity": at % 7 or None, "pfa_g": at / 3, "is_held": bool(at % 2)})
+        for at in range(count)
+    ]
+
+
+def _write(name, rows, folder):
+    writer = TableWriter(name, folder, keeps=True)
+    writer.add(rows)
+    return writer.close()
+
+
+def test_what_is_written_is_read_again(tmp_path):
+    rows = _rows(20)
+    (path,) = _write("pieces", rows, tmp_path)
+    assert path.name == "pieces.parquet"
+    pd.testing.assert_frame_equal(read_table(tmp_path, "pieces"), build_frame("pieces", rows))
+
+
+def test_columns_that_are_empty_keep_their_types(tmp_path):
+    duckdb = pytest.importorskip("duckdb")
+    for name, columns in TABLES.items():
+        _write(name, [], tmp_path)
+        found = duckdb.sql(f"DESCRIBE SELECT * FROM '{tmp_path / name}.parquet'").fetchall()
+        assert [(one[0], one[1]) for one in found] == [(one.name, city_tables.SQL_TYPES[one.type]) for one in columns]
+        assert list(read_table(tmp_path, name).columns) == [one.name for one in columns]
+
+
+def test_many_rows_take_several_files_and_come_back_in_order(tmp_path, monkeypatch):
+    monkeypatch.setattr(city_tables, "ROWS", 7)
+    rows = _rows(20)
+    assert [path.name for path in _write("pieces", rows, tmp_path)] == [f"pieces-000{at}.parquet" for at in (1, 2, 3)]
+    assert find_files(tmp_path, "pieces") == sorted(tmp_path.glob("*.parquet"))
+    pd.testing.assert_frame_equal(read_table(tmp_path, "pieces"), build_frame("pieces", rows))
+
+
+def test_the_same_rows_give_the_same_bytes(tmp_path):
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        _write("pieces", _rows(3000), tmp_path / name)
+    assert (tmp_path / "one" / "pieces.parquet").read_bytes() == (tmp_path / "two" / "pieces.parquet").read_bytes()
+
+
+def test_a_folder_whose_name_is_no_sql_is_read(tmp_path):
+    folder = tmp_path / "it's; DROP"
+    folder.mkdir()
+    _write("routes", [], folder)
+    assert read_table(folder, "routes").empty
+
+
+def test_what_cannot_be_read_is_named(tmp_path):
+    with pytest.raises(InputError, match="'rooms' is an unknown table; expected one of: buildings, pieces"):
+        read_table(tmp_path, "rooms")
+    with pytest.raises(InputError, match=r"there is no pieces.parquet"):
+        read_table(tmp_path, "pieces")
+    (tmp_path / "pieces.parquet").write_bytes(b"PAR1 no more")
+    with pytest.raises(InputError, match=r"pieces.parquet cannot be read"):
+        read_table(tmp_path, "pieces")
+
+
+def test_without_duckdb_one_line_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "duckdb", None)
+    with pytest.raises(
+        InputError, match=r"needs duckdb, which is not installed. Install it: pip install 'assess\[parquet\]'"
+    ):
+        check_tables()
+
+
+def test_a_row_of_unknown_columns_is_a_fault_of_ours():
+    with pytest.raises(ValueError, match="the table routes has no column colour"):
+        to_row("routes", {"colour": "red"})

@@ -1,0 +1,124 @@
+"""Processes that die, wait or lose their parent: no building is lost, none harms another."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from assess.errors import CancelledError
+from assess.portfolio.building_task import Task
+from assess.portfolio.local_pool import run_local
+from assess.portfolio.sources import find_sources
+from assess.progress import Progress
+from assess.settings import Settings
+from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, write_city
+
+pytestmark = [
+    pytest.mark.skipif(os.name == "nt", reason="signals of POSIX"),
+    pytest.mark.slow,
+]
+SETTINGS = Settings(verify="none", city=True)
+SOON = 30.0
+"""Seconds within which what is waited for has to come; it takes a fraction of one, or the start of a process."""
+
+
+def _list_tasks(tmp_path, latitudes):
+    city = write_city(tmp_path / "city", latitudes)
+    ground = StagedGround(tmp_path)
+    return [Task(source=one, settings=SETTINGS, ground=ground, out=tmp_path / "out") for one in find_sources(city)]
+
+
+def _wait_for(find):
+    latest = time.monotonic() + SOON
+    while not (found := find()):
+        assert time.monotonic() < latest, "what was waited for did not come"
+        time.sleep(0.02)
+    return found
+
+
+def _is_alive(number):
+    try:
+        os.kill(number, 0)
+    except ProcessLookupError:
+        return False
+    return Path(f"/proc/{number}/stat").read_text().split()[2] != "Z" if Path("/proc/self").exists() else True
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_every_task_is_done_once(tmp_path, jobs):
+    tasks = _list_tasks(tmp_path, [40.0, 41.0] * 4)
+    found = list(run_local(tasks, jobs))
+    assert sorted(one.path for one in found) == [one.source.path for one in tasks]
+    assert {one.status for one in found} == {"assessed"}
+
+
+def test_a_process_that_dies_is_replaced_and_its_building_done(tmp_path):
+    tasks = _list_tasks(tmp_path, [40.0, KILLS_ONCE, 40.0, 40.0])
+    found = list(run_local(tasks, 2))
+    assert (tmp_path / "killed").exists()
+    assert sorted((one.path, one.status) for one in found) == [(one.source.path, "assessed") for one in tasks]
+
+
+def test_a_building_that_kills_each_process_is_skipped_and_harms_no_other(tmp_path):
+    tasks = _list_tasks(tmp_path, [40.0, KILLS, 40.0, KILLS, 40.0])
+    found = {one.path: one for one in run_local(tasks, 2)}
+    assert [found[one.source.path].status for one in tasks] == [
+        "assessed",
+        "skipped",
+        "assessed",
+        "skipped",
+        "assessed",
+    ]
+    (problem,) = found["b01.xlsx"].part.rows("problems")
+    assert "every process that assessed it was ended by the system" in problem[4]
+
+
+def test_a_cancel_ends_the_processes_at_once(tmp_path):
+    (tmp_path / "hold").touch()
+    tasks, cancel = _list_tasks(tmp_path, [HOLDS, HOLDS]), threading.Event()
+    watch = threading.Thread(target=lambda: (_wait_for(lambda: len(list(tmp_path.glob("held-*"))) == 2), cancel.set()))
+    watch.start()
+    with pytest.raises(CancelledError):
+        list(run_local(tasks, 2, Progress(None, cancel)))
+    watch.join()
+    numbers = [int(path.name.partition("-")[2]) for path in tmp_path.glob("held-*")]
+    assert len(numbers) == 2
+    assert not any(map(_is_alive, numbers))
+
+
+def test_processes_end_when_the_one_that_started_them_is_killed(tmp_path):
+    (tmp_path / "hold").touch()
+    write_city(tmp_path / "city", [HOLDS])
+    code = (
+        "from pathlib import Path\nfrom tests.portfolio import test_local_pool as t\n"
+        f"from assess.portfolio.sources import find_sources\np = Path({str(tmp_path)!r})\n"
+        "tasks = [t.Task(source=one, settings=t.SETTINGS, ground=t.StagedGround(p), out=p / 'out')\n"
+        "         for one in find_sources(p / 'city')]\nlist(t.run_local(tasks, 1))"
+    )
+    root = Path(__file__).parents[2]
+    with subprocess.Popen([sys.executable, "-c", code], cwd=root) as parent:
+        held = _wait_for(lambda: list(tmp_path.glob("held-*")))
+        parent.send_signal(signal.SIGKILL)
+    number = int(held[0].name.partition("-")[2])
+    _wait_for(lambda: not _is_alive(number))
+
+
+def test_a_ground_motion_that_was_changed_since_ends_the_run_with_its_reason(tmp_path):
+    from dataclasses import replace
+
+    from assess.errors import AssessError
+    from assess.motion.shakemap import read_shakemap
+    from assess.resources import city_file
+
+    grid = tmp_path / "grid.xml"
+    grid.write_bytes(city_file("grid.xml").read_bytes())
+    ground = read_shakemap(grid)
+    grid.write_bytes(city_file("grid.xml").read_bytes() + b"\n")
+    tasks = [replace(one, ground=ground) for one in _list_tasks(tmp_path, [40.0])]
+    with pytest.raises(AssessError, match=r"grid\.xml.* changed"):
+        list(run_local(tasks, 1))
