@@ -430,9 +430,10 @@ METHOD = Method(
     assumptions=(
         "The piece is rigid and free-standing; its centre of gravity is at mid-height, or where the workbook gives it; "
         "it neither slides nor bounces, and moves in one plane; vertical motion is left out.",
-        "An earthquake like this one: β is 0.4, assumed, unless the workbook gives another dispersion. Base, height, "
-        "centre of gravity and restitution of each piece are drawn; their means and dispersions are assumed. Normal "
-        "numbers are cut at 3 standard deviations.",
+        "An earthquake like this one: β is 0.4, assumed, unless the workbook gives another dispersion or what is known "
+        "of the ground's motion raises it. ε is normal, and correlated from place to place in a city; scenarios of the "
+        "ground bring their own numbers. Base, height, centre of gravity and restitution of each piece are drawn; "
+        "their means and dispersions are assumed. Normal numbers are cut at 3 standard deviations.",
         "Draw k has one scale for the whole building, and its motions have the same random phases on every floor along "
         "an axis. Between floors that have records of one earthquake on one clock the sign of each octave is that of "
         "the records; elsewhere the signs of modes are not known.",
