@@ -76,12 +76,13 @@ def list_requirements() -> list[Requirement]:
         lines = metadata.requires("assess") or []
     except metadata.PackageNotFoundError:
         lines = _read_pyproject()
-    found = []
+    found: dict[str, Requirement] = {}
     for line in lines:
         parts = _REQUIREMENT.match(line)
         if parts and parts["extra"] != DEVELOPMENT:
-            found.append(Requirement(parts["name"], parts["least"] or "", parts["extra"] or ""))
-    return found
+            one = Requirement(parts["name"], parts["least"] or "", parts["extra"] or "")
+            found.setdefault(one.name.lower(), one)  # two extras may need the same package
+    return list(found.values())
 
 
 def _read_pyproject() -> list[str]:

@@ -49,8 +49,8 @@ EXAMPLES = (
     "assess run building.xlsx --ground-motions oq-export --out scenarios",
 )
 
-FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz")
-"""Those of `assess.report`, which takes long to import; the last is written only where it is named."""
+FORMATS = ("pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet")
+"""Those of `assess.report`, which takes long to import; the last three are written only where they are named."""
 MOST_METHODS = 4
 """Fitted models that a report shows next to the published methods: a column each."""
 PLAIN = frozenset(("json", "csv", "xlsx"))
@@ -124,10 +124,10 @@ def command(
         str,
         typer.Option(
             help="Files to write, separated by commas: pdf is the report for the client, annex its details; also docx, "
-            "the report for the client in Word, and npz, the result of every motion.",
+            "the report for the client in Word, npz, the result of every motion, and parquet, the items typed.",
             autocompletion=list_of(FORMATS),
         ),
-    ] = ",".join(FORMATS[:-2]),
+    ] = ",".join(FORMATS[:-3]),
     jobs: Jobs = None,
     language: Annotated[
         str | None,
@@ -175,9 +175,7 @@ def command(
         _open(written)
 
 
-def _read_inventory(
-    path: Path, shakemap: Path | None, ground_motions: Path | None, progress: Progress
-) -> "Inventory":
+def _read_inventory(path: Path, shakemap: Path | None, ground_motions: Path | None, progress: Progress) -> "Inventory":
     from assess.workbook.read import read_inventory
 
     ground = read_ground(shakemap, ground_motions)

@@ -101,6 +101,12 @@ def _write_npz(job: Job, path: Path) -> None:
     write_npz(job.results, path, job.progress)
 
 
+def _write_parquet(job: Job, path: Path) -> None:
+    from assess.report.parquet_file import write_parquet
+
+    write_parquet(job.results, path, job.progress)
+
+
 def _write_docx(job: Job, path: Path) -> None:
     from assess.report.word import write_word
 
@@ -116,15 +122,16 @@ _WRITERS: Mapping[str, tuple[str, Callable[[Job, Path], None]]] = {
     "csv": ("items.csv", _write_csv),
     "docx": ("report.docx", _write_docx),
     "npz": ("outcomes.npz", _write_npz),
+    "parquet": ("items.parquet", _write_parquet),
 }
 FILES: Mapping[str, str] = {name: file for name, (file, _) in _WRITERS.items()}
 """The formats, and the file that each is written to."""
 _PDFS = ("pdf", "annex")
 _LAST = ("json", *_PDFS)
 """What is written last: results.json, which lists the files before it, and the PDFs, which carry it."""
-FORMATS = tuple(name for name in FILES if name not in ("docx", "npz"))
-"""The formats that are written where none are asked for: not the Word edition, which needs more packages, nor the
-outcomes of every motion, which are for other programs."""
+FORMATS = tuple(name for name in FILES if name not in ("docx", "npz", "parquet"))
+"""The formats that are written where none are asked for: not the Word edition and Parquet, which need more packages,
+nor the outcomes of every motion, which are for other programs."""
 
 
 def write_reports(
@@ -145,8 +152,8 @@ def write_reports(
         Where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever their
         format; other files are left alone.
     formats : str or sequence of str
-        Of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz"; all but the
-        last two by default. results.json is always written.
+        Of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; all but the last three by default.
+        results.json is always written.
     options : ReportOptions, optional
         Language, templates and kind of PDF; by default in the workbook's language, with the standard templates.
     progress : Progress, optional
@@ -217,6 +224,10 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
         from assess.report.word import check_word
 
         check_word()
+    if "parquet" in formats:
+        from assess.report.parquet_file import check_parquet
+
+        check_parquet()
     there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
     if not (there.is_dir() and os.access(there, os.W_OK)):
         why = fill("you have no right to write there") if there.is_dir() else fill("{path} is a file", path=there)

@@ -307,6 +307,8 @@ def test_doctor_reads_the_project_file_where_assess_is_not_installed(monkeypatch
     read = {(one.name.lower(), one.least, one.extra) for one in command_doctor.list_requirements()}
     assert ("weasyprint", "") in {(name, extra) for name, _, extra in read}
     assert {name for name, _, _ in read} == {name for name, _, _ in installed}
+    assert {("duckdb", "parquet"), ("distributed", "cluster")} <= {(name, extra) for name, _, extra in read}
+    assert len(read) == len({name for name, _, _ in read}), "a package that two extras need is there once"
 
 
 @pytest.mark.parametrize(("text", "numbers"), [("2.10.0rc1", (2, 10)), ("70.0", (70,)), ("10", (10,)), ("", ())])
