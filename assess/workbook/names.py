@@ -30,6 +30,7 @@ _BRACKET = re.compile(r"^(?P<label>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$", re.D
 # ---------------------------------------------------------------- how names are compared
 
 
+@lru_cache(maxsize=4096)
 def split_header(header: str) -> tuple[str, str | None]:
     """Split ``Height [cm]`` into label and unit; the unit is None where there is no bracket."""
     match = _BRACKET.match(header.strip())

@@ -86,6 +86,10 @@ class Column:
     language: str = "en"
     aliases: tuple[str, ...] = ()
 
+    def __hash__(self) -> int:
+        """Return a hash of its name and label: that of all of it would be found anew in each look-up of a cache."""
+        return hash((self.name, self.label))
+
     def header(self, units: Literal["si", "imperial"] = "si") -> str:
         """Label with the unit in brackets, as the empty workbook writes it."""
         unit = self.imperial if units == "imperial" and self.imperial else self.unit

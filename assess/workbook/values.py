@@ -7,6 +7,7 @@ import datetime
 import math
 import re
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 from assess.errors import InputError
 from assess.i18n import fill, find_language, nfill
@@ -75,6 +76,11 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[R
     CellError
         If the cell does not hold what the column needs.
     """
+    is_rare = (isinstance(value, str) and len(value) > _SHOWN) or value == 0  # 0 and -0 are equal, and not the same
+    return (_read_cell if is_rare else _read_known)(column, value, unit)
+
+
+def _read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[Remark, ...]]:
     meant, remark = value, None
     if not (type(value) is float or type(value) is int):
         if is_blank(value):
@@ -84,6 +90,9 @@ def read_cell(column: Column, value: object, unit: str) -> tuple[object, tuple[R
             meant, remark = understand(column, value, unit, shorten)
     found, more = READERS[column.kind](column, meant, unit), _remark_on(column, value, meant, unit)
     return found, () if remark is more is None else tuple(one for one in (remark, more) if one)
+
+
+_read_known = lru_cache(maxsize=8192, typed=True)(_read_cell)  # the same stands in row after row, book after book
 
 
 def _refuse_formulas(column: Column, value: object) -> None:
