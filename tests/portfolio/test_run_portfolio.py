@@ -1,0 +1,292 @@
+"""A portfolio from end to end: the same bytes however it was run, whatever died on the way or is in the folder."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from assess.delivery.folder_lock import FolderLock
+from assess.errors import CancelledError, InputError, OutputError
+from assess.portfolio.building_task import Task, run_task
+from assess.portfolio.city_tables import read_table
+from assess.portfolio.part_files import FOLDER
+from assess.portfolio.run_portfolio import run_portfolio
+from assess.portfolio.sources import find_sources
+from assess.settings import Settings
+from tests.portfolio.staged import FILLS, HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
+
+ROOT = Path(__file__).parents[2]
+FORMULAS = Settings(verify="none")
+SOON = 60.0
+"""Seconds within which what is waited for has to come; it takes a few."""
+posix = pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+
+
+def _run(tmp_path, out="out", *, settings=FORMULAS, formats=("parquet",), jobs=2, **options):
+    ground = options.pop("ground", StagedGround(tmp_path))
+    return run_portfolio(
+        tmp_path / "city", tmp_path / out, settings, ground=ground, jobs=jobs, formats=formats, **options
+    )
+
+
+def _wait_for(find):
+    latest = time.monotonic() + SOON
+    while not (found := find()):
+        assert time.monotonic() < latest, "what was waited for did not come"
+        time.sleep(0.02)
+    return found
+
+
+# ---------------------------------------------------------------- the same bytes
+
+
+@pytest.mark.slow
+def test_a_plain_loop_one_process_and_two_give_the_same_bytes(tmp_path):
+    write_city(tmp_path / "city", [40.0, 41.0, 42.0, 40.0, 41.0])
+    (tmp_path / "city" / "bad.xlsx").write_bytes(b"no workbook")
+    settings, formats = Settings(verify="all", runs=10), ("parquet", "xlsx", "html", "pdf")
+    one = _run(tmp_path, "one", settings=settings, formats=formats, jobs=1)
+    _run(tmp_path, "two", settings=settings, formats=formats, jobs=2)
+    loop = tmp_path / "loop"
+    for source in reversed(find_sources(tmp_path / "city")):
+        run_task(Task(source=source, settings=one.view.settings, ground=StagedGround(tmp_path), out=loop))
+    looped = _run(tmp_path, "loop", settings=settings, formats=formats, jobs=1)
+    assert looped.kept == 5  # computed by the loop alone, but for the one that is skipped
+    first = read_results(tmp_path / "one")
+    assert set(first) >= {"buildings.parquet", "city.html", "city.pdf", "portfolio.json", "ranking.xlsx"}
+    assert first == read_results(tmp_path / "two") == read_results(loop)
+    falls = read_table(tmp_path / "one", "draws").groupby("path")["falls"].sum()
+    assert (falls > 0).any()
+
+
+@pytest.mark.slow
+def test_a_second_run_assesses_nothing_and_gives_the_same_bytes(tmp_path):
+    write_city(tmp_path / "city", [40.0, 41.0])
+    assert _run(tmp_path).kept == 0
+    before = read_results(tmp_path / "out")
+    assert _run(tmp_path).kept == 2
+    assert read_results(tmp_path / "out") == before
+
+
+@pytest.mark.slow
+def test_a_damaged_part_is_computed_again(tmp_path):
+    write_city(tmp_path / "city", [40.0, 41.0])
+    _run(tmp_path)
+    before = read_results(tmp_path / "out")
+    for path, size in zip(sorted((tmp_path / "out" / FOLDER).glob("*/*.part")), (0, 300), strict=True):
+        path.write_bytes(path.read_bytes()[:size])
+    assert _run(tmp_path).kept == 0
+    assert read_results(tmp_path / "out") == before
+
+
+@pytest.mark.slow
+def test_a_building_that_is_gone_vanishes_and_a_new_one_changes_no_other(tmp_path):
+    write_city(tmp_path / "city", [40.0, 41.0, 42.0])
+    _run(tmp_path)
+    before = read_table(tmp_path / "out", "pieces")
+    (tmp_path / "city" / "b01.xlsx").unlink()
+    write_city(tmp_path / "city" / "new", [43.0])
+    result = _run(tmp_path)
+    after = read_table(tmp_path / "out", "pieces")
+    assert result.kept == 2
+    assert sorted(set(after["path"])) == ["b00.xlsx", "b02.xlsx", "new/b00.xlsx"]
+    for path in ("b00.xlsx", "b02.xlsx"):
+        one, other = (table[table["path"] == path].reset_index(drop=True) for table in (before, after))
+        assert one.equals(other)
+    assert len(list((tmp_path / "out" / FOLDER).glob("*/*.part"))) == 3
+
+
+# ---------------------------------------------------------------- what dies on the way
+
+
+@posix
+@pytest.mark.slow
+def test_a_process_that_is_killed_changes_no_byte(tmp_path):
+    write_city(tmp_path / "city", [40.0, KILLS_ONCE, 40.0, 41.0])
+    _run(tmp_path)
+    assert (tmp_path / "killed").exists()
+    _run(tmp_path, "undisturbed")
+    assert read_results(tmp_path / "out") == read_results(tmp_path / "undisturbed")
+
+
+@posix
+@pytest.mark.slow
+@pytest.mark.parametrize("all_of_them", [False, True], ids=["the command", "the command and its processes"])
+def test_a_run_that_is_killed_goes_on_where_it_was(tmp_path, all_of_them):
+    write_city(tmp_path / "city", [40.0, 41.0, 42.0, HOLDS])
+    (tmp_path / "hold").touch()
+    code = (
+        "from pathlib import Path\nfrom tests.portfolio import test_run_portfolio as t\n"
+        f"t._run(Path({str(tmp_path)!r}), jobs=2)"
+    )
+    parts = tmp_path / "out" / FOLDER
+    with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT) as command:
+        _wait_for(lambda: len(list(parts.glob("*/*.part"))) == 3 and list(tmp_path.glob("held-*")))
+        if all_of_them:
+            for held in tmp_path.glob("held-*"):
+                os.kill(int(held.name.partition("-")[2]), signal.SIGKILL)
+        command.send_signal(signal.SIGKILL)
+    assert not (tmp_path / "out" / "buildings.parquet").exists()
+    (tmp_path / "hold").unlink()
+    assert _run(tmp_path).kept == 3
+    _run(tmp_path, "undisturbed")
+    assert read_results(tmp_path / "out") == read_results(tmp_path / "undisturbed")
+    assert sorted(read_table(tmp_path / "out", "buildings")["path"]) == ["b00.xlsx", "b01.xlsx", "b02.xlsx", "b03.xlsx"]
+
+
+@posix
+@pytest.mark.slow
+def test_a_workbook_that_kills_its_process_is_skipped_with_the_reason(tmp_path):
+    write_city(tmp_path / "city", [40.0, KILLS, 41.0])
+    result = _run(tmp_path)
+    assert [path for path, _ in result.skipped] == ["b01.xlsx"]
+    assert "ended by the system" in result.skipped[0][1]
+    assert list(read_table(tmp_path / "out", "buildings")["status"]) == ["assessed", "skipped", "assessed"]
+
+
+@posix
+@pytest.mark.slow
+def test_a_process_that_cannot_write_is_reported_and_the_next_run_makes_up_for_it(tmp_path):
+    write_city(tmp_path / "city", [40.0, 41.0, FILLS])
+    (tmp_path / "full").touch()
+    first = _run(tmp_path, jobs=1)
+    assert [path for path, _ in first.skipped] == ["b02.xlsx"]
+    assert "could not be written" in first.skipped[0][1]
+    (tmp_path / "full").unlink()
+    second = _run(tmp_path)
+    assert (second.skipped, second.kept) == ((), 2)
+    _run(tmp_path, "undisturbed")
+    assert read_results(tmp_path / "out") == read_results(tmp_path / "undisturbed")
+
+
+@posix
+@pytest.mark.slow
+def test_a_cancel_writes_nothing_and_keeps_what_is_done(tmp_path):
+    write_city(tmp_path / "city", [40.0, HOLDS])
+    (tmp_path / "hold").touch()
+    cancel, parts = threading.Event(), tmp_path / "out" / FOLDER
+    watch = threading.Thread(target=lambda: (_wait_for(lambda: list(parts.glob("*/*.part"))), cancel.set()))
+    watch.start()
+    with pytest.raises(CancelledError):
+        _run(tmp_path, cancel=cancel)
+    watch.join()
+    assert [path.name for path in (tmp_path / "out").iterdir()] == [FOLDER]
+    (tmp_path / "hold").unlink()
+    assert _run(tmp_path).kept == 1
+
+
+# ---------------------------------------------------------------- what is in the folders
+
+
+@pytest.mark.slow
+def test_bad_workbooks_are_named_and_the_others_assessed(tmp_path):
+    write_city(tmp_path / "city", [40.0] * 18)
+    (tmp_path / "city" / "cut.xlsx").write_bytes((tmp_path / "city" / "b00.xlsx").read_bytes()[:5000])
+    (tmp_path / "city" / "text.xlsx").write_text("no workbook", encoding="utf-8")
+    reports = []
+    result = _run(tmp_path, progress=reports.append)
+    assert [path for path, _ in result.skipped] == ["cut.xlsx", "text.xlsx"]
+    assert list(read_table(tmp_path / "out", "buildings")["status"]).count("assessed") == 18
+    details = [one.detail for one in reports if one.stage == "buildings"]
+    assert details[0] == "0 of 20 buildings; 0 skipped"
+    assert details[-1] == "20 of 20 buildings; 2 skipped"
+    assert sum(read_table(tmp_path / "out", "pieces").groupby("path").size() == 3) == 18
+
+
+@posix
+@pytest.mark.slow
+def test_names_that_attack_are_data_in_every_result(tmp_path):
+    import openpyxl
+
+    write_city(tmp_path / "city", [40.0])
+    names = ["=cmd|'1'!A1.xlsx", "<script>alert(1)<%2fscript>.xlsx", "a\nb\x1b[31m.xlsx", "'; DROP TABLE x;--.xlsx"]
+    for name in names:
+        (tmp_path / "city" / name).write_bytes((tmp_path / "city" / "b00.xlsx").read_bytes())
+    _run(tmp_path, formats=("parquet", "xlsx", "html"))
+    assert set(read_table(tmp_path / "out", "buildings")["path"]) == {*names, "b00.xlsx"}
+    assert "<script>alert(1)" not in (tmp_path / "out" / "city.html").read_text(encoding="utf-8")
+    book = openpyxl.load_workbook(tmp_path / "out" / "ranking.xlsx")
+    cells = [cell for sheet in book for row in sheet.iter_rows() for cell in row if "cmd|" in str(cell.value)]
+    assert cells
+    assert {cell.data_type for cell in cells} == {"s"}
+
+
+@pytest.mark.slow
+def test_files_of_others_stay_and_reports_of_an_earlier_run_go(tmp_path):
+    write_city(tmp_path / "city", [40.0])
+    _run(tmp_path, formats=("parquet", "html"))
+    (tmp_path / "out" / "mine.txt").write_text("mine", encoding="utf-8")
+    _run(tmp_path, formats=("parquet",))
+    assert not (tmp_path / "out" / "city.html").exists()
+    assert (tmp_path / "out" / "mine.txt").read_text(encoding="utf-8") == "mine"
+    listed = json.loads((tmp_path / "out" / "portfolio.json").read_text(encoding="utf-8"))
+    assert set(listed["assess"]["files"]) == {f"{name}.parquet" for name in listed["tables"]}
+    assert listed["assess"]["ground"]["file"] == "staged.csv"
+    assert listed["buildings"] == {"assessed": 1, "skipped": 0}
+
+
+def test_a_folder_that_cannot_take_the_results_is_an_error_before_the_work(tmp_path):
+    city = write_city(tmp_path / "city", [40.0])
+    with pytest.raises(InputError, match="holds the workbooks; name another folder"):
+        run_portfolio(city, city, FORMULAS)
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="is a file; name a folder"):
+        run_portfolio(city, tmp_path / "file", FORMULAS)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "ranking.xlsx").write_bytes(b"mine")
+    with pytest.raises(InputError, match=r"ranking.xlsx would be replaced, but it is not a report"):
+        run_portfolio(city, tmp_path / "out", FORMULAS)
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["ranking.xlsx"]
+
+
+def test_what_cannot_be_done_is_an_error_before_the_work(tmp_path, monkeypatch):
+    city = write_city(tmp_path / "city", [40.0])
+    with pytest.raises(InputError, match="formats: 'csv' is unknown, expected some of: parquet"):
+        run_portfolio(city, tmp_path / "out", FORMULAS, formats=("csv",))
+    with pytest.raises(InputError, match="runs is auto: all buildings of a city need the same draws"):
+        run_portfolio(city, tmp_path / "out", Settings(runs="auto"))
+    monkeypatch.setitem(sys.modules, "duckdb", None)
+    with pytest.raises(InputError, match=r"pip install 'assess\[parquet\]'"):
+        run_portfolio(city, tmp_path / "out", FORMULAS)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match=r"pip install 'assess\[cluster\]'"):
+        run_portfolio(city, tmp_path / "out", FORMULAS, formats=("html",), scheduler="tcp://127.0.0.1:1")
+
+
+def test_two_runs_into_one_folder_do_not_mix(tmp_path):
+    city = write_city(tmp_path / "city", [40.0])
+    (tmp_path / "out" / FOLDER).mkdir(parents=True)
+    lock = FolderLock(tmp_path / "out" / FOLDER)
+    assert lock.take()
+    try:
+        with pytest.raises(OutputError, match="is in use: another run is writing to it"):
+            run_portfolio(city, tmp_path / "out", FORMULAS, formats=("parquet",))
+    finally:
+        lock.release()
+
+
+def test_without_the_tables_the_page_is_written_all_the_same(tmp_path, monkeypatch):
+    write_city(tmp_path / "city", [40.0])
+    monkeypatch.setitem(sys.modules, "duckdb", None)
+    _run(tmp_path, formats=("html",), jobs=1)
+    assert sorted(read_results(tmp_path / "out")) == ["city.html", "portfolio.json"]
+
+
+def test_an_index_adds_a_building_without_a_survey(tmp_path):
+    write_city(tmp_path, [40.0])
+    text = "path,building,use,storeys,height_m,floor_area_m2,latitude,longitude\nb00.xlsx,,,,,,,\n"
+    (tmp_path / "index.csv").write_text(f"{text},Tower,office,4,15,1000,40,10\n,School,school,2,8,1000,40,10\n")
+    result = run_portfolio(
+        tmp_path / "index.csv", tmp_path / "out", FORMULAS, ground=StagedGround(tmp_path), formats=("parquet",), jobs=1
+    )
+    rows = read_table(tmp_path / "out", "buildings").set_index("path")
+    assert list(rows["inventory"]) == ["assumed", "assumed", "surveyed"]
+    assert [path for path, _ in result.skipped] == ["School"]
+    assert rows.loc["Tower", "falls_low_inventory"] < rows.loc["Tower", "expected_falls"]
+    assert rows.loc["Tower", "expected_falls"] < rows.loc["Tower", "falls_high_inventory"]
