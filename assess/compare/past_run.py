@@ -104,6 +104,8 @@ class PastRun:
         What the draws of the simulation vary.
     shaking : str
         Name of an assumed intensity; "" where none is assumed.
+    site_ground : str
+        File, PGA at the building and hash of a ShakeMap or of scenarios; "" where the motion rests on none.
     workbook, workbook_sha256 : str
         Name and hash of the inventory.
     motions : mapping of str to str
@@ -132,6 +134,7 @@ class PastRun:
     building: Mapping[str, Any]
     uncertainty: Mapping[str, Any]
     shaking: str
+    site_ground: str
     workbook: str
     workbook_sha256: str
     motions: Mapping[str, str]

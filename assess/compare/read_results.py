@@ -212,6 +212,7 @@ class _Reader:
             "settings": self.plainly(self.part(origin, "settings", "assess")),
             "uncertainty": self.plainly(self.part(origin, "uncertainty", "assess")),
             "shaking": self.shaking(origin),
+            "site_ground": self.site_ground(origin),
             "workbook": self.text(inputs, "workbook", place),
             "workbook_sha256": self.text(inputs, "sha256", place),
             "motions": self.texts(inputs, "records", place) | self.texts(inputs, "motions", place),
@@ -280,6 +281,14 @@ class _Reader:
         """Return the name of the assumed intensity; "" where there is none."""
         found = origin.get("shaking")
         return plain_line(str(found.get("name", ""))) if isinstance(found, dict) else ""
+
+    def site_ground(self, origin: Mapping[str, Any]) -> str:
+        """Return file, PGA and hash of a ShakeMap or of scenarios; "" where the motion rests on none."""
+        if origin.get("site_ground") is None:  # as in files before version 5.1 of the schema
+            return ""
+        found, place = self.part(origin, "site_ground", "assess"), "assess.site_ground"
+        file, sha256 = (self.text(found, name, place) for name in ("file", "sha256"))
+        return f"{file}, {self.number(found, 'pga_g', place):.3f} g, SHA-256 {sha256[:16]}"
 
     def chance_or_none(self, row: Mapping[str, Any], name: str, place: str) -> past.PastChance | None:
         """Return a chance that may be null or absent."""

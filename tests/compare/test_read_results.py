@@ -133,3 +133,15 @@ def test_a_file_too_large_is_not_read(source, monkeypatch):
     monkeypatch.setattr("assess.compare.read_results.MOST_BYTES", 1000)
     with pytest.raises(InputError, match=r"too large: 0 MB, at most 0 MB"):
         read_run(Path(source))
+
+
+def test_a_shakemap_is_read_with_its_value_and_hash_and_may_be_absent(source, tmp_path):
+    """Absent as in files of version 5.0 of the schema."""
+    site = {"file": "grid.xml", "pga_g": 0.1525, "sha256": "0123456789abcdef" * 4}
+    with_map = change(source, tmp_path / "a", lambda record: record["assess"].update(site_ground=site))
+    assert read_run(with_map).site_ground == "grid.xml, 0.152 g, SHA-256 0123456789abcdef"
+    without = change(source, tmp_path / "b", lambda record: record["assess"].pop("site_ground"))
+    assert read_run(without).site_ground == read_run(source).site_ground == ""
+    damaged = change(source, tmp_path / "c", lambda record: record["assess"].update(site_ground=site | {"pga_g": "x"}))
+    with pytest.raises(InputError, match="assess.site_ground"):
+        read_run(damaged)

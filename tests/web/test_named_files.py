@@ -1,0 +1,41 @@
+"""The files that a workbook names: a ShakeMap is asked for, taken in, and simulated with what lies beside it."""
+
+import shutil
+
+import pytest
+
+from assess.web.book import Book
+from assess.web.job_inputs import prepare
+from assess.web.named_files import list_present
+from tests.motion.grids import EPICENTRE
+from tests.workbooks import write
+
+FLOORS = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 6}]
+EPICENTRE_PLACE = {"latitude": 37.04, "longitude": -121.88}
+
+
+@pytest.fixture
+def book(tmp_path):
+    """A workbook whose ShakeMap is missing."""
+    (tmp_path / "own").mkdir()
+    path = write(tmp_path / "own" / "office.xlsx", floors=FLOORS, shakemap="grid.xml", **EPICENTRE_PLACE)
+    return Book.open_disk(path)
+
+
+def test_a_missing_shakemap_is_listed_and_taken_in(book):
+    (missing,) = book.missing()
+    assert (missing["name"], missing["kind"]) == ("grid.xml", "hazard")
+    book.add_file("grid.xml", EPICENTRE.read_bytes())
+    assert book.missing() == []
+    site = book.snapshot().inventory.site_ground
+    assert site is not None
+    assert site.shared is None, "no uncertainty.xml lies beside it"
+
+
+def test_a_job_works_with_the_uncertainties_that_lie_beside_it(book, tmp_path):
+    for file in EPICENTRE.parent.iterdir():
+        shutil.copy(file, tmp_path / "own")
+    snapshot = book.snapshot()
+    assert list(list_present(snapshot.cells, snapshot.sheets, snapshot.files)) == ["grid.xml", "uncertainty.xml"]
+    prepare(book, {"formats": ["json"]}, tmp_path / "job")
+    assert sorted(one.name for one in (tmp_path / "job").rglob("*.xml")) == ["grid.xml", "uncertainty.xml"]
