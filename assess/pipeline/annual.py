@@ -67,7 +67,7 @@ def _find_missing(assessment: Assessment, ground: Ground) -> Text | str:
     if suite is not None and not assessment.settings.scale_motions:
         return fill("the user's own motions are not scaled to the floors, so that their ground PGA is not known")
     sources = {assessment.case_demand[case].source for case in np.flatnonzero(cases.ensemble >= 0)}
-    if ground.pga is None or ((ground.is_from_sds or ground.shaking or ground.site) and sources != {"profile"}):
+    if ground.find_pga(sources) is None:
         return fill(
             "the peak ground acceleration of this scenario is not known: fill in Ground PGA in Building, that of the "
             "same earthquake as the floors' motions"

@@ -10,7 +10,7 @@ Ground PGV is known, or that of the map or the intensity, a larger estimate is c
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
@@ -166,6 +166,14 @@ class Ground:
         """Peak ground velocity [m/s] that belongs to `pga`: as filled in, else of the map or the assumed intensity."""
         source = self.site or self.shaking
         return source.pgv if self.pgv is None and source else self.pgv
+
+    def find_pga(self, sources: Collection[Source]) -> float | None:
+        """Return the peak that motions of floors with these sources belong to [m/s2]; None where it is not known.
+
+        Only Ground PGA is that of floors with motions of their own: an SDS, an intensity or a map serves profiles.
+        """
+        serves_profiles = self.is_from_sds or self.shaking or self.site
+        return None if serves_profiles and set(sources) != {"profile"} else self.pga
 
     def place(self, floor: Floor) -> tuple[float | None, tuple[str, ...]]:
         """Return the elevation of a floor [m] with its flags: as filled in, else by Storeys and Height, else None."""

@@ -8,10 +8,10 @@ from typing import Any
 import assess
 from assess.fragility import fit_fragility
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.piece_fragility import UNITS, PieceFragilities, find_piece_fragilities
+from assess.pipeline.piece_fragility import UNITS, By, Measure, PieceFragilities, find_piece_fragilities
 from assess.pipeline.run import compute
 
-FLOORS = [
+FLOORS: list[dict[str, Any]] = [
     {"floor": "1", "PFA X [g]": 0.3, "PFA Y [g]": 0.2, "PFV X [cm/s]": 40, "PFV Y [cm/s]": 30},
     {"floor": "2", "PFA X [g]": 0.5, "PFV X [cm/s]": 60},
 ]
@@ -26,12 +26,20 @@ LEVELS = [round(0.12 * 1.25**at, 3) for at in range(14)]
 """[g], or in m/s against PFV."""
 
 
+BARE: list[dict[str, Any]] = [{"floor": "1", "Elevation [m]": 3}, {"floor": "2", "Elevation [m]": 6}]
+"""Floors without motions of their own."""
+
+
 def assess_small(
-    building: dict[str, Any] = GROUND, by: str = "type", im: str = "pfa", **settings: Any
+    building: dict[str, Any] = GROUND,
+    by: By = "type",
+    im: Measure = "pfa",
+    floors: list[dict[str, Any]] = FLOORS,
+    **settings: Any,
 ) -> tuple[Assessment, PieceFragilities]:
     """Return an assessment and its fragilities at `LEVELS`, by 60 draws."""
     inventory = assess.read_inventory(
-        {"Building": [building], "Floors": FLOORS, "Items": ITEMS, "Catalogue": [{"type": "Shelf"}]}
+        {"Building": [building], "Floors": floors, "Items": ITEMS, "Catalogue": [{"type": "Shelf"}]}
     )
     inventory = replace(inventory, source=Path("small office.xlsx"))
     assessment = compute(inventory, assess.Settings(verify="none", runs=60, seed=3, **settings))

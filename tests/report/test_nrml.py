@@ -13,7 +13,7 @@ from assess.errors import InputError
 from assess.fragility import lognormal_chance
 from assess.report.interchange.nrml import write_nrml
 from assess.units import GRAVITY
-from tests.report.made_fragilities import RISING, UNEVEN, assess_small, shape_curves
+from tests.report.made_fragilities import BARE, RISING, UNEVEN, assess_small, shape_curves
 
 TAG = "{http://openquake.org/xmlns/nrml/0.5}"
 
@@ -129,6 +129,14 @@ def test_without_the_ground_of_the_scenario_it_is_refused(building):
     """The floors' PFA is filled in: an SDS is then of a design, not of their earthquake."""
     with pytest.raises(InputError, match=r"formats: nrml relates each floor to the ground.* Fill in Ground PGA"):
         write_nrml(*assess_small(building))
+
+
+def test_a_profile_starts_from_the_ground_of_sds():
+    """Floors that follow the profile belong to 0.4 SDS."""
+    assessment, found = assess_small({"Height [m]": 9, "SDS [g]": 1.0, "Scenario kind": "ASCE 7-22"}, floors=BARE)
+    description, chances = read(write_nrml(assessment, found))
+    assert "Ground PGA 0.4 g" in description
+    assert "Shelf|2" in chances
 
 
 def test_nothing_is_written_where_no_curve_can_be(small):

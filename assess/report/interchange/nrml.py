@@ -108,15 +108,15 @@ def find_ground_pga(assessment: Assessment, im: str) -> float:
                 "written for curves against PFA only. Take PFA as the measure, or another format."
             )
         )
-    ground, sources = find_ground(assessment.inventory), {one.source for one in assessment.case_demand}
-    if ground.pga is None or ((ground.is_from_sds or ground.shaking) and sources != {"profile"}):
+    pga = find_ground(assessment.inventory).find_pga({one.source for one in assessment.case_demand})
+    if pga is None:
         raise InputError(
             fill(
                 "formats: nrml relates each floor to the ground, whose peak acceleration in this scenario is not "
                 "known. Fill in Ground PGA in the sheet Building, that of the same earthquake as the floors' motions."
             )
         )
-    return assessment.settings.scale * ground.pga
+    return assessment.settings.scale * pga
 
 
 def _find_ratio(one: PieceFragility, floor: str, pga: float) -> float:
