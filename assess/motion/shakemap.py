@@ -252,7 +252,7 @@ def parse_shakemap(
         If one is no such file, is damaged or cut off, lacks PGA, has an unknown unit, or holds a number that is
         impossible; if the two are of different earthquakes.
     """
-    grid = _named(name, lambda: _check_grid(parse_grid(data)))
+    grid = _named(name, lambda: _read_grid(data))
     digest = hashlib.sha256(data).hexdigest()
     if uncertainty is None:
         return ShakeMap(file=name, sha256=digest, grid_sha256=digest, grid=grid, path=path)
@@ -268,6 +268,11 @@ def parse_shakemap(
         uncertainty=beside,
         path=path,
     )
+
+
+@lru_cache(maxsize=2)  # workbooks of one folder name the same map
+def _read_grid(data: bytes) -> Grid:
+    return _check_grid(parse_grid(data))
 
 
 def _named(name: str, read: Callable[[], Grid]) -> Grid:
