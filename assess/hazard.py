@@ -140,7 +140,7 @@ def parse_hazard(
         if {"lon", "lat"} <= set(heading):
             comments = "\n".join(line for line in lines if is_comment(line))
             return _read_sites(name, heading, rows, comments, latitude, longitude)
-        return _read_table(name, heading, rows)
+        return _read_table(name, heading, rows, is_ended=not lines[-1].strip())
     except InputError as error:
         raise InputError(join(": ", (name, error.message))) from None
 
@@ -194,7 +194,7 @@ def _read_number(text: str, line: int, column: str) -> float:
 # ---------------------------------------------------------------- two columns
 
 
-def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line]) -> HazardCurve:
+def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line], *, is_ended: bool) -> HazardCurve:
     if sorted(heading) != sorted(COLUMNS):
         raise InputError(
             fill(
@@ -219,7 +219,12 @@ def _read_table(name: str, heading: Sequence[str], rows: Sequence[Line]) -> Haza
     if points[0][1] == points[-1][1]:
         raise InputError(fill("the annual rate is the same in every row: it has to fall as PGA rises"))
     pga, rate = np.array(points).T
-    return HazardCurve(file=name, pga=pga * GRAVITY, rate=rate)
+    notes = () if is_ended else (_NO_END,)
+    return HazardCurve(file=name, pga=pga * GRAVITY, rate=rate, notes=notes)
+
+
+_NO_END = fill("the last line of the hazard file has no end: see that its last rate is whole, and no row is missing")
+"""A number that is cut off is a smaller number; programs end their last line, people may not."""
 
 
 def _check_point(line: int, pga: float, rate: float) -> None:

@@ -229,6 +229,28 @@ def test_distances():
     np.testing.assert_allclose(found, np.array([1, 90, 1, 180]) * degree, rtol=1e-9)
 
 
+def test_a_table_that_may_be_cut_off_is_remarked_on():
+    """Its last rate would be read as a smaller one; what people type may end without an end of line."""
+    text = "pga_g,annual_rate\n0.1,0.0123\n0.4,0.0019"
+    assert parse_hazard(f"{text}\n".encode(), "h.csv").notes == ()
+    for cut in (text, text[:-1]):
+        (note,) = parse_hazard(cut.encode(), "h.csv").notes
+        assert str(note).startswith("the last line of the hazard file has no end: see that its last rate is whole")
+
+
+@pytest.mark.parametrize("name", ["oq-case33", "oq-case44"])
+def test_a_cut_table_of_openquake_is_never_read_as_another_curve(name):
+    data = (DATA / f"{name}-hazard_curve-mean-PGA.csv").read_bytes()
+    whole = parse_hazard(data, "h.csv", latitude=0, longitude=0)
+    for end in range(len(data)):
+        try:
+            cut = parse_hazard(data[:end], "h.csv", latitude=0, longitude=0)
+        except InputError as error:
+            assert str(error).startswith("h.csv: ")  # noqa: PT017 - most cuts are refused, some leave the curve whole
+            continue
+        assert cut.rate.tolist() == whole.rate.tolist()
+
+
 def test_importing_it_loads_nothing_heavy():
     code = "import sys, assess.hazard; print([one for one in ('numba', 'scipy') if one in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
