@@ -1,0 +1,238 @@
+"""Workers of dask: the same bytes as one process, and each fault of a cluster told or made up for."""
+
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from assess.errors import InputError, OutputError
+from assess.portfolio import cluster
+from assess.portfolio.building_task import Task
+from assess.portfolio.cluster import Site, answer_probe, check_workers, list_versions, run_on_cluster
+from assess.portfolio.part_files import FOLDER
+from assess.portfolio.run_portfolio import run_portfolio
+from assess.portfolio.sources import find_sources
+from assess.settings import Settings
+from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
+
+pytest.importorskip("distributed")
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")]
+ROOT = Path(__file__).parents[2]
+FORMULAS = Settings(verify="none")
+SOON = 60.0
+QUIET = {
+    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "false",
+    "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s",
+    "PYTHONPATH": str(ROOT),
+}
+
+
+@contextlib.contextmanager
+def _started(*words):
+    """Start a command of dask, end it and all that it started."""
+    with subprocess.Popen(
+        [sys.executable, "-m", *words], env=os.environ | QUIET, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    ) as process:  # fmt: skip
+        try:
+            yield process
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def _scheduler():
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    words = ("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
+    with _started(*words) as process:
+        address = f"tcp://127.0.0.1:{port}"
+        _wait_for(lambda: _answers(port))
+        yield process, address
+
+
+def _answers(port):
+    with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
+        return True
+    return False
+
+
+def _workers(address, count, *options):
+    words = ("distributed.cli.dask_worker", address, "--nworkers", str(count), "--no-dashboard", "--host", "127.0.0.1")
+    return _started(*words, *(options or ("--nthreads", "1")))
+
+
+def _wait_for(find):
+    latest = time.monotonic() + SOON
+    while not (found := find()):
+        assert time.monotonic() < latest, "what was waited for did not come"
+        time.sleep(0.05)
+    return found
+
+
+@pytest.fixture(scope="module")
+def address():
+    """Return the address of a scheduler with four workers."""
+    with _scheduler() as (_, found), _workers(found, 4):
+        yield found
+
+
+def _run(tmp_path, out, scheduler=None, settings=FORMULAS):
+    return run_portfolio(
+        tmp_path / "city", tmp_path / out, settings, ground=StagedGround(tmp_path), jobs=1, scheduler=scheduler,
+        formats=("parquet",),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("settings", [FORMULAS, Settings(verify="all", runs=10)], ids=["formulas", "simulated"])
+def test_four_workers_give_the_bytes_of_one_process(tmp_path, address, settings):
+    write_city(tmp_path / "city", [40.0, 41.0] * 10)
+    (tmp_path / "city" / "bad.xlsx").write_bytes(b"no workbook")
+    found = _run(tmp_path, "cluster", address, settings)
+    assert [path for path, _ in found.skipped] == ["bad.xlsx"]
+    _run(tmp_path, "process", settings=settings)
+    assert read_results(tmp_path / "cluster") == read_results(tmp_path / "process")
+    assert not list((tmp_path / "cluster" / FOLDER).glob(".probe-*"))
+
+
+def test_a_worker_that_dies_changes_no_byte(tmp_path, address):
+    write_city(tmp_path / "city", [40.0, KILLS_ONCE, 41.0])
+    _run(tmp_path, "cluster", address)
+    assert (tmp_path / "killed").exists()
+    _run(tmp_path, "process")
+    assert read_results(tmp_path / "cluster") == read_results(tmp_path / "process")
+
+
+def test_a_building_that_kills_workers_is_skipped_and_its_batch_is_not(tmp_path, address):
+    write_city(tmp_path / "city", [40.0, KILLS, 41.0])
+    found = _run(tmp_path, "cluster", address)
+    assert [path for path, _ in found.skipped] == ["b01.xlsx"]
+    _run(tmp_path, "process")
+    assert read_results(tmp_path / "cluster") == read_results(tmp_path / "process")
+
+
+def test_a_client_that_is_killed_is_followed_by_one_that_goes_on(tmp_path, address):
+    write_city(tmp_path / "city", [40.0] * 20 + [HOLDS])
+    (tmp_path / "hold").touch()
+    code = (
+        "from pathlib import Path\nfrom tests.portfolio import test_cluster as t\n"
+        f"t._run(Path({str(tmp_path)!r}), 'out', {address!r})"
+    )
+    parts = tmp_path / "out" / FOLDER
+    with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, env=os.environ | QUIET) as client:
+        _wait_for(lambda: len(list(parts.glob("*/*.part"))) == 20 and list(tmp_path.glob("held-*")))
+        client.send_signal(signal.SIGKILL)
+    (tmp_path / "hold").unlink()
+    assert _run(tmp_path, "out", address).kept >= 20
+    _run(tmp_path, "process")
+    assert read_results(tmp_path / "out") == read_results(tmp_path / "process")
+
+
+def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path):
+    write_city(tmp_path / "city", [40.0] * 20 + [HOLDS])
+    (tmp_path / "hold").touch()
+    with _scheduler() as (process, own), _workers(own, 1):
+        tasks = [
+            Task(source=one, settings=replace(FORMULAS, city=True), ground=StagedGround(tmp_path), out=tmp_path / "out")
+            for one in find_sources(tmp_path / "city")
+        ]
+        (tmp_path / "out" / FOLDER).mkdir(parents=True)
+        summaries = run_on_cluster(tasks, own, is_simulated=False)
+        done = [next(summaries)]
+        process.kill()
+        with pytest.raises(OutputError, match=r"the scheduler .* is gone\. What is done is kept"):
+            done += summaries
+    assert len(list((tmp_path / "out" / FOLDER).glob("*/*.part"))) >= len(done) >= 1
+
+
+def test_no_scheduler_and_no_workers_are_told(tmp_path, monkeypatch):
+    write_city(tmp_path / "city", [40.0])
+    monkeypatch.setattr(cluster, "CONNECTING", 1.0)
+    monkeypatch.setattr(cluster, "JOINING", 1.0)
+    with pytest.raises(InputError, match=r"scheduler tcp://127\.0\.0\.1:1 cannot be reached: .*Is it running"):
+        _run(tmp_path, "out", "tcp://127.0.0.1:1")
+    with _scheduler() as (_, own), pytest.raises(InputError, match=r"has no workers\. Start some with one thread"):
+        _run(tmp_path, "out", own)
+
+
+def test_workers_with_several_threads_are_refused(tmp_path):
+    write_city(tmp_path / "city", [40.0])
+    with _scheduler() as (_, own), _workers(own, 1, "--nthreads", "3"), pytest.raises(InputError) as caught:
+        _run(tmp_path, "out", own)
+    assert "it has 3 threads. Start it with one thread." in str(caught.value)
+    assert not list((tmp_path / "out").glob("*.parquet"))
+
+
+# ---------------------------------------------------------------- what workers have to have
+
+
+class _Client:
+    """Answers as workers would that run in this process: what they see is what `answer_probe` finds."""
+
+    def __init__(self, **answers):
+        self._answers = answers
+
+    def run(self, function, site, on_error):
+        assert (function, on_error) == (answer_probe, "return")
+        return {name: answer(site) if callable(answer) else answer for name, answer in self._answers.items()}
+
+
+@pytest.fixture
+def site(tmp_path):
+    """Return what workers have to have, with its probe written."""
+    (tmp_path / "probe").write_text("token", encoding="ascii")
+    (tmp_path / "a.xlsx").touch()
+    return Site(versions=list_versions(), probe=tmp_path / "probe", token="token", seen=(tmp_path / "a.xlsx",))
+
+
+def _refuse(site, answer):
+    with pytest.raises(InputError) as caught:
+        check_workers(_Client(good=answer_probe, bad=answer), site)
+    assert "good" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_a_worker_that_has_all_is_accepted(site):
+    check_workers(_Client(good=answer_probe), site)
+
+
+def test_a_worker_with_another_version_is_refused(site):
+    def answer(asked):
+        versions = tuple((name, "0.0.1" if name in ("assess", "numpy") else own) for name, own in list_versions())
+        return answer_probe(asked) | {"versions": versions}
+
+    text = _refuse(site, answer)
+    assert text.startswith("worker bad: other versions: assess 0.0.1 there, ")
+    assert "numpy 0.0.1 there" in text
+    assert text.endswith("Install the same everywhere.")
+
+
+def test_a_worker_without_assess_or_that_fails_is_refused(site):
+    assert "assess is not installed there" in _refuse(site, ModuleNotFoundError("No module named 'assess'"))
+    assert "it does not answer (RuntimeError: broken)" in _refuse(site, RuntimeError("broken"))
+
+
+def test_a_worker_that_sees_another_folder_is_refused(site, tmp_path):
+    other = tmp_path / "other"
+    other.mkdir()
+    missing = replace(site, probe=other / "probe")
+    assert "it does not share the folder" in _refuse(site, lambda _: answer_probe(missing))
+    (other / "probe").write_text("token of another run", encoding="ascii")
+    assert "it sees another folder of this name" in _refuse(site, lambda _: answer_probe(missing))
+    (other / "probe").write_text("token", encoding="ascii")  # a copy, on which it writes where nobody reads
+    assert "it does not share the folder" in _refuse(site, lambda _: answer_probe(missing))
+
+
+def test_a_worker_that_does_not_see_the_workbooks_is_refused(site, tmp_path):
+    unseen = replace(site, seen=(tmp_path / "gone.xlsx",))
+    text = _refuse(site, lambda _: answer_probe(unseen))
+    assert "gone.xlsx. Put it in a folder that all machines share." in text
