@@ -73,7 +73,7 @@ BY_CLASS: Mapping[str, Sign] = {
 }  # fmt: skip
 """Signs by the worst class of the pieces, in the order in which they are drawn."""
 _ROUTE_SHAPES = {
-    RouteState.OPEN: TICK, RouteState.DOUBTFUL: DIAMOND, RouteState.NOT_KNOWN: CIRCLE, RouteState.BLOCKED: CROSS,
+    RouteState.OPEN: TICK, RouteState.DOUBTFUL: DIAMOND, RouteState.NOT_KNOWN: CIRCLE, RouteState.BLOCKED: SQUARE,
 }  # fmt: skip
 _STATE_COUNTS = {
     RouteState.BLOCKED: "routes_blocked", RouteState.NOT_KNOWN: "routes_not_known",
@@ -85,7 +85,7 @@ BY_ROUTES: Mapping[str, Sign] = {
 } | {
     state.replace(" ", "-"): Sign(
         state.replace(" ", "-"), state.symbol, "#2e7d5b" if state is RouteState.OPEN else state.fill,
-        _ROUTE_SHAPES[state], 2 + state.severity, is_open=state in (RouteState.OPEN, RouteState.BLOCKED),
+        _ROUTE_SHAPES[state], 2 + state.severity, is_open=state is RouteState.OPEN,
     )
     for state in sorted(RouteState, key=lambda one: one.severity)
 }  # fmt: skip

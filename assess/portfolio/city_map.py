@@ -68,7 +68,7 @@ class Frame:
     def per_degree(self) -> tuple[float, float]:
         """Pixels a degree of longitude and of latitude."""
         degree = math.radians(1) * EARTH * self.scale
-        return degree * math.cos(math.radians(self.middle)), degree
+        return degree * _shorten(self.middle), degree
 
     def place(self, longitude: float, latitude: float) -> tuple[float, float]:
         """Return where a place lies in the drawing [px]; longitudes count from the left edge round the globe."""
@@ -86,13 +86,18 @@ def build_frame(places: Sequence[Place]) -> Frame:
     south, north = min(latitudes), max(latitudes)
     middle = (south + north) / 2
     degree = math.radians(1) * EARTH
-    along = degree * max(math.cos(math.radians(middle)), 0.01)
+    along = degree * _shorten(middle)
     sizes = [(max(longitudes) - min(longitudes)) * along, (north - south) * degree]
     wide, high = (max(size * (1 + 2 * MARGIN), size + 2 * LEAST) for size in sizes)
     wide = max(wide, high * WIDE / HIGHEST)
     high = max(high, wide * LOWEST / WIDE)
     west = (min(longitudes) + max(longitudes)) / 2 - wide / along / 2
     return Frame((west + 180) % 360 - 180, middle + high / degree / 2, middle, WIDE / wide, WIDE, high * WIDE / wide)
+
+
+def _shorten(latitude: float) -> float:
+    """Return the length of a degree of longitude over one of latitude; near a pole that of 85 deg, for a finite map."""
+    return math.cos(math.radians(min(abs(latitude), 85.0)))
 
 
 def _unwrap(longitudes: Sequence[float]) -> list[float]:
@@ -180,7 +185,7 @@ def _write_path(shape: "shapely.Geometry", kind: str) -> str:  # type: ignore[na
     """Return the outline of the parts of one kind of a shape as an SVG path."""
     import shapely
 
-    found = [one for one in shapely.get_parts(shape) if one.geom_type == kind]
+    found = [one for one in shapely.get_parts(shape) if one.geom_type == kind and not one.is_empty]
     rings = [ring for one in found for ring in ((one.exterior, *one.interiors) if kind == "Polygon" else (one,))]
     end = "Z" if kind == "Polygon" else ""
     return "".join(f"M{' '.join(f'{x:.1f} {y:.1f}' for x, y in ring.coords)}{end}" for ring in rings)

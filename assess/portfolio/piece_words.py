@@ -5,6 +5,7 @@ from assess.i18n import number
 from assess.portfolio.building_signs import BY_ROUTES, Row, Sign, say_sign
 from assess.report import words
 from assess.risk import RiskClass
+from assess.route_results import RouteState
 
 _CLASSES = {risk.word: risk for risk in RiskClass}
 
@@ -36,7 +37,18 @@ def label_piece(row: Row, basis: str | None) -> tuple[str, str]:
 
 
 def say_probability(row: Row) -> str:
-    """Return a chance with its interval where it has one: ``12.3 % (10.1 to 15.0 %)``."""
+    """Return a chance with its interval where it has one: ``12.3 % (10.1 to 15.0 %)``.
+
+    Of an anchored piece it is said that it is the chance if it stood free; a route whose state is not known has none,
+    as what is missing is left out of it.
+    """
+    if row.get("state") == RouteState.NOT_KNOWN:
+        return words.DASH
+    said = _say_chance(row)
+    return _("free-standing: {chance}", chance=said) if row.get("is_held") else said
+
+
+def _say_chance(row: Row) -> str:
     value, low, high = row["probability"], row["probability_low"], row["probability_high"]
     if value is None:
         return words.DASH

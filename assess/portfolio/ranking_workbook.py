@@ -146,6 +146,11 @@ def _of(name: str) -> Callable[[Row], Any]:
     return lambda row: row[name]
 
 
+def _of_known(name: str) -> Callable[[Row], Any]:
+    """Return what reads a chance of a route; a route whose state is not known has none, as it leaves out something."""
+    return lambda row: None if row["state"] == RouteState.NOT_KNOWN else row[name]
+
+
 def _list_building_columns() -> list[Column]:
     def counted(row: Row) -> str:
         sign = sign_of_class(row)
@@ -237,9 +242,9 @@ def _write_routes(pen: Pen, page: Any, content: CityContent) -> None:
         Column(_("File"), 28, _of("path")),
         Column(_("Route"), 22, _of("route")),
         Column(_("State"), 14, lambda row: label_state(row["state"])),
-        Column(_("Chance of a blockage"), 10, _of("probability"), CHANCE),
-        Column(_("Interval, low"), 9, _of("probability_low"), CHANCE),
-        Column(_("Interval, high"), 9, _of("probability_high"), CHANCE),
+        Column(_("Chance of a blockage"), 10, _of_known("probability"), CHANCE),
+        Column(_("Interval, low"), 9, _of_known("probability_low"), CHANCE),
+        Column(_("Interval, high"), 9, _of_known("probability_high"), CHANCE),
         Column(_("People"), 8, _of("occupants"), COUNT),
         Column(_("Pieces that may block it"), 40, _of("blockers")),
         Column(_("To fill in"), 40, _of("to_fill_in")),

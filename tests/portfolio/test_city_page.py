@@ -1,0 +1,208 @@
+"""The page of a city: what it says, that nothing in it is code or a request, and how it is used in a browser."""
+
+import json
+import os
+import re
+
+import pytest
+
+from assess.portfolio.city_page import render_page
+from assess.report.pages.html import hash_script
+from assess.report.report_options import ReportOptions
+from docs.screenshot import find_browser
+from tests.portfolio.city_samples import NASTY, make_view
+from tests.web.looking import examine
+
+REPEAT = "assess run {path} again"
+in_browser = [
+    pytest.mark.browser,
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        find_browser() is None and "ASSESS_CI" not in os.environ, reason="no Chromium or Chrome is installed"
+    ),
+]
+
+
+@pytest.fixture(scope="module")
+def view():
+    return make_view(150, draws=40)
+
+
+@pytest.fixture(scope="module")
+def html(view):
+    return render_page(view, repeat=REPEAT).decode()
+
+
+@pytest.fixture(scope="module")
+def data(html):
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', html, re.DOTALL)[1])
+
+
+def test_the_answer_stands_first_and_keeps_assumed_buildings_apart(html):
+    answer = html[html.index('<section id="answer">') : html.index('<section id="map">')]
+    assert answer.index("Surveyed buildings, simulated") < answer.index(
+        "Buildings with an assumed inventory, simulated"
+    )
+    assert re.search(r"In nine of ten earthquakes like this one between [\d,]+ and [\d,]+ of them overturn\.", answer)
+    assert "13 buildings could not be assessed and are in no number" in answer
+    assert "are not added up" in answer
+    assert "The furniture is assumed from the use and the floor area." in answer
+
+
+def test_it_cites_what_the_draws_rest_on(html):
+    assert "doi:10.1002/eqe.922" in html
+    assert "doi:10.1193/070113EQS184M" in html
+
+
+def test_formulas_alone_cite_no_draws_and_give_no_range():
+    html = render_page(make_view(6, verify="none")).decode()
+    assert "eqe.922" not in html
+    assert "No range is known, as nothing was simulated." in html
+
+
+def test_no_name_becomes_markup_and_one_script_alone_may_run(html):
+    assert html.count("<script") == 2
+    assert "<script>alert" not in html
+    script = html[html.rindex("<script>") + 8 : html.rindex("</script>")]
+    assert f"script-src '{hash_script(script)}'" in html
+    assert "default-src 'none'" in html
+    assert not re.findall(r"(?:src|href)=[\"'](?!data:)[^\"'#]", html.split('id="data"')[0])
+    assert "innerHTML" not in script
+
+
+def test_the_data_hold_every_building_in_the_order_of_the_ranking(data, view):
+    assert len(data["buildings"]) == 150
+    assert [one["kind"] for one in data["buildings"][-13:]] == ["skipped"] * 13
+    assert NASTY[:20] in [one["name"][:20] for one in data["buildings"]]
+    table = data["tables"]["pieces"]
+    assert table["starts"][-1] == len(view.pieces)
+    first = data["buildings"][0]
+    own = view.pieces[view.pieces["path"] == first["path"]]
+    rows = [
+        [table["texts"][at][column[row]] for at, column in enumerate(table["columns"])]
+        for row in range(table["starts"][0], table["starts"][1])
+    ]
+    assert sorted(row[0] for row in rows) == sorted(own["item"])
+    places = [int(row[8]) for row in rows if row[8]]
+    assert places == sorted(places)
+
+
+def test_the_command_quotes_the_path_and_assumed_buildings_have_none(data):
+    for one in data["buildings"]:
+        if one["inventory"] == "assumed":
+            assert one["command"] == ""
+        elif one["path"].endswith(".xlsx"):
+            assert one["command"] == f"assess run {one['path']} again"
+
+
+def test_a_route_that_is_not_known_and_an_anchored_piece_do_not_look_safe(view):
+    from dataclasses import replace
+
+    routes = view.routes.assign(state="not known", probability=0.0)
+    html = render_page(replace(view, routes=routes)).decode()
+    tables = json.loads(re.search(r'id="data">(.*?)</script>', html, re.DOTALL)[1])["tables"]
+    assert tables["routes"]["texts"][1:3] == [["? not known"], ["–"]]
+    chances = dict(zip(tables["pieces"]["texts"][7], range(10**6), strict=False))
+    assert any(text.startswith("free-standing: ") for text in chances)
+
+
+def test_the_page_speaks_another_language(view):
+    assert '<html lang="it">' in render_page(view, options=ReportOptions(language="it")).decode()
+
+
+@pytest.fixture
+def open_page(browser, html, tmp_path):
+    complaints, pages = [], []
+
+    def open_page(width=1280, text=html):
+        (tmp_path / "city.html").write_text(text, encoding="utf-8")
+        page = browser.new_page(viewport={"width": width, "height": 844})
+        pages.append(page)
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on(
+            "request",
+            lambda request: complaints.append(request.url) if request.url[:5] not in ("file:", "data:") else None,
+        )
+        page.goto((tmp_path / "city.html").as_uri())
+        return page
+
+    yield open_page
+    for page in pages:
+        page.close()
+    assert complaints == []
+
+
+class TestInBrowser:
+    """What hands do with it."""
+
+    pytestmark = in_browser
+
+    def test_filters_narrow_list_and_map_and_say_so(self, open_page):
+        page = open_page()
+        assert page.locator("#filter-status").inner_text() == "Buildings: 150, all shown"
+        assert page.locator("#ranked tbody tr").count() == 100
+        page.get_by_role("button", name="Show 50 more").click()
+        assert page.locator("#ranked tbody tr").count() == 150
+        page.get_by_label("Use", exact=True).select_option("School")
+        shown = page.locator("#ranked tbody tr").count()
+        assert 0 < shown < 100
+        assert page.locator(".marks > g:visible").count() <= shown
+        assert f"{shown} of 150; Use: School" in page.locator("#filter-status").inner_text()
+        page.get_by_role("button", name="Show all buildings").click()
+        page.get_by_label("Text").fill("nothing has this name")
+        assert page.locator("#ranked tbody tr").count() == 0
+
+    def test_a_row_opens_its_building_and_back_returns_to_it(self, open_page, data):
+        page = open_page()
+        page.locator("#ranked tbody button").nth(4).click()
+        assert page.locator("#one h1").inner_text() == data["buildings"][4]["name"]
+        assert page.evaluate("document.activeElement.tagName") == "H1"
+        assert page.locator("#all").is_hidden()
+        assert "What to fix first" in page.locator("#one").inner_text()
+        assert page.locator("#one pre").inner_text() == data["buildings"][4]["command"]
+        page.get_by_role("button", name="Back to all buildings").click()
+        assert page.locator("#all").is_visible()
+        assert page.evaluate("document.activeElement.textContent") == data["buildings"][4]["name"]
+
+    def test_a_sign_on_the_map_opens_its_building(self, open_page, data):
+        page = open_page()
+        mark = page.locator(".marks > g").last
+        at = int(mark.get_attribute("data-at"))
+        mark.click(force=True)
+        assert page.locator("#one h1").inner_text() == " ".join(data["buildings"][at]["name"].split())
+
+    def test_the_map_zooms_by_buttons_and_keys_and_shows_states(self, open_page):
+        page = open_page()
+        box = "document.querySelector('svg.city-map').viewBox.baseVal.width"
+        page.get_by_role("button", name="Zoom in").click()
+        assert page.evaluate(box) == 500
+        assert page.locator(".scale-bar text").text_content() == "10 km"
+        page.locator("svg.city-map").focus()
+        page.keyboard.press("+")
+        assert page.evaluate(box) == 250
+        page.keyboard.press("ArrowLeft")
+        page.get_by_role("button", name="Show all", exact=True).click()
+        assert page.evaluate(box) == 1000
+        before = page.locator(".marks").inner_html()
+        page.get_by_label("Signs show").select_option("state")
+        assert page.locator(".marks").inner_html() != before
+        assert page.locator("#legend-state").is_visible()
+        assert page.locator("#legend-kind").is_hidden()
+
+    def test_a_name_that_attacks_is_shown_as_it_is(self, open_page, data):
+        page = open_page()
+        at = next(at for at, one in enumerate(data["buildings"]) if one["name"].startswith("=cmd"))
+        page.evaluate(f"location.hash = 'building-{at + 1}'")
+        page.wait_for_function("!document.getElementById('one').hidden")
+        assert "<script>alert(1)</script>" in page.locator("#one h1").inner_text()
+
+    @pytest.mark.parametrize("width", [390, 1400])
+    def test_it_fits_the_screen_and_axe_core_finds_nothing_grave(self, open_page, width):
+        page = open_page(width)
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert examine(page) == []
+        page.locator("#ranked tbody button").first.click()
+        page.wait_for_function("!document.getElementById('one').hidden")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert examine(page) == []

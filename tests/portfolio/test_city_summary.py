@@ -1,0 +1,45 @@
+"""The summary of a city: two to four pages with the answer, the map and what to start with; the same every time."""
+
+import pypdfium2
+import pytest
+
+from assess.portfolio.background import read_background
+from assess.portfolio.city_summary import render_summary
+from assess.resources import city_file
+from tests.portfolio.city_samples import make_view
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def pages():
+    data = render_summary(make_view(220, draws=40), read_background(city_file("coast.geojson")))
+    document = pypdfium2.PdfDocument(data)
+    return [" ".join(page.get_textpage().get_text_range().split()) for page in document]
+
+
+def test_it_has_two_to_four_pages_and_the_answer_stands_on_the_first(pages):
+    assert 2 <= len(pages) <= 4
+    assert "Surveyed buildings, simulated" in pages[0]
+    assert "In nine of ten earthquakes like this one between" in pages[0]
+    assert "20 buildings could not be assessed" in pages[0]
+
+
+def test_map_first_buildings_types_skipped_and_references_are_in_it(pages):
+    text = " ".join(pages)
+    for words in (
+        "20 km",
+        "Where to start: Surveyed buildings, simulated",
+        "Storage cabinet steel",
+        "Skipped buildings",
+        "Did you type metres?",
+        "8 more are in ranking.xlsx",
+        "10.1002/eqe.922",
+        "not per year",
+    ):
+        assert words in text, words
+
+
+def test_the_same_tables_give_the_same_bytes():
+    view = make_view(6, draws=5)
+    assert render_summary(view) == render_summary(view)
