@@ -1,0 +1,158 @@
+"""``assess portfolio``: a city from the command line."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from assess.cli.app import app
+from assess.cli.command_portfolio import FORMATS, _say_repeat
+from assess.portfolio import portfolio_output
+from assess.portfolio.city_tables import read_table
+from assess.settings import Settings
+from tests.portfolio.staged import write_building, write_city
+
+run = CliRunner().invoke
+SOON = 60.0
+
+
+def _write(tmp_path, count=2):
+    return write_city(tmp_path / "city", [40.0] * count, ground_pga=0.4)
+
+
+def _call(*words, formats="parquet"):
+    return run(app, ["portfolio", *map(str, words), "--verify", "none", "--formats", formats, "--jobs", "1"])
+
+
+def test_a_folder_is_assessed_and_told_in_words(tmp_path):
+    result = _call(_write(tmp_path), "--out", tmp_path / "out")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("2 buildings assessed, 0 skipped.\nsurveyed, by formula: 2 buildings, 10 pieces; ")
+    expected = read_table(tmp_path / "out", "buildings")["expected_falls"].sum()
+    assert f"10 pieces; {expected:.1f} expected to fall." in result.stdout
+    assert "Not counted above: 2 anchored." in result.stdout
+    assert "not per year" in result.stdout
+    assert f"wrote {tmp_path / 'out' / 'pieces.parquet'}" in result.stderr
+
+
+def test_a_skipped_building_is_named_and_the_exit_status_is_1(tmp_path):
+    city = _write(tmp_path, 1)
+    (city / "bad\x1b[31m.xlsx").write_bytes(b"no workbook")
+    write_building(city / "unshaken.xlsx")
+    result = _call(city, "--out", tmp_path / "out")
+    assert result.exit_code == 1
+    assert "1 building assessed, 2 skipped." in result.stdout
+    assert "\x1b" not in result.stderr
+    assert re.search(r"^error  bad.*\.xlsx: skipped\. .* is not an Excel workbook", result.stderr, re.MULTILINE)
+    assert "error  unshaken.xlsx: skipped. " in result.stderr
+
+
+def test_the_same_command_goes_on_from_what_is_there(tmp_path):
+    city = _write(tmp_path)
+    _call(city, "--out", tmp_path / "out")
+    assert (
+        "2 buildings assessed (2 of them by an earlier run), 0 skipped."
+        in _call(city, "--out", tmp_path / "out").stdout
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "--jobs: the workers of --scheduler do the work"),
+        (["--ideal"], "--ideal is about the simulation"),
+        (["--runs", "auto", "--verify", "all"], "--runs is auto: all buildings of a city need the same draws"),
+        (["--formats", "csv"], "--formats: 'csv' is an unknown format"),
+        (["--scale", "0"], "--scale is 0"),
+        (["--background", "none.geojson"], "none.geojson"),
+        (["--shakemap", "none.xml"], "none.xml"),
+        (["--out", "city"], "--out: .*holds the workbooks"),
+    ],
+)
+def test_bad_usage_is_named_with_its_option_and_writes_nothing(tmp_path, monkeypatch, words, message):
+    monkeypatch.chdir(tmp_path)
+    _write(tmp_path, 1)
+    result = run(app, ["portfolio", "city", "--verify", "none", *words])
+    assert result.exit_code == 2
+    assert re.search(message, result.stderr)
+    assert [path.name for path in tmp_path.iterdir()] == ["city"]
+
+
+def test_an_example_is_written_to_a_new_folder_alone(tmp_path):
+    city = _write(tmp_path, 1)
+    result = _call(city, "--example", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "is not empty; name a folder that does not exist yet" in result.stderr
+    result = _call(tmp_path / "new", "--example", "--out", tmp_path / "new" / "out")
+    assert "lies in the folder of the example; name another one" in result.stderr
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.slow
+def test_the_example_is_a_city_of_200_buildings_or_more_that_are_all_assessed(tmp_path):
+    result = _call(tmp_path / "bay", "--example", "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    rows = read_table(tmp_path / "out", "buildings")
+    assert len(rows) >= 200
+    assert set(rows["status"]) == {"assessed"}
+    assert set(rows["ground_source"]) == {"shakemap"}
+    assert set(rows["inventory"]) == {"surveyed", "assumed"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no signals to send")
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_command_and_keeps_what_is_done(tmp_path, number):
+    city = _write(tmp_path, 300)
+    words = [
+        "assess",
+        "portfolio",
+        str(city),
+        "--verify",
+        "none",
+        "--out",
+        str(tmp_path / "out"),
+        "--formats",
+        "parquet",
+    ]
+    code = (
+        f"import signal, sys\nsignal.signal(signal.SIGINT, signal.default_int_handler)\nsys.argv = {words!r}\n"
+        "from assess.cli.app import main\nmain()"
+    )
+    parts = tmp_path / "out" / "parts"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        latest = time.monotonic() + SOON
+        while not list(parts.glob("*/*.part")):
+            assert time.monotonic() < latest
+            time.sleep(0.02)
+        process.send_signal(number)
+        try:
+            printed, errors = process.communicate(timeout=SOON)
+        finally:
+            process.kill()
+    assert process.returncode == 128 + number
+    assert (printed, "Traceback" in errors) == ("", False)
+    assert errors.endswith("the same command goes on.\n")
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["parts"]
+    result = _call(city, "--out", tmp_path / "out")
+    assert re.match(r"300 buildings assessed \(\d+ of them by an earlier run\)", result.stdout)
+
+
+def test_the_formats_are_those_of_the_library():
+    assert FORMATS == portfolio_output.FORMATS
+
+
+def test_the_line_that_repeats_a_building_names_what_differs_from_the_defaults():
+    assert _say_repeat(Settings(), None, None) == "assess run {path} --city"
+    given = Settings(verify="none", seed=3, scenario="NTC 2018", ideal=True)
+    assert _say_repeat(given, Path("my grid.xml"), None) == (
+        "assess run {path} --city --shakemap 'my grid.xml' --verify none --seed 3 --scenario 'NTC 2018' --ideal"
+    )
