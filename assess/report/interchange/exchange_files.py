@@ -2,6 +2,7 @@
 
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -69,14 +70,15 @@ def name_safely(names: Iterable[str], joint: str) -> list[str]:
     A name that has no such letter becomes "curve"; the second of equal ones ends in 2, and so on.
     """
     taken: set[str] = set()
+    numbers: Counter[str] = Counter()
 
     def choose(name: str) -> str:
         plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
         stem = re.sub("[^A-Za-z0-9]+", joint, plain)[:LONGEST_NAME].strip(joint) or "curve"
-        chosen, number = stem, 1
+        chosen = stem
         while chosen.lower() in taken:
-            number += 1
-            chosen = f"{stem}{joint}{number}"
+            numbers[stem.lower()] += 1
+            chosen = f"{stem}{joint}{numbers[stem.lower()] + 1}"
         taken.add(chosen.lower())
         return chosen
 
