@@ -1,4 +1,4 @@
-"""Write the generated parts of `workbook.md`, `methods.md` and `commands.md`: ``python docs/reference.py``.
+"""Write the generated parts of workbook.md, methods.md, commands.md and portfolio.md: ``python docs/reference.py``.
 
 Each page is written by hand down to the line `MARK`; what follows repeats what the code says of itself: the columns of
 the workbook, the methods, the help of the commands. A test compares the pages with what this script writes.
@@ -13,6 +13,7 @@ import typer
 
 from assess.cli.app import app, find_commands
 from assess.methods import MethodInfo, all_methods
+from assess.portfolio.table_schemas import TABLES
 from assess.units import QUANTITIES
 from assess.workbook.names import translate
 from assess.workbook.schema import CLASS, LIVE, SHEETS, WORKINGS, Column
@@ -37,7 +38,8 @@ def build_pages() -> dict[str, str]:
 
 
 def _pages() -> dict[str, Iterator[str]]:
-    return {"workbook.md": _describe_workbook(), "methods.md": _describe_methods(), "commands.md": _describe_commands()}
+    return {"workbook.md": _describe_workbook(), "methods.md": _describe_methods(),
+            "commands.md": _describe_commands(), "portfolio.md": _describe_tables()}  # fmt: skip
 
 
 def _build_page(name: str, lines: Iterable[str]) -> str:
@@ -54,6 +56,20 @@ def _build_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterato
 
 def _join(names: Iterable[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
+
+
+# ---------------------------------------------------------------- the tables of a portfolio
+
+
+def _describe_tables() -> Iterator[str]:
+    yield "## Columns of the tables"
+    yield ""
+    yield "text: VARCHAR; number: DOUBLE; count: BIGINT; flag: BOOLEAN. What is not known is NULL."
+    yield ""
+    for name, columns in TABLES.items():
+        yield f"### {name}"
+        yield ""
+        yield from _build_table(("column", "type", "what"), ((f"`{one.name}`", one.type, one.help) for one in columns))
 
 
 # ---------------------------------------------------------------- the workbook

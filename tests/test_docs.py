@@ -18,7 +18,7 @@ PLACE = re.compile(r"`((?:assess|templates|docs|samples|inventories|tests)/[\w./
 PYTHON = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
-@pytest.mark.parametrize("name", ["workbook.md", "methods.md", "commands.md"])
+@pytest.mark.parametrize("name", ["workbook.md", "methods.md", "commands.md", "portfolio.md"])
 def test_the_references_are_those_of_the_code(name):
     text = (DOCS / name).read_text(encoding="utf-8")
     assert build_pages()[name] == text, "run: python docs/reference.py"

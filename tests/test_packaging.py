@@ -41,6 +41,10 @@ def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
         "assess/studies/facts/table1_buildings.csv",
         "assess/templates/studies/table3.md.j2",
         "assess/examples/market-street.xlsx",
+        "assess/examples/city/grid.xml",
+        "assess/examples/city/coast.geojson",
+        "assess/templates/city.html.j2",
+        "assess/templates/script/city.js",
         "assess/web/page/index.html",
         "assess/web/page/main.mjs",
     } <= names
