@@ -16,7 +16,8 @@ import csv
 import hashlib
 import io
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -182,22 +183,18 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         line where there is one.
     """
     folder = folder.resolve()
-    sites_file = next((name for name in SITES if (folder / name).is_file()), None)
-    if not (folder / VALUES).is_file() or sites_file is None:
-        missing = VALUES if not (folder / VALUES).is_file() else " or ".join(SITES)
-        raise InputError(fill("{folder}: the folder has no {file}", folder=folder.name, file=missing))
+    sites_file = _find_sites_file(folder)
     texts: dict[str, int] = {}
     sites, data = _read_table(folder / sites_file, texts), _read_table(folder / VALUES, texts)
-    try:
-        key = _find_key(data, sites, sites_file)
-        names, latitude, longitude = _read_sites(sites, key, sites_file)
-        measures = _list_measures(data)
+    with _naming(VALUES):
+        key, measures = _find_key(data, sites, sites_file), _list_measures(data)
         _check_values(data, measures)
+    with _naming(sites_file):
+        names, latitude, longitude = _read_sites(sites, key)
+    with _naming(VALUES):
         rows, order = _sort_rows(data, key, names, sites_file)
-    except InputError as error:
-        raise InputError(join(": ", (VALUES, error.message))) from None
-    events = data.numbers[order, data.column("event_id")].astype(np.int64)
-    _check_events(rows, events)
+        events = data.numbers[order, data.column("event_id")].astype(np.int64)
+        _check_events(rows, events)
     hashes = data.sha256, sites.sha256
     return GroundScenarios(
         file=VALUES,
@@ -213,6 +210,24 @@ def read_scenarios(folder: Path) -> GroundScenarios:
         measures=measures,
         event_count=int(np.unique(events).size),
     )
+
+
+@contextmanager
+def _naming(file: str) -> Iterator[None]:
+    """Have errors name a file."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(join(": ", (file, error.message))) from None
+
+
+def _find_sites_file(folder: Path) -> str:
+    """Return the name of the file of the sites; InputError where that or the values are missing."""
+    sites_file = next((name for name in SITES if (folder / name).is_file()), None)
+    if sites_file is None or not (folder / VALUES).is_file():
+        missing = " or ".join(SITES) if (folder / VALUES).is_file() else VALUES
+        raise InputError(fill("{folder}: the folder has no {file}", folder=folder.name, file=missing))
+    return sites_file
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -234,12 +249,11 @@ def _read_table(path: Path, texts: dict[str, int]) -> _Table:
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)
-        return _parse_table(data, texts)
+        with _naming(path.name):
+            return _parse_table(data, texts)
     except OSError as error:
         why = error.strerror or str(error)
         raise InputError(fill("{file}: the file cannot be read ({why})", file=path.name, why=why)) from None
-    except InputError as error:
-        raise InputError(join(": ", (path.name, error.message))) from None
 
 
 def _parse_table(data: bytes, texts: dict[str, int]) -> _Table:
@@ -336,18 +350,18 @@ def _find_key(data: _Table, sites: _Table, sites_file: str) -> str:
     return key
 
 
-def _read_sites(sites: _Table, key: str, file: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _read_sites(sites: _Table, key: str) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the numbers of the sites, rising, with latitude and longitude [deg]."""
     missing = next((name for name in ("lon", "lat") if name not in sites.headings), None)
     if missing is not None:
-        raise InputError(fill("{file}: the column {name} is missing", file=file, name=missing))
+        raise InputError(fill("the column {name} is missing", name=missing))
     names, latitude, longitude = (sites.numbers[:, sites.column(name)] for name in (key, "lat", "lon"))
     bad = ~((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))
     if bad.any():
         line = sites.first + int(bad.argmax())
-        raise InputError(fill("{file}: line {line}: lon and lat are no place on earth", file=file, line=line))
+        raise InputError(fill("line {line}: lon and lat are no place on earth", line=line))
     if np.unique(names).size < names.size:
-        raise InputError(fill("{file}: a {key} is there twice", file=file, key=key))
+        raise InputError(fill("a {key} is there twice", key=key))
     order = np.argsort(names)
     return names[order], latitude[order], longitude[order]
 
@@ -395,4 +409,4 @@ def _check_events(rows: NDArray[np.intp], events: NDArray[np.int64]) -> None:
     again = (np.diff(rows) == 0) & (np.diff(events) == 0)
     if again.any():
         event = int(events[int(again.argmax())])
-        raise InputError(fill("{file}: event {event} is there twice at a site", file=VALUES, event=event))
+        raise InputError(fill("event {event} is there twice at a site", event=event))
