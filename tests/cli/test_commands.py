@@ -252,7 +252,10 @@ def test_a_scenario_is_accepted_in_any_spelling(tmp_path):
 def test_a_profile_without_ground_motion_names_the_cell_and_every_floor_without_elevation(tmp_path):
     done = run(app, [*RUN, str(write(tmp_path / "w.xlsx")), "--out", str(tmp_path / "out"), "--scenario", "NTC 2018"])
     assert done.exit_code == 2
-    assert "Building!B20: Ground PGA, SDS and Shaking are blank; the scenario 'NTC 2018' needs one" in done.stderr
+    assert (
+        "Building!B20: Ground PGA, SDS, ShakeMap file and Shaking are blank; the scenario 'NTC 2018' needs one"
+        in done.stderr
+    )
     for cell in ("C2", "C3"):
         assert re.search(rf"Floors!{cell}: floor '\d' has no Elevation, which the scenario 'NTC 2018'", done.stderr)
 

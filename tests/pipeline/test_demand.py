@@ -169,7 +169,11 @@ def test_a_corrected_record_loses_nothing(tmp_path):
             Floor(row=7, floor="1"),
             r"Floors!A7: floor '1' has no Elevation, which the scenario 'EN 1998-1'",
         ),
-        ("EN 1998-1", Floor(row=7, floor="1", elevation=3.0), r"Building: Ground PGA, SDS and Shaking are blank; the"),
+        (
+            "EN 1998-1",
+            Floor(row=7, floor="1", elevation=3.0),
+            r"Building: Ground PGA, SDS, ShakeMap file and Shaking are blank; the",
+        ),
     ],
 )
 def test_a_floor_without_motion_is_named(tmp_path, scenario, floor, message):

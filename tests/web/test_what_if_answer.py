@@ -104,7 +104,7 @@ def test_nothing_asked_for_changes_nothing(market):
 def test_a_scenario_that_the_workbook_cannot_serve_says_why(tmp_path):
     book = hold(write(tmp_path / "w.xlsx"))
     answer = _try(book, scenario="NTC 2018", scale=2)
-    assert "Ground PGA, SDS and Shaking are blank" in answer["error"]
+    assert "Ground PGA, SDS, ShakeMap file and Shaking are blank" in answer["error"]
     assert {word for _, word, _ in _items(answer["after"]).values()} == {"shaking?", "anchored"}
     answer = _try(book, scenario="recorded", anchor=["A1"])
     assert "'1' has no record" in answer["error"]

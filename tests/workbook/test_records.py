@@ -129,7 +129,7 @@ UNPLACED = "Fill in PFA X or PFA Y, or name a record; or fill in Elevation, and 
     [
         ((4, None), [], None),
         ((12, None), [], "C3: floor '2' has neither a record nor a PFA, lies between no two floors that have one and an "
-         f"Elevation, and Building gives neither Ground PGA nor SDS nor Shaking. {UNSERVED}"),
+         f"Elevation, and Building gives neither Ground PGA nor SDS nor a ShakeMap file nor Shaking. {UNSERVED}"),
         ((12, None), [["Ground PGA [g]", 0.2]], None),
         ((12, None), [["SDS [g]", 0.5]], None),
         ((None, None), [["SDS [g]", 0.5]],
