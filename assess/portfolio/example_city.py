@@ -6,7 +6,8 @@ that are the same on every machine.
 
 import csv
 import shutil
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -65,6 +66,8 @@ _STOREYS: Mapping[str, tuple[int, int]] = {
 _STOREY_HEIGHT = {"Home": 2.9}
 _ANCHORED = (("no", 70), ("unknown", 14), ("yes", 12), ("partly", 4))
 _COSTS = (("L-bracket to studs", 90), ("base angle", 140))
+GRID_STEP, ACROSS = 2.4, 12
+"""Distance between pieces on a plan [m], and pieces in a row of it."""
 OFFSHORE = 0.004
 """Least distance to the coastline [deg], which is a generalised one."""
 
@@ -180,7 +183,7 @@ def _fill_workbook(one: Building) -> Content:
     draw = Random(SEED * 7 + one.number)  # noqa: S311 - an example, no secret
     furnished = _choose_floors(one, draw)
     rise = one.height / one.storeys
-    has_routes = draw.random() < 0.7
+    has_routes, is_drawn, has_costs = (draw.random() < share for share in (0.7, 0.7, 0.6))
     corridors = furnished if has_routes else ()
     building = {
         "building": one.name, "address": f"{one.town}, California", "latitude": one.latitude,
@@ -191,11 +194,39 @@ def _fill_workbook(one: Building) -> Content:
         {"floor": str(at), "name": f"Storey {at}", "elevation": round((at - 1) * rise, 2)} for at in furnished
     ]  # fmt: skip
     items = [*_list_pieces(one, furnished, draw), *_list_corridor(one, corridors, draw)]
-    costs = [{"detail": detail, "unit_cost": cost, "source": "made-up price"} for detail, cost in _COSTS]
-    rows = {"Building": [building], "Floors": floors, "Items": items, CATALOGUE.name: _list_types(one.use)}
+    rows = {
+        "Building": [building], "Floors": floors, "Items": list(_place(items)) if is_drawn else items,
+        CATALOGUE.name: _list_types(one.use),
+    }  # fmt: skip
     if has_routes:
-        rows["Routes"] = [_make_segment(one, floor, draw) for floor in corridors]
-    return Content({**rows, **({"Costs": costs} if draw.random() < 0.6 else {})})
+        rows["Places"] = [place for floor in corridors for place in _list_places(floor)] if is_drawn else []
+        rows["Routes"] = [_make_segment(one, floor, draw, is_drawn=is_drawn) for floor in corridors]
+    costs = [{"detail": detail, "unit_cost": cost, "source": "made-up price"} for detail, cost in _COSTS]
+    return Content({**rows, **({"Costs": costs} if has_costs else {})})
+
+
+def _place(items: Iterable[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Yield pieces with a position each, in rows of `ACROSS` behind the corridor; those of a route stay beside it."""
+    taken: Counter[str] = Counter()
+    for row in items:
+        if "route" in row:
+            yield row
+            continue
+        for at in range(row["quantity"]):
+            cell = taken[row["floor"]]
+            taken[row["floor"]] += 1
+            x, y = 2 + GRID_STEP * (cell % ACROSS), 6 + GRID_STEP * (cell // ACROSS)
+            name = row["item"] if row["quantity"] == 1 else f"{row['item']}{chr(ord('a') + at)}"
+            yield row | {"item": name, "quantity": 1, "x": round(x, 1), "y": round(y, 1), "angle_deg": 90 * (cell % 2)}
+
+
+def _list_places(floor: int) -> list[dict[str, Any]]:
+    """Return the ends of the corridor of a storey: it leads to the street, or to a stair."""
+    end = {"kind": "exit" if floor == 1 else "stair", "x": 30.0, "y": 1.0}
+    return [
+        {"place": f"Corridor end {floor}", "floor": str(floor), "kind": "door", "x": 1.0, "y": 1.0},
+        {"place": f"{'Exit' if floor == 1 else 'Stair'} {floor}", "floor": str(floor), **end},
+    ]
 
 
 def _list_types(use: str) -> list[dict[str, Any]]:
@@ -242,10 +273,17 @@ def _list_corridor(one: Building, floors: tuple[int, ...], draw: Random) -> Iter
             }  # fmt: skip
 
 
-def _make_segment(one: Building, floor: int, draw: Random) -> dict[str, Any]:
+def _make_segment(one: Building, floor: int, draw: Random, *, is_drawn: bool) -> dict[str, Any]:
     wide = 1.4 if one.use == "Home" else 2.0
     people = {"Home": 4, "School": 60, "Hospital": 30}.get(one.use, 25)
     return {
         "route": f"Way out, storey {floor}", "segment": "corridor", "floor": str(floor),
         "clear_width": round(wide + 0.8 * draw.random(), 2), "occupants": 1 + int(people * (0.5 + draw.random())),
+        **_name_ends(floor, is_drawn=is_drawn),
     }  # fmt: skip
+
+
+def _name_ends(floor: int, *, is_drawn: bool) -> dict[str, str]:
+    if not is_drawn:
+        return {}
+    return {"start": f"Corridor end {floor}", "end": f"{'Exit' if floor == 1 else 'Stair'} {floor}", "room": "Corridor"}
