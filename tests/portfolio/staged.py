@@ -56,7 +56,7 @@ class StagedGround:
 def write_city(folder, latitudes, **building):
     """Write a workbook for each latitude: b00.xlsx and so on, made once and copied where they are alike."""
     folder.mkdir(parents=True, exist_ok=True)
-    made = {}
+    made: dict[float, Path] = {}
     for number, latitude in enumerate(latitudes):
         path = folder / f"b{number:02}.xlsx"
         if latitude in made:

@@ -81,7 +81,12 @@ def test_a_building_that_kills_each_process_is_skipped_and_harms_no_other(tmp_pa
 def test_a_cancel_ends_the_processes_at_once(tmp_path):
     (tmp_path / "hold").touch()
     tasks, cancel = _list_tasks(tmp_path, [HOLDS, HOLDS]), threading.Event()
-    watch = threading.Thread(target=lambda: (_wait_for(lambda: len(list(tmp_path.glob("held-*"))) == 2), cancel.set()))
+
+    def stop():
+        _wait_for(lambda: len(list(tmp_path.glob("held-*"))) == 2)
+        cancel.set()
+
+    watch = threading.Thread(target=stop)
     watch.start()
     with pytest.raises(CancelledError):
         list(run_local(tasks, 2, Progress(None, cancel)))

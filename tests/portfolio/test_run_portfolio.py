@@ -18,6 +18,7 @@ from assess.portfolio.city_tables import read_table
 from assess.portfolio.part_files import FOLDER
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
+from assess.progress import Report
 from assess.settings import Settings
 from tests.portfolio.staged import FILLS, HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
 
@@ -171,7 +172,12 @@ def test_a_cancel_writes_nothing_and_keeps_what_is_done(tmp_path):
     write_city(tmp_path / "city", [40.0, HOLDS])
     (tmp_path / "hold").touch()
     cancel, parts = threading.Event(), tmp_path / "out" / FOLDER
-    watch = threading.Thread(target=lambda: (_wait_for(lambda: list(parts.glob("*/*.part"))), cancel.set()))
+
+    def stop():
+        _wait_for(lambda: list(parts.glob("*/*.part")))
+        cancel.set()
+
+    watch = threading.Thread(target=stop)
     watch.start()
     with pytest.raises(CancelledError):
         _run(tmp_path, cancel=cancel)
@@ -189,7 +195,7 @@ def test_bad_workbooks_are_named_and_the_others_assessed(tmp_path):
     write_city(tmp_path / "city", [40.0] * 18)
     (tmp_path / "city" / "cut.xlsx").write_bytes((tmp_path / "city" / "b00.xlsx").read_bytes()[:5000])
     (tmp_path / "city" / "text.xlsx").write_text("no workbook", encoding="utf-8")
-    reports = []
+    reports: list[Report] = []
     result = _run(tmp_path, progress=reports.append)
     assert [path for path, _ in result.skipped] == ["cut.xlsx", "text.xlsx"]
     assert list(read_table(tmp_path / "out", "buildings")["status"]).count("assessed") == 18
