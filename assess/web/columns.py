@@ -11,7 +11,8 @@ from assess.units import QUANTITIES
 from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.layout import FROZEN, PLACES
 from assess.workbook.names import is_live, plain, say_choices, say_live, split_header, translate
-from assess.workbook.open import MAX_ROWS, UNSAVED, Percent, column_letters
+from assess.workbook.number_formats import Percent
+from assess.workbook.open import MAX_ROWS, UNSAVED, column_letters
 from assess.workbook.parse import Table, Tables
 from assess.workbook.schema import CLASS, ITEMS, LIVE, SHEETS, Column, Sheet
 from assess.workbook.template import describe

@@ -12,7 +12,8 @@ from typing import Any, ClassVar
 
 from assess.errors import Problem
 from assess.i18n import Text
-from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, Percent, SheetCells, column_letters, read_number
+from assess.workbook.number_formats import Percent, read_number
+from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, SheetCells, column_letters
 from assess.workbook.patch import LOCKED, Area, Value, read_back
 from assess.workbook.places import split_range
 

@@ -9,9 +9,9 @@ import io
 import posixpath
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from typing import Any, Self, TypeVar
 from xml.parsers import expat
@@ -19,7 +19,8 @@ from xml.parsers import expat
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
-from assess.workbook.plain_rows import RowCutter, list_cells, list_unsaved
+from assess.workbook.number_formats import find_format, read_number
+from assess.workbook.plain_rows import PlainCell, RowCutter, column_number, list_cells, list_unsaved
 
 MAX_FILE, MAX_PARTS, MAX_TOTAL, MAX_RATIO = 100 * 2**20, 2000, 128 * 2**20, 200
 MAX_ROWS, MAX_COLUMNS = 100_000, 256
@@ -40,8 +41,6 @@ _SMALL, _STRINGS = (8 * 2**20, 300_000), (24 * 2**20, 1_000_000)
 """Bytes and tags of the parts that are kept in memory."""
 TRUE = ("1", "true")
 """How XML says yes."""
-_DATES = frozenset({*range(14, 23), 45, 46, 47})
-"""Numbers of the built-in formats that show a number as a date or a time."""
 
 DAMAGE = (ValueError, TypeError, LookupError, OSError, EOFError, ArithmeticError, RuntimeError, NotImplementedError,
           zipfile.BadZipFile, zlib.error, expat.ExpatError)  # fmt: skip
@@ -54,10 +53,7 @@ UNSAVED = object()
 """The value of a cell that holds a formula without a saved result."""
 
 
-class Percent(float):
-    """A number that its cell shows as a percentage."""
-
-
+_NO_VALUE = len("<v></v>")
 _PLAIN_TAGS = {(False, False): set[str](), (False, True): {"v"}, (True, False): {"f"}, (True, True): {"f", "v"}}
 """The elements of a cell by whether it holds a formula and a value; never changed."""
 
@@ -294,20 +290,6 @@ class _Strings(Part):
             self.found.append("".join(self.parts).replace(*ESCAPED))
 
 
-def _special_format(number: str, codes: Mapping[str, str]) -> str | None:
-    """Return the format that shows a number as a date or a time, or as a percentage ("%"); else None."""
-    code = codes.get(number, "")
-    if number in ("9", "10") or "%" in code:
-        return "%"
-    if not code:
-        return ("[h]" if number == "46" else "d") if number.isdigit() and int(number) in _DATES else None
-    if not any(letter in "dmhys" for letter in code.lower()):
-        return None
-    from openpyxl.styles.numbers import is_date_format
-
-    return code if is_date_format(code) else None
-
-
 # ---------------------------------------------------------------- sheets
 
 
@@ -406,7 +388,7 @@ class SheetCells(Part):
         elif tag == "rPh":
             self._tags.discard("rPh")
         elif tag == "row":
-            if self._cutter.rows and (row := self._cutter.rows.pop(str(self._number), None)):
+            if self._cutter.rows and (row := self._cutter.rows.pop(self._number, None)):
                 self._take_plain(*row)
             self._row_start = None
             if self._cells:
@@ -436,7 +418,7 @@ class SheetCells(Part):
 
     def _open_cell(self, attributes: dict[str, str]) -> None:
         self._address = attributes.get("r", "")
-        self._at = _column_number(self._address.rstrip("0123456789")) if self._address else self._at + 1
+        self._at = column_number(self._address.rstrip("0123456789")) if self._address else self._at + 1
         self._count += 1
         if self._at > SHEET_COLUMNS or self._count > SHEET_COLUMNS:
             raise damaged(
@@ -447,16 +429,30 @@ class SheetCells(Part):
 
     def _take_plain(self, cells: str, is_empty: bool) -> None:
         """Take in the cells of a plain row, as the handlers of their tags would."""
-        if is_empty and not self.marks_cells:
-            if unsaved := _unsaved_cells(*list_unsaved(cells)):
-                self.last_row = self._number
-                self._cells.update(unsaved)
-        else:
-            for letters, digits, self._style, kind, formula, value in list_cells(cells):
-                self._address, self._at, self._kind = letters + digits, _column_number(letters), kind or "n"
-                self._tags = _PLAIN_TAGS[bool(formula), bool(value)]
-                self._close_cell(value[3:-4])
+        if self.marks_cells:
+            self._close_cells(list_cells(cells))
+        elif not is_empty:
+            self._close_cells(self._take_strings(list_cells(cells)))
+        elif unsaved := list_unsaved(cells):
+            self.last_row = self._number
+            self._cells.update(dict.fromkeys(unsaved, UNSAVED))
         self._texts, self._tags = None, set()
+
+    def _take_strings(self, cells: list[PlainCell]) -> Iterator[PlainCell]:
+        """Keep the texts that cells share, at once: most of a table are; yield the other cells."""
+        for cell in cells:
+            letters, _, _, kind, _, value = cell
+            if kind == "s" and len(value) > _NO_VALUE and (at := column_number(letters)) <= MAX_COLUMNS:
+                self.last_row = self._number
+                self._cells[at - 1] = self.shared.strings[int(value[3:-4])]
+            else:
+                yield cell
+
+    def _close_cells(self, cells: Iterable[PlainCell]) -> None:
+        for letters, digits, self._style, kind, formula, value in cells:
+            self._address, self._at, self._kind = letters + digits, column_number(letters), kind or "n"
+            self._tags = _PLAIN_TAGS[bool(formula), bool(value)]
+            self._close_cell(value[3:-4])
 
     def _open_formula(self, attributes: dict[str, str]) -> None:
         """Take in the beginning of a formula."""
@@ -496,38 +492,6 @@ class SheetCells(Part):
         return self.shared.styles[number] if number < len(self.shared.styles) else None
 
 
-def read_number(number: float, code: str | None, *, is_1904: bool) -> Any:
-    """Return what the number of a cell means: a date, a time or a percentage where its format shows it so."""
-    if code is None:
-        return number
-    if code == "%":
-        return Percent(number)
-    from openpyxl.styles.numbers import is_timedelta_format
-    from openpyxl.utils.datetime import MAC_EPOCH, WINDOWS_EPOCH, from_excel
-
-    try:
-        epoch = MAC_EPOCH if is_1904 else WINDOWS_EPOCH
-        return from_excel(number, epoch, timedelta=is_timedelta_format(code))
-    except (OverflowError, ValueError):
-        return "#VALUE!"
-
-
-@cache
-def _column_number(letters: str) -> int:
-    if not (1 <= len(letters) <= 3 and letters.isascii() and letters.isalpha()):
-        raise ValueError(f"{letters[:20]} is no column")
-    number = 0
-    for letter in letters.upper():
-        number = 26 * number + ord(letter) - ord("A") + 1
-    return number
-
-
-@lru_cache(maxsize=64)
-def _unsaved_cells(*letters: str) -> Cells:
-    """Return the cells of a row of formulas without a saved result; they are not to be changed."""
-    return {_column_number(one) - 1: UNSAVED for one in letters}
-
-
 @cache
 def column_letters(at: int) -> str:
     """Return the letters of a column, counted from 0."""
@@ -552,7 +516,7 @@ def _check_kind(types: Tree, book: Tree) -> None:
 def _list_formats(styles: Tree) -> list[str | None]:
     """Return, by the number of a style, the format of one that shows a number otherwise, else None."""
     codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
-    return [_special_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
+    return [find_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
 
 
 _Cells = TypeVar("_Cells", bound=SheetCells)

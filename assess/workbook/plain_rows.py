@@ -11,9 +11,11 @@ parser as it is.
 """
 
 import re
+from functools import cache, lru_cache
 
 _END = b"</row>"
-_ENCODING = re.compile(rb"encoding *= *[\"'](?!utf-8[\"'])", re.IGNORECASE)
+_DECLARATION = re.compile(rb"(?:\xef\xbb\xbf)?(?:<\?xml\s([^?]*)\?>)?")
+_ENCODING = re.compile(rb"encoding\s*=\s*[\"'](?!utf-8[\"'])", re.IGNORECASE)
 _OTHER_ENTITY = re.compile(rb"&(?!(?:amp|lt|gt|quot|apos);)")
 _CONTROLS = bytes(one for one in range(32) if one not in b"\t\n\r")
 _BEYOND = (b"]]>", b"\xef\xbf\xbe", b"\xef\xbf\xbf")
@@ -25,12 +27,9 @@ _CELL = (
 )
 _EMPTY = r'<c r="[A-H]?[A-Z][0-9]{1,7}"(?: s="[0-9]{1,6}")?(?:/>|><f>[^<]*+</f><v></v></c>)'
 """A cell without a value, in the first 208 columns: blank, or as a prepared row holds it."""
-_ROW = re.compile(
-    rf'(<row r="([0-9]{{1,7}})"[^<>]*(?<!/)>)(?:((?:{_EMPTY})++)|((?:{_CELL.format(any="(?:")})++))</row>'
-)
+_ROW = re.compile(rf'(<row r="([0-9]{{1,7}})"[^<>]*(?<!/)>)(?:((?:{_EMPTY})+)|((?:{_CELL.format(any="(?:")})+))</row>')
 _UNSAVED = re.compile(r'<c r="([A-Z]{1,2})[0-9]{1,7}"[^<>]*><f>')
 _CELLS = re.compile(_CELL.format(any="("))
-
 
 PlainCell = tuple[str, str, str, str, str, str]
 """Letters and row of the address, style and type ("" where it has none), formula and value with their tags."""
@@ -44,7 +43,7 @@ class RowCutter:
     """
 
     def __init__(self) -> None:
-        self.rows: dict[str, tuple[str, bool]] = {}
+        self.rows: dict[int, tuple[str, bool]] = {}
         self._rest, self._last = b"", b""
         self._can_cut: bool | None = None
 
@@ -66,16 +65,13 @@ class RowCutter:
         return self._cut_whole(data)
 
     def _cut_whole(self, data: bytes) -> bytes:
-        self.rows = {}
-        if self._can_cut is None:
-            self._can_cut = not _ENCODING.search(data[:200])
-            start = data.find(b"?>") + 2 if data[:8].lstrip(b"\xef\xbb\xbf").startswith(b"<?xml") else 0
-        else:
-            start = 0
+        self.rows, start = {}, 0
+        if self._can_cut is None and (found := _DECLARATION.match(data)):
+            self._can_cut, start = not _ENCODING.search(found[1] or b""), found.end()
         joined = self._last + data[start:]
         self._last = data[-1:]
         self._can_cut = self._can_cut and b"<!" not in joined and b"<?" not in joined
-        if not self._can_cut or not _is_plain(data):
+        if not self._can_cut or _END not in data or not _is_plain(data):
             return data
         try:
             return _ROW.sub(self._take, data.decode()).encode()
@@ -83,7 +79,8 @@ class RowCutter:
             return data
 
     def _take(self, row: re.Match[str]) -> str:
-        start, number, empty, cells = row.groups()
+        start, digits, empty, cells = row.groups()
+        number = int(digits)
         if number in self.rows:
             return row[0]
         self.rows[number] = (empty, True) if empty else (cells, False)
@@ -99,11 +96,27 @@ def _is_plain(data: bytes) -> bool:
     )
 
 
-def list_unsaved(cells: str) -> list[str]:
-    """Return the letters of the columns of the formulas in a row without a value, in their order."""
-    return _UNSAVED.findall(cells)
+def list_unsaved(cells: str) -> tuple[int, ...]:
+    """Return the columns, from 0, of the formulas in a row without a value, in their order."""
+    return _number_columns(*_UNSAVED.findall(cells))
+
+
+@lru_cache(maxsize=64)  # prepared rows are alike
+def _number_columns(*letters: str) -> tuple[int, ...]:
+    return tuple(column_number(one) - 1 for one in letters)
 
 
 def list_cells(cells: str) -> list[PlainCell]:
     """Return the cells of a row that was cut out, in their order."""
     return _CELLS.findall(cells)
+
+
+@cache
+def column_number(letters: str) -> int:
+    """Return the number of a column, from 1; ValueError if letters are none."""
+    if not (1 <= len(letters) <= 3 and letters.isascii() and letters.isalpha()):
+        raise ValueError(f"{letters[:20]} is no column")
+    number = 0
+    for letter in letters.upper():
+        number = 26 * number + ord(letter) - ord("A") + 1
+    return number

@@ -15,7 +15,7 @@ from assess.units import GRAVITY, QUANTITIES, read_unit
 from assess.workbook.dates import AS_ISO, is_month, read_date
 from assess.workbook.habits import CellError, Remark, note
 from assess.workbook.names import DASHES, ENGLISH, find_choice, plain, say_choices
-from assess.workbook.open import Percent
+from assess.workbook.number_formats import Percent
 from assess.workbook.ranges import is_within
 from assess.workbook.schema import NO, YES, Column
 

@@ -20,7 +20,17 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from assess.motion.generate import build_generator
 from assess.motion.spectrum import build_periods, response_spectrum
 from assess.motion.target import Grid, recorded_target
-from tests.benchmarks import cancel, generating, live_answers, report, rocking, routes, verified, workbooks_read
+from tests.benchmarks import (
+    cancel,
+    generating,
+    live_answers,
+    portfolio,
+    report,
+    rocking,
+    routes,
+    verified,
+    workbooks_read,
+)
 from tests.motion.motions import cut
 from tests.workbooks import write
 
@@ -71,6 +81,8 @@ def main() -> None:
             *cancel.rows(folder),
             "",
             *live_answers.rows(folder),
+            "",
+            *portfolio.rows(folder),
         ):
             print(row)
     print("\n| motions of 4,000 samples | seconds | rival | seconds | times as fast | aim |\n|---|---|---|---|---|---|")

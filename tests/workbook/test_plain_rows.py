@@ -152,6 +152,9 @@ SAME = {
     "no UTF-8": body('<row r="2"><c r="A2"><f>?</f><v></v></c></row>').replace(b"?", b"\xff"),
     "Latin-1": b'<?xml version="1.0" encoding="ISO-8859-1"?>'
     + body('<row r="2"><c r="A2" t="str"><v>?</v></c></row>').replace(b"?", b"\xe9"),
+    "Latin-1, spelt at length": b'<?xml version="1.0"  encoding\t=\n"ISO-8859-1" ?>'
+    + body('<row r="2"><c r="A2" t="str"><v>?</v></c></row>').replace(b"?", b"\xe9"),
+    "zeros before a number": body('<row r="02"><c r="A02"><v>1</v></c></row>', '<row r="0003"><c r="A3"><v>1</v></c></row>'),
     "a declaration": b'\xef\xbb\xbf<?xml version="1.0" encoding="utf-8"?>' + body(prepared(2, 3)),
     "US-ASCII": b"<?xml version='1.0' encoding='us-ascii'?>" + body(prepared(2, 3)),
     "UTF-16": body(prepared(2)).decode().encode("utf-16"),
