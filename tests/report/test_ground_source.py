@@ -48,7 +48,7 @@ def test_the_html_report_says_so_on_cover_summary_and_among_the_assumptions(writ
     assert f"{SENTENCE} {SCATTER} Over the height" in cover
     assert html.count("Ground motion: ShakeMap grid.xml") > 1
     text = _plain(html)
-    assert "dispersion of 0.41 (standard deviation of ln amplitude; root of the sum of squares of 0.4 of the" in text
+    assert "dispersion of 0.41 (standard deviation of ln amplitude; the root of 0.4² + 0.0904²: Motion" in text
     for fact in ("19891018000415", "1, 3.5.1277", "2014-10-25T13:28:48Z", "363 m/s; its effect is in the map"):
         assert fact in text
     assert f"SHA-256 {_hash(written)}" in text

@@ -32,7 +32,7 @@ def name_source(found: SiteGroundInfo) -> str:
 def say_dispersion(found: SiteGroundInfo) -> str:
     """Return what the dispersion of the motions is made of."""
     return _(
-        "root of the sum of squares of {own} of the building's motion and {sigma} of ln PGA at the building",
+        "the root of {own}² + {sigma}²: Motion uncertainty, and the standard deviation of ln PGA at the building",
         own=number(found.own_dispersion, ".3g"), sigma=number(found.dispersion, ".3g"),
     )  # fmt: skip
 
