@@ -224,10 +224,11 @@ def _draw_isolines(isolines: Sequence[Isoline], frame: Frame) -> Iterable[str]:
         inside = [(x, y) for x, y in line if 40 < x < frame.wide - 60 and 30 < y < frame.high - 50]
         if len(inside) > 6:
             x, y = inside[len(inside) // 2]
-            yield (
-                f'<text class="isoline" x="{x:.1f}" y="{y:.1f}" fill="#5c3a80" font-weight="bold" stroke="#ffffff" '
-                f'stroke-width="3" paint-order="stroke" text-anchor="middle">{escape(one.label)}</text>'
-            )
+            place = f'x="{x:.1f}" y="{y:.1f}" text-anchor="middle" font-weight="bold" font-size="11"'
+            # a white copy behind, as not every program draws the outline of letters behind them
+            halo = f'<text class="halo" {place} stroke="#ffffff" stroke-width="3" aria-hidden="true">'
+            said = escape(one.label)
+            yield f'{halo}{said}</text><text class="isoline" {place} fill="#5c3a80">{said}</text>'
 
 
 # ---------------------------------------------------------------- buildings

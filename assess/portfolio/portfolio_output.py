@@ -189,15 +189,21 @@ def _render_ranking(view: "CityView", job: Output) -> bytes:
 
 
 def _render_page(view: "CityView", job: Output) -> bytes:
+    from assess.portfolio.city_isolines import list_isolines
     from assess.portfolio.city_page import render_page
 
-    return render_page(view, job.background, options=job.options, repeat=job.repeat, progress=job.progress)
+    lines = list_isolines(view, job.ground)
+    return render_page(
+        view, job.background, options=job.options, isolines=lines, repeat=job.repeat, progress=job.progress
+    )
 
 
 def _render_summary(view: "CityView", job: Output) -> bytes:
+    from assess.portfolio.city_isolines import list_isolines
     from assess.portfolio.city_summary import render_summary
 
-    return render_summary(view, job.background, options=job.options, progress=job.progress)
+    lines = list_isolines(view, job.ground)
+    return render_summary(view, job.background, options=job.options, isolines=lines, progress=job.progress)
 
 
 _RENDERERS: Mapping[str, "Callable[[CityView, Output], bytes]"] = {

@@ -48,7 +48,7 @@
       const { x, y, size } = mark.dataset;
       mark.setAttribute("transform", `translate(${x} ${y}) scale(${Number(size) * scale})`);
     }
-    for (const degree of svg.querySelectorAll("text.degree, text.isoline")) degree.setAttribute("font-size", 11 * scale);
+    for (const degree of svg.querySelectorAll("text.degree, text.isoline, text.halo")) degree.setAttribute("font-size", 11 * scale);
     placeFixed(scale);
   };
   const keep = (value, low, high) => Math.min(Math.max(value, low), high);
