@@ -144,7 +144,7 @@ def command(
                 background=_read_background(background), language=code,
                 repeat=_say_repeat(settings, shakemap, ground_motions), progress=progress,
             )  # fmt: skip
-        except CancelledError:
+        except (KeyboardInterrupt, CancelledError):
             kept = f"the buildings that are done are kept in {plain_line(str(folder))}; the same command goes on"
             raise InterruptedWorkError(kept) from None
     _tell(result, settings)

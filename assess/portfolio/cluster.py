@@ -264,7 +264,7 @@ def _hand_over(
     running: dict[Future, Batch] = {}
     try:
         while batches or running:
-            _fill_window(client, site, batches, running)
+            _fill_window(client, site, batches, running, scheduler)
             for future in _wait(client, running, scheduler, progress):
                 yield from _take(future, running.pop(future), batches, scheduler)
     finally:
@@ -272,8 +272,14 @@ def _hand_over(
             client.cancel(list(running), force=True)
 
 
-def _fill_window(client: "Client", site: Site, batches: "deque[Batch]", running: "dict[Future, Batch]") -> None:
-    most = WINDOW * max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
+def _fill_window(
+    client: "Client", site: Site, batches: "deque[Batch]", running: "dict[Future, Batch]", scheduler: str
+) -> None:
+    """Hand batches over until the window is full; OutputError if the scheduler is gone."""
+    try:
+        most = WINDOW * max(1, len(client.nthreads()))
+    except (OSError, TimeoutError):
+        raise _describe_loss(scheduler) from None
     while batches and len(running) < most:
         batch = batches.popleft()
         future = client.submit(run_batch, site, batch.tasks, key=batch.key, pure=False, retries=_RETRIES)

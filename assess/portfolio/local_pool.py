@@ -19,13 +19,13 @@ from pathlib import Path
 from assess.errors import OutputError, Problem
 from assess.i18n import fill
 from assess.portfolio.building_task import Summary, Task, skip
-from assess.portfolio.local_worker import ALONE, receive, send
+from assess.portfolio.local_worker import ALONE, READY, receive, send
 from assess.progress import SILENT, Progress
 
 MOST_DEATHS = 3
 """Processes that may die of one building before it is skipped."""
-MOST_STARTS = 5
-"""Processes that may end before they have worked at all: then none can be started here."""
+MOST_STARTS = 3
+"""Processes in a row that may end before they are ready: then none can be started here."""
 _ASKED_EVERY = 0.1
 """Time [s] after which it is looked whether the work is to stop."""
 
@@ -69,7 +69,7 @@ class _Desk:
         self._left = deque((task, 0) for task in tasks)
         self._answers: queue.SimpleQueue[Summary | Exception] = queue.SimpleQueue()
         self._workers: set[subprocess.Popen[bytes]] = set()
-        self._lock, self._is_closed, self._idle_deaths = threading.Lock(), False, 0
+        self._lock, self._is_closed, self._failed_starts = threading.Lock(), False, 0
 
     def take_answer(self, progress: Progress) -> Summary:
         """Return the next summary; raise what kept a thread from working."""
@@ -108,8 +108,9 @@ class _Desk:
 
     def _serve(self, worker: "subprocess.Popen[bytes]") -> None:
         """Hand tasks to a process until none is left, or it dies."""
-        served = 0
         try:
+            if not self._wait_until_ready(worker):
+                return
             while self._left:
                 try:
                     task, deaths = self._left.popleft()
@@ -119,23 +120,34 @@ class _Desk:
                 if isinstance(summary, Exception):
                     raise summary
                 if summary is None:
-                    self._note_death(task, deaths + 1, worker, is_first=not served)
+                    self._note_death(task, deaths + 1)
                     return
                 self._answers.put(summary)
-                served += 1
         finally:
             with self._lock:
                 self._workers.discard(worker)
             end_worker(worker)
 
-    def _note_death(self, task: Task, deaths: int, worker: "subprocess.Popen[bytes]", *, is_first: bool) -> None:
+    def _wait_until_ready(self, worker: "subprocess.Popen[bytes]") -> bool:
+        """Wait for the first message of a process; return whether it came.
+
+        Raises
+        ------
+        OutputError
+            If one process after another ends without it.
+        """
+        if worker.stdout is not None and receive(worker.stdout) == READY:
+            self._failed_starts = 0
+            return True
+        self._failed_starts += 1
+        if self._failed_starts >= MOST_STARTS and not self._is_closed:
+            raise OutputError(fill("processes end as soon as they are started (exit status {how}).", how=worker.wait()))
+        return False
+
+    def _note_death(self, task: Task, deaths: int) -> None:
         """Have a task tried again by another process, or skip it."""
         if self._is_closed:
             return
-        how = worker.wait()
-        self._idle_deaths = self._idle_deaths + 1 if is_first and how >= 0 else 0
-        if self._idle_deaths >= MOST_STARTS:
-            raise OutputError(fill("processes end as soon as they are started (exit status {how}).", how=how))
         if deaths < MOST_DEATHS:
             self._left.appendleft((task, deaths))
         else:

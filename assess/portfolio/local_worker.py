@@ -13,13 +13,22 @@ from typing import IO
 ALONE = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Variables by which libraries take no more than one thread."""
 
+READY = b"ready"
+"""The first message, once all is imported."""
+
 
 def main() -> None:
-    """Assess what comes in, one building after another."""
+    """Say that it is ready, then assess what comes in, one building after another."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints must not stand among the answers
     waiting: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, waiting), daemon=True).start()
+    try:
+        import assess.portfolio.building_task  # noqa: F401
+    except Exception as error:
+        os.write(2, f"error  a process cannot start: {type(error).__name__}: {error}\n".encode("utf-8", "replace"))
+        os._exit(1)
+    send(answers, READY)
     while True:
         send(answers, pickle.dumps(_answer(waiting.get())))
 

@@ -15,7 +15,15 @@ import pytest
 from assess.errors import InputError, OutputError
 from assess.portfolio import cluster
 from assess.portfolio.building_task import Task
-from assess.portfolio.cluster import Site, answer_probe, check_workers, list_versions, run_on_cluster
+from assess.portfolio.cluster import (
+    Site,
+    WorkerUnfitError,
+    answer_probe,
+    check_workers,
+    list_versions,
+    run_batch,
+    run_on_cluster,
+)
 from assess.portfolio.part_files import FOLDER
 from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
@@ -236,3 +244,13 @@ def test_a_worker_that_does_not_see_the_workbooks_is_refused(site, tmp_path):
     unseen = replace(site, seen=(tmp_path / "gone.xlsx",))
     text = _refuse(site, lambda _: answer_probe(unseen))
     assert "gone.xlsx. Put it in a folder that all machines share." in text
+
+
+def test_a_worker_that_joins_later_is_asked_as_well(site, tmp_path):
+    (source,) = find_sources(write_city(tmp_path / "city", [40.0]))
+    task = Task(source=source, settings=replace(FORMULAS, city=True), ground=StagedGround(tmp_path), out=tmp_path)
+    assert [one.status for one in run_batch(site, [task])] == ["assessed"]
+    assert [path.name for path in tmp_path.glob("probe*")] == ["probe"]
+    other = replace(site, versions=(("assess", "0.0.1"),))
+    with pytest.raises(WorkerUnfitError, match=r"other versions: assess .* there, 0\.0\.1 here"):
+        run_batch(other, [task])

@@ -1,20 +1,24 @@
 """Processes that die, wait or lose their parent: no building is lost, none harms another."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from assess.errors import CancelledError
+from assess.errors import AssessError, CancelledError, OutputError
+from assess.motion.shakemap import read_shakemap
 from assess.portfolio.building_task import Task
 from assess.portfolio.local_pool import run_local
 from assess.portfolio.sources import find_sources
 from assess.progress import Progress
+from assess.resources import city_file
 from assess.settings import Settings
 from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, write_city
 
@@ -113,13 +117,14 @@ def test_processes_end_when_the_one_that_started_them_is_killed(tmp_path):
     _wait_for(lambda: not _is_alive(number))
 
 
+def test_processes_that_cannot_start_end_the_run_with_the_reason(tmp_path, monkeypatch):
+    tasks = _list_tasks(tmp_path, [40.0])
+    monkeypatch.setattr(sys, "executable", shutil.which("false"))
+    with pytest.raises(OutputError, match=r"processes end as soon as they are started \(exit status 1\)"):
+        list(run_local(tasks, 1))
+
+
 def test_a_ground_motion_that_was_changed_since_ends_the_run_with_its_reason(tmp_path):
-    from dataclasses import replace
-
-    from assess.errors import AssessError
-    from assess.motion.shakemap import read_shakemap
-    from assess.resources import city_file
-
     grid = tmp_path / "grid.xml"
     grid.write_bytes(city_file("grid.xml").read_bytes())
     ground = read_shakemap(grid)
