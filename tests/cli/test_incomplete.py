@@ -5,7 +5,7 @@ import pytest
 from tests.cli.calling import run
 from tests.workbooks import ITEMS, write
 
-WAYS = ("Hazard map", "ShakeMap", "Records", "Shaking in Building, such as 'MMI VII, very strong'")
+WAYS = ("Hazard map", "ShakeMap of a past", "Records", "Shaking in Building, such as 'MMI VII, very strong'")
 LACKING = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 4}]
 
 
