@@ -280,9 +280,9 @@ def _draw_scale(frame: Frame) -> str:
 
 
 def _draw_north(frame: Frame) -> str:
-    x = frame.wide - 28
+    x, said = frame.wide - 28, _("N")
     return (
         f'<g class="north"><rect x="{x - 16:g}" y="8" width="32" height="48" fill="#ffffff" fill-opacity="0.85"/>'
         f'<path d="M{x:g} 12L{x + 8:g} 34L{x:g} 29L{x - 8:g} 34Z" fill="#1c1c1c"/>'
-        f'<text x="{x:g}" y="51" text-anchor="middle" font-weight="bold" fill="#1c1c1c">{_("N")}</text></g>'
+        f'<text x="{x:g}" y="51" text-anchor="middle" font-weight="bold" fill="#1c1c1c">{said}</text></g>'
     )

@@ -168,7 +168,8 @@ def _say_works(group: Group) -> Iterator[str]:
 def _say_assumed(group: Group) -> Iterator[str]:
     if group.falls_low_inventory is not None and group.falls_high_inventory is not None:
         yield _("Bookcases and lateral files are assumed from the use and the floor area; other furniture is in no "
-                "number. With few pieces everywhere (10 % quantities) {low} falls are expected, with many (90 %) {high}.",
+                "number. With few pieces everywhere (10 % quantities) {low} falls are expected, with many (90 %) "
+                "{high}.",
                 low=say_number(group.falls_low_inventory), high=say_number(group.falls_high_inventory))  # fmt: skip
 
 

@@ -22,7 +22,8 @@ def label_piece(row: Row, basis: str | None) -> tuple[str, str]:
     """
     risk = find_class(row["risk_class"])
     if row["is_held"]:
-        return f"{words.ANCHORED} {_('anchored')}", "anchored"
+        said = _("anchored")
+        return f"{words.ANCHORED} {said}", "anchored"
     if risk is None:
         return words.DASH, ""
     if row["basis"] == "unconfirmed":

@@ -5,7 +5,6 @@ Numbers are numbers, and every text stays text: no name becomes a formula or a l
 
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +14,13 @@ from assess.i18n import gettext as _
 from assess.portfolio import city_words as say
 from assess.portfolio.building_signs import Row, say_sign, sign_of_class
 from assess.portfolio.city_content import CityContent, build_content
-from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView, Group
+from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
 from assess.portfolio.piece_words import label_piece, label_state, say_kind, say_severity, say_size, say_spot
+from assess.portfolio.ranking_sums import LINES, SUM
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.report_options import ReportOptions
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, name_sheets, set_page
-from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.workbook.template import CREATED
 from assess.workbook.writer import write_book
@@ -30,7 +29,6 @@ MOST_PIECES = 500
 """Pieces that the sheet of what to fix first holds; the tables of the portfolio have all."""
 MOST_PROBLEMS = 5_000
 """Problems that the sheet of skipped buildings holds."""
-SUM = "#,##0.0"
 
 
 def render_ranking(view: CityView, *, options: ReportOptions | None = None, progress: Progress = SILENT) -> bytes:
@@ -91,55 +89,11 @@ def _write_summary(pen: Pen, page: Any, content: CityContent) -> None:
             pen.put(page, row, at, line.read(group), pen.style("plain", line.format))
 
 
-@dataclass(frozen=True, slots=True)
-class _Line:
-    """One line of the table of groups."""
-
-    label: str
-    read: Callable[[Group], float | None]
-    format: str = COUNT
-
-
-LINES = (
-    _Line(fill("Buildings"), lambda group: group.buildings),
-    _Line(fill("Pieces"), lambda group: group.pieces),
-    _Line(fill("Pieces of class low"), lambda group: group.by_class[RiskClass.LOW]),
-    _Line(fill("Pieces of class medium"), lambda group: group.by_class[RiskClass.MEDIUM]),
-    _Line(fill("Pieces of class high"), lambda group: group.by_class[RiskClass.HIGH]),
-    _Line(fill("Pieces of class very high"), lambda group: group.by_class[RiskClass.VERY_HIGH]),
-    _Line(fill("Unconfirmed pieces, in no class"), lambda group: group.unconfirmed),
-    _Line(fill("Pieces by formula only, in no class"), lambda group: group.by_formula),
-    _Line(fill("Anchored pieces, in no class"), lambda group: group.anchored),
-    _Line(fill("Expected falls"), lambda group: group.falls.expected, SUM),
-    _Line(fill("Falls that 5 % of the earthquakes do not exceed"), lambda group: group.falls.low),
-    _Line(fill("Falls that 95 % of the earthquakes do not exceed"), lambda group: group.falls.high),
-    _Line(fill("Expected falls, sampling interval, low"), lambda group: group.falls.sampling_low, SUM),
-    _Line(fill("Expected falls, sampling interval, high"), lambda group: group.falls.sampling_high, SUM),
-    _Line(fill("Expected falls that are in no range"), lambda group: group.falls.apart, SUM),
-    _Line(fill("Expected falls with few pieces (10 % quantities)"), lambda group: group.falls_low_inventory, SUM),
-    _Line(fill("Expected falls with many pieces (90 % quantities)"), lambda group: group.falls_high_inventory, SUM),
-    _Line(fill("Falls that the work lists avoid"), lambda group: group.falls_avoided, SUM),
-    _Line(fill("People on evacuation routes"), lambda group: group.occupants),
-    _Line(fill("Expected people on blocked routes"), lambda group: group.people.expected, SUM),
-    _Line(fill("People that 5 % of the earthquakes do not exceed"), lambda group: group.people.low),
-    _Line(fill("People that 95 % of the earthquakes do not exceed"), lambda group: group.people.high),
-    _Line(fill("People on routes whose state is not known"), lambda group: group.people_not_known),
-    _Line(fill("Routes open"), lambda group: group.routes[RouteState.OPEN]),
-    _Line(fill("Routes doubtful"), lambda group: group.routes[RouteState.DOUBTFUL]),
-    _Line(fill("Routes blocked"), lambda group: group.routes[RouteState.BLOCKED]),
-    _Line(fill("Routes not known"), lambda group: group.routes[RouteState.NOT_KNOWN]),
-    _Line(fill("Pieces on the work lists"), lambda group: group.works),
-    _Line(fill("Known costs of the work"), lambda group: group.cost),
-    _Line(fill("Pieces on the work lists without a cost"), lambda group: group.works_without_cost),
-)
-"""The table of groups."""
-
-
 # ---------------------------------------------------------------- rows
 
 
 def _write_buildings(pen: Pen, page: Any, content: CityContent) -> None:
-    pen.listing(page, _list_building_columns(), content.buildings)
+    pen.listing(page, [*_list_building_columns(), *_list_further_columns()], content.buildings)
 
 
 def _of(name: str) -> Callable[[Row], Any]:
@@ -171,6 +125,12 @@ def _list_building_columns() -> list[Column]:
         Column(_("People on routes"), 10, _of("occupants"), COUNT),
         Column(_("Routes blocked"), 9, _of("routes_blocked"), COUNT),
         Column(_("Routes not known"), 9, _of("routes_not_known"), COUNT),
+    ]
+
+
+def _list_further_columns() -> list[Column]:
+    """Return the columns of a building by which it is seldom sorted."""
+    return [
         Column(_("Pieces"), 8, _of("pieces"), COUNT),
         Column(_("Pieces, very high"), 8, _of("very_high"), COUNT),
         Column(_("Pieces, high"), 8, _of("high"), COUNT),

@@ -43,9 +43,8 @@ def test_all_kinds_of_geometry_are_drawn_and_points_are_left_out(tmp_path):
         _of("MultiLineString", [SQUARE[:2], SQUARE[1:3]]), _of("Point", SQUARE[0]),
         {"type": "GeometryCollection", "geometries": [_of("LineString", [[0, 0, 12.5], [1, 1, 13]])]},
     ]  # fmt: skip
-    collection = {"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": one} for one in features]}
-    collection["features"].append({"type": "Feature", "geometry": None})
-    found = read_background(_write(tmp_path, collection))
+    members = [{"type": "Feature", "geometry": one} for one in (*features, None)]
+    found = read_background(_write(tmp_path, {"type": "FeatureCollection", "features": members}))
     assert len(found.areas) == 3
     assert found.lines[-1] == ((0.0, 0.0), (1.0, 1.0))
     assert len(found.lines) == 4

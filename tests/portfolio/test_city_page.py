@@ -23,6 +23,10 @@ in_browser = [
 ]
 
 
+def _read_data(html):
+    return json.loads(html.split('id="data">')[1].split("</script>")[0])
+
+
 @pytest.fixture(scope="module")
 def view():
     return make_view(150, draws=40)
@@ -35,7 +39,7 @@ def html(view):
 
 @pytest.fixture(scope="module")
 def data(html):
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', html, re.DOTALL)[1])
+    return _read_data(html)
 
 
 def test_the_answer_stands_first_and_keeps_assumed_buildings_apart(html):
@@ -100,7 +104,7 @@ def test_a_route_that_is_not_known_and_an_anchored_piece_do_not_look_safe(view):
 
     routes = view.routes.assign(state="not known", probability=0.0)
     html = render_page(replace(view, routes=routes)).decode()
-    tables = json.loads(re.search(r'id="data">(.*?)</script>', html, re.DOTALL)[1])["tables"]
+    tables = _read_data(html)["tables"]
     assert tables["routes"]["texts"][1:3] == [["? not known"], ["–"]]
     chances = dict(zip(tables["pieces"]["texts"][7], range(10**6), strict=False))
     assert any(text.startswith("free-standing: ") for text in chances)
