@@ -243,7 +243,9 @@ def _describe_group(group: "Group") -> Iterator[str]:
         low, high = group.falls_low_inventory, group.falls_high_inventory
         yield f"  With few or many pieces in all of them: {low:,.1f} to {high:,.1f}."
     if group.occupants:
-        yield f"  People whose route is blocked: {people.expected:,.1f} expected, of {group.occupants:,}."
+        known = group.occupants - group.people_not_known
+        left = f"; {group.people_not_known:,} more on routes that are not known" if group.people_not_known else ""
+        yield f"  People whose route is blocked: {people.expected:,.1f} expected, of {known:,}{left}."
     if apart := [f"{number:,} {what}" for number, what in (
         (group.unconfirmed, "unconfirmed"), (group.by_formula, "by formula only"), (group.anchored, "anchored")
     ) if number]:  # fmt: skip

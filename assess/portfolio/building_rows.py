@@ -130,7 +130,7 @@ def _build_building(origin: Origin, inventory: Inventory, results: Results, sums
         **_count_draws(sums),
         **_count_works(results),
         **_count_routes(results.route_tables),
-        "people_blocked": sums.people_expected if results.has_routes else None,
+        "people_blocked": sums.people_expected if _is_any_known(results.route_tables) else None,
         "warnings": sum(one.severity == "warning" for one in results.problem_rows),
     }
 
@@ -202,6 +202,11 @@ def _count_works(results: Results) -> Record:
         "cost": results.schedule.cost,
         "works_without_cost": sum(one.pieces for one in works if one.cost is None),
     }
+
+
+def _is_any_known(tables: RouteTables) -> bool:
+    """Whether there is a route of which it is known how likely it is blocked."""
+    return any(one.state is not RouteState.NOT_KNOWN and one.blocked is not None for one in tables.routes)
 
 
 _STATES = {
@@ -284,7 +289,7 @@ def _describe_work(found: "tuple[ScheduleRow, WorkRow] | None") -> Record:
 
 def _list_routes(path: str, tables: RouteTables) -> Iterator[Record]:
     for one in tables.routes:
-        blocked = one.blocked
+        blocked = None if one.state is RouteState.NOT_KNOWN else one.blocked
         yield {
             "path": path,
             "route": one.route,

@@ -117,7 +117,7 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("path", "text", fill("the building")),
         ("route", "text", fill("its name")),
         ("state", "text", fill("open, doubtful, blocked or not known")),
-        ("probability", "number", fill("chance that it is blocked in this scenario")),
+        ("probability", "number", fill("chance that it is blocked in this scenario; blank where its state is not known")),
         ("probability_low", "number", fill("its interval")),
         ("probability_high", "number", fill("likewise")),
         ("occupants", "count", fill("as filled in")),

@@ -2,6 +2,7 @@
 
 import shutil
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -13,6 +14,7 @@ from assess.portfolio.part_files import FOLDER, find_place, read_part
 from assess.portfolio.sources import Source, find_sources
 from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings
+from assess.workbook.template import Content, write_workbook
 from tests.portfolio.staged import StagedGround, write_building, write_city
 from tests.workbooks import write
 
@@ -154,3 +156,46 @@ def test_simulated_draws_are_summed_draw_by_draw(task):
     assert sum(falls) / 20 == pytest.approx(building["expected_falls"])
     assert (building["falls_p05"], building["falls_p95"]) == (falls[0], falls[18])
     assert part.draws["people_blocked"] == [0] * 20
+
+
+def test_a_route_that_is_not_known_has_no_chance_and_its_people_no_number(tmp_path):
+    """A number there would look safer than what is known."""
+    places = [
+        {"place": "Hall", "floor": "1", "x": 0, "y": 0, "kind": "room"},
+        {"place": "Exit", "floor": "1", "x": 10, "y": 0, "kind": "exit"},
+    ]
+    known = {"route": "East", "segment": "E1", "floor": "1", "start": "Hall", "end": "Exit", "clear_width": 1.2,
+             "occupants": 12}  # fmt: skip
+    unknown = {"route": "West", "segment": "W1", "occupants": 30}
+    item = {
+        "item": "A1",
+        "floor": "1",
+        "breadth": 30,
+        "width": 80,
+        "height": 200,
+        "route": "East",
+        "edge_distance": 0.2,
+    }
+    rows = {"Building": [{"ground_pga": 0.4, "height": 7}], "Floors": [{"floor": "1", "elevation": 3}], "Items": [item],
+            "Places": places}  # fmt: skip
+    folder = tmp_path / "city"
+    folder.mkdir()
+    for name, routes in (("both.xlsx", [known, unknown]), ("unknown.xlsx", [unknown])):
+        own = rows | {"Routes": routes} | ({} if known in routes else {"Items": [item | {"route": ""}]})
+        write_workbook(folder / name, Content(rows=own), spare=1)
+    found = {}
+    for source in find_sources(folder):
+        task = Task(source=source, settings=SETTINGS, ground=None, out=tmp_path / "out")
+        assert run_task(task).status == "assessed", _rows(task, "problems")
+        found[source.path] = _rows(task, "buildings")[0], {one["route"]: one for one in _rows(task, "routes")}
+    building, by_name = found["both.xlsx"]
+    assert by_name["West"]["state"] == "not known"
+    assert by_name["West"]["probability"] is None
+    assert by_name["West"]["to_fill_in"]
+    assert by_name["East"]["probability"] > 0
+    assert by_name["East"]["blockers"] == "A1"
+    assert building["people_blocked"] == pytest.approx(12 * by_name["East"]["probability"])
+    assert building["occupants"] == 42
+    building, _ = found["unknown.xlsx"]
+    assert building["people_blocked"] is None
+    assert (building["routes"], building["routes_not_known"]) == (1, 1)
