@@ -10,8 +10,8 @@ References
 ----------
 Worden CB, Wald DJ (2016). ShakeMap manual online. U.S. Geological Survey, doi:10.5066/F7D21VPQ
 Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014). NGA-West2 equations for predicting PGA, PGV, and 5% damped PSA for
-shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M (PGA, M 5.5 or more: tau
-0.348 between events, phi 0.495 within, before its terms for distance and Vs30)
+shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M (PGA: tau between events
+and phi within, each linear in magnitude from 4.5 to 5.5, before its terms for distance and Vs30)
 """
 
 import hashlib
@@ -31,10 +31,9 @@ from assess.motion.shake_grid import LARGEST_FILE, FloatArray, Grid, describe_pl
 from assess.motion.site_ground import SiteGround
 from assess.units import GRAVITY
 
-BETWEEN, WITHIN = 0.348, 0.495
-"""tau and phi of ln PGA [-]: Boore et al. 2014."""
-TOTAL = 0.605
-"""Standard deviation of ln PGA [-] of that model, assumed where the map has none: sqrt(tau^2 + phi^2)."""
+BETWEEN, WITHIN = (0.398, 0.348), (0.695, 0.495)
+"""tau and phi of ln PGA [-] up to the first and from the second of `MAGNITUDES` on: Boore et al. 2014."""
+MAGNITUDES = 4.5, 5.5
 LARGEST_SIGMA = 3.0
 """Standard deviations of ln PGA above this are a slip."""
 LARGEST_PGA = 10 * GRAVITY
@@ -141,10 +140,18 @@ class ShakeMap:
             return read(SIGMA), fill("STDPGA of {file}", file=self.file), shared
         if beside and SIGMA in beside.fields:
             return beside(SIGMA), fill("STDPGA of {file}", file=self.uncertainty_file), shared
-        source = fill(
-            "assumed, as the map has none at this place: the total of Boore et al. 2014 for magnitude 5.5 or more"
-        )
-        return TOTAL, source, BETWEEN**2 / (BETWEEN**2 + WITHIN**2)
+        return self._assume_sigma()
+
+    def _assume_sigma(self) -> tuple[float, Text, float]:
+        """Return the scatter of a ground-motion model at the magnitude, or from 5.5 on where that is not known."""
+        magnitude = _read_magnitude(self.grid)
+        between, within = (float(np.interp(magnitude, MAGNITUDES, values)) for values in (BETWEEN, WITHIN))
+        source = fill("assumed, as the map has none at this place: the total of Boore et al. 2014 for this magnitude")
+        if magnitude >= MAGNITUDES[1]:
+            source = fill(
+                "assumed, as the map has none at this place: the total of Boore et al. 2014 for magnitude 5.5 or more"
+            )
+        return math.hypot(between, within), source, between**2 / (between**2 + within**2)
 
     def _look_beside(self, latitude: float, longitude: float) -> "_Reading | None":
         """Return what uncertainty.xml holds at a place [deg]; None where there is none, or it does not reach there."""
@@ -350,6 +357,15 @@ def _list_psa(grid: Grid) -> list[tuple[str, float]]:
 
 def _find_event(grid: Grid) -> str:
     return grid.header.get("event_id") or grid.event.get("event_id", "")
+
+
+def _read_magnitude(grid: Grid) -> float:
+    """Return the magnitude of the earthquake; infinite where it is not known."""
+    try:
+        magnitude = float(grid.event.get("magnitude", ""))
+    except ValueError:
+        return math.inf
+    return magnitude if math.isfinite(magnitude) else math.inf
 
 
 def _find_shared(beside: "_Reading") -> float | None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from assess.errors import InputError
-from assess.motion.shakemap import TOTAL, name_uncertainty, parse_shakemap, read_shakemap
+from assess.motion.shakemap import name_uncertainty, parse_shakemap, read_shakemap
 from assess.units import GRAVITY
 from tests.motion.grids import BAY, EPICENTRE, LATITUDES, MARKET_STREET, build_grid
 
@@ -111,10 +111,18 @@ def test_a_pgv_that_is_rounded_to_0_is_not_known_and_a_pga_is_refused():
 
 def test_without_any_uncertainty_one_is_assumed_and_said_to_be():
     site = _at(build_grid(PLAIN))
-    assert site.dispersion == TOTAL
+    assert site.dispersion == pytest.approx(0.605, abs=5e-4)
+    assert site.shared == pytest.approx(0.348**2 / 0.605**2, rel=1e-3)
     assert site.dispersion_source.startswith(
         "assumed, as the map has none at this place: the total of Boore et al. 2014"
     )
+
+
+@pytest.mark.parametrize(("magnitude", "sigma"), [("4.0", 0.801), ("5.0", 0.702), ("5.5", 0.605), ("unknown", 0.605)])
+def test_it_is_larger_for_small_earthquakes(magnitude, sigma):
+    """tau 0.398 to 0.348 and phi 0.695 to 0.495 from magnitude 4.5 to 5.5, linearly."""
+    site = _at(build_grid(PLAIN).replace(b'magnitude="6.0"', f'magnitude="{magnitude}"'.encode()))
+    assert site.dispersion == pytest.approx(sigma, abs=5e-4)
 
 
 def test_sigma_is_interpolated_linearly():
