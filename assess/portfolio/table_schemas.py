@@ -75,7 +75,7 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("routes_blocked", "count", fill("likewise")),
         ("routes_not_known", "count", fill("likewise")),
         ("occupants", "count", fill("people on its routes, as filled in: counted once for each route")),
-        ("people_blocked", "number", fill("expected number of people whose route is blocked: counted once for each route")),
+        ("people_blocked", "number", fill("expected number of people whose route is blocked: counted once for each route, of those that are known; blank where none is")),
         ("warnings", "count", fill("warnings in the table problems")),
     ),
     "pieces": _columns(
