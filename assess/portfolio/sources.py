@@ -20,7 +20,6 @@ ENDINGS = (".xlsx", ".xlsm")
 MOST_BUILDINGS = 200_000
 OURS = {"report.xlsx": "results.json", "ranking.xlsx": "portfolio.json", "compare.xlsx": "compare.json"}
 """Workbooks that are results of `assess`, where the file that lists them lies next to them."""
-INDEX_ENDINGS = (".csv", ".txt", ".tsv")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
