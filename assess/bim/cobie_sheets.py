@@ -25,10 +25,10 @@ from assess.workbook.open import (
     WORKBOOK,
     Book,
     Cells,
-    column_letters,
     read_file,
     unreadable,
 )
+from assess.workbook.plain_rows import column_letters
 from assess.workbook.values import ERRORS, is_blank, read_text
 
 COLUMNS: Mapping[str, tuple[str, ...]] = {

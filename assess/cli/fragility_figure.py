@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from assess.cli.fragility_output import LABELS, Curves
+from assess.cli.fragility_output import Curves
 from assess.cli.route_figure import LINES, ROOM
 from assess.fragility import lognormal_chance
 from assess.i18n import count
 from assess.pipeline.piece_fragility import UNITS, PieceFragility
 from assess.report.figures.draw import label
+from assess.report.interchange.exchange_files import LABELS
 
 A_PANEL, MOST_PANELS = 6, 4
 POINTS = 200

@@ -38,9 +38,7 @@ def list_facts(found: Comparison) -> list[Fact]:
         *_list_settings(before.settings, after.settings),
         *_list_differing(before.uncertainty, after.uncertainty, uncertainty),
         *_list_differing({"shaking": before.shaking}, {"shaking": after.shaking}, {"shaking": _("Assumed shaking")}),
-        *_list_differing(
-            {"site": before.site_ground}, {"site": after.site_ground}, {"site": _("Ground motion")}
-        ),
+        *_list_differing({"site": before.site_ground}, {"site": after.site_ground}, {"site": _("Ground motion")}),
         *_list_motions(before, after),
         *_list_differing(before.building, after.building, lines, left_out=("building", "report_date")),
         *_list_differing(before.platform, after.platform, {}),

@@ -15,9 +15,10 @@ from assess.model import Inventory
 from assess.pipeline.live_values import live_values
 from assess.progress import SILENT, Progress
 from assess.workbook.names import is_live, plain, say_live, split_header
-from assess.workbook.open import HEADER_ROWS, Book, column_letters
+from assess.workbook.open import HEADER_ROWS, Book
 from assess.workbook.patch import Value, Values, list_formulas, patch_workbook
 from assess.workbook.places import split_address
+from assess.workbook.plain_rows import column_letters
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LISTS, LIVE
 

@@ -12,8 +12,9 @@ from assess.workbook.held import HeldCells, HeldSheets
 from assess.workbook.layout import FROZEN, PLACES
 from assess.workbook.names import is_live, plain, say_choices, say_live, split_header, translate
 from assess.workbook.number_formats import Percent
-from assess.workbook.open import MAX_ROWS, UNSAVED, column_letters
+from assess.workbook.open import MAX_ROWS, UNSAVED
 from assess.workbook.parse import Table, Tables
+from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import CLASS, ITEMS, LIVE, SHEETS, Column, Sheet
 from assess.workbook.template import describe
 from assess.workbook.values import is_blank, read_text

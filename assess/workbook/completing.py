@@ -12,10 +12,10 @@ BETTER = (
         "Ground PGA in Building."
     ),
     fill(
-        "ShakeMap of a past earthquake: the USGS (earthquake.usgs.gov) and many national services publish maps of how "
-        "strongly the ground shook. Put its grid.xml beside the workbook and name it in ShakeMap file in Building, with "
-        "Latitude and Longitude; or read the PGA at the address, often in % of g (25 % of g is 0.25 g), and type it "
-        "into Ground PGA."
+        "ShakeMap of a past earthquake: the USGS (earthquake.usgs.gov) and many national services publish maps of "
+        "how strongly the ground shook. Put its grid.xml beside the workbook and name it in ShakeMap file in "
+        "Building, with Latitude and Longitude; or read the PGA at the address, often in % of g (25 % of g is 0.25 g), "
+        "and type it into Ground PGA."
     ),
     fill(
         "Records: where instruments in the building or near it recorded an earthquake, ask those who run them for the "

@@ -13,9 +13,10 @@ from typing import Any, ClassVar
 from assess.errors import Problem
 from assess.i18n import Text
 from assess.workbook.number_formats import Percent, read_number
-from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, SheetCells, column_letters
+from assess.workbook.open import HEADER_ROWS, TRUE, Book, Cells, SheetCells
 from assess.workbook.patch import LOCKED, Area, Value, read_back
 from assess.workbook.places import split_range
+from assess.workbook.plain_rows import column_letters
 
 Place = tuple[int, int]
 """The row of a cell, from 1, and its column, from 0."""

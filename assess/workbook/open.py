@@ -11,7 +11,6 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import Any, Self, TypeVar
 from xml.parsers import expat
@@ -20,7 +19,7 @@ from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
 from assess.workbook.number_formats import find_format, read_number
-from assess.workbook.plain_rows import PlainCell, RowCutter, column_number, list_cells, list_unsaved
+from assess.workbook.plain_rows import PlainCell, RowCutter, column_letters, column_number, list_cells, list_unsaved
 
 MAX_FILE, MAX_PARTS, MAX_TOTAL, MAX_RATIO = 100 * 2**20, 2000, 128 * 2**20, 200
 MAX_ROWS, MAX_COLUMNS = 100_000, 256
@@ -490,16 +489,6 @@ class SheetCells(Part):
         """Return the format of a style that shows a number otherwise, else None."""
         number = int(style) if style.isdigit() else 0
         return self.shared.styles[number] if number < len(self.shared.styles) else None
-
-
-@cache
-def column_letters(at: int) -> str:
-    """Return the letters of a column, counted from 0."""
-    letters, at = "", at + 1
-    while at:
-        at, rest = divmod(at - 1, 26)
-        letters = chr(ord("A") + rest) + letters
-    return letters
 
 
 def _check_kind(types: Tree, book: Tree) -> None:

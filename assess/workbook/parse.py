@@ -17,8 +17,9 @@ from assess.units import QUANTITIES, read_unit
 from assess.workbook.habits import CellError, Remark
 from assess.workbook.held import HeldCells
 from assess.workbook.names import ENGLISH, find_column, find_near_column, is_live, plain, split_header, versions
-from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells, column_letters
+from assess.workbook.open import HEADER_ROWS, MAX_COLUMNS, MAX_ROWS, UNSAVED, Cells, SheetCells
 from assess.workbook.places import split_range
+from assess.workbook.plain_rows import column_letters
 from assess.workbook.schema import Column, Sheet
 from assess.workbook.sections import (
     FIRST_COLUMNS,

@@ -16,7 +16,7 @@ from xml.sax.saxutils import escape
 from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
-from assess.workbook.open import ESCAPED, SHEET_COLUMNS, SHEET_ROWS, Book, column_letters, unreadable
+from assess.workbook.open import ESCAPED, SHEET_COLUMNS, SHEET_ROWS, Book, unreadable
 from assess.workbook.patch_parts import drop_from_chain, find_headings, set_recalculation
 from assess.workbook.places import (
     CellPlace,
@@ -31,6 +31,7 @@ from assess.workbook.places import (
     split_address,
     split_range,
 )
+from assess.workbook.plain_rows import column_letters
 
 Value = float | str | bool | None
 """What a cell may hold; None leaves it blank."""

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from assess.errors import WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
-from assess.workbook.open import Part, column_letters, damaged, unreadable
+from assess.workbook.open import Part, damaged, unreadable
+from assess.workbook.plain_rows import column_letters
 
 _TAG = re.compile(rb"""<[^>"']*(?:(?:"[^"]*"|'[^']*')[^>"']*)*>""")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s=/>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")

@@ -112,6 +112,16 @@ def list_cells(cells: str) -> list[PlainCell]:
 
 
 @cache
+def column_letters(at: int) -> str:
+    """Return the letters of a column, counted from 0."""
+    letters, at = "", at + 1
+    while at:
+        at, rest = divmod(at - 1, 26)
+        letters = chr(ord("A") + rest) + letters
+    return letters
+
+
+@cache
 def column_number(letters: str) -> int:
     """Return the number of a column, from 1; ValueError if letters are none."""
     if not (1 <= len(letters) <= 3 and letters.isascii() and letters.isalpha()):

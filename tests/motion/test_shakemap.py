@@ -30,7 +30,7 @@ def test_loma_prieta_at_575_market_street():
     assert site.dispersion == pytest.approx(0.09, abs=5e-4)
     assert site.pgv == pytest.approx(0.196, abs=5e-4)
     assert abs(np.log(site.pga / GRAVITY / 0.139)) < 1.1 * site.dispersion
-    facts = dict(site.facts)
+    facts = {str(label): str(value) for label, value in site.facts}
     assert facts["Earthquake"] == "Loma Prieta, California, magnitude 6.9"
     assert facts["Status of the map"] == "RELEASED"
     assert facts["Kind of event"] == "ACTUAL"

@@ -155,6 +155,7 @@ def test_draw_k_takes_scenario_k_and_again_from_the_first(tmp_path):
     assert earthquakes.draw(1, 0, 6) == pytest.approx([-1.2247, 0, 1.2247] * 2, abs=1e-4)
     assert assessment.cases.uncertainty.motion == pytest.approx(0.566, abs=0.001)
     falls = sum_draws(assessment, build_results(assessment, figures=False)).falls
+    assert falls is not None
     weak, median, strong = (falls[at::3].sum() for at in range(3))
     assert weak <= median <= strong
     assert weak < strong

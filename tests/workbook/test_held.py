@@ -17,8 +17,8 @@ from assess.plans import Drawing, read_plan
 from assess.workbook.held import HeldSheets, Place
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.layout import PLACES
-from assess.workbook.open import column_letters
 from assess.workbook.patch import Value, patch_workbook
+from assess.workbook.plain_rows import column_letters
 from assess.workbook.read import build_held, hold_sheets, parse_held, read_inventory
 from assess.workbook.template import Content, write_workbook
 from tests.pictures import picture

@@ -17,8 +17,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.errors import WorkbookError
-from assess.workbook.open import Book, column_letters
+from assess.workbook.open import Book
 from assess.workbook.patch import Patched, list_formulas, patch_workbook
+from assess.workbook.plain_rows import column_letters
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts, replace
 
