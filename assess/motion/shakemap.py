@@ -29,11 +29,9 @@ from assess.errors import InputError
 from assess.i18n import Text, fill, join
 from assess.motion.shake_grid import LARGEST_FILE, FloatArray, Grid, describe_place, find_turn, parse_grid
 from assess.motion.site_ground import SiteGround
+from assess.motion.spatial_field import BETWEEN, MAGNITUDES, WITHIN
 from assess.units import GRAVITY
 
-BETWEEN, WITHIN = (0.398, 0.348), (0.695, 0.495)
-"""tau and phi of ln PGA [-] up to the first and from the second of `MAGNITUDES` on: Boore et al. 2014."""
-MAGNITUDES = 4.5, 5.5
 LARGEST_SIGMA = 3.0
 """Standard deviations of ln PGA above this are a slip."""
 LARGEST_PGA = 10 * GRAVITY

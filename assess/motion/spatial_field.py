@@ -10,6 +10,9 @@ References
 Jayaram N, Baker JW (2009). Correlation model for spatially distributed ground-motion intensities. Earthquake
 Engineering and Structural Dynamics 38(15):1687-1708. doi:10.1002/eqe.922 (eqs. 17 to 20: b of PGA is 8.5 km, or 40.7 km
 where soil conditions are clustered; the longer one is taken here, as it makes sums over a city more uncertain)
+Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014). NGA-West2 equations for predicting PGA, PGV, and 5% damped PSA for
+shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M (tau and phi of PGA, before
+the terms of phi for distance and Vs30)
 Rahimi A, Recht B (2007). Random features for large-scale kernel machines. NIPS 20.
 """
 
@@ -21,6 +24,12 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
+BETWEEN, WITHIN = (0.398, 0.348), (0.695, 0.495)
+"""Standard deviations of ln PGA [-] from one earthquake to the next, tau, and from place to place in one, phi: up to
+the first and from the second of `MAGNITUDES` on."""
+MAGNITUDES = 4.5, 5.5
+SHARED = BETWEEN[1] ** 2 / (BETWEEN[1] ** 2 + WITHIN[1] ** 2)
+"""Share of the variance that is common to all places in one earthquake of a magnitude of 5.5 or more [-]."""
 RANGE = 40.7
 """b [km]: the distance at which the correlation has fallen to exp(-3)."""
 WAVES = 64

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from assess.errors import InputError
 from assess.i18n import fill, join
 from assess.model import Inventory
-from assess.motion.spatial_field import RANGE
+from assess.motion.spatial_field import RANGE, SHARED
 from assess.results import EarthquakeDraws
-from assess.rocking.draws import SHARED, Earthquakes, Uncertainty, name_number
+from assess.rocking.draws import Earthquakes, Uncertainty, name_number
 from assess.settings import AUTO, RUNS, Settings
 
 MOST_DRAWS = 5000

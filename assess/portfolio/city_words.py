@@ -5,12 +5,11 @@ from typing import Any
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.motion.spatial_field import RANGE
+from assess.motion.spatial_field import RANGE, SHARED
 from assess.portfolio.city_spread import Spread
 from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group
 from assess.report import words
 from assess.risk import LIMITS, RiskClass
-from assess.rocking.draws import SHARED
 
 REFERENCES = (
     "Jayaram N, Baker JW (2009). Correlation model for spatially distributed ground-motion intensities. Earthquake "

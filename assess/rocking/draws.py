@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.motion.spatial_field import draw_field
+from assess.motion.spatial_field import SHARED, draw_field
 from assess.rocking import block
 from assess.rocking.block import FloatArray
 
@@ -35,11 +35,6 @@ CUT = 3.0
 STILL = 0.85
 """Share of the acceleration at which rocking starts [-] below which a piece is taken not to start: the peak of a motion
 may be somewhat above the floor's PFA, and the piece more slender than given."""
-BETWEEN, WITHIN = 0.348, 0.495
-"""Standard deviations of ln PGA [-] from one earthquake to the next, and from place to place in one: Boore et al.
-(2014), magnitude 5.5 and above, without the terms of distance and soil (doi:10.1193/070113EQS184M)."""
-SHARED = BETWEEN**2 / (BETWEEN**2 + WITHIN**2)
-"""Share of the variance that is common to all places in one earthquake [-]."""
 _EARTHQUAKE, _PIECE = 1, 2
 """Streams of random numbers of a seed; 3 is that of `assess.motion.spatial_field`."""
 _AT_ONCE = 256

@@ -10,10 +10,11 @@ from assess.errors import InputError
 from assess.i18n import fill
 from assess.motion.ground_scenarios import read_scenarios
 from assess.motion.site_ground import SiteGround
+from assess.motion.spatial_field import SHARED
 from assess.pipeline.city_draws import check_draws, choose_runs, find_earthquakes, number_pieces
 from assess.pipeline.draw_sums import sum_draws
 from assess.pipeline.run import build_results, compute
-from assess.rocking.draws import SHARED, Earthquakes, Uncertainty
+from assess.rocking.draws import Earthquakes, Uncertainty
 from assess.settings import Settings
 from tests.workbooks import write
 
