@@ -101,8 +101,8 @@ def test_a_fault_in_a_template_writes_nothing(assessment, tmp_path):
         ),
         (
             ".hidden",
-            "holds no template: expected some of compare.html.j2, macros.html.j2, plan.svg.j2, report.html.j2, script, "
-            "sections",
+            "holds no template: expected some of city.html.j2, city_summary.html.j2, compare.html.j2, macros.html.j2, "
+            "plan.svg.j2, report.html.j2, script, sections",
         ),
     ],
 )
