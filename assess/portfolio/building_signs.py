@@ -1,16 +1,17 @@
-"""The sign of a building on the map and in lists: by the worst class of its pieces, or the worst state of its routes.
+"""The sign of a building on the map and in lists: by the share of its pieces that fall, their worst class, its routes.
 
 The signs are those of the reports: each has a shape of its own, so that it reads without colour.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from assess.i18n import gettext as _
+from assess.i18n import number
 from assess.report.findings.route_words import name_state
 from assess.report.words import ANCHORED, ANCHORED_FILL, APART_FILL, BY_FORMULA, INK, UNCONFIRMED, class_name, risk_word
-from assess.risk import RiskClass
+from assess.risk import LIMITS, RiskClass, classify
 from assess.route_results import RouteState
 
 if TYPE_CHECKING:
@@ -72,6 +73,11 @@ BY_CLASS: Mapping[str, Sign] = {
     class_name(risk): Sign(class_name(risk), risk.symbol, risk.fill, _SHAPES[risk], 5 + risk) for risk in RiskClass
 }  # fmt: skip
 """Signs by the worst class of the pieces, in the order in which they are drawn."""
+_BANDS = {risk: f"share-{class_name(risk)}" for risk in RiskClass}
+BY_SHARE: Mapping[str, Sign] = {key: BY_CLASS[key] for key in BY_CLASS if key not in map(class_name, RiskClass)} | {
+    key: replace(BY_CLASS[class_name(risk)], key=key) for risk, key in _BANDS.items()
+}
+"""Signs by the share of the pieces that is expected to fall, likewise: its bands have the limits of the classes."""
 _ROUTE_SHAPES = {
     RouteState.OPEN: TICK, RouteState.DOUBTFUL: DIAMOND, RouteState.NOT_KNOWN: CIRCLE, RouteState.BLOCKED: SQUARE,
 }  # fmt: skip
@@ -92,13 +98,42 @@ BY_ROUTES: Mapping[str, Sign] = {
 """Signs by the worst state of the routes, likewise."""
 
 
+def find_share(row: Row) -> float | None:
+    """Return the share of a building's pieces in the classes that is expected to fall [-]; None where it has none."""
+    counted = sum(row[_column(risk)] or 0 for risk in RiskClass)
+    return share_of(row["expected_falls"], counted) if row["status"] == "assessed" else None
+
+
+def share_of(expected_falls: float, pieces: int) -> float | None:
+    """Return expected falls over pieces [-], None where there are no pieces.
+
+    It is rounded to 1e-9: three chances of 0.3 sum up to a hair below 0.9, and belong to the band from 0.3.
+    """
+    return round(expected_falls / pieces, 9) if pieces else None
+
+
+def _column(risk: RiskClass) -> str:
+    """Return the column of the table buildings that counts the pieces of a class."""
+    return risk.word.replace(" ", "_")
+
+
+def sign_of_share(row: Row) -> Sign:
+    """Return the sign of a row of the table buildings by the share of its pieces that is expected to fall."""
+    share = find_share(row)
+    risk = None if share is None else classify(share)
+    return _sign_without_class(row) if risk is None else BY_SHARE[_BANDS[risk]]
+
+
 def sign_of_class(row: Row) -> Sign:
     """Return the sign of a row of the table buildings by the highest class that any of its pieces has."""
+    found = next((risk for risk in reversed(RiskClass) if row[_column(risk)]), None)
+    return _sign_without_class(row) if found is None else BY_CLASS[class_name(found)]
+
+
+def _sign_without_class(row: Row) -> Sign:
+    """Return the sign of a building of which nothing is in the classes."""
     if row["status"] != "assessed":
         return BY_CLASS["skipped"]
-    for risk in reversed(RiskClass):
-        if row[risk.word.replace(" ", "_")]:
-            return BY_CLASS[class_name(risk)]
     for column, key in (("unconfirmed", "unconfirmed"), ("by_formula", "by-formula"), ("anchored", "anchored")):
         if row[column]:
             return BY_CLASS[key]
@@ -118,6 +153,8 @@ def say_sign(sign: Sign) -> str:
     for risk in RiskClass:
         if sign.key == class_name(risk):
             return risk_word(risk)
+        if sign.key == _BANDS[risk]:
+            return _say_band(risk)
     for state in RouteState:
         if sign.key == state.replace(" ", "-"):
             return name_state(state)
@@ -129,6 +166,21 @@ def say_sign(sign: Sign) -> str:
         "by-formula": _("by formula only"),
         "unconfirmed": _("unconfirmed"),
     }[sign.key]
+
+
+def _say_band(risk: RiskClass) -> str:
+    """Return the band of the share that has the limits of a class."""
+    low, high = ("", *_list_limits())[risk], (*_list_limits(), "")[risk]
+    if risk == min(RiskClass):
+        return _("below {high} % of its pieces expected to fall", high=high)
+    if risk == max(RiskClass):
+        return _("{low} % or more of its pieces expected to fall", low=low)
+    return _("{low} to {high} % of its pieces expected to fall", low=low, high=high)
+
+
+def _list_limits() -> list[str]:
+    """Return the limits of the classes [%]."""
+    return [number(100 * limit, "g") for limit in LIMITS]
 
 
 def ink_of(sign: Sign) -> str:

@@ -5,7 +5,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from assess.portfolio.building_signs import BY_CLASS, BY_ROUTES, Row, Sign, list_records, sign_of_class, sign_of_routes
+from assess.portfolio.building_signs import (
+    BY_CLASS,
+    BY_ROUTES,
+    BY_SHARE,
+    Row,
+    Sign,
+    list_records,
+    sign_of_class,
+    sign_of_routes,
+    sign_of_share,
+)
 from assess.portfolio.city_map import MapPoint
 from assess.portfolio.city_totals import CityTotals, CityView, build_totals
 
@@ -50,16 +60,21 @@ class CityContent:
 
     @cached_property
     def points(self) -> list[MapPoint]:
-        """The buildings that have a place."""
+        """The buildings that have a place, with their signs by the share that is expected to fall."""
         return [
-            MapPoint(at, name_building(row), row["latitude"], row["longitude"], sign_of_class(row), _find_size(row))
+            MapPoint(at, name_building(row), row["latitude"], row["longitude"], sign_of_share(row), _find_size(row))
             for at, row in enumerate(self.buildings)
             if row["latitude"] is not None and row["longitude"] is not None
         ]
 
     @cached_property
-    def legend(self) -> list[tuple[Sign, int]]:
-        """The signs by class that are in use, the worst first, with the number of buildings."""
+    def share_legend(self) -> list[tuple[Sign, int]]:
+        """The signs by share that are in use, the worst first, with the number of buildings."""
+        return _count_signs([sign_of_share(row) for row in self.buildings], BY_SHARE)
+
+    @cached_property
+    def class_legend(self) -> list[tuple[Sign, int]]:
+        """The signs by class that are in use, likewise."""
         return _count_signs([sign_of_class(row) for row in self.buildings], BY_CLASS)
 
     @cached_property

@@ -7,7 +7,7 @@ from assess.i18n import LANGUAGES
 from assess.i18n import gettext as _
 from assess.portfolio import city_words as say
 from assess.portfolio.background import Background
-from assess.portfolio.building_signs import Sign, say_sign
+from assess.portfolio.building_signs import Sign, say_sign, share_of
 from assess.portfolio.city_content import CityContent, build_content
 from assess.portfolio.city_map import Isoline, draw_map, draw_sign
 from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
@@ -90,8 +90,7 @@ def build_context(
         "map": draw_map(content.points, background, title=_say_map(content), isolines=isolines, is_live=is_live),
         "background": background.file if background else "",
         "has_isolines": bool(isolines),
-        "legend": _list_legend(content.legend),
-        "route_legend": _list_legend(content.route_legend),
+        "map_views": _list_map_views(content),
         "building_rule": _(BUILDING_RULE),
         "type_rule": _(TYPE_RULE),
         "heads": list_heads(),
@@ -117,7 +116,8 @@ def _show_group(group: Any) -> dict[str, Any]:
         "apart": say.say_whole(group.unconfirmed + group.by_formula) if group.unconfirmed + group.by_formula else "",
         "anchored": say.say_whole(group.anchored),
         "buildings": [
-            (words.cut(one.building or one.path, 80), say.say_number(one.expected_falls),
+            (words.cut(one.building or one.path, 80), words.percent(share_of(one.expected_falls, one.in_classes)),
+             say.say_number(one.expected_falls),
              say.say_number(one.people_blocked) if one.occupants else words.DASH, say.say_whole(one.routes_blocked))
             for one in group.first_buildings
         ],
@@ -127,6 +127,20 @@ def _show_group(group: Any) -> dict[str, Any]:
             for one in group.first_types
         ],
     }  # fmt: skip
+
+
+def _list_map_views(content: CityContent) -> list[tuple[str, str, list[tuple[str, str, str, str]], str]]:
+    """Return what the signs of the map can show, the default first: key, label, legend, and what a sign stands for."""
+    share = _("Each sign is a building, by the share of its free-standing pieces that is expected to fall: its "
+              "expected falls over its pieces in the classes. A building with a small share can still have pieces of "
+              "very high class.")  # fmt: skip
+    return [
+        ("share", _("share of the pieces expected to fall"), _list_legend(content.share_legend), share),
+        ("kind", _("highest class of a piece"), _list_legend(content.class_legend),
+         _("Each sign is a building, by the highest class that any of its pieces has.")),
+        ("state", _("worst state of the routes"), _list_legend(content.route_legend),
+         _("Each sign is a building, by the worst state that any of its routes has.")),
+    ]  # fmt: skip
 
 
 def _list_legend(signs: Sequence[tuple[Sign, int]]) -> list[tuple[str, str, str, str]]:
@@ -140,7 +154,7 @@ def _list_filters(content: CityContent) -> list[tuple[str, str, list[tuple[str, 
     inventories = [one for one in ("surveyed", "handover", "assumed") if _is_used(content, one)]
     return [
         ("use", _("Use"), [(use, use) for use in uses]),
-        ("kind", _("Class"), [(sign.key, say_sign(sign)) for sign, _count in content.legend]),
+        ("kind", _("Highest class"), [(sign.key, say_sign(sign)) for sign, _count in content.class_legend]),
         ("state", _("Routes"), [(sign.key, say_sign(sign)) for sign, _count in content.route_legend]),
         ("inventory", _("Inventory"), [(one, say.name_inventory(one)) for one in inventories]),
         ("storeys", _("Storeys"), [(f"{low}-{high}", _say_storeys(low, high)) for low, high in STOREYS]),

@@ -59,6 +59,7 @@ def _render(view: CityView, background: Background | None, isolines: Sequence[Is
         "for_print": True,
         "style": build_style(options, True, STYLE),
         "most_skipped": MOST_SKIPPED,
-        "building_heads": [_("Building"), _("Expected falls"), _("People on blocked routes"), _("Routes blocked")],
-    }
+        "building_heads": [_("Building"), _("Share expected to fall"), _("Expected falls"),
+                           _("People on blocked routes"), _("Routes blocked")],
+    }  # fmt: skip
     return render_page(TEMPLATE, context, options)

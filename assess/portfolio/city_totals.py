@@ -69,10 +69,11 @@ class CityView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FirstBuilding:
-    """A building to start with; `people_blocked` is the expected number of people whose route is blocked."""
+    """A building to start with: pieces in the classes, and the expected number of people whose route is blocked."""
 
     path: str
     building: str
+    in_classes: int
     expected_falls: float
     people_blocked: float
     occupants: int
@@ -273,6 +274,7 @@ def _list_buildings(rows: pd.DataFrame) -> Iterator[FirstBuilding]:
         yield FirstBuilding(
             path=_text(row["path"].iloc[0]),
             building=_text(row["building"].iloc[0]),
+            in_classes=sum(_count(row, risk.word.replace(" ", "_")) for risk in RiskClass),
             expected_falls=_sum(row, "expected_falls"),
             people_blocked=_sum(row, "people_blocked"),
             occupants=_count(row, "occupants"),

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from assess.i18n import gettext as _
-from assess.portfolio.building_signs import Row, sign_of_class, sign_of_routes
+from assess.portfolio.building_signs import Row, find_share, sign_of_class, sign_of_routes, sign_of_share
 from assess.portfolio.city_content import CityContent, name_building
 from assess.portfolio.city_words import name_basis, name_inventory, say_number, say_place, say_range, say_whole
 from assess.portfolio.piece_words import (
@@ -82,6 +82,7 @@ def _pack_building(row: Row, content: CityContent, repeat: str) -> dict[str, Any
     return {
         "name": words.cut(name_building(row), LONGEST),
         "path": words.cut(row["path"], LONGEST),
+        "share": sign_of_share(row).key,
         "kind": sign_of_class(row).key,
         "state": sign_of_routes(row).key,
         "use": words.cut(str(row["use"] or ""), 60),
@@ -103,20 +104,22 @@ def _write_command(row: Row, repeat: str) -> str:
 
 def list_heads() -> list[str]:
     """Return the headings of the ranking, whose cells `write_data` holds for each building."""
-    return [_("Building"), _("Use"), _("Inventory"), _("Class"), _("Pieces"), _("Expected falls"),
-            _("5 to 95 % of earthquakes"), _("People on blocked routes"), _("Routes blocked")]  # fmt: skip
+    return [_("Building"), _("Use"), _("Inventory"), _("Highest class"), _("Pieces"), _("Share expected to fall"),
+            _("Expected falls"), _("5 to 95 % of earthquakes"), _("People on blocked routes"),
+            _("Routes blocked")]  # fmt: skip
 
 
 def _list_cells(row: Row) -> list[str]:
     """Return the cells of the ranking after the first; the class is written by its sign."""
     if row["status"] != "assessed":
-        return [str(row["use"] or ""), "", "", *("" for _at in range(5))]
+        return [str(row["use"] or ""), "", "", *("" for _at in range(6))]
     inventory = name_inventory(row["inventory"])
     basis = "" if row["basis"] == "simulated" else f", {name_basis(row['basis'])}"
     return [
         words.cut(str(row["use"] or ""), 60), f"{inventory}{basis}", "", say_count(row["pieces"]),
-        say_number(row["expected_falls"]), say_range(row["falls_p05"], row["falls_p95"]),
-        _say_people(row), say_count(row["routes_blocked"]) if row["routes"] else words.DASH,
+        words.percent(find_share(row)), say_number(row["expected_falls"]),
+        say_range(row["falls_p05"], row["falls_p95"]), _say_people(row),
+        say_count(row["routes_blocked"]) if row["routes"] else words.DASH,
     ]  # fmt: skip
 
 
@@ -141,6 +144,7 @@ def _FACTS() -> list[tuple[str, Callable[[Row], str]]]:  # noqa: N802 - a table,
         (_("Standard deviation of ln PFA"), lambda row: words.fixed(row["motion_uncertainty"], 2)),
         (_("Pieces by class"), _say_classes),
         (_("Expected falls"), _say_falls),
+        (_("Share of its pieces in the classes that is expected to fall"), lambda row: words.percent(find_share(row))),
         (_("Falls with few and with many pieces (10 and 90 % quantities)"), _say_assumed),
         (_("People on blocked routes"), _say_people),
         (_("Falls that the work list avoids"), lambda row: say_number(row["falls_avoided"])),

@@ -12,7 +12,7 @@ from assess.environment import find_source_date
 from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.portfolio import city_words as say
-from assess.portfolio.building_signs import Row, say_sign, sign_of_class
+from assess.portfolio.building_signs import Row, find_share, say_sign, sign_of_class
 from assess.portfolio.city_content import CityContent, build_content
 from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
 from assess.portfolio.piece_words import label_piece, label_state, say_kind, say_severity, say_size, say_spot
@@ -118,6 +118,7 @@ def _list_building_columns() -> list[Column]:
         Column(_("Use"), 12, _of("use")),
         Column(_("Storeys"), 8, _of("storeys"), COUNT),
         Column(_("Highest class"), 14, counted),
+        Column(_("Share expected to fall"), 10, find_share, CHANCE),
         Column(_("Expected falls"), 10, _of("expected_falls"), SUM),
         Column(_("Falls, 5 % of earthquakes"), 11, _of("falls_p05"), COUNT),
         Column(_("Falls, 95 % of earthquakes"), 11, _of("falls_p95"), COUNT),

@@ -18,7 +18,8 @@
   const svg = document.querySelector("svg.city-map");
   const legend = (mode) =>
     new Map(Array.from(byId(`legend-${mode}`)?.querySelectorAll("svg") ?? [], (sign) => [sign.dataset.key, sign]));
-  const signs = svg ? { kind: legend("kind"), state: legend("state") } : {};
+  const MODES = ["share", "kind", "state"];
+  const signs = svg ? Object.fromEntries(MODES.map((mode) => [mode, legend(mode)])) : {};
   const names = {
     kind: new Map(Array.from(byId("filter-kind").options, (one) => [one.value, one.text])),
     state: new Map(Array.from(byId("filter-state").options, (one) => [one.value, one.text])),
@@ -75,7 +76,11 @@
       if (sign) mark.replaceChildren(...Array.from(sign.children, (part) => part.cloneNode(true)));
       if (title) mark.append(title);
     }
-    for (const other of ["kind", "state"]) byId(`legend-${other}`).hidden = other !== mode;
+    // the legend begins with the worst, which is to lie on top
+    for (const key of [...signs[mode].keys()].reverse()) {
+      svg.querySelector(".marks").append(...marks.filter((mark) => buildings[Number(mark.dataset.at)][mode] === key));
+    }
+    for (const other of MODES) byId(`legend-${other}`).hidden = other !== mode;
   };
 
   const startMap = () => {

@@ -7,13 +7,23 @@ import xml.etree.ElementTree as ET
 import pytest
 
 from assess.portfolio.background import Background
-from assess.portfolio.building_signs import BY_CLASS, BY_ROUTES, sign_of_class, sign_of_routes
+from assess.portfolio.building_signs import (
+    BY_CLASS,
+    BY_ROUTES,
+    BY_SHARE,
+    find_share,
+    say_sign,
+    sign_of_class,
+    sign_of_routes,
+    sign_of_share,
+)
 from assess.portfolio.city_map import Isoline, MapPoint, build_frame, draw_map, find_bar
 from tests.portfolio.city_samples import NASTY, make_view
 
 SVG = "{http://www.w3.org/2000/svg}"
-ROW = {"status": "assessed", "low": 0, "medium": 0, "high": 0, "very_high": 0, "unconfirmed": 0, "by_formula": 0,
-       "anchored": 0, "routes_open": 0, "routes_doubtful": 0, "routes_blocked": 0, "routes_not_known": 0}  # fmt: skip
+ROW = {"status": "assessed", "expected_falls": 0.0, "low": 0, "medium": 0, "high": 0, "very_high": 0, "unconfirmed": 0,
+       "by_formula": 0, "anchored": 0, "routes_open": 0, "routes_doubtful": 0, "routes_blocked": 0,
+       "routes_not_known": 0}  # fmt: skip
 
 
 def _point(at, latitude, longitude, key="low", name="A"):
@@ -71,7 +81,7 @@ def test_no_building_with_a_place_gives_no_map():
 
 
 def test_every_sign_has_a_shape_of_its_own():
-    for signs in (BY_CLASS, BY_ROUTES):
+    for signs in (BY_CLASS, BY_SHARE, BY_ROUTES):
         looks = [
             (one.path, one.is_open, one.is_dashed, one.fill if one.key == "anchored" else "") for one in signs.values()
         ]
@@ -95,6 +105,41 @@ def test_every_sign_has_a_shape_of_its_own():
 def test_the_sign_of_a_building_is_that_of_its_worst(changes, kind, state):
     assert sign_of_class(ROW | changes).key == kind
     assert sign_of_routes(ROW | changes).key == state
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "said"),
+    [
+        ({"low": 99, "very_high": 1, "expected_falls": 1.5}, "share-low", "below 3 % of its pieces expected to fall"),
+        ({"low": 97, "high": 3, "expected_falls": 3.0}, "share-medium", "3 to 30 % of its pieces expected to fall"),
+        ({"high": 10, "expected_falls": sum([0.3] * 10)}, "share-high", "30 to 70 % of its pieces expected to fall"),
+        ({"high": 5, "very_high": 5, "unconfirmed": 90, "anchored": 90, "expected_falls": 7.0}, "share-very-high",
+         "70 % or more of its pieces expected to fall"),
+        ({"very_high": 2, "expected_falls": 2.0000000000000004}, "share-very-high",
+         "70 % or more of its pieces expected to fall"),
+    ],
+)  # fmt: skip
+def test_the_sign_by_share_is_the_band_of_expected_falls_over_pieces_in_the_classes(changes, key, said):
+    sign = sign_of_share(ROW | changes)
+    assert sign.key == key
+    assert say_sign(sign) == said
+    like = BY_CLASS[key.removeprefix("share-")]
+    assert (sign.path, sign.fill, sign.symbol) == (like.path, like.fill, like.symbol)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"unconfirmed": 1, "by_formula": 1},
+        {"by_formula": 1, "anchored": 3},
+        {"anchored": 4},
+        {},
+        {"status": "skipped", "low": None, "medium": None, "high": None, "very_high": None, "expected_falls": None},
+    ],
+)
+def test_a_building_with_nothing_in_the_classes_has_the_same_sign_in_both_views(changes):
+    assert find_share(ROW | changes) is None
+    assert sign_of_share(ROW | changes) == sign_of_class(ROW | changes)
 
 
 def test_the_background_is_cut_to_what_is_shown():
@@ -130,5 +175,12 @@ def test_buildings_of_a_view_are_marked_by_their_sums():
     content = build_content(make_view(24, draws=20))
     placed = [row for row in content.buildings if row["latitude"] is not None]
     assert len(content.points) == len(placed) == 24 - 2 - 1  # two skipped without a place, one assessed without
-    assert sum(count for _sign, count in content.legend) == 24
-    assert content.legend[-1][0].key == "skipped"
+    for legend in (content.share_legend, content.class_legend, content.route_legend):
+        assert sum(count for _sign, count in legend) == 24
+        assert legend[-1][0].key == "skipped"
+    for point in content.points:
+        row = content.buildings[point.at]
+        share = row["expected_falls"] / (row["low"] + row["medium"] + row["high"] + row["very_high"])
+        band = sum(share >= limit for limit in (0.03, 0.3, 0.7))
+        assert point.sign.key == ("share-low", "share-medium", "share-high", "share-very-high")[band]
+    assert len({point.sign.key for point in content.points}) > 1

@@ -91,6 +91,38 @@ def test_the_data_hold_every_building_in_the_order_of_the_ranking(data, view):
     assert places == sorted(places)
 
 
+def test_the_list_holds_the_share_beside_the_expected_falls(html, data, view):
+    heads = re.findall(r"<th[^>]*>([^<]*)</th>", html.split('id="ranked"')[1].split("</thead>")[0])
+    at = heads.index("Share expected to fall") - 1  # the cells begin after the name
+    assert heads[at + 2] == "Expected falls"
+    known = view.buildings.set_index("path")
+    for one in data["buildings"]:
+        if one["kind"] == "skipped":
+            assert len(one["cells"]) == len(heads) - 1
+            continue
+        own = known.loc[one["path"]]
+        share = own["expected_falls"] / (own["low"] + own["medium"] + own["high"] + own["very_high"])
+        assert float(one["cells"][at].removesuffix(" %")) == pytest.approx(100 * share, abs=0.06)
+        assert f"{one['cells'][at]}" in one["facts"]
+
+
+def test_the_map_shows_the_share_first_and_every_view_has_its_legend(html, data):
+    part = html[html.index('<section id="map">') : html.index('<section id="ranking">')]
+    assert re.findall(r'<option value="(\w+)">', part) == ["share", "kind", "state"]
+    legends = re.findall(r'<div id="legend-(\w+)"( hidden)?>(.*?)</div>', part, re.DOTALL)
+    assert [(mode, hidden) for mode, hidden, _text in legends] == [
+        ("share", ""),
+        ("kind", " hidden"),
+        ("state", " hidden"),
+    ]
+    assert "30 to 70 % of its pieces expected to fall: " in legends[0][2]
+    assert "by the highest class that any of its pieces has" in legends[1][2]
+    for mode, _hidden, text in legends:
+        keys = [one[mode] for one in data["buildings"]]
+        counted = re.findall(r'data-key="([^"]+)".*?: ([\d,]+)</li>', text)
+        assert {key: int(count) for key, count in counted} == {key: keys.count(key) for key in keys}
+
+
 def test_the_command_quotes_the_path_and_assumed_buildings_have_none(data):
     for one in data["buildings"]:
         if one["inventory"] == "assumed":
@@ -188,11 +220,32 @@ class TestInBrowser:
         page.keyboard.press("ArrowLeft")
         page.get_by_role("button", name="Show all", exact=True).click()
         assert page.evaluate(box) == 1000
-        before = page.locator(".marks").inner_html()
-        page.get_by_label("Signs show").select_option("state")
-        assert page.locator(".marks").inner_html() != before
-        assert page.locator("#legend-state").is_visible()
-        assert page.locator("#legend-kind").is_hidden()
+
+    def test_the_map_shows_the_share_then_the_highest_class_then_states(self, open_page, data):
+        page = open_page()
+        numbers = "Array.from(document.querySelectorAll('.marks > g'), (mark) => Number(mark.dataset.at))"
+        outlines = "Array.from(document.querySelectorAll('.marks path:first-child'), (one) => one.getAttribute('d'))"
+        shapes = {}
+        for mode in ("share", "kind", "state"):
+            if mode != "share":
+                page.get_by_label("Signs show").select_option(mode)
+            shown = [one for one in ("share", "kind", "state") if page.locator(f"#legend-{one}").is_visible()]
+            assert shown == [mode]
+            legend = page.locator(f"#legend-{mode} svg")
+            order = [legend.nth(at).get_attribute("data-key") for at in range(legend.count())]
+            drawn = [data["buildings"][at][mode] for at in page.evaluate(numbers)]
+            assert drawn == sorted(drawn, key=order.index, reverse=True)  # the worst lie on top
+            shapes[mode] = dict(zip(page.evaluate(numbers), page.evaluate(outlines), strict=True))
+        assert shapes["share"] != shapes["kind"] != shapes["state"]
+        page.get_by_label("Signs show").select_option("share")
+        assert dict(zip(page.evaluate(numbers), page.evaluate(outlines), strict=True)) == shapes["share"]
+
+    def test_the_filter_by_class_is_that_of_the_highest_class(self, open_page, data):
+        page = open_page()
+        page.get_by_label("Highest class", exact=True).select_option("very-high")
+        wanted = sum(one["kind"] == "very-high" for one in data["buildings"])
+        assert 0 < wanted < 150
+        assert page.locator("#filter-status").inner_text() == f"Buildings: {wanted} of 150; Highest class: very high"
 
     def test_a_name_that_attacks_is_shown_as_it_is(self, open_page, data):
         page = open_page()

@@ -29,6 +29,9 @@ def test_map_first_buildings_types_skipped_and_references_are_in_it(pages):
     text = " ".join(pages)
     for words in (
         "20 km",
+        "by the share of its free-standing pieces that is expected to fall",
+        "30 to 70 % of its pieces expected to fall: ",
+        "Share expected to fall",
         "Where to start: Surveyed buildings, simulated",
         "Storage cabinet steel",
         "Skipped buildings",
@@ -38,6 +41,10 @@ def test_map_first_buildings_types_skipped_and_references_are_in_it(pages):
         "not per year",
     ):
         assert words in text, words
+
+
+def test_its_map_does_not_say_the_highest_class(pages):
+    assert "highest class that any" not in " ".join(pages)
 
 
 def test_the_same_tables_give_the_same_bytes():

@@ -50,6 +50,8 @@ def test_buildings_have_the_numbers_of_the_tables_in_the_order_of_the_rule(book,
         if own["status"] == "assessed":
             assert row["Expected falls"] == pytest.approx(own["expected_falls"])
             assert row["Pieces, very high"] == own["very_high"]
+            counted = own["low"] + own["medium"] + own["high"] + own["very_high"]
+            assert row["Share expected to fall"] == pytest.approx(own["expected_falls"] / counted)
             assert row["Ground PGA [g]"] == own["ground_pga_g"]
     assessed = [row for row in rows if row["Expected falls"] is not None]
     order = [(-round(row["People on blocked routes, expected"]), -row["Expected falls"]) for row in assessed]
