@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from assess.errors import InputError
 from assess.hazard import FAR, find_distance
-from assess.i18n import fill, join
+from assess.i18n import Text, fill, join, nfill
 from assess.motion.site_ground import SiteGround
 from assess.units import GRAVITY
 
@@ -42,11 +42,14 @@ MOST_ROWS = 5_000_000
 MOST_COLUMNS = 50
 MOST_HEAD = 100_000
 """Characters of the comments and the headings."""
+FARTHEST = 50_000.0
+"""Scenarios whose nearest site is farther from a building than this [m] do not cover it."""
 LARGEST_PGA = 10.0
 """Accelerations above this [g] are a slip in the unit; 5 % damped spectra may be three times it."""
 LARGEST_PGV = 1000.0
 """Velocities above this [cm/s] are a slip in the unit."""
 _SA = re.compile(r"gmv_SA\((\d{1,3}(?:\.\d{1,6})?)\)", re.ASCII)
+_BLANK = re.compile(rb"(?:\A|\n|\r)[ \t]*[\r\n](?<!\r\n)")
 _TEXT = "custom_site_id"
 _KEYS = ("site_id", _TEXT)
 
@@ -100,10 +103,12 @@ class GroundScenarios:
         Raises
         ------
         InputError
-            If events are missing at that site.
+            If that site is farther than `FARTHEST`, or events are missing there.
         """
         distances = find_distance(latitude, longitude, self.latitude, self.longitude)
         nearest = int(distances.argmin())
+        if not distances[nearest] <= FARTHEST:
+            raise InputError(self._describe_gap(latitude, longitude, float(distances[nearest])))
         rows = slice(int(self.start[nearest]), int(self.start[nearest + 1]))
         place = {"lat": float(self.latitude[nearest]), "lon": float(self.longitude[nearest])}
         count = rows.stop - rows.start
@@ -121,12 +126,24 @@ class GroundScenarios:
             )
         return self._describe(np.log(self.values[rows]), float(distances[nearest]))
 
+    def _describe_gap(self, latitude: float, longitude: float, distance: float) -> Text:
+        """Return why the scenarios do not cover a place, with how to fix it."""
+        return fill(
+            "{file}: the scenarios do not cover latitude {lat:.4f}, longitude {lon:.4f}: their nearest site is "
+            "{km:,.0f} km away, expected at most {most:.0f} km. Check Latitude and Longitude, or compute the fields for sites "
+            "near the building",
+            file=self.file,
+            lat=latitude,
+            lon=longitude,
+            km=distance / 1000,
+            most=FARTHEST / 1000,
+        )
+
     def _describe(self, logs: FloatArray, distance: float) -> SiteGround:
         medians = dict(zip(self.measures, np.exp(logs.mean(axis=0)).tolist(), strict=True))
         dispersion = float(logs[:, 0].std()) if len(logs) > 1 else 0.0
         dispersion = dispersion if dispersion > 1e-9 else 0.0
-        numbers = (logs[:, 0] - logs[:, 0].mean()) / dispersion if dispersion else ()
-        source = fill("standard deviation of {count} scenarios of {file}", count=len(logs), file=self.file)
+        numbers = (logs[:, 0] - logs[:, 0].mean()) / dispersion if dispersion else np.zeros(len(logs))
         return SiteGround(
             kind="scenarios",
             file=self.file,
@@ -135,25 +152,35 @@ class GroundScenarios:
             pgv=medians["gmv_PGV"] / 100 if "gmv_PGV" in medians else None,
             psa=tuple((period, medians[name] * GRAVITY) for name, period in _list_psa(self.measures)),
             dispersion=dispersion,
-            dispersion_source=source,
+            dispersion_source=_name_dispersion(len(logs), self.file),
             distance=distance,
             scenarios=tuple(float(one) for one in numbers),
             facts=(
-                (fill("Scenarios"), fill("{count:,} events", count=len(logs))),
+                (fill("Scenarios"), nfill("{n:,} event", "{n:,} events", len(logs))),
                 (fill("Distance to the nearest site"), fill("{km:.1f} km", km=distance / 1000)),
                 (fill("File of sites"), fill("{file}, SHA-256 {sha256}", file=self.sites_file, sha256=self.hashes[1])),
             ),
-            cautions=_warn_of_distance(distance),
+            cautions=tuple(_list_cautions(distance, dispersion)),
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _read_again, (self.path, self.sha256)
 
 
-def _warn_of_distance(distance: float) -> tuple[Any, ...]:
-    if distance <= FAR:
-        return ()
-    return (fill("the nearest site of the scenarios is {km:.0f} km from the building", km=distance / 1000),)
+def _name_dispersion(count: int, file: str) -> Text:
+    return nfill(
+        "{file} holds {n:,} scenario alone", "standard deviation of {n:,} scenarios of {file}", count, file=file
+    )
+
+
+def _list_cautions(distance: float, dispersion: float) -> Iterator[Text]:
+    if distance > FAR:
+        yield fill("the nearest site of the scenarios is {km:.0f} km from the building", km=distance / 1000)
+    if not dispersion:
+        yield fill(
+            "the scenarios do not differ at the building: the motion of the ground is taken as known, so that ranges "
+            "leave out how much it varies from one earthquake like this one to the next"
+        )
 
 
 @lru_cache(maxsize=2)
@@ -232,12 +259,20 @@ def _find_sites_file(folder: Path) -> str:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Table:
-    """A CSV file: its headings, its rows of numbers, (rows, columns), and the number of its first line of these."""
+    """A CSV file: its headings, its rows of numbers, (rows, columns), and the number of the line of the first.
+
+    `lines` are the numbers of the lines of all rows where blank lines lie between them.
+    """
 
     headings: tuple[str, ...]
     numbers: FloatArray
     first: int
     sha256: str
+    lines: NDArray[np.intp] | None = None
+
+    def line(self, row: int) -> int:
+        """Return the number of the line of a row, from 1 on as in the file."""
+        return self.first + row if self.lines is None else int(self.lines[row])
 
     def column(self, name: str) -> int:
         """Return the place of a column."""
@@ -271,7 +306,14 @@ def _parse_table(data: bytes, texts: dict[str, int]) -> _Table:
     if not data.endswith((b"\n", b"\r")):
         raise InputError(fill("the last line has no end: the file is cut off. Export it again"))
     numbers = _parse_rows(data[start:], head, first, lambda text: texts.setdefault(text.strip(), len(texts)))
-    return _Table(head, numbers, first, hashlib.sha256(data).hexdigest())
+    return _Table(head, numbers, first, hashlib.sha256(data).hexdigest(), _number_lines(data[start:], first))
+
+
+def _number_lines(data: bytes, first: int) -> NDArray[np.intp] | None:
+    """Return the number of the line of every row; None where no line is blank, so that they follow one another."""
+    if not _BLANK.search(data):
+        return None
+    return np.array([line for line, row in enumerate(data.splitlines(), first) if row.strip()], dtype=np.intp)
 
 
 def _read_head(data: bytes) -> tuple[int, tuple[str, ...], int]:
@@ -343,7 +385,8 @@ def _find_key(data: _Table, sites: _Table, sites_file: str) -> str:
     """Return the column that names the site in both tables."""
     key = next((name for name in _KEYS if name in data.headings and name in sites.headings), None)
     if key is None:
-        raise InputError(fill("no column site_id that {file} has, too", file=sites_file))
+        fault = "neither site_id nor custom_site_id is a column of both this file and {file}: one of them has to be"
+        raise InputError(fill(fault, file=sites_file))
     missing = next((name for name in ("event_id", "gmv_PGA") if name not in data.headings), None)
     if missing is not None:
         raise InputError(fill("the column {name} is missing", name=missing))
@@ -358,7 +401,7 @@ def _read_sites(sites: _Table, key: str) -> tuple[FloatArray, FloatArray, FloatA
     names, latitude, longitude = (sites.numbers[:, sites.column(name)] for name in (key, "lat", "lon"))
     bad = ~((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))
     if bad.any():
-        line = sites.first + int(bad.argmax())
+        line = sites.line(int(bad.argmax()))
         raise InputError(fill("line {line}: lon and lat are no place on earth", line=line))
     if np.unique(names).size < names.size:
         raise InputError(fill("a {key} is there twice", key=key))
@@ -381,8 +424,8 @@ def _check_values(data: _Table, measures: Sequence[str]) -> None:
             at = int(bad.argmax())
             raise InputError(
                 fill(
-                    "row {row:,}: {name} is {value:g}, expected above 0 and at most {most:g} {unit}",
-                    row=at + 1,
+                    "line {line}: {name} is {value:g}, expected above 0 and at most {most:g} {unit}",
+                    line=data.line(at),
                     name=name,
                     value=float(values[at]),
                     most=most,
@@ -394,13 +437,14 @@ def _check_values(data: _Table, measures: Sequence[str]) -> None:
 def _sort_rows(data: _Table, key: str, names: FloatArray, sites_file: str) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the place of the site of each row among `names`, and the rows, in the order of sites and events."""
     own, events = data.numbers[:, data.column(key)], data.numbers[:, data.column("event_id")]
-    if not (np.isfinite(events) & (np.abs(events) < 2**53) & (events == np.floor(events))).all():
-        raise InputError(fill("event_id has to be a whole number in every row"))
+    bad = ~(np.isfinite(events) & (np.abs(events) < 2**53) & (events == np.floor(events)))
+    if bad.any():
+        raise InputError(fill("line {line}: event_id has to be a whole number", line=data.line(int(bad.argmax()))))
     at = np.searchsorted(names, own)
     unknown = names[np.minimum(at, names.size - 1)] != own
     if unknown.any():
-        row = int(unknown.argmax()) + 1
-        raise InputError(fill("row {row:,}: its {key} is not in {file}", row=row, key=key, file=sites_file))
+        line = data.line(int(unknown.argmax()))
+        raise InputError(fill("line {line}: its {key} is not in {file}", line=line, key=key, file=sites_file))
     order = np.lexsort((events, at))
     return at[order], order
 

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from assess.errors import InputError
-from assess.i18n import Text, fill, join
+from assess.i18n import Text, fill, join, nfill
 from assess.motion.shake_grid import LARGEST_FILE, FloatArray, Grid, describe_place, find_turn, parse_grid
 from assess.motion.site_ground import SiteGround
 from assess.motion.spatial_field import BETWEEN, MAGNITUDES, WITHIN
@@ -68,6 +68,8 @@ class ShakeMap:
         What that holds.
     path : Path, optional
         Where the grid was read from.
+    gaps : int
+        Points of the grid at which a field that is used is no number.
     """
 
     file: str
@@ -78,6 +80,7 @@ class ShakeMap:
     uncertainty_sha256: str = ""
     uncertainty: Grid | None = None
     path: Path | None = None
+    gaps: int = 0
 
     @property
     def title(self) -> Text:
@@ -106,7 +109,9 @@ class ShakeMap:
             read = _locate(self.grid, latitude, longitude)
             pga = read("PGA", logarithmic=True)
             if math.isnan(pga):
-                message = fill("the PGA of the map is 0 at {place}", place=describe_place(latitude, longitude))
+                message = fill(
+                    "the PGA of the map is 0 or no number (NaN) at {place}", place=describe_place(latitude, longitude)
+                )
                 raise InputError(message)
         except InputError as error:
             raise InputError(join(": ", (self.file, error.message))) from None
@@ -134,10 +139,10 @@ class ShakeMap:
         """Return the standard deviation of ln PGA [-], where it comes from, and its share common to all places."""
         beside = self._look_beside(latitude, longitude)
         shared = _find_shared(beside) if beside else None
-        if SIGMA in self.grid.fields:
-            return read(SIGMA), fill("STDPGA of {file}", file=self.file), shared
-        if beside and SIGMA in beside.fields:
-            return beside(SIGMA), fill("STDPGA of {file}", file=self.uncertainty_file), shared
+        for reading, file in ((read, self.file), (beside, self.uncertainty_file)):
+            sigma = reading(SIGMA) if reading and SIGMA in reading.fields else math.nan
+            if not math.isnan(sigma):
+                return sigma, fill("STDPGA of {file}", file=file), shared
         return self._assume_sigma()
 
     def _assume_sigma(self) -> tuple[float, Text, float]:
@@ -190,6 +195,15 @@ class ShakeMap:
             yield fill("the ShakeMap is AUTOMATIC: nobody had reviewed it when it was computed; a later one may differ")
         if status in ("CANCELLED", "CANCELED"):
             yield fill("the ShakeMap is marked as {status}: its maker has withdrawn it", status=status)
+
+        if self.gaps:
+            yield nfill(
+                "the ShakeMap has no number (NaN) at {n:,} point of its grid; no value next to the building is taken "
+                "from it",
+                "the ShakeMap has no number (NaN) at {n:,} points of its grid; no value next to the building is taken "
+                "from them",
+                self.gaps,
+            )
 
     def __reduce__(self) -> tuple[Any, ...]:
         if self.path is not None:
@@ -260,7 +274,7 @@ def parse_shakemap(
     grid = _named(name, lambda: _read_grid(data))
     digest = hashlib.sha256(data).hexdigest()
     if uncertainty is None:
-        return ShakeMap(file=name, sha256=digest, grid_sha256=digest, grid=grid, path=path)
+        return ShakeMap(file=name, sha256=digest, grid_sha256=digest, grid=grid, path=path, gaps=_count_gaps(grid))
     beside = _named(uncertainty_name, lambda: _check_uncertainty(parse_grid(uncertainty), grid))
     its = hashlib.sha256(uncertainty).hexdigest()
     return ShakeMap(
@@ -272,7 +286,13 @@ def parse_shakemap(
         uncertainty_sha256=its,
         uncertainty=beside,
         path=path,
+        gaps=_count_gaps(grid),
     )
+
+
+def _count_gaps(grid: Grid) -> int:
+    """Return at how many points a field is no number."""
+    return int(np.logical_or.reduce([np.isnan(values) for values in grid.fields.values()]).sum())
 
 
 @lru_cache(maxsize=2)  # workbooks of one folder name the same map
@@ -325,7 +345,7 @@ def _check_field(grid: Grid, name: str, units: frozenset[str], unit: str, most: 
         message = fill("the field {name} has the unit {own!r}, expected {unit}", name=name, own=own[:40], unit=unit)
         raise InputError(message)
     values = grid.fields[name]
-    bad = ~((values >= 0) & (values <= most))  # what is no number is bad, too
+    bad = (values < 0) | (values > most)  # what is no number (NaN) is refused only next to a building
     if bad.any():
         row, column = divmod(int(bad.argmax()), values.shape[1])
         place = describe_place(float(grid.latitude[row]), float(grid.longitude[column]))

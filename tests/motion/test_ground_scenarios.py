@@ -52,18 +52,32 @@ def test_sites_may_be_named_by_texts(tmp_path):
     assert read_scenarios(_write(tmp_path, values, sites)).at(37.8, -122.4).pga == pytest.approx(0.2 * GRAVITY)
 
 
-@pytest.mark.parametrize("latitude", [37.8, 38.5])
+@pytest.mark.parametrize("latitude", [37.8, 38.1])
 def test_a_far_site_is_warned_of(tmp_path, latitude):
     cautions = read_scenarios(_write(tmp_path)).at(latitude, -122.4).cautions
-    far = ("the nearest site of the scenarios is 78 km from the building",)
+    far = ("the nearest site of the scenarios is 33 km from the building",)
     assert cautions == (far if latitude > 38 else ())
+
+
+def test_a_place_beyond_50_km_is_not_covered(tmp_path):
+    match = (
+        r"^gmf-data\.csv: the scenarios do not cover latitude 38\.5000, longitude -122\.4000: their nearest site is "
+        r"78 km away, expected at most 50 km\. Check Latitude and Longitude, or compute the fields for sites near"
+    )
+    with pytest.raises(InputError, match=match):
+        read_scenarios(_write(tmp_path)).at(38.5, -122.4)
 
 
 def test_one_scenario_alone_or_equal_ones_do_not_scatter(tmp_path):
     site = read_scenarios(_write(tmp_path, "site_id,event_id,gmv_PGA\n0,7,0.25\n1,7,0.3\n")).at(37.8, -122.4)
     assert site.pga == pytest.approx(0.25 * GRAVITY)
-    assert (site.dispersion, site.scenarios) == (0.0, ())
-    assert read_scenarios(_write(tmp_path)).at(37.8, -122.2).dispersion == 0.0
+    assert (site.dispersion, site.scenarios) == (0.0, (0.0,))
+    assert site.dispersion_source == "gmf-data.csv holds 1 scenario alone"
+    assert site.facts[0] == ("Scenarios", "1 event")
+    (caution,) = site.cautions
+    assert "the motion of the ground is taken as known" in caution
+    equal = read_scenarios(_write(tmp_path)).at(37.8, -122.2)
+    assert (equal.dispersion, equal.scenarios, equal.cautions) == (0.0, (0.0,) * 3, (caution,))
 
 
 def test_a_site_without_some_event_is_refused(tmp_path):
@@ -86,20 +100,25 @@ def test_it_travels_by_its_folder_and_hash(tmp_path):
 
 
 BAD_VALUES = {
-    "zero": (VALUES.replace("0.4", "0.0"), r"gmf-data\.csv: row 3: gmv_PGA is 0, expected above 0 and at most 10 g"),
-    "negative": (VALUES.replace("0.4", "-0.4"), "row 3: gmv_PGA is -0.4"),
-    "NaN": (VALUES.replace("0.4", "nan"), "row 3: gmv_PGA is nan"),
-    "in cm/s2": (VALUES.replace("0.4", "392"), "row 3: gmv_PGA is 392"),
+    "zero": (VALUES.replace("0.4", "0.0"), r"gmf-data\.csv: line 5: gmv_PGA is 0, expected above 0 and at most 10 g"),
+    "negative": (VALUES.replace("0.4", "-0.4"), "line 5: gmv_PGA is -0.4"),
+    "NaN": (VALUES.replace("0.4", "nan"), "line 5: gmv_PGA is nan"),
+    "in cm/s2": (VALUES.replace("0.4", "392"), "line 5: gmv_PGA is 392"),
     "a text": (VALUES.replace("0.4", "high"), "line 5: 'high' is not a number"),
     "cut off in a row": (VALUES[:-6], "the last line has no end: the file is cut off"),
     "cut off before a cell": (VALUES[:-4].rstrip() + "\n", "line 8: '' is not a number"),
     "a cell too many": (VALUES.replace("0.4", "0.4,1"), "line 5: the number of cells is 4, but there are 3 headings"),
     "no PGA": (VALUES.replace("gmv_PGA", "gmv_PGV"), "the column gmv_PGA is missing"),
     "no events": (VALUES.replace("event_id", "rupture"), "the column event_id is missing"),
-    "no sites": (VALUES.replace("site_id", "place"), r"no column site_id that sitemesh\.csv has, too"),
-    "an unknown site": (VALUES.replace("\n1,2,", "\n5,2,"), r"row 6: its site_id is not in sitemesh\.csv"),
+    "no sites": (
+        VALUES.replace("site_id", "place"),
+        r"neither site_id nor custom_site_id is a column of both .* sitemesh\.csv",
+    ),
+    "an unknown site": (VALUES.replace("\n1,2,", "\n5,2,"), r"line 8: its site_id is not in sitemesh\.csv"),
     "an event twice": (VALUES.replace("0,2,", "0,1,"), "event 1 is there twice at a site"),
-    "half an event": (VALUES.replace("0,2,", "0,1.5,"), "event_id has to be a whole number"),
+    "half an event": (VALUES.replace("0,2,", "0,1.5,"), "line 5: event_id has to be a whole number"),
+    "after blank lines": (VALUES.replace("\n0,2,0.4", "\n\n\n0,2,-0.4"), "line 7: gmv_PGA is -0.4"),
+    "after lines of Windows": (VALUES.replace("0.4", "-0.4").replace("\n", "\r\n"), "line 5: gmv_PGA is -0.4"),
     "a heading twice": (VALUES.replace("event_id", "site_id"), "has a heading twice"),
     "no rows": ("site_id,event_id,gmv_PGA\n", "there are no rows below the headings"),
     "nothing": ("", "there is no table"),

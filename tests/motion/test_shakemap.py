@@ -102,7 +102,7 @@ def test_both_spellings_of_units_and_none(unit, speed):
 def test_a_pgv_that_is_rounded_to_0_is_not_known_and_a_pga_is_refused():
     site = _at(build_grid(PLAIN | {"PGV": ("cms", (0.0,) * 6)}))
     assert site.pgv is None
-    with pytest.raises(InputError, match=r"the PGA of the map is 0 at latitude 37\.5000"):
+    with pytest.raises(InputError, match=r"the PGA of the map is 0 or no number \(NaN\) at latitude 37\.5000"):
         _at(build_grid({"PGA": ("pctg", (1, 1, 0.0, 1, 1, 1))}))
 
 
@@ -185,12 +185,10 @@ BAD = {
     "too many rows": (build_grid(PLAIN, size=(2, 2)), "more than 4 rows"),
     "no number": (build_grid({"PGA": ("pctg", (1, 2, "high", 4, 5, 6))}), "row 3: number 3 is 'high'"),
     "underscores": (build_grid({"PGA": ("pctg", (1, 2, "1_0", 4, 5, 6))}), "holds what is no number"),
-    "NaN": (build_grid({"PGA": ("pctg", (1, 2, "NaN", 4, 5, 6))}), "PGA is nan at latitude 37.5000, longitude -122"),
     "infinite": (build_grid({"PGA": ("pctg", (1, 2, "inf", 4, 5, 6))}), "PGA is inf at"),
     "negative": (build_grid({"PGA": ("pctg", (1, 2, -3, 4, 5, 6))}), "PGA is -3 at .* expected 0 to 1000 %g"),
     "cm/s2": (build_grid({"PGA": ("cm/s2", PGA)}), "the field PGA has the unit 'cm/s2', expected %g"),
     "log10": (build_grid(PLAIN | {"STDPGA": ("log10(%g)", (0.1,) * 6)}), "STDPGA has the unit 'log10"),
-    "sigma NaN": (build_grid(PLAIN | {"STDPGA": ("", ("nan",) * 6)}), "STDPGA is nan at"),
     "no PGA": (build_grid({"MMI": ("intensity", PGA)}), "the field PGA is missing"),
     "a field twice": (GOOD.replace(b'name="LAT"', b'name="PGA"'), "the field PGA is there twice"),
     "no latitude": (GOOD.replace(b'name="LAT"', b'name="UP"'), "the field LAT is missing"),
@@ -207,6 +205,24 @@ BAD = {
 def test_a_file_that_cannot_be_used_is_named_with_the_reason(data, match):
     with pytest.raises(InputError, match=rf"(?s)^grid\.xml: .*(?:{match})"):
         parse_shakemap(data, "grid.xml")
+
+
+def test_no_number_is_refused_only_next_to_a_building():
+    found = parse_shakemap(build_grid({"PGA": ("pctg", (1, 2, "NaN", 4, 5, 6))}), "grid.xml")
+    with pytest.raises(InputError, match=r"grid\.xml: the PGA of the map is 0 or no number \(NaN\) at latitude 37\.6"):
+        found.at(37.6, -121.7)
+    site = found.at(38.0, -121.7)
+    assert np.isfinite(site.pga)
+    assert site.cautions == (
+        "the ShakeMap has no number (NaN) at 1 point of its grid; no value next to the building is taken from it",
+    )
+
+
+def test_a_scatter_that_is_no_number_is_assumed():
+    found = parse_shakemap(build_grid(PLAIN | {"STDPGA": ("", ("nan",) * 6)}), "grid.xml").at(37.5, -121.7)
+    assert found.dispersion > 0.5
+    assert str(found.dispersion_source).startswith("assumed, as the map has none at this place")
+    assert "6 points" in found.cautions[0]
 
 
 def test_a_file_that_is_not_there(tmp_path):
