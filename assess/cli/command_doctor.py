@@ -13,6 +13,7 @@ import typer
 from assess import resources
 from assess.cache_folder import choose_folder
 from assess.errors import PdfUnavailableError
+from assess.extras import say_install
 from assess.version import __version__
 
 ORDER = 9
@@ -102,7 +103,7 @@ def examine_package(one: Requirement) -> Finding:
         found = metadata.version(one.name)
     except metadata.PackageNotFoundError:
         if one.extra:
-            return Finding(one.name, True, f'optional, not installed: pip install "assess[{one.extra}]"')
+            return Finding(one.name, True, f"optional, not installed. {say_install(one.extra)}")
         return Finding(one.name, False, f'not installed: pip install "{wanted}"')
     if _numbers(found) < _numbers(one.least):
         return Finding(one.name, False, f'{found} is too old: pip install "{wanted}"')

@@ -11,6 +11,7 @@ import typer
 from assess.cli import interrupts
 from assess.cli.completion import one_of
 from assess.errors import AssessError, InputError
+from assess.extras import say_install
 from assess.i18n import LANGUAGES, find_language
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def _check_packages() -> None:
     missing = [name for name in PACKAGES if find_spec(name) is None]
     if missing:
         names = ", ".join(missing)
-        raise AssessError(f"the page needs {names}, which is not installed. Install it: pip install 'assess[web]'")
+        raise AssessError(f"the page needs {names}, which is not installed. {say_install('web')}")
 
 
 def _check_place(place: "Place", path: Path | None) -> None:

@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from assess.extras import say_install
 from assess.i18n import fill
 from assess.pictures import PictureError, damaged
 from assess.plans.linework import FARTHEST, MOST_ELEMENTS, MOST_RAW, describe_left_out, find_box, pack, too_many
@@ -62,8 +63,8 @@ def _open(data: bytes) -> "Document":
         from ezdxf import recover
     except ImportError:
         message = fill(
-            "DXF is read with ezdxf, which is not installed. Install it with: pip install 'assess[plans]', or save the "
-            "drawing as SVG or PNG"
+            "DXF is read with ezdxf, which is not installed. Save the drawing as SVG or PNG, or install ezdxf. {how}",
+            how=say_install("plans"),
         )
         raise PictureError(message) from None
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL)

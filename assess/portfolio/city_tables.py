@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import InputError, OutputError
+from assess.extras import say_install
 from assess.i18n import fill
 from assess.portfolio.part_files import Part
 from assess.portfolio.table_schemas import TABLES, TableColumn, Type
@@ -34,7 +35,7 @@ def _import() -> Any:
         import duckdb
     except ImportError:
         raise InputError(
-            fill("the format parquet needs duckdb, which is not installed. Install it: pip install 'assess[parquet]'")
+            fill("the format parquet needs duckdb, which is not installed. {how}", how=say_install("parquet"))
         ) from None
     return duckdb
 

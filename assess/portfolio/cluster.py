@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import InputError, OutputError
+from assess.extras import say_install
 from assess.i18n import fill, join
 from assess.plain_text import plain_line
 from assess.portfolio.building_task import Summary, Task, run_task
@@ -85,7 +86,7 @@ def check_cluster() -> None:
         import distributed  # noqa: F401
     except ImportError:
         raise InputError(
-            fill("scheduler: dask is needed, which is not installed. Install it: pip install 'assess[cluster]'")
+            fill("scheduler: dask is needed, which is not installed. {how}", how=say_install("cluster"))
         ) from None
 
 

@@ -99,11 +99,9 @@ def read_index(file: Path) -> tuple[IndexRow, ...]:
         building without one stands there twice; the message names the file and the line.
     """
     try:
-        rows = list(_read_rows(_split(_read_text(file))))
-        _check_names(rows)
+        return tuple(_read_rows(_split(_read_text(file))))
     except InputError as error:
         raise InputError(join(": ", (plain_line(file.name), error.message))) from None
-    return tuple(rows)
 
 
 # ---------------------------------------------------------------- text to cells
@@ -150,8 +148,10 @@ def _tidy(cell: str, mark: str, line: int) -> str:
 # ---------------------------------------------------------------- cells to rows
 
 
-def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> Iterator[IndexRow]:
-    line, heading = next(lines, (1, []))
+def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> list[IndexRow]:
+    line, heading = next(lines, (0, []))
+    if not line:
+        raise InputError(fill("the index is empty. Its first line holds the names of the columns."))
     names = _read_heading(line, heading)
     faults: list[Text] = []
     rows = list(islice(lines, MOST_ROWS + 1))
@@ -160,8 +160,8 @@ def _read_rows(lines: Iterator[tuple[int, list[str]]]) -> Iterator[IndexRow]:
     if len(rows) > MOST_ROWS:
         raise InputError(fill("more than {most:,} buildings are listed. Split the index.", most=MOST_ROWS))
     found = [_read_row(number, names, cells, faults) for number, cells in rows]
-    _raise(faults)
-    yield from found
+    _raise([*faults, *_list_repeated(found)])
+    return found
 
 
 def _raise(faults: Sequence[Text]) -> None:
@@ -211,7 +211,8 @@ def _read_row(line: int, names: Sequence[str], cells: Sequence[str], faults: lis
                 faults.append(join(": ", (fill("line {line}", line=line), error.message)))
     if not values.get("path") and not values.get("building"):
         faults.append(fill("line {line}: give a path, or the name of a building without a survey.", line=line))
-    if (values.get("latitude") is None) != (values.get("longitude") is None):
+    given = {name for name, text in zip(names, cells, strict=False) if text}
+    if ("latitude" in given) != ("longitude" in given):
         faults.append(fill("line {line}: give both latitude and longitude, or neither.", line=line))
     return IndexRow(line=line, **values)
 
@@ -240,18 +241,16 @@ def _find_limits(name: str) -> tuple[float, float]:
     return column.low or 0.0, float("inf") if column.high is None else column.high
 
 
-def _check_names(rows: Sequence[IndexRow]) -> None:
-    """Raise InputError if a path, or the name of a building without one, stands there twice."""
+def _list_repeated(rows: Sequence[IndexRow]) -> Iterator[Text]:
+    """Yield a fault where a path, or the name of a building without one, stands there twice."""
     paths = Counter(tidy_path(row.path) for row in rows if row.path)
     names = Counter(row.building for row in rows if not row.path)
-    faults = []
-    for row in rows:
+    for row in (one for one in rows if one.path or one.building):
         name = tidy_path(row.path) if row.path else row.building
         if (paths if row.path else names)[name] > 1:
-            faults.append(fill("line {line}: {name!r} is listed more than once.", line=row.line, name=name[:80]))
+            yield fill("line {line}: {name!r} is listed more than once.", line=row.line, name=name[:80])
         elif not row.path and name in paths:
-            faults.append(fill("line {line}: {name!r} is also the path of a workbook.", line=row.line, name=name[:80]))
-    _raise(faults)
+            yield fill("line {line}: {name!r} is also the path of a workbook.", line=row.line, name=name[:80])
 
 
 def tidy_path(text: str) -> str:

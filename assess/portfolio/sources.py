@@ -17,6 +17,8 @@ from assess.plain_text import plain_line
 from assess.portfolio.index_file import IndexRow, read_index, tidy_path
 
 ENDINGS = (".xlsx", ".xlsm")
+OTHER_ENDINGS = (".xls", ".xlsb", ".ods", ".numbers")
+"""Of workbooks in formats that are not read: they are named, not passed over."""
 MOST_BUILDINGS = 200_000
 OURS = {"report.xlsx": "results.json", "ranking.xlsx": "portfolio.json", "compare.xlsx": "compare.json"}
 """Workbooks that are results of `assess`, where the file that lists them lies next to them."""
@@ -50,7 +52,8 @@ class Source:
 def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
     """Return the buildings of a folder, searched with the folders in it, or of an index, in the order of their paths.
 
-    Left out of a folder are hidden files and folders, lock files (~$), the folder `out` and results of `assess`. Links
+    Left out of a folder are hidden files and folders, lock files (~$), the folder `out` and results of `assess`;
+    workbooks in other formats, such as .xls, are refused. Links
     to workbooks inside the folder count; links that lead out of it, and links to folders, are refused.
 
     Parameters
@@ -130,11 +133,20 @@ def _search(root: Path, out: Path | None) -> Iterator[Source]:
 def _take_entry(entry: "os.DirEntry[str]", path: Path, root: Path, names: set[str]) -> Source | None:
     """Return the building of an entry that is no folder; None where it is no workbook."""
     name = _name(path, root)
+    if entry.name.lower().endswith(OTHER_ENDINGS):
+        return Source(path=name, refused=_refuse_format(entry.name))
     if entry.is_symlink() and path.is_dir():
         return Source(path=name, refused=fill("it is a link to a folder, which is not searched. Copy the folder here."))
     if not entry.name.lower().endswith(ENDINGS) or OURS.get(entry.name) in names:
         return None
     return Source(path=name, file=path, refused=_judge(path, root))
+
+
+def _refuse_format(name: str) -> Text:
+    return fill(
+        "workbooks ending in {ending} are not read. Save it as .xlsx (Excel Workbook) and remove this file.",
+        ending=Path(name.lower()).suffix,
+    )
 
 
 def _name(path: Path, root: Path) -> str:
@@ -174,6 +186,11 @@ def _judge_text(name: str) -> Text | str:
     is_absolute = name.startswith("/") or name[1:2] == ":"
     if is_absolute or ".." in name.split("/") or "\0" in name:
         return fill("the path leads out of the folder of the index. Write it relative to that folder.")
+    if name.lower().endswith(OTHER_ENDINGS):
+        return fill(
+            "workbooks ending in {ending} are not read. Save it as .xlsx (Excel Workbook) and name that file.",
+            ending=Path(name.lower()).suffix,
+        )
     if not name.lower().endswith(ENDINGS):
         return fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
     return ""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.errors import InputError
+from assess.extras import say_install
 from assess.fields import Kind, item_fields
 from assess.frames import build_frame
 from assess.i18n import fill
@@ -28,7 +29,7 @@ def check_parquet() -> None:
     """
     if importlib.util.find_spec("duckdb") is None:
         raise InputError(
-            fill("the format parquet needs duckdb, which is not installed. Install it: pip install 'assess[parquet]'")
+            fill("the format parquet needs duckdb, which is not installed. {how}", how=say_install("parquet"))
         )
 
 

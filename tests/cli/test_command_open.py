@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from assess.extras import say_install
 from tests.cli.calling import run
 
 
@@ -44,6 +45,4 @@ def test_without_the_extra_it_says_what_to_install():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == (
-        "error  the page needs uvicorn, which is not installed. Install it: pip install 'assess[web]'\n"
-    )
+    assert done.stderr == (f"error  the page needs uvicorn, which is not installed. {say_install('web')}\n")

@@ -16,6 +16,7 @@ from assess.cli import command_doctor
 from assess.cli.app import app, find_commands
 from assess.cli.command_doctor import Requirement
 from assess.cli.console import _list_options
+from assess.extras import say_install
 from assess.methods import all_methods
 from tests.workbooks import write
 
@@ -292,7 +293,7 @@ def test_doctor_finds_all_that_is_installed_here():
         (Requirement("typer", "0.1", ""), True, version("typer")),
         (Requirement("typer", "999.1", ""), False, f'{version("typer")} is too old: pip install "typer>=999.1"'),
         (Requirement("no-such", "2.0", ""), False, 'not installed: pip install "no-such>=2.0"'),
-        (Requirement("no-such", "", "maps"), True, 'optional, not installed: pip install "assess[maps]"'),
+        (Requirement("no-such", "", "maps"), True, f"optional, not installed. {say_install('maps')}"),
         (Requirement("typer", "", "maps"), True, f"{version('typer')} (optional: maps)"),
     ],
 )

@@ -48,7 +48,8 @@ def test_latin_1_is_read(tmp_path):
         ("path,path\na.xlsx,1\n", "line 1: the column path is there twice"),
         ("latitude,longitude\n1,2\n", "line 1: expected the column path, or building"),
         ("path\n", "no building is listed below the headings"),
-        ("", "expected the column path"),
+        ("", r"index.csv: the index is empty\. Its first line holds the names of the columns"),
+        ("\n# a comment\n", "the index is empty"),
         ("path,latitude,longitude\na.xlsx,91,0\n", "line 2: latitude is 91, expected -90 to 90"),
         ("path,latitude,longitude\na.xlsx,nan,0\n", "line 2: latitude is 'nan', not a number"),
         ("path,latitude,longitude\na.xlsx,1e999,0\n", "line 2: latitude is inf"),
@@ -76,6 +77,18 @@ def test_all_slips_are_named_at_once_up_to_a_limit(tmp_path):
         _read(tmp_path, "path,storeys\n" + "".join(f"{at}.xlsx,x\n" for at in range(30)))
     assert str(caught.value).count("not a number") == 20
     assert str(caught.value).endswith("and 10 more.")
+
+
+def test_a_slip_is_told_once_and_together_with_those_of_names(tmp_path):
+    with pytest.raises(InputError) as caught:
+        _read(tmp_path, "path,latitude,longitude\na.xlsx,95,10\na.xlsx,x,10\n,,\n,1,2\n")
+    assert str(caught.value).split("\n") == [
+        "index.csv: line 2: latitude is 95, expected -90 to 90.",
+        "line 3: latitude is 'x', not a number.",
+        "line 5: give a path, or the name of a building without a survey.",
+        "line 2: 'a.xlsx' is listed more than once.",
+        "line 3: 'a.xlsx' is listed more than once.",
+    ]
 
 
 def test_a_missing_index_is_named(tmp_path):

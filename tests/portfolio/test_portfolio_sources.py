@@ -22,7 +22,7 @@ def _paths(found):
 
 
 def test_a_folder_is_searched_with_those_in_it_and_without_what_is_no_building(tmp_path):
-    _put(tmp_path, "b.xlsx", "a/deep/c.XLSM", "a/notes.txt", ".hidden/d.xlsx", ".e.xlsx", "~$b.xlsx", "old.xls")
+    _put(tmp_path, "b.xlsx", "a/deep/c.XLSM", "a/notes.txt", ".hidden/d.xlsx", ".e.xlsx", "~$b.xlsx")
     _put(
         tmp_path, "run/report.xlsx", "run/results.json", "mine/report.xlsx", "city/ranking.xlsx", "city/portfolio.json"
     )
@@ -32,6 +32,18 @@ def test_a_folder_is_searched_with_those_in_it_and_without_what_is_no_building(t
     assert [one.kind for one in found] == ["workbook"] * 3
     assert not any(one.refused for one in found)
     assert found[0].file == tmp_path / "a" / "deep" / "c.XLSM"
+
+
+@pytest.mark.parametrize("ending", [".xls", ".xlsb", ".ods", ".numbers", ".XLS"])
+def test_a_workbook_of_another_format_is_a_building_that_is_refused_with_what_to_do(tmp_path, ending):
+    _put(tmp_path, f"sub/old{ending}", "~$old.xls", ".hidden.ods")
+    (found,) = find_sources(tmp_path)
+    assert found.path == f"sub/old{ending}"
+    assert f"workbooks ending in {ending.lower()} are not read. Save it as .xlsx" in str(found.refused)
+    index = tmp_path / "index.csv"
+    index.write_text(f"path\nsub/old{ending}\n", encoding="utf-8")
+    (listed,) = find_sources(index)
+    assert "Save it as .xlsx (Excel Workbook) and name that file." in str(listed.refused)
 
 
 def test_equal_bytes_at_two_paths_are_two_buildings(tmp_path):

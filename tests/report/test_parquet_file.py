@@ -81,7 +81,7 @@ def test_without_its_package_it_says_what_to_install(monkeypatch, tmp_path):
     find = util.find_spec
     monkeypatch.setattr(util, "find_spec", lambda name, *rest: None if name == "duckdb" else find(name, *rest))
     monkeypatch.setitem(sys.modules, "duckdb", None)
-    message = r"the format parquet needs duckdb, which is not installed. Install it: pip install 'assess\[parquet\]'"
+    message = r"the format parquet needs duckdb, which is not installed. Install it from .*pip install '\.\[parquet\]'"
     with pytest.raises(InputError, match=message):
         assess.write_reports(assess_rows(ITEM), tmp_path / "out", "parquet")
     done = call("run", "none.xlsx", "--formats", "csv,parquet", "--out", tmp_path / "out")

@@ -13,6 +13,7 @@ from lxml import html
 
 import assess
 from assess.errors import CancelledError, InputError
+from assess.extras import say_install
 from assess.progress import Progress
 from assess.report.content import build_content
 from assess.report.pages.html import render
@@ -185,7 +186,7 @@ def test_without_its_packages_it_says_what_to_install(monkeypatch, tmp_path):
     done = run("run", str(path), "--verify", "none", "--formats", "docx", "--out", str(tmp_path / "out"))
     assert done.exit_code == 2
     said = _words(done.stderr)
-    assert "docx needs python-docx, which is not installed. Install it: pip install 'assess[word]'" in said
+    assert f"docx needs python-docx, which is not installed. {say_install('word')}" in said
     assert not (tmp_path / "out").exists()
     with pytest.raises(InputError, match=re.escape("assess[word]")):
         assess.write_reports(assess.run(assess.read_inventory(path), Settings(verify="none")), tmp_path, "docx")

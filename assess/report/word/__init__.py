@@ -8,6 +8,7 @@ import importlib.util
 from pathlib import Path
 
 from assess.errors import InputError
+from assess.extras import say_install
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
@@ -28,8 +29,9 @@ def check_word() -> None:
     missing = [package for module, package in NEEDED.items() if importlib.util.find_spec(module) is None]
     if missing:
         text = fill(
-            "the format docx needs {packages}, which is not installed. Install it: pip install 'assess[word]'",
+            "the format docx needs {packages}, which is not installed. {how}",
             packages=", ".join(missing),
+            how=say_install("word"),
         )
         raise InputError(text)
 
