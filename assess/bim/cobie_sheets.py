@@ -16,7 +16,7 @@ from typing import Any
 from assess.errors import Problem, WorkbookError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
-from assess.workbook.names import find_sheet, plain
+from assess.workbook.names import find_sheet, is_cobie_list, plain
 from assess.workbook.open import (
     DAMAGE,
     HEADER_ROWS,
@@ -74,10 +74,9 @@ def is_cobie(source: Path | bytes) -> bool:
     Its sheets Type, Component and Space are there, and it is no inventory workbook. Only the list of sheets is read.
     """
     try:
-        names = {plain(name) for name in _list_sheets(source)}
+        return is_cobie_list(_list_sheets(source))
     except DAMAGE:
         return False
-    return {"component", "type", "space"} <= names and "items" not in names
 
 
 def _list_sheets(source: Path | bytes) -> list[str]:

@@ -130,8 +130,8 @@ class GroundScenarios:
         """Return why the scenarios do not cover a place, with how to fix it."""
         return fill(
             "{file}: the scenarios do not cover latitude {lat:.4f}, longitude {lon:.4f}: their nearest site is "
-            "{km:,.0f} km away, expected at most {most:.0f} km. Check Latitude and Longitude, or compute the fields for sites "
-            "near the building",
+            "{km:,.0f} km away, expected at most {most:.0f} km. Check Latitude and Longitude, or compute the fields "
+            "for sites near the building",
             file=self.file,
             lat=latitude,
             lon=longitude,

@@ -155,6 +155,12 @@ def find_sheet(name: str) -> tuple[str, str] | None:
     return next(((names[wanted], code) for code in LANGUAGES if wanted in (names := _sheet_names(code))), None)
 
 
+def is_cobie_list(names: Collection[str]) -> bool:
+    """Tell whether the names of sheets are those of a COBie file: Type, Component and Space, but no Items."""
+    found = {plain(name) for name in names}
+    return {"component", "type", "space"} <= found and "items" not in found
+
+
 @cache
 def _sheet_names(code: str) -> dict[str, str]:
     return {plain(translate(sheet, code).name): sheet.name for sheet in SHEETS}

@@ -17,7 +17,7 @@ from assess.workbook.check import Check
 from assess.workbook.ground_files import fill_building, replace_ground
 from assess.workbook.held import HeldSheets, hold_cells
 from assess.workbook.kept_files import KeptFiles
-from assess.workbook.names import ENGLISH, find_near, find_sheet, key, plain, translate, versions
+from assess.workbook.names import ENGLISH, find_near, find_sheet, is_cobie_list, key, plain, translate, versions
 from assess.workbook.open import Book, read_file
 from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
 from assess.workbook.picture_files import PictureReader
@@ -220,6 +220,10 @@ def _find_sheets(
     present: Sequence[str], hidden: Collection[str]
 ) -> tuple[dict[str, tuple[str, str]], str, list[Problem]]:
     """Return name and language of each sheet by its English name, the workbook's language, and what is wrong."""
+    if is_cobie_list(present):
+        fault = fill("this is a COBie handover file, not an inventory workbook.")
+        fix = fill("Make an inventory workbook of it with `assess import`, and use that.")
+        raise WorkbookError([Problem("error", "", "", fault, fix)])
     known = [(name, *found) for name in present if (found := find_sheet(name))]
     own: dict[str, tuple[str, str]] = {}
     problems = []

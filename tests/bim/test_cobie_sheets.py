@@ -69,6 +69,13 @@ def test_a_cobie_file_is_known_by_its_sheets(tmp_path: Path) -> None:
     assert not is_cobie(b"")
 
 
+def test_a_cobie_file_in_place_of_an_inventory_is_named(tmp_path: Path) -> None:
+    match = "this is a COBie handover file, not an inventory workbook.*`assess import`"
+    with pytest.raises(WorkbookError, match=f"(?s){match}") as caught:
+        read_inventory(write_cobie(tmp_path / "c.xlsx"))
+    assert len(caught.value.problems) == 1
+
+
 # ---------------------------------------------------------------- of another kind
 
 
