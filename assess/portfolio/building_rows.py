@@ -12,7 +12,7 @@ from assess.errors import Problem
 from assess.i18n import fill
 from assess.model import Inventory
 from assess.pipeline.demand import find_ground
-from assess.pipeline.draw_sums import DrawSums, count_people
+from assess.pipeline.draw_sums import SIMULATED, DrawSums, count_people
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.table_schemas import TABLES
 from assess.report.counts import count
@@ -51,6 +51,8 @@ class Origin:
         Its row of the index.
     low, high : mapping of str to int
         10 % and 90 % quantities of an assumed inventory, by item.
+    left_out : int, optional
+        Components of a handover file that may be furniture and were left out.
     """
 
     path: str
@@ -58,6 +60,7 @@ class Origin:
     index: IndexRow | None = None
     low: Mapping[str, int] | None = None
     high: Mapping[str, int] | None = None
+    left_out: int | None = None
 
 
 def build_tables(origin: Origin, inventory: Inventory, results: Results, sums: DrawSums) -> dict[str, list[list[Any]]]:
@@ -65,7 +68,7 @@ def build_tables(origin: Origin, inventory: Inventory, results: Results, sums: D
     records: dict[str, Iterable[Record]] = {
         "buildings": [_build_building(origin, inventory, results, sums)],
         "pieces": _list_pieces(origin, results),
-        "routes": _list_routes(origin.path, results.route_tables),
+        "routes": _list_routes(origin.path, results),
         "problems": list_problems(origin.path, results.problem_rows),
     }
     return {name: [to_row(name, record) for record in rows] for name, rows in records.items()}
@@ -127,9 +130,11 @@ def _build_building(origin: Origin, inventory: Inventory, results: Results, sums
         "motion_uncertainty": results.provenance.uncertainty.motion,
         "is_placed": is_placed,
         **_count_pieces(origin, results),
+        "left_out": origin.left_out,
         **_count_draws(sums),
         **_count_works(results),
         **_count_routes(results.route_tables),
+        "people_not_known": sums.people_not_known,
         "people_blocked": sums.people_expected if _is_any_known(results.route_tables) else None,
         "warnings": sum(one.severity == "warning" for one in results.problem_rows),
     }
@@ -147,9 +152,16 @@ def _describe_site(origin: Origin, inventory: Inventory) -> Record:
         "height_m": building.height,
         "floor_area_m2": None if origin.index is None else origin.index.floor_area_m2,
         "ground_source": source,
+        "ground_distance_km": _find_distance(inventory) if source == "scenarios" else None,
         "ground_pga_g": None if pga is None else to_edge(pga, BUILDING.column("ground_pga").factor),
         "ground_pgv_cm_s": None if pgv is None else to_edge(pgv, BUILDING.column("ground_pgv").factor),
     }
+
+
+def _find_distance(inventory: Inventory) -> float | None:
+    """Return how far the site of the scenarios is [km]."""
+    site = inventory.site_ground
+    return None if site is None or site.distance is None else site.distance / 1000
 
 
 def _find_shaking(inventory: Inventory) -> tuple[str, float | None, float | None]:
@@ -287,16 +299,19 @@ def _describe_work(found: "tuple[ScheduleRow, WorkRow] | None") -> Record:
     return {"work_place": entry.place, "detail": DETAILS[work.detail].title, "unit_cost": work.unit_cost}
 
 
-def _list_routes(path: str, tables: RouteTables) -> Iterator[Record]:
+def _list_routes(path: str, results: Results) -> Iterator[Record]:
+    """Yield the routes; one has a range only where simulation gave it one, as a range of no width would look exact."""
+    tables = results.route_tables
     for one in tables.routes:
         blocked = None if one.state is RouteState.NOT_KNOWN else one.blocked
+        ranged = blocked if results.main_basis == SIMULATED and blocked and blocked.low < blocked.high else None
         yield {
             "path": path,
             "route": one.route,
             "state": one.state.value,
             "probability": None if blocked is None else blocked.probability,
-            "probability_low": None if blocked is None else blocked.low,
-            "probability_high": None if blocked is None else blocked.high,
+            "probability_low": None if ranged is None else ranged.low,
+            "probability_high": None if ranged is None else ranged.high,
             "occupants": count_people(tables, one),
             "blockers": join(_list_blockers(tables, one)),
             "to_fill_in": say_missing(one.missing),

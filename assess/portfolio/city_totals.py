@@ -12,7 +12,7 @@ import pandas as pd
 
 from assess.i18n import Text, fill
 from assess.portfolio.city_spread import Spread, build_spread
-from assess.portfolio.table_schemas import INVENTORIES
+from assess.portfolio.table_schemas import INVENTORIES, MADE_UP
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.settings import Settings
@@ -43,12 +43,17 @@ BREADTH_STEP, HEIGHT_STEP = 10, 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunGround:
-    """The ground motion of the run: its kind, the name and hash of its file, and what a reader has to know of it."""
+    """The ground motion of the run: its kind, the name and hash of its file, and what a reader has to know of it.
+
+    Facts and cautions are those that hold for all buildings; `is_known` tells that it has no scatter at any of them.
+    """
 
     kind: Literal["shakemap", "scenarios"]
     file: str
     sha256: str
     facts: tuple[tuple[Text, Text], ...] = ()
+    cautions: tuple[Text, ...] = ()
+    is_known: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -69,7 +74,10 @@ class CityView:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FirstBuilding:
-    """A building to start with: pieces in the classes, and the expected number of people whose route is blocked."""
+    """A building to start with: pieces in the classes, and the expected number of people whose route is blocked.
+
+    `own_motions` counts its floors that keep motions of their own.
+    """
 
     path: str
     building: str
@@ -77,8 +85,14 @@ class FirstBuilding:
     expected_falls: float
     people_blocked: float
     occupants: int
+    people_not_known: int
+    routes: int
     routes_blocked: int
     routes_not_known: int
+    unconfirmed: int
+    by_formula: int
+    left_out: int
+    own_motions: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -105,6 +119,8 @@ class Group:
         Free-standing pieces of the basis.
     unconfirmed, by_formula, anchored : int
         Pieces outside the classes.
+    left_out : int
+        Components of handover files that may be furniture and were left out: in no number.
     falls : Spread
         Number of pieces that fall, of those in the classes.
     falls_low_inventory, falls_high_inventory : float, optional
@@ -142,6 +158,7 @@ class Group:
     unconfirmed: int
     by_formula: int
     anchored: int
+    left_out: int
     falls: Spread
     falls_low_inventory: float | None
     falls_high_inventory: float | None
@@ -165,6 +182,11 @@ class Group:
         """Pieces in the classes."""
         return sum(self.by_class.values())
 
+    @property
+    def people_known(self) -> int:
+        """People on routes whose state is known: those that the expected number is out of."""
+        return self.occupants - self.people_not_known
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CityTotals:
@@ -177,6 +199,12 @@ class CityTotals:
     def assessed(self) -> int:
         """Buildings that were assessed."""
         return sum(one.buildings for one in self.groups)
+
+
+def is_made_up(view: CityView) -> bool:
+    """Tell whether all buildings with a name are made up, as those of the worked city are."""
+    names = view.buildings["building"].dropna()
+    return not names.empty and all(str(name).endswith(MADE_UP) for name in names)
 
 
 def build_totals(view: CityView) -> CityTotals:
@@ -199,6 +227,7 @@ def build_totals(view: CityView) -> CityTotals:
 
 def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str) -> Group:
     draws, routes = (_rows_of(table, rows) for table in (view.draws, view.routes))
+    not_known = _count_not_known(routes)
     by_class = {risk: _count(rows, column) for risk, column in CLASS_COLUMNS.items()}
     own, occupants = rows[_numbers(rows, "own_motions") > 0], _count(rows, "occupants")
     return Group(
@@ -210,13 +239,14 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
         unconfirmed=_count(rows, "unconfirmed"),
         by_formula=_count(rows, "by_formula"),
         anchored=_count(rows, "anchored"),
+        left_out=_count(rows, "left_out"),
         falls=build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values())),
         falls_low_inventory=_sum(rows, "falls_low_inventory") if inventory == "assumed" else None,
         falls_high_inventory=_sum(rows, "falls_high_inventory") if inventory == "assumed" else None,
         falls_avoided=_sum(rows, "falls_avoided"),
-        people=build_spread(draws, "people_blocked", _sum(rows, "people_blocked"), occupants),
+        people=build_spread(draws, "people_blocked", _sum(rows, "people_blocked"), occupants - not_known),
         occupants=occupants,
-        people_not_known=_count_not_known(routes),
+        people_not_known=not_known,
         routes={state: _count(rows, column) for state, column in STATE_COLUMNS.items()},
         works=_count(rows, "works"),
         works_without_cost=_count(rows, "works_without_cost"),
@@ -264,6 +294,10 @@ def _text(value: object) -> str:
 # ---------------------------------------------------------------- what to start with
 
 
+_COUNTED = ("occupants", "people_not_known", "routes", "routes_blocked", "routes_not_known", "unconfirmed",
+            "by_formula", "left_out", "own_motions")  # fmt: skip
+
+
 def _list_buildings(rows: pd.DataFrame) -> Iterator[FirstBuilding]:
     """Yield the buildings to start with, by `BUILDING_RULE`; those of which nothing is expected are left out."""
     people, falls = _numbers(rows, "people_blocked"), _numbers(rows, "expected_falls")
@@ -277,9 +311,7 @@ def _list_buildings(rows: pd.DataFrame) -> Iterator[FirstBuilding]:
             in_classes=sum(_count(row, risk.word.replace(" ", "_")) for risk in RiskClass),
             expected_falls=_sum(row, "expected_falls"),
             people_blocked=_sum(row, "people_blocked"),
-            occupants=_count(row, "occupants"),
-            routes_blocked=_count(row, "routes_blocked"),
-            routes_not_known=_count(row, "routes_not_known"),
+            **{name: _count(row, name) for name in _COUNTED},
         )
 
 

@@ -7,7 +7,8 @@ from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
 from assess.motion.spatial_field import RANGE, SHARED
 from assess.portfolio.city_spread import Spread
-from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group
+from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group, is_made_up
+from assess.portfolio.ground_words import list_ground_cautions
 from assess.report import words
 from assess.risk import LIMITS, RiskClass
 
@@ -78,8 +79,11 @@ def name_group(group: Group) -> str:
 
 
 def say_title(view: CityView) -> str:
-    """Return the title: how many buildings."""
+    """Return the title: how many buildings, and whether they are made up."""
     n = len(view.buildings)
+    if is_made_up(view):
+        return ngettext("Furniture in an earthquake: {n:,} made-up building",
+                        "Furniture in an earthquake: {n:,} made-up buildings", n)  # fmt: skip
     return ngettext("Furniture in an earthquake: {n:,} building", "Furniture in an earthquake: {n:,} buildings", n)
 
 
@@ -128,6 +132,11 @@ def _say_falls(group: Group) -> Iterator[str]:
     ]
     if apart:
         yield _("Pieces that could fall as well and are in none of these numbers: {apart}.", apart=", ".join(apart))
+    if group.left_out:
+        yield ngettext("{n:,} component of the handover files was left out, as its size or place is missing, and is in "
+                       "no number.",
+                       "{n:,} components of the handover files were left out, as their sizes or places are missing, "
+                       "and are in no number.", group.left_out)  # fmt: skip
 
 
 def _say_people(group: Group) -> Iterator[str]:
@@ -135,19 +144,26 @@ def _say_people(group: Group) -> Iterator[str]:
         if sum(group.routes.values()):
             yield _("How many people use the routes is not filled in.")
         return
+    yield from _say_blocked_people(group)
+    if group.people_not_known:
+        yield ngettext("{n:,} person is on a route whose state is not known, and is in no number.",
+                       "{n:,} people are on routes whose state is not known, and are in no number.",
+                       group.people_not_known)  # fmt: skip
+
+
+def _say_blocked_people(group: Group) -> Iterator[str]:
+    """Yield the expected number of people on blocked routes, out of those on routes whose state is known."""
     people = group.people
+    if not group.people_known:
+        return
     yield _("Expected on blocked evacuation routes: {expected} of {occupants} people.",
-            expected=say_number(people.expected), occupants=say_whole(group.occupants))  # fmt: skip
+            expected=say_number(people.expected), occupants=say_whole(group.people_known))  # fmt: skip
     if people.draws:
         yield _("In nine of ten earthquakes like this one between {low} and {high}.",
                 low=say_whole(people.low), high=say_whole(people.high))  # fmt: skip
     if people.draws and people.apart > 0:
         yield _("Of the people expected on blocked routes, {apart} are in no range: their routes have no joint draws.",
                 apart=say_number(people.apart))  # fmt: skip
-    if group.people_not_known:
-        yield ngettext("{n:,} person is on a route whose state is not known, and is in no number.",
-                       "{n:,} people are on routes whose state is not known, and are in no number.",
-                       group.people_not_known)  # fmt: skip
 
 
 def _say_works(group: Group) -> Iterator[str]:
@@ -181,6 +197,9 @@ def list_cautions(view: CityView, totals: CityTotals) -> list[str]:
 
 
 def _of_buildings(view: CityView, totals: CityTotals) -> Iterator[str]:
+    if is_made_up(view):
+        yield _("All buildings are made up: their places, furniture, routes, people and costs are random numbers.")
+    yield from list_ground_cautions(view)
     if totals.skipped:
         yield ngettext("{n:,} building could not be assessed and is in no number: see the list of skipped buildings.",
                        "{n:,} buildings could not be assessed and are in no number: see the list of skipped buildings.",
@@ -217,13 +236,11 @@ def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
     yield _("Every percentage and every expected number is for this scenario, not per year. Classes by the chance of "
             "overturning: low below {low}, medium below {medium}, high below {high}, very high above.",
             low=_share(LIMITS[0]), medium=_share(LIMITS[1]), high=_share(LIMITS[2]))  # fmt: skip
-    drawn = next((group.falls for group in totals.groups if group.falls.draws), None)
-    if drawn is not None:
+    group = next((group for group in totals.groups if group.falls.draws), None)
+    if group is not None:
+        drawn = group.falls
         yield _say_draws(view, drawn)
-        yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}: "
-                "that is not so, and the difference shows why ranges of buildings must not be added up.",
-                alone=say_range(drawn.independent_low, drawn.independent_high),
-                together=say_range(drawn.low, drawn.high))  # fmt: skip
+        yield from _say_alone(group)
         yield _("The expected number itself is known within the sampling interval, by the number of draws alone "
                 "(95 %): {interval}.", interval=say_interval(drawn))  # fmt: skip
     if any(group.occupants for group in totals.groups):
@@ -236,12 +253,27 @@ def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
                 "median and high are its 10, 50 and 90 % quantities. No piece of them has been seen.")  # fmt: skip
 
 
+def _say_alone(group: Group) -> Iterator[str]:
+    """Yield the range if buildings were independent, where it differs from the range of the city."""
+    drawn = group.falls
+    alone, together = say_range(drawn.independent_low, drawn.independent_high), say_range(drawn.low, drawn.high)
+    if group.buildings > 1 and alone != together:
+        yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}: "
+                "that is not so, and the difference shows why ranges of buildings must not be added up.",
+                alone=alone, together=together)  # fmt: skip
+
+
 def _say_draws(view: CityView, drawn: Spread) -> str:
     """Return what the draws of a city have in common."""
     ends = _("The range from 5 to 95 % of the draws is that of the sum over buildings, draw by draw.")
     if view.settings.ideal:
         start = _("Each of the {draws:,} draws is one motion of each floor, without the uncertainty of the earthquake.",
                   draws=drawn.draws)  # fmt: skip
+    elif view.ground is not None and view.ground.is_known:
+        start = _("The motion of the ground is taken as known. Each of the {draws:,} draws varies the buildings' own "
+                  "motions alone: {shared} of their variance is common to all of them (Boore et al. 2014), the rest is "
+                  "correlated by exp(-3 h / {range:g} km) at the distance h (Jayaram and Baker 2009).",
+                  draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
     elif view.ground is not None and view.ground.kind == "scenarios":
         start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings. The "
                   "uncertainty of the buildings' own motions is drawn besides: {shared} of its variance is common to "
@@ -274,7 +306,8 @@ def list_total_heads() -> list[str]:
     classes = [words.risk_label(risk) for risk in RiskClass]
     return [_("Buildings by inventory and basis"), _("Buildings"), _("Pieces"), *classes, _("apart"), _("anchored"),
             _("Expected falls"), _("5 to 95 % of earthquakes"), _("People on blocked routes"),
-            _("5 to 95 % of earthquakes")]  # fmt: skip
+            _("of people on routes that are known"), _("5 to 95 % of earthquakes"),
+            _("People on routes not known")]  # fmt: skip
 
 
 def list_total_rows(totals: CityTotals) -> list[list[str]]:
@@ -284,8 +317,10 @@ def list_total_rows(totals: CityTotals) -> list[list[str]]:
             name_group(group), say_whole(group.buildings), say_whole(group.pieces),
             *(say_whole(group.by_class[risk]) for risk in RiskClass), say_whole(group.unconfirmed + group.by_formula),
             say_whole(group.anchored), say_number(group.falls.expected), say_range(group.falls.low, group.falls.high),
-            say_number(group.people.expected) if group.occupants else words.DASH,
-            say_range(group.people.low, group.people.high) if group.occupants else words.DASH,
+            say_number(group.people.expected) if group.people_known else words.DASH,
+            say_whole(group.people_known) if group.people_known else words.DASH,
+            say_range(group.people.low, group.people.high) if group.people_known else words.DASH,
+            say_whole(group.people_not_known),
         ]
         for group in totals.groups
     ]  # fmt: skip

@@ -14,8 +14,15 @@ from random import Random
 from typing import Any
 
 from assess import resources
+from assess.delivery.disk import find_digest
+from assess.delivery.stages import NEW, staging
+from assess.delivery.traces import moving
+from assess.errors import InputError
+from assess.i18n import fill
+from assess.plain_text import plain_line
 from assess.portfolio.background import read_background
 from assess.portfolio.example_pieces import CORRIDOR, ROOMS
+from assess.portfolio.table_schemas import MADE_UP
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.schema import CATALOGUE
 from assess.workbook.template import Content, write_workbook
@@ -88,22 +95,61 @@ class Building:
     area: int
 
 
-def write_example_city(folder: Path, buildings: int = BUILDINGS) -> None:
+def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
     """Write workbooks, index.csv, the ShakeMap grid.xml, coast.geojson and README.md; the same bytes every time.
 
     Parameters
     ----------
     folder : Path
-        Where to; it is made where it is missing.
+        Where to, whole or not at all; its parents are made where they are missing.
     buildings : int
         How many, of which a few have no workbook.
 
+    Returns
+    -------
+    bool
+        Whether it was written; False where the folder holds exactly this city already.
+
     Raises
     ------
+    InputError
+        If the folder holds anything else.
     OSError
         If a file cannot be written.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = folder.resolve()
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with staging(folder.parent) as stage:
+        made = stage / NEW
+        _write_city(made, buildings)
+        if _is_filled(folder):
+            if _find_digests(folder) != _find_digests(made):
+                raise InputError(
+                    fill(
+                        "{folder} holds something else than the worked city, or not all of it. Name a folder that does "
+                        "not exist yet.",
+                        folder=plain_line(str(folder)),
+                    )
+                )
+            return False
+        with moving():
+            if folder.exists():
+                folder.rmdir()  # Windows renames to no folder that is there, not even an empty one
+            made.replace(folder)
+    return True
+
+
+def _is_filled(folder: Path) -> bool:
+    return folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+
+
+def _find_digests(folder: Path) -> dict[str, str | None]:
+    """Return the SHA-256 of all files in a folder, by their names in it; without those that the system hides."""
+    found = (path for path in folder.rglob("*") if path.is_file() and not path.name.startswith("."))
+    return {path.relative_to(folder).as_posix(): find_digest(path) for path in found}
+
+
+def _write_city(folder: Path, buildings: int) -> None:
     city = list_buildings(buildings)
     for one in city:
         if one.path:
@@ -141,7 +187,7 @@ def _make_building(number: int, land: Any) -> Building:
         longitude = town.longitude + town.spread * 1.26 * _bell(draw)
         if land.contains(shapely.Point(longitude, latitude)):
             break
-    name = f"{use.capitalize()} {number:03}, {town.name} (made up)"
+    name = f"{use.capitalize()} {number:03}, {town.name} {MADE_UP}"
     path = f"{town.name.lower().replace(' ', '-')}/{use.lower()}-{number:03}.xlsx" if is_surveyed else ""
     height = round(storeys * (_STOREY_HEIGHT.get(use, 3.8) + 0.4 * draw.random()), 1)
     area = storeys * (120 if use == "Home" else 300) * (1 + int(4 * draw.random()))

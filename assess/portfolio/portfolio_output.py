@@ -161,18 +161,27 @@ def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround |
             sites.append(ground.at(float(latitude), float(longitude)))
     common = [fact for fact in sites[0].facts if all(fact in one.facts for one in sites)] if sites else []
     kind = sites[0].kind if sites else "scenarios" if hasattr(ground, "event_count") else "shakemap"
-    return RunGround(kind=kind, file=ground.file, sha256=ground.sha256, facts=tuple(common))
+    cautions = [text for text in sites[0].cautions if all(text in one.cautions for one in sites)] if sites else []
+    return RunGround(
+        kind=kind,
+        file=ground.file,
+        sha256=ground.sha256,
+        facts=tuple(common),
+        cautions=tuple(cautions),
+        is_known=bool(sites) and not any(one.dispersion for one in sites),
+    )
 
 
 def list_skipped(view: "CityView") -> Iterator[tuple[str, str]]:
-    """Yield the buildings that were skipped, each with its first problem."""
+    """Yield the buildings that were skipped, each with its first problem and how to fix it."""
     skipped = view.buildings[view.buildings["status"] == "skipped"]
     first = view.problems.drop_duplicates("path").set_index("path")
     for path in skipped["path"]:
         if path in first.index:
             row = first.loc[path]
             place = "!".join(one for one in (row["sheet"], row["cell"]) if one)
-            yield path, f"{place}: {row['message']}" if place else str(row["message"])
+            said = " ".join(str(row[name]) for name in ("message", "fix") if row[name])
+            yield path, f"{place}: {said}" if place else said
         else:
             yield path, ""
 
@@ -193,9 +202,11 @@ def _render_page(view: "CityView", job: Output) -> bytes:
     from assess.portfolio.city_page import render_page
 
     lines = list_isolines(view, job.ground)
+    indexed = {one.path for one in job.sources if one.index is not None and one.index.as_building()}
     return render_page(
-        view, job.background, options=job.options, isolines=lines, repeat=job.repeat, progress=job.progress
-    )
+        view, job.background, options=job.options, isolines=lines, repeat=job.repeat, indexed=indexed,
+        progress=job.progress,
+    )  # fmt: skip
 
 
 def _render_summary(view: "CityView", job: Output) -> bytes:

@@ -13,6 +13,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.portfolio import city_words as say
 from assess.portfolio.building_signs import Row, find_share, say_sign, sign_of_class
+from assess.portfolio.building_words import say_blocked
 from assess.portfolio.city_content import CityContent, build_content
 from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
 from assess.portfolio.piece_words import label_piece, label_state, say_kind, say_severity, say_size, say_spot
@@ -105,6 +106,18 @@ def _of_known(name: str) -> Callable[[Row], Any]:
     return lambda row: None if row["state"] == RouteState.NOT_KNOWN else row[name]
 
 
+def _find_known_people(row: Row) -> int | None:
+    return None if row["occupants"] is None else row["occupants"] - (row["people_not_known"] or 0)
+
+
+def _find_blocked(row: Row) -> int | str | None:
+    """Return how many routes are blocked, as a number; what is not known is said where it is so of all routes."""
+    if row["routes"] and row["routes_not_known"] < row["routes"]:
+        return int(row["routes_blocked"])
+    is_assessed = row["status"] == "assessed"
+    return say_blocked(row["routes"], row["routes_blocked"], row["routes_not_known"]) if is_assessed else None
+
+
 def _list_building_columns() -> list[Column]:
     def counted(row: Row) -> str:
         sign = sign_of_class(row)
@@ -120,11 +133,15 @@ def _list_building_columns() -> list[Column]:
         Column(_("Highest class"), 14, counted),
         Column(_("Share expected to fall"), 10, find_share, CHANCE),
         Column(_("Expected falls"), 10, _of("expected_falls"), SUM),
+        Column(_("Unconfirmed"), 12, _of("unconfirmed"), COUNT),
+        Column(_("By formula only"), 10, _of("by_formula"), COUNT),
+        Column(_("Left out of the COBie file"), 10, _of("left_out"), COUNT),
         Column(_("Falls, 5 % of earthquakes"), 11, _of("falls_p05"), COUNT),
         Column(_("Falls, 95 % of earthquakes"), 11, _of("falls_p95"), COUNT),
         Column(_("People on blocked routes, expected"), 12, _of("people_blocked"), SUM),
-        Column(_("People on routes"), 10, _of("occupants"), COUNT),
-        Column(_("Routes blocked"), 9, _of("routes_blocked"), COUNT),
+        Column(_("People on routes whose state is known"), 11, _find_known_people, COUNT),
+        Column(_("People on routes not known"), 10, _of("people_not_known"), COUNT),
+        Column(_("Routes blocked"), 9, _find_blocked, COUNT),
         Column(_("Routes not known"), 9, _of("routes_not_known"), COUNT),
     ]
 
@@ -137,8 +154,6 @@ def _list_further_columns() -> list[Column]:
         Column(_("Pieces, high"), 8, _of("high"), COUNT),
         Column(_("Pieces, medium"), 8, _of("medium"), COUNT),
         Column(_("Pieces, low"), 8, _of("low"), COUNT),
-        Column(_("Unconfirmed"), 12, _of("unconfirmed"), COUNT),
-        Column(_("By formula only"), 10, _of("by_formula"), COUNT),
         Column(_("Anchored"), 10, _of("anchored"), COUNT),
         Column(_("Falls avoided by the work list"), 11, _of("falls_avoided"), SUM),
         Column(_("Known costs"), 10, _of("cost"), COUNT),
@@ -147,6 +162,7 @@ def _list_further_columns() -> list[Column]:
         Column(_("Largest PFA [g]"), 9, _of("largest_pfa_g"), "0.000"),
         Column(_("Latitude [deg]"), 10, _of("latitude"), "0.00000"),
         Column(_("Longitude [deg]"), 11, _of("longitude"), "0.00000"),
+        Column(_("Floors with motions of their own"), 10, _of("own_motions"), COUNT),
         Column(_("Warnings"), 9, _of("warnings"), COUNT),
     ]
 
@@ -215,8 +231,10 @@ def _write_routes(pen: Pen, page: Any, content: CityContent) -> None:
 
 
 def _write_skipped(pen: Pen, page: Any, content: CityContent) -> None:
+    names = {building["path"]: building["building"] for building in content.skipped}
     columns = [
         Column(_("File"), 36, _of("path")),
+        Column(_("Building"), 30, lambda row: names[row["path"]]),
         Column(_("Severity"), 10, lambda row: say_severity(row["severity"] or "")),
         Column(_("Place"), 16, say_spot),
         Column(_("What"), 70, _of("message")),

@@ -17,6 +17,9 @@ INVENTORIES = ("surveyed", "handover", "assumed")
 """Where the pieces of a building come from: its workbook, a COBie file, or quantities by use and floor area. Sums never
 mix them."""
 
+MADE_UP = "(made up)"
+"""What the names of the buildings of the worked city end with."""
+
 
 @dataclass(frozen=True, slots=True)
 class TableColumn:
@@ -46,6 +49,7 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("ground_source", "text", fill("what its ground motion rests on: shakemap, scenarios, ground_pga, sds, shaking, or blank where only its floors have motions")),
         ("ground_pga_g", "number", fill("PGA at its place, the median of a ShakeMap or of scenarios")),
         ("ground_pgv_cm_s", "number", fill("PGV at its place")),
+        ("ground_distance_km", "number", fill("distance to the site of the scenarios that gives its ground motion")),
         ("own_motions", "count", fill("floors that keep a record or a PFA of their own")),
         ("largest_pfa_g", "number", fill("largest PFA of its floors")),
         ("motion_uncertainty", "number", fill("standard deviation of ln PFA that was used")),
@@ -60,6 +64,7 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("unconfirmed", "count", fill("pieces whose lower simulated class is not confirmed: not in the classes")),
         ("by_formula", "count", fill("pieces that were not simulated in a run that simulated others: not in the classes")),
         ("anchored", "count", fill("pieces that count as anchored: not in the classes")),
+        ("left_out", "count", fill("components of a handover file that may be furniture and were left out: in no number; see the table problems")),
         ("expected_falls", "number", fill("expected number of pieces that fall, of those in the classes")),
         ("falls_p05", "number", fill("number of falls that 5 % of the draws do not exceed")),
         ("falls_p95", "number", fill("number of falls that 95 % of the draws do not exceed")),
@@ -75,6 +80,7 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("routes_blocked", "count", fill("likewise")),
         ("routes_not_known", "count", fill("likewise")),
         ("occupants", "count", fill("people on its routes, as filled in: counted once for each route")),
+        ("people_not_known", "count", fill("those of them on routes whose state is not known: in no other number")),
         ("people_blocked", "number", fill("expected number of people whose route is blocked: counted once for each route, of those that are known; blank where none is")),
         ("warnings", "count", fill("warnings in the table problems")),
     ),
@@ -118,7 +124,7 @@ TABLES: Mapping[str, tuple[TableColumn, ...]] = {
         ("route", "text", fill("its name")),
         ("state", "text", fill("open, doubtful, blocked or not known")),
         ("probability", "number", fill("chance that it is blocked in this scenario; blank where its state is not known")),
-        ("probability_low", "number", fill("its interval")),
+        ("probability_low", "number", fill("its interval; blank where nothing was simulated")),
         ("probability_high", "number", fill("likewise")),
         ("occupants", "count", fill("as filled in")),
         ("blockers", "text", fill("pieces that may block it, the likeliest first, separated by semicolons")),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from assess.portfolio.city_totals import FIRST, CityView, build_totals
+from assess.portfolio.city_totals import FIRST, CityView, build_totals, is_made_up
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.settings import Settings
@@ -87,7 +87,7 @@ def test_people_on_routes_without_joint_outcomes_stand_apart(totals):
 
 def test_people_on_routes_that_are_not_known_are_told_apart(totals):
     group = find(totals, "surveyed", "simulated")
-    assert (group.occupants, group.people_not_known) == (100, 30)
+    assert (group.occupants, group.people_not_known, group.people_known) == (100, 30, 70)
     assert group.routes[RouteState.NOT_KNOWN] == 2
     assert group.routes[RouteState.OPEN] == 2
 
@@ -139,6 +139,7 @@ def test_buildings_with_most_people_on_blocked_routes_come_first_then_most_falls
     ]
     found = build_totals(view([one | {"basis": "formula"} for one in rows])).groups[0].first_buildings
     assert [one.path for one in found] == ["people", "few people", "falls", "a tenth of a person"]
+    assert found[0].people_not_known == 0
     assert (found[0].people_blocked, found[0].expected_falls, found[0].occupants) == (30, 0.5, 50)
 
 
@@ -162,3 +163,11 @@ def test_types_with_most_expected_falls_come_first_and_blank_ones_by_size():
         ("no Type: Breadth 30 to 40 cm, Height 180 to 200 cm", 20, 1, 5.0),
         ("Bookcase", 6, 2, 1.5),
     ]
+
+
+def test_a_city_is_made_up_where_all_its_names_say_so():
+    names = [{"path": "a", "building": "Home 1 (made up)"}, {"path": "b", "building": "Home 2 (made up)"}]
+    unnamed = {"path": "bad.xlsx", "status": "skipped", "building": None}
+    assert is_made_up(view([*names, unnamed]))
+    assert not is_made_up(view([*names, {"path": "c", "building": "City hall"}]))
+    assert not is_made_up(view([unnamed]))
