@@ -46,7 +46,8 @@ def read_building(source: Source, data: bytes | None, ground: GroundField | None
     filled = {} if source.index is None else source.index.as_building()
     if data is not None and is_cobie(data):
         imported = read_cobie(data, source.file.name)
-        origin = Origin(path=source.path, inventory="handover", index=source.index)
+        left_out = sum(one.count for one in imported.skipped if one.is_furniture)
+        origin = Origin(path=source.path, inventory="handover", index=source.index, left_out=left_out)
         return origin, _read_handover(imported, source.file, filled, ground)
     inventory = read_inventory(source.file, building=filled, ground=ground)
     return Origin(path=source.path, inventory="surveyed", index=source.index), inventory

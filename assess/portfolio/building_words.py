@@ -5,7 +5,9 @@ from assess.portfolio.city_words import say_number, say_whole
 from assess.report import words
 
 
-def say_falls(expected: float | None, unconfirmed: int | None, by_formula: int | None, left_out: int | None) -> str:
+def say_falls(
+    expected: float | None, unconfirmed: int | None, by_formula: int | None, left_out: int | None = None
+) -> str:
     """Return expected falls, with the pieces that could fall as well and are not in them."""
     apart = [
         *([_("{pieces} unconfirmed", pieces=say_whole(unconfirmed))] if unconfirmed else []),

@@ -17,6 +17,8 @@ from assess.portfolio.building_signs import Sign, ink_of
 
 EARTH = 6371.0
 """Mean radius of the Earth [km]."""
+SEA, GROUND = "#e3ebf1", "#f3f3f0"
+"""Colour behind a map with a background, which is water where that has no area, and without one."""
 WIDE, LOWEST, HIGHEST = 1000.0, 560.0, 1000.0
 """Width of the drawing, and the least and the most height of it [px]."""
 TALLEST = 46.0
@@ -133,8 +135,9 @@ def draw_map(
     if not points:
         return ""
     frame = build_frame([(one.longitude, one.latitude) for one in points])
+    name, colour = ("sea", SEA) if background else ("ground", GROUND)  # without a background nothing is known of water
     parts = [
-        f'<rect class="sea" width="{frame.wide:g}" height="{frame.high:.1f}" fill="#e3ebf1"/>',
+        f'<rect class="{name}" width="{frame.wide:g}" height="{frame.high:.1f}" fill="{colour}"/>',
         *(_draw_background(background, frame) if background else ()),
         *_draw_graticule(frame),
         *_draw_isolines(isolines, frame),
@@ -145,7 +148,7 @@ def draw_map(
     role = "group" if is_live else "img"
     widest = f"max-width: {TALLEST * frame.wide / frame.high:.1f}rem"
     return (
-        f'<svg class="city-map" role="{role}" aria-label="{escape(title)}" style="{widest}" '
+        f'<svg class="city-map" role="{role}" aria-label="{escape(title)}" style="{widest}; background: {colour}" '
         f'viewBox="0 0 {frame.wide:g} {frame.high:.1f}" font-family="Report, sans-serif" font-size="13">'
         f"{''.join(parts)}</svg>"
     )

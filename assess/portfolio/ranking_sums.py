@@ -32,6 +32,7 @@ LINES = (
     SumLine(fill("Unconfirmed pieces, in no class"), lambda group: group.unconfirmed),
     SumLine(fill("Pieces by formula only, in no class"), lambda group: group.by_formula),
     SumLine(fill("Anchored pieces, in no class"), lambda group: group.anchored),
+    SumLine(fill("Components left out of COBie files, in no number"), lambda group: group.left_out),
     SumLine(fill("Expected falls"), lambda group: group.falls.expected, SUM),
     SumLine(fill("Falls that 5 % of the earthquakes do not exceed"), lambda group: group.falls.low),
     SumLine(fill("Falls that 95 % of the earthquakes do not exceed"), lambda group: group.falls.high),
