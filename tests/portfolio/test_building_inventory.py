@@ -4,7 +4,7 @@ from assess.errors import InputError, WorkbookError
 from assess.portfolio.building_inventory import read_building
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.sources import Source
-from tests.bim.cobie_files import one_type, write_cobie
+from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
 from tests.workbooks import write
 
 SHAKEN = IndexRow(path="c.xlsx", ground_pga_g=0.3)
@@ -27,6 +27,15 @@ def test_a_cobie_file_is_handed_over_and_says_what_was_left_out(tmp_path):
     assert [one.item for one in inventory.items] == ["Bookcase A:1", "Bookcase A:2"]
     messages = [one.message for one in inventory.problems]
     assert "1 component left out (AssetType is Fixed): Door B (1)." in messages
+    assert origin.left_out == 0, "a door is no furniture"
+
+
+def test_furniture_without_sizes_in_a_cobie_file_is_counted(tmp_path):
+    desk = {"Name": "Desk", "AssetType": "Moveable", "NominalLength": 900, "NominalWidth": 600}
+    desks = [{"Name": f"Desk:{at}", "TypeName": "Desk", "Space": "G01"} for at in (1, 2, 3)]
+    path = write_cobie(tmp_path / "c.xlsx", types=(*TYPES, desk), components=(*COMPONENTS, *desks))
+    origin, inventory = _read(Source(path="c.xlsx", file=path, index=SHAKEN), path)
+    assert (origin.left_out, len(inventory.items)) == (3, 2)
 
 
 def test_a_cobie_file_is_as_its_imported_workbook(tmp_path):

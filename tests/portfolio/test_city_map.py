@@ -17,7 +17,7 @@ from assess.portfolio.building_signs import (
     sign_of_routes,
     sign_of_share,
 )
-from assess.portfolio.city_map import Isoline, MapPoint, build_frame, draw_map, find_bar
+from assess.portfolio.city_map import GROUND, SEA, Isoline, MapPoint, build_frame, draw_map, find_bar
 from tests.portfolio.city_samples import NASTY, make_view
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -33,6 +33,13 @@ def _point(at, latitude, longitude, key="low", name="A"):
 def _draw(points, background=None, **more):
     text = draw_map(points, background, title="Map", **more)
     return ET.fromstring(text.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1))
+
+
+def test_without_a_background_nothing_looks_like_water():
+    drawn = draw_map([_point(0, 37.8, -122.4)], None, title="Map")
+    assert 'class="sea"' not in drawn
+    assert SEA not in drawn
+    assert drawn.count(GROUND) == 2, "the map, and what lies beside it when it is moved"
 
 
 def _places(svg):
