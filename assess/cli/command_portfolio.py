@@ -1,7 +1,7 @@
 """``assess portfolio``: many buildings under one earthquake."""
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -113,7 +113,7 @@ def command(
         bool,
         typer.Option(
             "--example",
-            help="First write a made-up city around San Francisco Bay to FOLDER, which has to be new or empty.",
+            help="First write a made-up city around San Francisco Bay to FOLDER, which has to be new, empty or that city.",
         ),
     ] = False,
 ) -> None:
@@ -132,6 +132,7 @@ def command(
                           route_risk=route_risk)  # fmt: skip
     folder = out or Path(f"{source.resolve().stem}-portfolio")
     if example:
+        _check_extras(wanted, scheduler)
         source, shakemap, background = _prepare_example(source, folder, shakemap, ground_motions, background)
     ground = read_ground(shakemap, ground_motions)
     settings = given if runs is not None else _fit_runs(given, ground)
@@ -142,7 +143,7 @@ def command(
             result = run_portfolio(
                 source, folder, settings, ground=ground, jobs=jobs, scheduler=scheduler, formats=wanted,
                 background=_read_background(background), language=code,
-                repeat=_say_repeat(settings, shakemap, ground_motions), progress=progress,
+                repeat=_say_repeat(source, settings, shakemap, ground_motions), progress=progress,
             )  # fmt: skip
         except (KeyboardInterrupt, CancelledError):
             kept = f"the buildings that are done are kept in {plain_line(str(folder))}; the same command goes on"
@@ -150,18 +151,23 @@ def command(
     _tell(result, settings)
 
 
+def _check_extras(formats: Sequence[str], scheduler: str | None) -> None:
+    """Raise InputError where the run needs a package that is not installed: before the city is written."""
+    from assess.portfolio.run_portfolio import check_extras
+
+    check_extras(formats, scheduler)
+
+
 def _prepare_example(
     folder: Path, out: Path, shakemap: Path | None, ground_motions: Path | None, background: Path | None
 ) -> tuple[Path, Path | None, Path | None]:
-    """Write the worked city; return its index, and the ground motion and background that are used."""
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise InputError(f"--example: {folder} is not empty; name a folder that does not exist yet")
+    """Write the worked city unless it is there; return its index, and the ground motion and background of the run."""
     if out.resolve().is_relative_to(folder.resolve()):
         raise InputError(f"--out: {out} lies in the folder of the example; name another one")
     from assess.portfolio.example_city import write_example_city
 
-    write_example_city(folder)
-    typer.echo(f"wrote {folder}", err=True)
+    if write_example_city(folder):
+        typer.echo(f"wrote {folder}", err=True)
     shaken = shakemap if shakemap or ground_motions else folder / EXAMPLE_MAP
     return folder / EXAMPLE_INDEX, shaken, background or folder / EXAMPLE_COAST
 
@@ -175,17 +181,29 @@ def _fit_runs(settings: Settings, ground: "GroundField | None") -> Settings:
     return change_settings(settings, {"runs": choose_runs(scenarios)}) if scenarios else settings
 
 
-def _say_repeat(settings: Settings, shakemap: Path | None, ground_motions: Path | None) -> str:
-    """Return the command that assesses one building of the run alone, with {path} in place of its workbook."""
+def _say_repeat(source: Path, settings: Settings, shakemap: Path | None, ground_motions: Path | None) -> str:
+    """Return the command that assesses one building of the run alone, with {path} in place of its workbook.
+
+    It works in the folder in which this command was given; "" where a name holds that mark itself.
+    """
+    folder = f"{_quote(source if source.is_dir() else source.parent)}/"
     default = Settings()
     named = {
-        "--shakemap": shakemap, "--ground-motions": ground_motions,
-        **{f"--{name.replace('_', '-')}": getattr(settings, name)
+        "--shakemap": shakemap and _quote(shakemap), "--ground-motions": ground_motions and _quote(ground_motions),
+        **{f"--{name.replace('_', '-')}": shlex.quote(str(getattr(settings, name)))
            for name in ("verify", "runs", "seed", "scenario", "scale", "route_risk")
            if getattr(settings, name) != getattr(default, name)},
     }  # fmt: skip
-    options = [f"{option} {shlex.quote(str(value))}" for option, value in named.items() if value is not None]
-    return " ".join(["assess run {path} --city", *options, *(["--ideal"] if settings.ideal else [])])
+    options = [f"{option} {value}" for option, value in named.items() if value is not None]
+    if any("{path}" in one for one in (folder, *options)):
+        return ""
+    return " ".join([f"assess run {folder}{{path}} --city", *options, *(["--ideal"] if settings.ideal else [])])
+
+
+def _quote(path: Path) -> str:
+    """Return a path for a shell; one that begins with a dash would be taken for an option."""
+    text = str(path)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text).rstrip("/")
 
 
 def _read_background(file: Path | None) -> "Background | None":
@@ -201,14 +219,16 @@ def _read_background(file: Path | None) -> "Background | None":
 
 def _tell(result: "PortfolioResult", settings: Settings) -> None:
     """Print what was found; exit status 1 where a building was skipped."""
+    from assess.portfolio.building_words import name_skipped
     from assess.portfolio.city_totals import build_totals
 
     for line in describe_city(build_totals(result.view), result, settings):
         typer.echo(line)
     for file in result.files:
         typer.echo(f"wrote {file}", err=True)
+    names = dict(zip(result.view.buildings["path"], result.view.buildings["building"], strict=True))
     for path, why in result.skipped[:MOST_SKIPPED]:
-        print_error(f"{plain_line(path)}: skipped. {plain_line(why)}")
+        print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")
     if len(result.skipped) > MOST_SKIPPED:
         more = count(len(result.skipped) - MOST_SKIPPED, "more building")
         typer.echo(f"... and {more} skipped: see the table problems.", err=True)
@@ -218,8 +238,14 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
 
 def describe_city(totals: "CityTotals", result: "PortfolioResult", settings: Settings) -> Iterator[str]:
     """Yield what was assessed, what is expected to fall, apart by inventory and basis, and what was skipped."""
+    from assess.portfolio.city_totals import is_made_up
+    from assess.portfolio.ground_words import list_ground_cautions
+
     earlier = f" ({result.kept:,} of them by an earlier run)" if result.kept else ""
     yield f"{count(totals.assessed, 'building')} assessed{earlier}, {totals.skipped:,} skipped."
+    if is_made_up(result.view):
+        yield "All buildings are made up: their furniture, routes, people and costs are random numbers."
+    yield from list_ground_cautions(result.view)
     for group in totals.groups:
         yield from _describe_group(group)
     if totals.groups:
@@ -242,11 +268,16 @@ def _describe_group(group: "Group") -> Iterator[str]:
     if group.falls_low_inventory is not None and group.falls_high_inventory is not None:
         low, high = group.falls_low_inventory, group.falls_high_inventory
         yield f"  With few or many pieces in all of them: {low:,.1f} to {high:,.1f}."
-    if group.occupants:
-        known = group.occupants - group.people_not_known
+    if group.people_known:
         left = f"; {group.people_not_known:,} more on routes that are not known" if group.people_not_known else ""
-        yield f"  People whose route is blocked: {people.expected:,.1f} expected, of {known:,}{left}."
+        yield f"  People whose route is blocked: {people.expected:,.1f} expected, of {group.people_known:,}{left}."
+    elif group.occupants:
+        yield f"  People whose route is blocked: not known; {group.occupants:,} on routes that are not known."
+    if group.own_motions:
+        buildings = count(group.own_motions, "building")
+        yield f"  With motions of their own, which may not be of this earthquake: {buildings}, in the sums above."
     if apart := [f"{number:,} {what}" for number, what in (
-        (group.unconfirmed, "unconfirmed"), (group.by_formula, "by formula only"), (group.anchored, "anchored")
+        (group.unconfirmed, "unconfirmed"), (group.by_formula, "by formula only"), (group.anchored, "anchored"),
+        (group.left_out, "left out of the COBie files")
     ) if number]:  # fmt: skip
         yield f"  Not counted above: {', '.join(apart)}."

@@ -58,6 +58,19 @@ class CityContent:
         """Problems likewise."""
         return _group(list_records(self.view.problems))
 
+    def spell_use(self, row: Row) -> str:
+        """Return the use of a building as the first building with it spells it: letter case makes no other use."""
+        use = str(row["use"] or "").strip()
+        return self._uses.get(use.casefold(), use)
+
+    @cached_property
+    def _uses(self) -> Mapping[str, str]:
+        found: dict[str, str] = {}
+        for row in list_records(self.view.buildings):
+            use = str(row["use"] or "").strip()
+            found.setdefault(use.casefold(), use)
+        return found
+
     @cached_property
     def points(self) -> list[MapPoint]:
         """The buildings that have a place, with their signs by the share that is expected to fall."""

@@ -1,10 +1,11 @@
 """The page of a city: one HTML file with the answer, a map, a ranking and a page a building; nothing is fetched."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from assess.i18n import LANGUAGES
 from assess.i18n import gettext as _
+from assess.portfolio import building_words as say_row
 from assess.portfolio import city_words as say
 from assess.portfolio.background import Background
 from assess.portfolio.building_signs import Sign, say_sign, share_of
@@ -29,6 +30,7 @@ def render_page(
     options: ReportOptions | None = None,
     isolines: Sequence[Isoline] = (),
     repeat: str = "",
+    indexed: Collection[str] = (),
     progress: Progress = SILENT,
 ) -> bytes:
     """Return the page of a city as HTML, in the language of the options.
@@ -45,6 +47,8 @@ def render_page(
         Lines of equal shaking on the map.
     repeat : str
         Command that assesses one building alone, with ``{path}`` in place of its workbook.
+    indexed : collection of str
+        Paths of the buildings of which an index fills in something.
 
     Raises
     ------
@@ -60,7 +64,9 @@ def render_page(
         script = options.read(SCRIPT)
         context |= {
             "for_print": False, "style": build_style(options, False, STYLE), "script": script,
-            "script_hash": hash_script(script), "data": progress.wait_for(lambda: write_data(content, repeat)),
+            "script_hash": hash_script(script), "data": progress.wait_for(
+                lambda: write_data(content, repeat, indexed)
+            ),
         }  # fmt: skip
         return render_template(TEMPLATE, context, options, progress).encode()
 
@@ -116,9 +122,11 @@ def _show_group(group: Any) -> dict[str, Any]:
         "apart": say.say_whole(group.unconfirmed + group.by_formula) if group.unconfirmed + group.by_formula else "",
         "anchored": say.say_whole(group.anchored),
         "buildings": [
-            (words.cut(one.building or one.path, 80), words.percent(share_of(one.expected_falls, one.in_classes)),
-             say.say_number(one.expected_falls),
-             say.say_number(one.people_blocked) if one.occupants else words.DASH, say.say_whole(one.routes_blocked))
+            (say_row.mark_own_motions(words.cut(one.building or one.path, 80), one.own_motions),
+             words.percent(share_of(one.expected_falls, one.in_classes)),
+             say_row.say_falls(one.expected_falls, one.unconfirmed, one.by_formula, one.left_out),
+             say_row.say_people(one.people_blocked, one.occupants, one.people_not_known),
+             say_row.say_blocked(one.routes, one.routes_blocked, one.routes_not_known))
             for one in group.first_buildings
         ],
         "types": [
@@ -150,7 +158,7 @@ def _list_legend(signs: Sequence[tuple[Sign, int]]) -> list[tuple[str, str, str,
 
 def _list_filters(content: CityContent) -> list[tuple[str, str, list[tuple[str, str]]]]:
     """Return the filters: key, label, and the choices that are in use as value and words."""
-    uses = sorted({words.cut(str(row["use"]), 60) for row in content.buildings if row["use"]})
+    uses = sorted({words.cut(content.spell_use(row), 60) for row in content.buildings if row["use"]})
     inventories = [one for one in ("surveyed", "handover", "assumed") if _is_used(content, one)]
     return [
         ("use", _("Use"), [(use, use) for use in uses]),
@@ -172,7 +180,7 @@ def _say_storeys(low: int, high: int) -> str:
 
 
 def _list_skipped(content: CityContent) -> list[tuple[str, str]]:
-    """Return path and reason of each building that could not be assessed; of several problems the first."""
+    """Return name and reason of each building that could not be assessed; of several problems the first."""
     found = []
     for row in content.skipped:
         errors = [one for one in content.problems.get(row["path"], []) if one["severity"] == "error"]
@@ -180,5 +188,5 @@ def _list_skipped(content: CityContent) -> list[tuple[str, str]]:
         reason = (
             " ".join(str(first[name]) for name in ("sheet", "cell", "message", "fix") if first[name]) if first else ""
         )
-        found.append((words.cut(row["path"], 120), words.cut(reason or words.DASH, 240)))
+        found.append((say_row.name_skipped(row["building"], row["path"]), " ".join(reason.split()) or words.DASH))
     return found

@@ -5,11 +5,12 @@ The page's script makes rows of it when a building is opened, as text alone: not
 
 import json
 import shlex
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import partial
 from typing import Any
 
 from assess.i18n import gettext as _
+from assess.portfolio import building_words as say
 from assess.portfolio.building_signs import Row, find_share, sign_of_class, sign_of_routes, sign_of_share
 from assess.portfolio.city_content import CityContent, name_building
 from assess.portfolio.city_words import name_basis, name_inventory, say_number, say_place, say_range, say_whole
@@ -61,14 +62,17 @@ class Table:
         }  # fmt: skip
 
 
-def write_data(content: CityContent, repeat: str) -> str:
+def write_data(content: CityContent, repeat: str, indexed: Collection[str] = ()) -> str:
     """Return the data of the page as JSON that may stand inside a script element.
 
-    `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none.
+    `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none. `indexed`
+    are the paths of the buildings of which an index fills in something.
     """
     data = {
         "heads": [label for label, _read in _FACTS()],
-        "buildings": [_pack_building(row, content, repeat) for row in content.buildings],
+        "buildings": [
+            _pack_building(row, content, repeat) | {"indexed": row["path"] in indexed} for row in content.buildings
+        ],
         "tables": _pack_tables(content),
         "styles": _list_styles(),
         "texts": _list_texts(),
@@ -85,7 +89,7 @@ def _pack_building(row: Row, content: CityContent, repeat: str) -> dict[str, Any
         "share": sign_of_share(row).key,
         "kind": sign_of_class(row).key,
         "state": sign_of_routes(row).key,
-        "use": words.cut(str(row["use"] or ""), 60),
+        "use": words.cut(content.spell_use(row), 60),
         "inventory": row["inventory"] or "",
         "basis": row["basis"] or "",
         "storeys": row["storeys"],
@@ -96,8 +100,9 @@ def _pack_building(row: Row, content: CityContent, repeat: str) -> dict[str, Any
 
 
 def _write_command(row: Row, repeat: str) -> str:
-    """Return the command that assesses a building alone; "" of one without a workbook."""
-    if not repeat or row["inventory"] == "assumed" or any(not sign.isprintable() for sign in row["path"]):
+    """Return the command that assesses a building alone; "" of one that was skipped or has no inventory workbook."""
+    is_workbook = row["status"] == "assessed" and row["inventory"] == "surveyed"
+    if not repeat or not is_workbook or not row["path"].isprintable():
         return ""
     return repeat.replace("{path}", shlex.quote(row["path"]))
 
@@ -116,17 +121,20 @@ def _list_cells(row: Row) -> list[str]:
     inventory = name_inventory(row["inventory"])
     basis = "" if row["basis"] == "simulated" else f", {name_basis(row['basis'])}"
     return [
-        words.cut(str(row["use"] or ""), 60), f"{inventory}{basis}", "", say_count(row["pieces"]),
-        words.percent(find_share(row)), say_number(row["expected_falls"]),
+        words.cut(str(row["use"] or ""), 60), say.mark_own_motions(f"{inventory}{basis}", row["own_motions"]), "",
+        say_count(row["pieces"]),
+        words.percent(find_share(row)), _say_expected(row),
         say_range(row["falls_p05"], row["falls_p95"]), _say_people(row),
-        say_count(row["routes_blocked"]) if row["routes"] else words.DASH,
+        say.say_blocked(row["routes"], row["routes_blocked"], row["routes_not_known"]),
     ]  # fmt: skip
 
 
+def _say_expected(row: Row) -> str:
+    return say.say_falls(row["expected_falls"], row["unconfirmed"], row["by_formula"], row["left_out"])
+
+
 def _say_people(row: Row) -> str:
-    if not row["occupants"]:
-        return words.DASH
-    return _("{people} of {occupants}", people=say_number(row["people_blocked"]), occupants=say_whole(row["occupants"]))
+    return say.say_people(row["people_blocked"], row["occupants"], row["people_not_known"])
 
 
 def _FACTS() -> list[tuple[str, Callable[[Row], str]]]:  # noqa: N802 - a table, in the language in use
@@ -167,15 +175,17 @@ def _say_classes(row: Row) -> str:
     named = {
         "low": _("low"), "medium": _("medium"), "high": _("high"), "very_high": _("very high"),
         "unconfirmed": _("unconfirmed"), "by_formula": _("by formula only"), "anchored": _("anchored"),
+        "left_out": _("left out of the COBie file"),
     }  # fmt: skip
     return "; ".join(f"{label} {say_whole(row[name])}" for name, label in named.items() if row[name])
 
 
 def _say_falls(row: Row) -> str:
+    expected = _say_expected(row)
     if row["falls_p05"] is None or row["falls_p95"] is None:
-        return say_number(row["expected_falls"])
+        return expected
     return _("{expected}; in nine of ten earthquakes like this one {range}",
-             expected=say_number(row["expected_falls"]),
+             expected=expected,
              range=say_range(row["falls_p05"], row["falls_p95"]))  # fmt: skip
 
 

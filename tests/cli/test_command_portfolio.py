@@ -12,11 +12,14 @@ import pytest
 from typer.testing import CliRunner
 
 from assess.cli.app import app
-from assess.cli.command_portfolio import FORMATS, _say_repeat
+from assess.cli.command_portfolio import FORMATS, _say_repeat, describe_city
 from assess.portfolio import portfolio_output
 from assess.portfolio.city_tables import read_table
+from assess.portfolio.city_totals import build_totals
+from assess.portfolio.run_portfolio import PortfolioResult
 from assess.settings import Settings
 from tests.portfolio.staged import write_building, write_city
+from tests.portfolio.test_city_totals import view
 
 run = CliRunner().invoke
 SOON = 60.0
@@ -88,10 +91,47 @@ def test_an_example_is_written_to_a_new_folder_alone(tmp_path):
     city = _write(tmp_path, 1)
     result = _call(city, "--example", "--out", tmp_path / "out")
     assert result.exit_code == 2
-    assert "is not empty; name a folder that does not exist yet" in result.stderr
+    assert "is not empty, and not the worked city as it was written; name a folder that does not exist" in result.stderr
+    assert [path.name for path in city.iterdir()] == ["b00.xlsx"]
     result = _call(tmp_path / "new", "--example", "--out", tmp_path / "new" / "out")
     assert "lies in the folder of the example; name another one" in result.stderr
     assert not (tmp_path / "new").exists()
+
+
+def test_an_extra_that_is_missing_is_told_before_the_example_is_written(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "duckdb", None)
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    result = _call(tmp_path / "bay", "--example", "--out", tmp_path / "out")
+    assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+    assert "the format parquet needs duckdb, which is not installed. Install it from the folder" in result.stderr
+    words = [tmp_path / "bay", "--example", "--out", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:1"]
+    result = run(app, ["portfolio", *map(str, words), "--formats", "html"])
+    assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+    assert "--scheduler: dask is needed, which is not installed" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no signals to send")
+@pytest.mark.slow
+def test_an_example_that_is_interrupted_leaves_nothing(tmp_path):
+    words = ["assess", "portfolio", "bay", "--example", "--verify", "none", "--formats", "html"]
+    code = (
+        f"import signal, sys\nsignal.signal(signal.SIGINT, signal.default_int_handler)\nsys.argv = {words!r}\n"
+        "from assess.cli.app import main\nmain()"
+    )
+    with subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True, cwd=tmp_path) as process:
+        latest = time.monotonic() + SOON
+        while not list(tmp_path.glob(".assess-writing-*/new/*/*.xlsx")):
+            assert time.monotonic() < latest
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        try:
+            _printed, errors = process.communicate(timeout=SOON)
+        finally:
+            process.kill()
+    assert process.returncode == 128 + signal.SIGINT
+    assert errors.endswith("Interrupted; nothing was written.\n")
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.slow
@@ -151,8 +191,37 @@ def test_the_formats_are_those_of_the_library():
 
 
 def test_the_line_that_repeats_a_building_names_what_differs_from_the_defaults():
-    assert _say_repeat(Settings(), None, None) == "assess run {path} --city"
-    given = Settings(verify="none", seed=3, scenario="NTC 2018", ideal=True)
-    assert _say_repeat(given, Path("my grid.xml"), None) == (
-        "assess run {path} --city --shakemap 'my grid.xml' --verify none --seed 3 --scenario 'NTC 2018' --ideal"
+    assert _say_repeat(Path(), Settings(), None, None) == "assess run ./{path} --city"
+    assert _say_repeat(Path("city/index.csv"), Settings(), None, None) == "assess run city/{path} --city"
+    assert _say_repeat(Path("-c/index.csv"), Settings(), Path("-g.xml"), None) == (
+        "assess run ./-c/{path} --city --shakemap ./-g.xml"
     )
+    assert _say_repeat(Path("{path}/index.csv"), Settings(), None, None) == ""
+    given = Settings(verify="none", seed=3, scenario="NTC 2018", ideal=True)
+    assert _say_repeat(Path("index.csv"), given, Path("my grid.xml"), None) == (
+        "assess run ./{path} --city --shakemap 'my grid.xml' --verify none --seed 3 --scenario 'NTC 2018' --ideal"
+    )
+
+
+BUILDING = {"path": "a.xlsx", "building": "Home (made up)", "own_motions": 1}
+
+
+@pytest.mark.parametrize(
+    ("states", "said"),
+    [
+        (("blocked", "not known"), "6.0 expected, of 20; 30 more on routes that are not known."),
+        (("not known", "not known"), "not known; 50 on routes that are not known."),
+    ],
+)
+def test_the_terminal_tells_what_is_not_known_of_people_and_motions(states, said):
+    routes = [
+        {"path": "a.xlsx", "route": name, "state": state, "probability": None if state == "not known" else 0.3,
+         "occupants": people}
+        for name, state, people in zip("AB", states, (20, 30), strict=True)
+    ]  # fmt: skip
+    city = view([BUILDING], routes=routes)
+    result = PortfolioResult(folder=Path("out"), files=(), kept=0, skipped=(), view=city)
+    lines = [line.strip() for line in describe_city(build_totals(city), result, Settings())]
+    assert f"People whose route is blocked: {said}" in lines
+    assert "With motions of their own, which may not be of this earthquake: 1 building, in the sums above." in lines
+    assert lines[1].startswith("All buildings are made up")

@@ -182,6 +182,15 @@ def test_a_route_that_is_not_known_has_no_chance_and_its_people_no_number(tmp_pa
     for name, routes in (("both.xlsx", [known, unknown]), ("unknown.xlsx", [unknown])):
         own = rows | {"Routes": routes} | ({} if known in routes else {"Items": [item | {"route": ""}]})
         write_workbook(folder / name, Content(rows=own), spare=1)
+    simulated = Task(
+        source=find_sources(folder)[0],
+        settings=Settings(city=True, runs=20),
+        ground=None,
+        out=tmp_path / "simulated",
+    )
+    run_task(simulated)
+    east = _rows(simulated, "routes")[0]
+    assert 0 <= east["probability_low"] < east["probability_high"] <= 1
     found = {}
     for source in find_sources(folder):
         task = Task(source=source, settings=SETTINGS, ground=None, out=tmp_path / "out")
@@ -193,6 +202,8 @@ def test_a_route_that_is_not_known_has_no_chance_and_its_people_no_number(tmp_pa
     assert by_name["West"]["to_fill_in"]
     assert by_name["East"]["probability"] > 0
     assert by_name["East"]["blockers"] == "A1"
+    assert by_name["East"]["probability_low"] is None  # nothing was simulated: a range of no width would look exact
+    assert by_name["East"]["probability_high"] is None
     assert building["people_blocked"] == pytest.approx(12 * by_name["East"]["probability"])
     assert (building["occupants"], building["people_not_known"]) == (42, 30)
     building, _ = found["unknown.xlsx"]

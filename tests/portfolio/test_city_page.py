@@ -3,9 +3,12 @@
 import json
 import os
 import re
+import shlex
+from dataclasses import replace
 
 import pytest
 
+from assess.portfolio.city_content import build_content
 from assess.portfolio.city_page import render_page
 from assess.report.pages.html import hash_script
 from assess.report.report_options import ReportOptions
@@ -106,6 +109,28 @@ def test_the_list_holds_the_share_beside_the_expected_falls(html, data, view):
         assert f"{one['cells'][at]}" in one["facts"]
 
 
+def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
+    """Each is told in the list; a skipped one is told with its name and whole reason."""
+    rows = view.buildings.copy()
+    first = build_content(view).buildings[0]["path"]
+    changed = {"unconfirmed": 25, "own_motions": 2, "occupants": 100, "people_not_known": 58, "routes": 3,
+               "routes_blocked": 1, "routes_not_known": 1}  # fmt: skip
+    rows.loc[rows["path"] == first, list(changed)] = list(changed.values())
+    skipped = rows["status"] == "skipped"
+    rows.loc[skipped, "building"] = "Old town hall"
+    problems = view.problems.copy()
+    problems["message"] = "long " * 100
+    html = render_page(replace(view, buildings=rows, problems=problems)).decode()
+    cells = _read_data(html)["buildings"][0]["cells"]
+    people = rows.loc[rows["path"] == first, "people_blocked"].iloc[0]
+    for words in ("and up to 25 unconfirmed", f"{people:.1f} of 42; 58 on routes not known", "1; 1 not known"):
+        assert any(words in cell for cell in cells), words
+    assert any("floors with motions of their own" in cell for cell in cells)
+    part = html[html.index('<section id="skipped">') :]
+    assert f"Old town hall ({rows.loc[skipped, 'path'].min()})" in part
+    assert "long " * 100 + "Did you type metres?" in part
+
+
 def test_the_map_shows_the_share_first_and_every_view_has_its_legend(html, data):
     part = html[html.index('<section id="map">') : html.index('<section id="ranking">')]
     assert re.findall(r'<option value="(\w+)">', part) == ["share", "kind", "state"]
@@ -123,17 +148,32 @@ def test_the_map_shows_the_share_first_and_every_view_has_its_legend(html, data)
         assert {key: int(count) for key, count in counted} == {key: keys.count(key) for key in keys}
 
 
-def test_the_command_quotes_the_path_and_assumed_buildings_have_none(data):
-    for one in data["buildings"]:
-        if one["inventory"] == "assumed":
+def test_the_command_quotes_the_path_and_is_given_for_assessed_workbooks_alone(view):
+    inventories = view.buildings["inventory"].mask(view.buildings["path"] == view.buildings["path"].iloc[1], "handover")
+    shown = replace(view, buildings=view.buildings.assign(inventory=inventories))
+    indexed = {view.buildings["path"].iloc[0]}
+    rows = shown.buildings.set_index("path")
+    statuses = set()
+    for one in _read_data(render_page(shown, repeat=REPEAT, indexed=indexed).decode())["buildings"]:
+        row = rows.loc[one["path"]]
+        if row["status"] == "assessed" and row["inventory"] == "surveyed":
+            assert one["command"] == f"assess run {shlex.quote(one['path'])} again"
+        else:
             assert one["command"] == ""
-        elif one["path"].endswith(".xlsx"):
-            assert one["command"] == f"assess run {one['path']} again"
+        assert one["indexed"] == (one["path"] in indexed)
+        statuses.add((row["status"], row["inventory"]))
+    assert {"assumed", "handover", "surveyed"} <= {inventory for _status, inventory in statuses}
+
+
+def test_letter_case_makes_no_other_use(view):
+    uses = ["OFFICE" if at % 3 == 0 else "office" if at % 3 == 1 else " Office" for at in range(len(view.buildings))]
+    html = render_page(replace(view, buildings=view.buildings.assign(use=uses))).decode()
+    assert {one["use"] for one in _read_data(html)["buildings"]} == {"OFFICE"}
+    choices = html.split('id="filter-use"')[1].split("</select>")[0]
+    assert re.findall(r'value="([^"]*)"', choices) == ["", "OFFICE"]
 
 
 def test_a_route_that_is_not_known_and_an_anchored_piece_do_not_look_safe(view):
-    from dataclasses import replace
-
     routes = view.routes.assign(state="not known", probability=0.0)
     html = render_page(replace(view, routes=routes)).decode()
     tables = _read_data(html)["tables"]

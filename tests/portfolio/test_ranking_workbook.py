@@ -1,6 +1,7 @@
 """The ranking: its sheets hold the tables' numbers, texts are no formulas, and groups are not added up."""
 
 import io
+from dataclasses import replace
 
 import openpyxl
 import pytest
@@ -89,6 +90,23 @@ def test_skipped_buildings_say_why(book):
     assert rows[0]["How to fix it"] == "Did you type metres?"
 
 
+def test_what_is_not_known_of_a_building_stands_beside_its_numbers(view):
+    rows = view.buildings.copy()
+    paths = [one["path"] for one in build_content(view).buildings[:2]]
+    changed = {"occupants": 100, "people_not_known": 58, "routes": 1, "routes_blocked": 0, "routes_not_known": 1,
+               "unconfirmed": 25, "own_motions": 2}  # fmt: skip
+    rows.loc[rows["path"] == paths[0], list(changed)] = list(changed.values())
+    none = ["routes", "routes_blocked", "routes_not_known"]
+    rows.loc[rows["path"] == paths[1], none] = 0
+    book = openpyxl.load_workbook(io.BytesIO(render_ranking(replace(view, buildings=rows))))
+    found = {row["File"]: row for row in _rows(book["Buildings"])}
+    row = found[paths[0]]
+    assert (row["People on routes whose state is known"], row["People on routes not known"]) == (42, 58)
+    assert (row["Unconfirmed"], row["Floors with motions of their own"]) == (25, 2)
+    assert row["Routes blocked"] == "not known"
+    assert found[paths[1]]["Routes blocked"] == "–"
+
+
 def test_the_same_tables_give_the_same_bytes(view):
     assert render_ranking(view) == render_ranking(view)
 
@@ -104,8 +122,6 @@ def test_formulas_alone_have_no_ranges():
 def test_a_city_of_which_nothing_could_be_assessed_has_a_ranking_all_the_same():
     view = make_view(60, draws=5)
     gone = view.buildings[view.buildings["status"] == "skipped"]
-    from dataclasses import replace
-
     empty = replace(view, buildings=gone, pieces=view.pieces[:0], routes=view.routes[:0], draws=view.draws[:0])
     book = openpyxl.load_workbook(io.BytesIO(render_ranking(empty, options=ReportOptions(language="it"))))
     assert len(book.worksheets) == 7
