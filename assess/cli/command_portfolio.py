@@ -113,7 +113,7 @@ def command(
         bool,
         typer.Option(
             "--example",
-            help="First write a made-up city around San Francisco Bay to FOLDER, which has to be new, empty or that city.",
+            help="First write a made-up city around San Francisco Bay to FOLDER: new, empty, or that city.",
         ),
     ] = False,
 ) -> None:

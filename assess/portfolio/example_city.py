@@ -119,38 +119,49 @@ def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
     """
     folder = folder.resolve()
     folder.parent.mkdir(parents=True, exist_ok=True)
+    city = list_buildings(buildings)
+    is_filled = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+    if is_filled and set(_list_files(folder)) != {*(one.path for one in city if one.path), INDEX, GRID, COAST, README}:
+        raise _refuse(folder)
     with staging(folder.parent) as stage:
-        made = stage / NEW
-        _write_city(made, buildings)
-        if _is_filled(folder):
-            if _find_digests(folder) != _find_digests(made):
-                raise InputError(
-                    fill(
-                        "{folder} holds something else than the worked city, or not all of it. Name a folder that does "
-                        "not exist yet.",
-                        folder=plain_line(str(folder)),
-                    )
-                )
-            return False
-        with moving():
-            if folder.exists():
-                folder.rmdir()  # Windows renames to no folder that is there, not even an empty one
+        _write_city(stage / NEW, city)
+        if not is_filled:
+            _move(stage / NEW, folder)
+        elif _find_digests(folder) != _find_digests(stage / NEW):
+            raise _refuse(folder)
+    return not is_filled
+
+
+def _refuse(folder: Path) -> InputError:
+    return InputError(
+        fill(
+            "{folder} is not empty, and not the worked city as it was written; name a folder that does not exist yet.",
+            folder=plain_line(str(folder)),
+        )
+    )
+
+
+def _move(made: Path, folder: Path) -> None:
+    """Move a city to its place; an empty folder there stays, as somebody may stand in it."""
+    with moving():
+        if not folder.exists():
             made.replace(folder)
-    return True
+        else:
+            for path in sorted(made.iterdir()):
+                path.replace(folder / path.name)
 
 
-def _is_filled(folder: Path) -> bool:
-    return folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+def _list_files(folder: Path) -> list[str]:
+    """Return the names of all files in a folder, without those that the system hides."""
+    found = folder.rglob("*") if folder.is_dir() else ()
+    return [one.relative_to(folder).as_posix() for one in found if not (one.is_dir() or one.name.startswith("."))]
 
 
 def _find_digests(folder: Path) -> dict[str, str | None]:
-    """Return the SHA-256 of all files in a folder, by their names in it; without those that the system hides."""
-    found = (path for path in folder.rglob("*") if path.is_file() and not path.name.startswith("."))
-    return {path.relative_to(folder).as_posix(): find_digest(path) for path in found}
+    return {name: find_digest(folder / name) for name in _list_files(folder)}
 
 
-def _write_city(folder: Path, buildings: int) -> None:
-    city = list_buildings(buildings)
+def _write_city(folder: Path, city: list[Building]) -> None:
     for one in city:
         if one.path:
             (folder / one.path).parent.mkdir(exist_ok=True)

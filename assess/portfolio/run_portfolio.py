@@ -117,7 +117,7 @@ def run_portfolio(
         If the work was cancelled; nothing was written, but the buildings that are done are kept.
     """
     source, out = Path(source), Path(out).absolute()
-    check_formats(formats)
+    check_extras(formats, scheduler)
     _check_out(source, out, formats)
     job = Output(
         sources=find_sources(source, out),
@@ -144,6 +144,15 @@ def run_portfolio(
 
 
 # ---------------------------------------------------------------- before the work
+
+
+def check_extras(formats: Sequence[str], scheduler: str | None) -> None:
+    """Raise InputError if a format is unknown, or a package is not installed that the run needs."""
+    check_formats(formats)
+    if scheduler is not None:
+        from assess.portfolio.cluster import check_cluster
+
+        check_cluster()
 
 
 def check_formats(formats: Sequence[str]) -> None:

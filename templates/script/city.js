@@ -301,7 +301,8 @@
       if (rows.length) addPart(texts[name], makeTable(name, rows, tables[name].left[at]));
     }
     if (pieces.length) addPart(texts.pieces, makeTable("pieces", pieces, tables.pieces.left[at]));
-    if (one.command) addPart(texts.alone, [make("pre", one.command), make("p", texts.index, "small")]);
+    const typed = one.indexed ? [make("p", texts.index, "small")] : [];
+    if (one.command) addPart(texts.alone, [make("pre", one.command), ...typed]);
     for (const scrolled of page.querySelectorAll("pre")) scrolled.tabIndex = 0;
     document.title = one.name;
     return title;

@@ -9,7 +9,8 @@ import pytest
 
 import assess
 from assess import resources
-from assess.errors import WorkbookError
+from assess.errors import InputError, WorkbookError
+from assess.portfolio import example_city
 from assess.portfolio.background import read_background
 from assess.portfolio.example_city import (
     BUILDINGS,
@@ -91,6 +92,33 @@ def test_it_is_the_same_to_the_byte(folder, tmp_path):
     for name, path in again.items():
         first, second = (hashlib.sha256(one.read_bytes()).hexdigest() for one in (path, folder / name))
         assert first == second, name
+
+
+def test_a_city_that_is_there_is_used_and_one_that_was_changed_is_not(tmp_path):
+    bay = tmp_path / "bay"
+    bay.mkdir()
+    assert write_example_city(bay, 3)
+    before = {path: path.stat().st_mtime_ns for path in bay.rglob("*")}
+    (bay / ".DS_Store").write_bytes(b"of the system")
+    assert not write_example_city(bay, 3)
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    (bay / COAST).write_bytes(b"{}")
+    with pytest.raises(InputError, match="is not empty, and not the worked city as it was written; name a folder"):
+        write_example_city(bay, 3)
+    (bay / COAST).unlink()
+    with pytest.raises(InputError, match="is not empty"):
+        write_example_city(bay, 3)
+    assert [path.name for path in tmp_path.iterdir()] == ["bay"]
+
+
+def test_a_city_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
+    def fail(*_arguments, **_options):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(example_city, "_write_index", fail)
+    with pytest.raises(OSError, match="No space left"):
+        write_example_city(tmp_path / "bay", 3)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_workbook_lacks_the_shaking_alone(folder):
