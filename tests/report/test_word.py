@@ -188,7 +188,7 @@ def test_without_its_packages_it_says_what_to_install(monkeypatch, tmp_path):
     said = _words(done.stderr)
     assert f"docx needs python-docx, which is not installed. {say_install('word')}" in said
     assert not (tmp_path / "out").exists()
-    with pytest.raises(InputError, match=re.escape("assess[word]")):
+    with pytest.raises(InputError, match=re.escape("pip install '.[word]'")):
         assess.write_reports(assess.run(assess.read_inventory(path), Settings(verify="none")), tmp_path, "docx")
 
 
