@@ -226,6 +226,11 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
         typer.echo(line)
     for file in result.files:
         typer.echo(f"wrote {file}", err=True)
+    if result.alike:
+        have = f"{count(result.alike, 'workbook')} {'has' if result.alike == 1 else 'have'}"
+        typer.echo(
+            f"note  {have} the same content as another; each counts as a building: see the table problems.", err=True
+        )
     names = dict(zip(result.view.buildings["path"], result.view.buildings["building"], strict=True))
     for path, why in result.skipped[:MOST_SKIPPED]:
         print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")

@@ -44,6 +44,7 @@ MOST_HEAD = 100_000
 """Characters of the comments and the headings."""
 FARTHEST = 50_000.0
 """Scenarios whose nearest site is farther from a building than this [m] do not cover it."""
+FAR_CAUTION = "the nearest site of the scenarios is {km:.0f} km from the building"
 LARGEST_PGA = 10.0
 """Accelerations above this [g] are a slip in the unit; 5 % damped spectra may be three times it."""
 LARGEST_PGV = 1000.0
@@ -175,7 +176,7 @@ def _name_dispersion(count: int, file: str) -> Text:
 
 def _list_cautions(distance: float, dispersion: float) -> Iterator[Text]:
     if distance > FAR:
-        yield fill("the nearest site of the scenarios is {km:.0f} km from the building", km=distance / 1000)
+        yield fill(FAR_CAUTION, km=distance / 1000)
     if not dispersion:
         yield fill(
             "the scenarios do not differ at the building: the motion of the ground is taken as known, so that ranges "

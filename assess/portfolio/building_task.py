@@ -63,6 +63,8 @@ class Summary:
         Whether the part of an earlier run was there.
     part : Part, optional
         The part itself where it could not be written.
+    content : str
+        SHA-256 [hex] of its workbook; "" where there is none, or it could not be read.
     """
 
     path: str
@@ -72,12 +74,18 @@ class Summary:
     seconds: float = 0.0
     is_kept: bool = False
     part: Part | None = None
+    content: str = ""
 
 
 def run_task(task: Task) -> Summary:
     """Assess a building and write its part, unless it is there already."""
     start = time.monotonic()
     key, data = _find_key(task)
+    summary = _run(task, key, data, start)
+    return summary if data is None else replace(summary, content=hashlib.sha256(data).hexdigest())
+
+
+def _run(task: Task, key: str, data: bytes | None, start: float) -> Summary:
     known = read_part(task.out, key)
     folder = None if task.source.file is None else task.source.file.parent
     if known is not None and is_done(known, folder):

@@ -45,7 +45,7 @@ def say_blocked(routes: int | None, blocked: int | None, not_known: int | None) 
 
 def mark_own_motions(text: str, floors: int | None) -> str:
     """Return a text with the mark of a building of which floors keep motions that may not be of this earthquake."""
-    return f"{text} ({_('floors with motions of their own')})" if floors else text
+    return _("{text} (floors with motions of their own)", text=text) if floors else text
 
 
 def name_skipped(building: str | None, path: str) -> str:

@@ -121,6 +121,8 @@ class Group:
         Pieces outside the classes.
     left_out : int
         Components of handover files that may be furniture and were left out: in no number.
+    is_ground_known : bool
+        Whether the motion of the ground is taken as known: ranges are then no ranges over earthquakes.
     falls : Spread
         Number of pieces that fall, of those in the classes.
     falls_low_inventory, falls_high_inventory : float, optional
@@ -159,6 +161,7 @@ class Group:
     by_formula: int
     anchored: int
     left_out: int
+    is_ground_known: bool
     falls: Spread
     falls_low_inventory: float | None
     falls_high_inventory: float | None
@@ -225,9 +228,13 @@ def build_totals(view: CityView) -> CityTotals:
     return CityTotals(groups=tuple(groups), skipped=int((rows["status"] == "skipped").sum()))
 
 
+_ADDED = ("unconfirmed", "by_formula", "anchored", "left_out", "works", "works_without_cost", "warnings")
+"""Fields of a group that are plain sums of a column of the same name."""
+
+
 def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str) -> Group:
-    draws, routes = (_rows_of(table, rows) for table in (view.draws, view.routes))
-    not_known = _count_not_known(routes)
+    draws = _rows_of(view.draws, rows)
+    not_known = _count_not_known(_rows_of(view.routes, rows))
     by_class = {risk: _count(rows, column) for risk, column in CLASS_COLUMNS.items()}
     own, occupants = rows[_numbers(rows, "own_motions") > 0], _count(rows, "occupants")
     return Group(
@@ -236,27 +243,22 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
         buildings=len(rows),
         pieces=_count(rows, "pieces"),
         by_class=by_class,
-        unconfirmed=_count(rows, "unconfirmed"),
-        by_formula=_count(rows, "by_formula"),
-        anchored=_count(rows, "anchored"),
-        left_out=_count(rows, "left_out"),
+        is_ground_known=view.ground is not None and view.ground.is_known,
         falls=build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values())),
-        falls_low_inventory=_sum(rows, "falls_low_inventory") if inventory == "assumed" else None,
-        falls_high_inventory=_sum(rows, "falls_high_inventory") if inventory == "assumed" else None,
+        falls_low_inventory=_sum_known(rows, "falls_low_inventory"),
+        falls_high_inventory=_sum_known(rows, "falls_high_inventory"),
         falls_avoided=_sum(rows, "falls_avoided"),
         people=build_spread(draws, "people_blocked", _sum(rows, "people_blocked"), occupants - not_known),
         occupants=occupants,
         people_not_known=not_known,
         routes={state: _count(rows, column) for state, column in STATE_COLUMNS.items()},
-        works=_count(rows, "works"),
-        works_without_cost=_count(rows, "works_without_cost"),
-        cost=_sum(rows, "cost") if rows["cost"].notna().any() else None,
+        cost=_sum_known(rows, "cost"),
         unplaced=int((~_flags(rows, "is_placed")).sum()),
         own_motions=len(own),
         own_motion_falls=_sum(own, "expected_falls"),
-        warnings=_count(rows, "warnings"),
         first_buildings=tuple(_list_buildings(rows)),
         first_types=tuple(_list_types(_rows_of(view.pieces, rows), basis)),
+        **{name: _count(rows, name) for name in _ADDED},
     )
 
 
@@ -281,6 +283,11 @@ def _flags(rows: pd.DataFrame, column: str) -> "pd.Series[bool]":
 
 def _sum(rows: pd.DataFrame, column: str) -> float:
     return float(_numbers(rows, column).sum())
+
+
+def _sum_known(rows: pd.DataFrame, column: str) -> float | None:
+    """Return the sum of what is known; None where nothing is."""
+    return _sum(rows, column) if rows[column].notna().any() else None
 
 
 def _count(rows: pd.DataFrame, column: str) -> int:

@@ -119,8 +119,7 @@ def _say_falls(group: Group) -> Iterator[str]:
     }  # fmt: skip
     yield _("Expected to overturn: {expected} of {counted} free-standing pieces in {buildings}.", **texts)
     if spread.draws:
-        yield _("In nine of ten earthquakes like this one between {low} and {high} of them overturn.",
-                low=say_whole(spread.low), high=say_whole(spread.high))  # fmt: skip
+        yield _say_share_of_draws(group, spread)
     else:
         yield _("No range is known, as nothing was simulated.")
     if spread.draws and spread.apart > 0:
@@ -137,6 +136,15 @@ def _say_falls(group: Group) -> Iterator[str]:
                        "no number.",
                        "{n:,} components of the handover files were left out, as their sizes or places are missing, "
                        "and are in no number.", group.left_out)  # fmt: skip
+
+
+def _say_share_of_draws(group: Group, spread: Spread) -> str:
+    """Return the range of a sum; that of a ground motion that is taken as known is none over earthquakes."""
+    ends = {"low": say_whole(spread.low), "high": say_whole(spread.high)}
+    if group.is_ground_known:
+        return _("In nine of ten draws, with the motion of the ground taken as known: between {low} and {high}.",
+                 **ends)  # fmt: skip
+    return _("In nine of ten earthquakes like this one between {low} and {high}.", **ends)
 
 
 def _say_people(group: Group) -> Iterator[str]:
@@ -159,8 +167,7 @@ def _say_blocked_people(group: Group) -> Iterator[str]:
     yield _("Expected on blocked evacuation routes: {expected} of {occupants} people.",
             expected=say_number(people.expected), occupants=say_whole(group.people_known))  # fmt: skip
     if people.draws:
-        yield _("In nine of ten earthquakes like this one between {low} and {high}.",
-                low=say_whole(people.low), high=say_whole(people.high))  # fmt: skip
+        yield _say_share_of_draws(group, people)
     if people.draws and people.apart > 0:
         yield _("Of the people expected on blocked routes, {apart} are in no range: their routes have no joint draws.",
                 apart=say_number(people.apart))  # fmt: skip

@@ -5,13 +5,14 @@ from collections.abc import Iterator
 from assess.hazard import FAR
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.motion.ground_scenarios import FAR_CAUTION
 from assess.portfolio.city_totals import CityView
 
 
 def list_ground_cautions(view: CityView) -> Iterator[str]:
     """Yield what holds for the ground motion of all buildings, and how many are far from the sites of its scenarios."""
-    known = view.ground.cautions if view.ground else ()
-    for text in (_(caution) for caution in known):
+    common = view.ground.cautions if view.ground else ()
+    for text in (_(caution) for caution in common if caution.template != FAR_CAUTION):  # counted below
         yield f"{text[:1].upper()}{text[1:]}."
     distances = view.buildings["ground_distance_km"].dropna().astype("float64")
     far = distances[distances > FAR / 1000]

@@ -3,17 +3,18 @@
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from assess.delivery.deliver import deliver, explain_fault, stage_for
 from assess.delivery.disk import find_digest, write_through
 from assess.delivery.stages import NEW
-from assess.errors import InputError, OutputError, PdfUnavailableError
+from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
 from assess.plain_text import plain_line
+from assess.portfolio.building_rows import list_problems, to_row
 from assess.portfolio.building_task import Summary
 from assess.portfolio.part_files import FOLDER, Part, read_part
 from assess.portfolio.sources import Source
@@ -109,8 +110,35 @@ def write_output(job: Output, summaries: Mapping[str, Summary]) -> "tuple[tuple[
 def _write_tables(job: Output, summaries: Mapping[str, Summary], folder: Path) -> "dict[str, TableWriter]":
     from assess.portfolio.city_tables import write_tables
 
-    parts = (_find_part(job.out, summaries[one.path]) for one in job.progress.checked(job.sources))
+    alike = find_alike(job.sources, summaries)
+    parts = (
+        _note_alike(_find_part(job.out, summaries[one.path]), alike.get(one.path))
+        for one in job.progress.checked(job.sources)
+    )
     return write_tables(parts, folder if "parquet" in job.formats else None)
+
+
+def find_alike(sources: Sequence[Source], summaries: Mapping[str, Summary]) -> dict[str, str]:
+    """Return the buildings whose workbook has the same bytes as that of an earlier one, with the path of the first."""
+    first: dict[str, str] = {}
+    found = {}
+    for path, summary in ((one.path, summaries[one.path]) for one in sources):
+        if summary.content and summary.status == "assessed":
+            same = first.setdefault(summary.content, path)
+            if same != path:
+                found[path] = same
+    return found
+
+
+def _note_alike(part: Part, first: str | None) -> Part:
+    """Return a part with a note where its workbook is a copy; what is kept on the disk has none."""
+    if first is None:
+        return part
+    fault = fill("its workbook has the same content as {path}: it counts as a building of its own.",
+                 path=plain_line(first))  # fmt: skip
+    fix = fill("Remove one of them if they are the same building.")
+    notes = [to_row("problems", one) for one in list_problems(part.path, [Problem("note", "", "", fault, fix)])]
+    return replace(part, tables={**part.tables, "problems": [*part.rows("problems"), *notes]})
 
 
 def _find_part(out: Path, summary: Summary) -> Part:

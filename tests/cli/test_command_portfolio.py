@@ -41,6 +41,10 @@ def test_a_folder_is_assessed_and_told_in_words(tmp_path):
     assert f"10 pieces; {expected:.1f} expected to fall." in result.stdout
     assert "Not counted above: 2 anchored." in result.stdout
     assert "not per year" in result.stdout
+    assert "note  1 workbook has the same content as another; each counts as a building" in result.stderr
+    notes = read_table(tmp_path / "out", "problems").query("message.str.contains('same content')")
+    assert notes["path"].tolist() == ["b01.xlsx"]
+    assert "same content as b00.xlsx: it counts as a building of its own" in notes["message"].iloc[0]
     assert f"wrote {tmp_path / 'out' / 'pieces.parquet'}" in result.stderr
 
 

@@ -53,6 +53,9 @@ def test_draws_of_a_ground_motion_that_is_taken_as_known_are_worded_so():
     texts = list_method(city, build_totals(city))
     assert any("The motion of the ground is taken as known." in text for text in texts)
     assert not any("takes one of the computed scenarios" in text for text in texts)
+    answer = list_group_lines(build_totals(city).groups[0])[0]
+    assert "In nine of ten draws, with the motion of the ground taken as known: between 0 and 3." in answer
+    assert "earthquakes like this one" not in answer
 
 
 def test_one_scenario_is_warned_of_and_far_and_farther_buildings_are_told(tmp_path):
@@ -67,6 +70,9 @@ def test_one_scenario_is_warned_of_and_far_and_farther_buildings_are_told(tmp_pa
     problems = city.problems[city.problems["path"] == "b00.xlsx"]
     assert problems[problems["message"].str.contains("taken as known")]["severity"].tolist() == ["warning"]
     refused = city.problems[city.problems["path"] == "b02.xlsx"]
+    (tmp_path / "near").mkdir()
+    alone = _run(tmp_path / "near", (38.1,), read_scenarios(tmp_path))
+    assert [text for text in list_ground_cautions(alone) if " km" in text] == [far], "said once"
     assert refused["message"].str.contains("expected at most 50 km").any()
 
 
