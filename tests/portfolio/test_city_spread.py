@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from assess.motion.spatial_field import EARTH, correlate
+from assess.motion.spatial_field import EARTH, SHARED, correlate
 from assess.portfolio.city_spread import build_spread, find_sampling
-from assess.rocking.draws import SHARED, Earthquakes
+from assess.rocking.draws import Earthquakes
 from tests.portfolio.city_samples import frame
 
 DRAWS = 2048

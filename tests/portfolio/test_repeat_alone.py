@@ -81,7 +81,9 @@ def test_the_line_on_the_page_works_as_it_stands_where_the_command_was_given(tmp
     done = CliRunner().invoke(app, ["portfolio", "my city", "--jobs", "1", *asked])
     assert done.exit_code == 1, done.output
     page = Path("out/city.html").read_text(encoding="utf-8")
-    data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.DOTALL)[1])
+    found = re.search(r'id="data">(.*?)</script>', page, re.DOTALL)
+    assert found is not None
+    data = json.loads(found[1])
     lines = {one["path"]: html.unescape(one["command"]) for one in data["buildings"]}
     assert lines["old.xls"] == ""
     assert not any(one["indexed"] for one in data["buildings"])

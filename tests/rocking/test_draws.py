@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest, truncnorm
 
-from assess.motion.spatial_field import correlate
+from assess.motion.spatial_field import SHARED, correlate
 from assess.risk import wilson_interval
 from assess.rocking import block
 from assess.rocking.draws import (
@@ -17,7 +17,6 @@ from assess.rocking.draws import (
     CUT,
     HEIGHT,
     RESTITUTION,
-    SHARED,
     Earthquakes,
     Uncertainty,
     draw_bodies,
