@@ -249,7 +249,7 @@ def describe_city(totals: "CityTotals", result: "PortfolioResult", settings: Set
     earlier = f" ({result.kept:,} of them by an earlier run)" if result.kept else ""
     yield f"{count(totals.assessed, 'building')} assessed{earlier}, {totals.skipped:,} skipped."
     if is_made_up(result.view):
-        yield "All buildings are made up: their furniture, routes, people and costs are random numbers."
+        yield "All buildings are made up: their places, furniture, routes, people and costs are random numbers."
     yield from list_ground_cautions(result.view)
     for group in totals.groups:
         yield from _describe_group(group)
