@@ -226,11 +226,6 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
         typer.echo(line)
     for file in result.files:
         typer.echo(f"wrote {file}", err=True)
-    if result.alike:
-        have = f"{count(result.alike, 'workbook')} {'has' if result.alike == 1 else 'have'}"
-        typer.echo(
-            f"note  {have} the same content as another; each counts as a building: see the table problems.", err=True
-        )
     names = dict(zip(result.view.buildings["path"], result.view.buildings["building"], strict=True))
     for path, why in result.skipped[:MOST_SKIPPED]:
         print_error(f"{plain_line(name_skipped(names.get(path), path))}: skipped. {plain_line(why)}")
@@ -244,19 +239,23 @@ def _tell(result: "PortfolioResult", settings: Settings) -> None:
 def describe_city(totals: "CityTotals", result: "PortfolioResult", settings: Settings) -> Iterator[str]:
     """Yield what was assessed, what is expected to fall, apart by inventory and basis, and what was skipped."""
     from assess.portfolio.city_totals import is_made_up
+    from assess.portfolio.city_words import list_copies, list_setting_cautions, say_ground
     from assess.portfolio.ground_words import list_ground_cautions
 
     earlier = f" ({result.kept:,} of them by an earlier run)" if result.kept else ""
     yield f"{count(totals.assessed, 'building')} assessed{earlier}, {totals.skipped:,} skipped."
     if is_made_up(result.view):
         yield "All buildings are made up: their places, furniture, routes, people and costs are random numbers."
+    yield say_ground(result.view)
     yield from list_ground_cautions(result.view)
+    yield from list_setting_cautions(result.view)
+    yield from list_copies(result.view)
     for group in totals.groups:
         yield from _describe_group(group)
     if totals.groups:
         yield "Falls and people are expected numbers in this scenario, not per year."
     if settings.verify == "none" and totals.groups:
-        yield "Not simulated: no ranges over the city are known."
+        yield "Not simulated: the formula takes the median of the ground motion, and no ranges over the city are known."
 
 
 _BASES = {"simulated": "simulated", "formula": "by formula"}

@@ -15,13 +15,14 @@ from assess.pipeline.demand import find_ground
 from assess.pipeline.draw_sums import SIMULATED, DrawSums, count_people
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.table_schemas import TABLES
-from assess.report.counts import count
+from assess.report.counts import count, count_cannot_rock
+from assess.report.findings.assumed_intensity import uses_scatter
 from assess.report.findings.route_words import say_missing
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass
 from assess.route_results import RouteRow, RouteState, RouteTables
 from assess.units import to_edge
-from assess.workbook.schema import BUILDING
+from assess.workbook.schema import BUILDING, USES
 
 if TYPE_CHECKING:
     from assess.schedule_results import ScheduleRow, WorkRow
@@ -84,6 +85,7 @@ def build_skipped(
         "status": "skipped",
         "inventory": inventory,
         **known,
+        "use": None if index is None else spell_use(index.use),
         "warnings": sum(one.severity == "warning" for one in problems),
     }
     rows = [to_row("problems", one) for one in list_problems(path, problems)]
@@ -91,6 +93,14 @@ def build_skipped(
 
 
 _OF_INDEX = ("building", "latitude", "longitude", "use", "storeys", "height_m", "floor_area_m2")
+
+
+def spell_use(text: str) -> str:
+    """Return a use as the drop-down of the workbook offers it, where it is one of those but for letter case."""
+    return _USES.get(text.strip().casefold(), text)
+
+
+_USES = {use.casefold(): use for use in USES}
 
 
 def to_row(name: str, record: Mapping[str, Any]) -> list[Any]:
@@ -127,7 +137,7 @@ def _build_building(origin: Origin, inventory: Inventory, results: Results, sums
         **_describe_site(origin, inventory),
         "own_motions": len(own),
         "largest_pfa_g": max((one.pfa_g for one in results.motions), default=None),
-        "motion_uncertainty": results.provenance.uncertainty.motion,
+        "motion_uncertainty": results.provenance.uncertainty.motion if uses_scatter(results) else None,
         "is_placed": is_placed,
         **_count_pieces(origin, results),
         "left_out": origin.left_out,
@@ -147,7 +157,7 @@ def _describe_site(origin: Origin, inventory: Inventory) -> Record:
         "building": building.building,
         "latitude": building.latitude,
         "longitude": building.longitude,
-        "use": building.use,
+        "use": spell_use(building.use),
         "storeys": building.storeys,
         "height_m": building.height,
         "floor_area_m2": None if origin.index is None else origin.index.floor_area_m2,
@@ -178,7 +188,7 @@ def _find_shaking(inventory: Inventory) -> tuple[str, float | None, float | None
 
 def _count_pieces(origin: Origin, results: Results) -> Record:
     rows = tuple(results)
-    counts = count("", rows)
+    counts, cannot = count("", rows), count_cannot_rock(rows, results.methods)
     main = [one for one in rows if not one.is_anchored and not one.apart]
 
     def expect(quantities: Mapping[str, int] | None) -> float | None:
@@ -192,6 +202,7 @@ def _count_pieces(origin: Origin, results: Results) -> Record:
         **{risk.word.replace(" ", "_"): counts.by_class[risk] for risk in RiskClass},
         "unconfirmed": counts.unconfirmed,
         "by_formula": counts.by_formula,
+        "cannot_rock": cannot.still + cannot.stocky,
         "anchored": counts.anchored,
         "expected_falls": counts.expected,
         "falls_low_inventory": expect(origin.low),

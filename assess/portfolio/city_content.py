@@ -1,5 +1,6 @@
 """What the outputs of a city share: its sums, its buildings in the order of their ranking, their places on the map."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -58,6 +59,15 @@ class CityContent:
         """Problems likewise."""
         return _group(list_records(self.view.problems))
 
+    def name_building(self, building: str | None, path: str) -> str:
+        """Return the name of a building, its path where it has none, and both where others have the same name."""
+        name = str(building or path)
+        return name if self._names[name] < 2 or name == path else f"{name} ({path})"
+
+    @cached_property
+    def _names(self) -> Mapping[str, int]:
+        return Counter(str(row["building"] or row["path"]) for row in self.buildings)
+
     def spell_use(self, row: Row) -> str:
         """Return the use of a building as the first building with it spells it: letter case makes no other use."""
         use = str(row["use"] or "").strip()
@@ -74,11 +84,13 @@ class CityContent:
     @cached_property
     def points(self) -> list[MapPoint]:
         """The buildings that have a place, with their signs by the share that is expected to fall."""
-        return [
-            MapPoint(at, name_building(row), row["latitude"], row["longitude"], sign_of_share(row), _find_size(row))
+        placed = [
+            (at, row)
             for at, row in enumerate(self.buildings)
             if row["latitude"] is not None and row["longitude"] is not None
         ]
+        return [MapPoint(at, self.name_building(row["building"], row["path"]), row["latitude"], row["longitude"],
+                         sign_of_share(row), _find_size(row)) for at, row in placed]  # fmt: skip
 
     @cached_property
     def share_legend(self) -> list[tuple[Sign, int]]:
@@ -105,11 +117,6 @@ def build_content(view: CityView, totals: CityTotals | None = None) -> CityConte
         If the table draws is not whole.
     """
     return CityContent(view, totals or build_totals(view))
-
-
-def name_building(row: Row) -> str:
-    """Return the name of a building, its path where it has none."""
-    return str(row["building"] or row["path"])
 
 
 def _rank(row: Row) -> tuple[Any, ...]:

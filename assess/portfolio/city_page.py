@@ -6,12 +6,13 @@ from typing import Any
 from assess.i18n import LANGUAGES
 from assess.i18n import gettext as _
 from assess.portfolio import building_words as say_row
+from assess.portfolio import city_method as made
 from assess.portfolio import city_words as say
 from assess.portfolio.background import Background
 from assess.portfolio.building_signs import Sign, say_sign, share_of
 from assess.portfolio.city_content import CityContent, build_content
 from assess.portfolio.city_map import Isoline, draw_map, draw_sign
-from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView
+from assess.portfolio.city_totals import BUILDING_RULE, TYPE_RULE, CityView, Group
 from assess.portfolio.page_data import STOREYS, list_heads, write_data
 from assess.progress import SILENT, Progress
 from assess.report import words
@@ -88,11 +89,12 @@ def build_context(
         "ground": say.say_ground(view),
         "facts": say.list_facts(view),
         "cautions": say.list_cautions(view, totals),
-        "groups": [_show_group(group) for group in totals.groups],
+        "groups": [_show_group(group, content) for group in totals.groups],
         "total_heads": say.list_total_heads(),
         "total_rows": say.list_total_rows(totals),
-        "method": say.list_method(view, totals),
-        "references": say.list_references(totals),
+        "basis": made.list_basis(view),
+        "method": made.list_method(view, totals),
+        "references": made.list_references(view, totals),
         "map": draw_map(content.points, background, title=_say_map(content), isolines=isolines, is_live=is_live),
         "background": background.file if background else "",
         "has_isolines": bool(isolines),
@@ -110,11 +112,12 @@ def _say_map(content: CityContent) -> str:
     return _("Map of {placed:,} buildings; the table of the buildings holds the same", placed=len(content.points))
 
 
-def _show_group(group: Any) -> dict[str, Any]:
+def _show_group(group: Group, content: CityContent) -> dict[str, Any]:
     return {
         "name": say.name_group(group),
         "is_assumed": group.inventory == "assumed",
         "lines": say.list_group_lines(group),
+        "nothing": say.say_nothing(group),
         "tiles": [
             (words.class_name(risk), words.risk_label(risk), say.say_whole(count))
             for risk, count in group.by_class.items()
@@ -122,7 +125,7 @@ def _show_group(group: Any) -> dict[str, Any]:
         "apart": say.say_whole(group.unconfirmed + group.by_formula) if group.unconfirmed + group.by_formula else "",
         "anchored": say.say_whole(group.anchored),
         "buildings": [
-            (say_row.mark_own_motions(words.cut(one.building or one.path, 80), one.own_motions),
+            (say_row.mark_own_motions(words.cut(content.name_building(one.building, one.path), 80), one.own_motions),
              words.percent(share_of(one.expected_falls, one.in_classes)),
              say_row.say_falls(one.expected_falls, one.unconfirmed, one.by_formula, one.left_out),
              say_row.say_people(one.people_blocked, one.occupants, one.people_not_known),

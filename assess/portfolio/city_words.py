@@ -5,25 +5,12 @@ from typing import Any
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
-from assess.motion.spatial_field import RANGE, SHARED
 from assess.portfolio.city_spread import Spread
-from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group, is_made_up
+from assess.portfolio.city_totals import CityTotals, CityView, Group, is_made_up
 from assess.portfolio.ground_words import list_ground_cautions
 from assess.report import words
-from assess.risk import LIMITS, RiskClass
-
-REFERENCES = (
-    "Jayaram N, Baker JW (2009). Correlation model for spatially distributed ground-motion intensities. Earthquake "
-    "Engineering and Structural Dynamics 38(15):1687-1708. doi:10.1002/eqe.922",
-    "Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014). NGA-West2 equations for predicting PGA, PGV, and 5% damped "
-    "PSA for shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M",
-)
-"""Sources of the draws of an earthquake that differ from place to place; named where anything was drawn."""
-P58 = (
-    "FEMA (2018). Seismic performance assessment of buildings, FEMA P-58, second edition, volume 1: normative "
-    "quantities of components by occupancy. Federal Emergency Management Agency"
-)
-"""Source of assumed inventories."""
+from assess.risk import RiskClass
+from assess.route_results import RouteState
 
 
 def say_number(value: float | None) -> str:
@@ -79,8 +66,10 @@ def name_group(group: Group) -> str:
 
 
 def say_title(view: CityView) -> str:
-    """Return the title: how many buildings, and whether they are made up."""
-    n = len(view.buildings)
+    """Return the title: how many buildings were assessed, and whether they are made up."""
+    n, listed = int((view.buildings["status"] == "assessed").sum()), len(view.buildings)
+    if n < listed:
+        return _("Furniture in an earthquake: {n:,} of {listed:,} buildings", n=n, listed=listed)
     if is_made_up(view):
         return ngettext("Furniture in an earthquake: {n:,} made-up building",
                         "Furniture in an earthquake: {n:,} made-up buildings", n)  # fmt: skip
@@ -90,8 +79,8 @@ def say_title(view: CityView) -> str:
 def say_ground(view: CityView) -> str:
     """Return in one sentence what earthquake it is."""
     if view.ground is None:
-        return _("Every building has the ground motion of its own workbook or row of the index: the buildings are not "
-                 "under one earthquake.")  # fmt: skip
+        return _("Every building has the ground motion of its own workbook or index row: they are not under one "
+                 "earthquake.")  # fmt: skip
     if view.ground.kind == "shakemap":
         return _("Ground motion: the ShakeMap {file}.", file=view.ground.file)
     return _("Ground motion: the scenarios of {file}.", file=view.ground.file)
@@ -107,7 +96,7 @@ def list_facts(view: CityView) -> list[tuple[str, str]]:
 
 def list_group_lines(group: Group) -> list[str]:
     """Return the answer of one group, a paragraph each: falls, people, what fixing helps with its cost, assumptions."""
-    parts = (_say_falls(group), _say_people(group), _say_works(group), _say_assumed(group))
+    parts = (_say_falls(group), _say_cannot_rock(group), _say_people(group), _say_works(group), _say_assumed(group))
     return [text for text in (" ".join(part) for part in parts) if text]
 
 
@@ -121,7 +110,8 @@ def _say_falls(group: Group) -> Iterator[str]:
     if spread.draws:
         yield _say_share_of_draws(group, spread)
     else:
-        yield _("No range is known, as nothing was simulated.")
+        yield _("No range is known, as nothing was simulated: the formula takes the median of the ground motion and "
+                "leaves its uncertainty out.")  # fmt: skip
     if spread.draws and spread.apart > 0:
         yield _("Expected falls that are in no range, as they were not simulated: {apart}.",
                 apart=say_number(spread.apart))  # fmt: skip
@@ -138,12 +128,26 @@ def _say_falls(group: Group) -> Iterator[str]:
                        "and are in no number.", group.left_out)  # fmt: skip
 
 
+def _say_cannot_rock(group: Group) -> Iterator[str]:
+    if group.cannot_rock:
+        yield ngettext("{n:,} of the pieces of class high or very high cannot start to rock under its motion: the "
+                       "formula is known to overestimate such a piece.",
+                       "{n:,} of the pieces of class high or very high cannot start to rock under their motions: the "
+                       "formula is known to overestimate such pieces.", group.cannot_rock)  # fmt: skip
+
+
 def _say_share_of_draws(group: Group, spread: Spread) -> str:
-    """Return the range of a sum; that of a ground motion that is taken as known is none over earthquakes."""
+    """Return the range of a sum, and what it is over."""
     ends = {"low": say_whole(spread.low), "high": say_whole(spread.high)}
-    if group.is_ground_known:
+    if group.range_over == "known ground":
         return _("In nine of ten draws, with the motion of the ground taken as known: between {low} and {high}.",
                  **ends)  # fmt: skip
+    if group.range_over == "own grounds":
+        return _("In nine of ten draws, as if the ground motions of all workbooks were of one earthquake: between "
+                 "{low} and {high}.", **ends)  # fmt: skip
+    if group.range_over == "motions":
+        return _("In nine of ten motions like the given ones, without the uncertainty of the earthquake: between "
+                 "{low} and {high}.", **ends)  # fmt: skip
     return _("In nine of ten earthquakes like this one between {low} and {high}.", **ends)
 
 
@@ -195,6 +199,21 @@ def _say_assumed(group: Group) -> Iterator[str]:
                 low=say_number(group.falls_low_inventory), high=say_number(group.falls_high_inventory))  # fmt: skip
 
 
+def say_nothing(group: Group) -> str:
+    """Return what is said of a group none of whose pieces and routes is expected to fail."""
+    parts = [_("No fall and no blocked route is expected.")]
+    spread = group.falls
+    if spread.draws:
+        parts = [ngettext("No fall was seen in {n:,} draw.", "No fall was seen in {n:,} draws.", spread.draws)]
+        if spread.sampling_high:
+            parts.append(_("An expected number of up to {high} falls would agree with that (sampling interval).",
+                           high=say_number(spread.sampling_high)))  # fmt: skip
+    n = group.routes[RouteState.NOT_KNOWN]
+    if n:
+        parts.append(ngettext("The state of {n:,} route is not known.", "The state of {n:,} routes is not known.", n))
+    return " ".join(parts)
+
+
 # ---------------------------------------------------------------- what is not in it
 
 
@@ -214,10 +233,27 @@ def _of_buildings(view: CityView, totals: CityTotals) -> Iterator[str]:
     if len(totals.groups) > 1:
         yield _("Surveyed, handed-over and assumed inventories, and simulated and formula results, are not added up: "
                 "their uncertainties differ.")  # fmt: skip
+    yield from list_setting_cautions(view)
+    yield from list_copies(view)
+
+
+def list_setting_cautions(view: CityView) -> Iterator[str]:
+    """Yield what the settings of the run change in every number."""
     if view.settings.scale != 1:
         yield _("The motion of every floor is multiplied by {scale:g}.", scale=view.settings.scale)
+    if view.settings.scenario:
+        yield _("The motion of every floor follows {scenario}, as the settings ask.", scenario=view.settings.scenario)
     if view.settings.ideal:
         yield _("The uncertainty of the earthquake and of the pieces is left out, as the settings ask.")
+
+
+def list_copies(view: CityView) -> Iterator[str]:
+    """Yield how many workbooks have the same content as another one: their pieces and people are counted again."""
+    copies = int(view.buildings["same_as"].notna().sum())
+    if copies:
+        yield ngettext("{n:,} workbook has the same content as another; it is counted as a building of its own.",
+                       "{n:,} workbooks have the same content as others; each is counted as a building of its own.",
+                       copies)  # fmt: skip
 
 
 def _of_groups(totals: CityTotals) -> Iterator[str]:
@@ -234,77 +270,6 @@ def _of_groups(totals: CityTotals) -> Iterator[str]:
                        "fully correlated with each other, which widens the ranges.", unplaced)  # fmt: skip
 
 
-def list_method(view: CityView, totals: CityTotals) -> list[str]:
-    """Return how the numbers were made, in short paragraphs."""
-    return list(_list_method(view, totals))
-
-
-def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
-    yield _("Every percentage and every expected number is for this scenario, not per year. Classes by the chance of "
-            "overturning: low below {low}, medium below {medium}, high below {high}, very high above.",
-            low=_share(LIMITS[0]), medium=_share(LIMITS[1]), high=_share(LIMITS[2]))  # fmt: skip
-    group = next((group for group in totals.groups if group.falls.draws), None)
-    if group is not None:
-        drawn = group.falls
-        yield _say_draws(view, drawn)
-        yield from _say_alone(group)
-        yield _("The expected number itself is known within the sampling interval, by the number of draws alone "
-                "(95 %): {interval}.", interval=say_interval(drawn))  # fmt: skip
-    if any(group.occupants for group in totals.groups):
-        yield _(PEOPLE_RULE)
-    if any(group.basis == "formula" for group in totals.groups):
-        yield _("Results by formula only are chances from a published formula; nothing was simulated, so that no range "
-                "is given.")  # fmt: skip
-    if any(group.inventory == "assumed" for group in totals.groups):
-        yield _("Assumed inventories: pieces by use and floor area from the normative quantities of FEMA P-58; low, "
-                "median and high are its 10, 50 and 90 % quantities. No piece of them has been seen.")  # fmt: skip
-
-
-def _say_alone(group: Group) -> Iterator[str]:
-    """Yield the range if buildings were independent, where it differs from the range of the city."""
-    drawn = group.falls
-    alone, together = say_range(drawn.independent_low, drawn.independent_high), say_range(drawn.low, drawn.high)
-    if group.buildings > 1 and alone != together:
-        yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}: "
-                "that is not so, and the difference shows why ranges of buildings must not be added up.",
-                alone=alone, together=together)  # fmt: skip
-
-
-def _say_draws(view: CityView, drawn: Spread) -> str:
-    """Return what the draws of a city have in common."""
-    ends = _("The range from 5 to 95 % of the draws is that of the sum over buildings, draw by draw.")
-    if view.settings.ideal:
-        start = _("Each of the {draws:,} draws is one motion of each floor, without the uncertainty of the earthquake.",
-                  draws=drawn.draws)  # fmt: skip
-    elif view.ground is not None and view.ground.is_known:
-        start = _("The motion of the ground is taken as known. Each of the {draws:,} draws varies the buildings' own "
-                  "motions alone: {shared} of their variance is common to all of them (Boore et al. 2014), the rest is "
-                  "correlated by exp(-3 h / {range:g} km) at the distance h (Jayaram and Baker 2009).",
-                  draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
-    elif view.ground is not None and view.ground.kind == "scenarios":
-        start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings. The "
-                  "uncertainty of the buildings' own motions is drawn besides: {shared} of its variance is common to "
-                  "all of them (Boore et al. 2014), the rest is correlated by exp(-3 h / {range:g} km) at the distance "
-                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
-    else:
-        start = _("Each of the {draws:,} draws is one earthquake for all buildings. Of the variance of ln PGA, "
-                  "{shared} is common to all of them (Boore et al. 2014) unless the ShakeMap gives that share itself; "
-                  "the rest differs from place to place, with the correlation exp(-3 h / {range:g} km) at the distance "
-                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
-    return f"{start} {ends}"
-
-
-def _share(value: float) -> str:
-    return f"{number(100 * value, '.0f')} %"
-
-
-def list_references(totals: CityTotals) -> list[str]:
-    """Return the publications that the numbers rest on."""
-    drawn = any(group.falls.draws for group in totals.groups)
-    assumed = any(group.inventory == "assumed" for group in totals.groups)
-    return [*(REFERENCES if drawn else ()), *((P58,) if assumed else ())]
-
-
 # ---------------------------------------------------------------- tables
 
 
@@ -312,8 +277,8 @@ def list_total_heads() -> list[str]:
     """Return the headings of the table of groups."""
     classes = [words.risk_label(risk) for risk in RiskClass]
     return [_("Buildings by inventory and basis"), _("Buildings"), _("Pieces"), *classes, _("apart"), _("anchored"),
-            _("Expected falls"), _("5 to 95 % of earthquakes"), _("People on blocked routes"),
-            _("of people on routes that are known"), _("5 to 95 % of earthquakes"),
+            _("Expected falls"), _("5 to 95 % of draws"), _("People on blocked routes"),
+            _("of people on routes that are known"), _("5 to 95 % of draws"),
             _("People on routes not known")]  # fmt: skip
 
 

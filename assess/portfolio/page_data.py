@@ -12,7 +12,7 @@ from typing import Any
 from assess.i18n import gettext as _
 from assess.portfolio import building_words as say
 from assess.portfolio.building_signs import Row, find_share, sign_of_class, sign_of_routes, sign_of_share
-from assess.portfolio.city_content import CityContent, name_building
+from assess.portfolio.city_content import CityContent
 from assess.portfolio.city_words import name_basis, name_inventory, say_number, say_place, say_range, say_whole
 from assess.portfolio.piece_words import (
     find_state,
@@ -84,7 +84,7 @@ def write_data(content: CityContent, repeat: str, indexed: Collection[str] = ())
 def _pack_building(row: Row, content: CityContent, repeat: str) -> dict[str, Any]:
     is_assessed = row["status"] == "assessed"
     return {
-        "name": words.cut(name_building(row), LONGEST),
+        "name": words.cut(content.name_building(row["building"], row["path"]), LONGEST),
         "path": words.cut(row["path"], LONGEST),
         "share": sign_of_share(row).key,
         "kind": sign_of_class(row).key,

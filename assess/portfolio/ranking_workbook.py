@@ -11,6 +11,7 @@ from typing import Any
 from assess.environment import find_source_date
 from assess.i18n import fill
 from assess.i18n import gettext as _
+from assess.portfolio import city_method as made
 from assess.portfolio import city_words as say
 from assess.portfolio.building_signs import Row, find_share, say_sign, sign_of_class
 from assess.portfolio.building_words import say_blocked
@@ -250,8 +251,9 @@ def _write_notes(pen: Pen, page: Any, content: CityContent) -> None:
         "second ones; {most:,} rows at most, all are in the table pieces.", most=MOST_PIECES,
     )  # fmt: skip
     texts = [
-        _(BUILDING_RULE), _(TYPE_RULE), rule, *say.list_method(content.view, content.totals),
-        *say.list_references(content.totals), words.marks(),
+        _(BUILDING_RULE), _(TYPE_RULE), rule, *(f"{label}: {value}" for label, value in made.list_basis(content.view)),
+        *made.list_method(content.view, content.totals), *made.list_references(content.view, content.totals),
+        words.marks(),
     ]  # fmt: skip
     pen.listing(page, [Column(_("Note"), 140, lambda text: text)], texts)
 

@@ -20,7 +20,7 @@ from assess.motion.site_ground import GroundField
 from assess.plain_text import plain_line
 from assess.portfolio.building_task import Summary, Task
 from assess.portfolio.part_files import ENDING, FOLDER, sweep_parts
-from assess.portfolio.portfolio_output import DATA, FORMATS, Output, find_alike, list_names, list_skipped, write_output
+from assess.portfolio.portfolio_output import DATA, FORMATS, Output, list_names, list_skipped, write_output
 from assess.portfolio.sources import find_sources
 from assess.progress import Listener, Progress, Report
 from assess.report import check_folder
@@ -52,8 +52,6 @@ class PortfolioResult:
         Buildings that could not be assessed, with the reason.
     view : CityView
         The tables, and what the run rests on.
-    alike : int
-        Buildings whose workbook has the same bytes as that of another before it.
     """
 
     folder: Path
@@ -61,7 +59,6 @@ class PortfolioResult:
     kept: int
     skipped: tuple[tuple[str, str], ...]
     view: "CityView"
-    alike: int = 0
 
 
 def run_portfolio(
@@ -143,7 +140,6 @@ def run_portfolio(
         kept=sum(one.is_kept for one in summaries.values()),
         skipped=tuple(list_skipped(view)),
         view=view,
-        alike=len(find_alike(job.sources, summaries)),
     )
 
 

@@ -36,12 +36,14 @@ def _call(*words, formats="parquet"):
 def test_a_folder_is_assessed_and_told_in_words(tmp_path):
     result = _call(_write(tmp_path), "--out", tmp_path / "out")
     assert result.exit_code == 0
-    assert result.stdout.startswith("2 buildings assessed, 0 skipped.\nsurveyed, by formula: 2 buildings, 10 pieces; ")
+    assert result.stdout.startswith("2 buildings assessed, 0 skipped.\nEvery building has the ground motion of its own")
+    assert "surveyed, by formula: 2 buildings, 10 pieces; " in result.stdout
     expected = read_table(tmp_path / "out", "buildings")["expected_falls"].sum()
     assert f"10 pieces; {expected:.1f} expected to fall." in result.stdout
     assert "Not counted above: 2 anchored." in result.stdout
     assert "not per year" in result.stdout
-    assert "note  1 workbook has the same content as another; each counts as a building" in result.stderr
+    assert "1 workbook has the same content as another; it is counted as a building of its own." in result.stdout
+    assert read_table(tmp_path / "out", "buildings")["same_as"].tolist() == [None, "b00.xlsx"]
     notes = read_table(tmp_path / "out", "problems").query("message.str.contains('same content')")
     assert notes["path"].tolist() == ["b01.xlsx"]
     assert "same content as b00.xlsx: it counts as a building of its own" in notes["message"].iloc[0]

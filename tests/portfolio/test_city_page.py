@@ -64,7 +64,7 @@ def test_it_cites_what_the_draws_rest_on(html):
 def test_formulas_alone_cite_no_draws_and_give_no_range():
     html = render_page(make_view(6, verify="none")).decode()
     assert "eqe.922" not in html
-    assert "No range is known, as nothing was simulated." in html
+    assert "No range is known, as nothing was simulated: the formula takes the median" in html
 
 
 def test_no_name_becomes_markup_and_one_script_alone_may_run(html):

@@ -1,7 +1,8 @@
 """The answer in words: what is left out of a number stands beside it, and no sentence is empty."""
 
+from assess.portfolio.city_method import list_method
 from assess.portfolio.city_totals import build_totals
-from assess.portfolio.city_words import list_cautions, list_group_lines, list_method, list_total_rows, say_title
+from assess.portfolio.city_words import list_cautions, list_group_lines, list_total_rows, say_title
 from tests.portfolio.test_city_totals import DRAWS, view
 
 ALONE = "If every building had an earthquake of its own"

@@ -1,0 +1,146 @@
+"""How the numbers of a city were made: settings, methods and draws in words, and what they are cited by."""
+
+from collections.abc import Iterator
+
+from assess.i18n import gettext as _
+from assess.i18n import number
+from assess.methods import adopted_formula
+from assess.motion.spatial_field import RANGE, SHARED
+from assess.portfolio.city_spread import Spread
+from assess.portfolio.city_totals import PEOPLE_RULE, CityTotals, CityView, Group
+from assess.portfolio.city_words import list_facts, say_interval, say_range, say_whole
+from assess.report import words
+from assess.report.provenance import say_reference
+from assess.risk import LIMITS
+from assess.rocking.draws import Uncertainty
+from assess.route_results import BLOCKED_FROM
+from assess.version import __version__
+
+REFERENCES = (
+    "Jayaram N, Baker JW (2009). Correlation model for spatially distributed ground-motion intensities. Earthquake "
+    "Engineering and Structural Dynamics 38(15):1687-1708. doi:10.1002/eqe.922",
+    "Boore DM, Stewart JP, Seyhan E, Atkinson GM (2014). NGA-West2 equations for predicting PGA, PGV, and 5% damped "
+    "PSA for shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M",
+)
+"""Sources of the draws of an earthquake that differ from place to place; named where anything was drawn."""
+P58 = (
+    "FEMA (2018). Seismic performance assessment of buildings, FEMA P-58, second edition, volume 1: normative "
+    "quantities of components by occupancy. Federal Emergency Management Agency"
+)
+"""Source of assumed inventories."""
+
+
+def list_basis(view: CityView) -> list[tuple[str, str]]:
+    """Return what the numbers rest on, as label and value: the ground motion, then the settings of the run."""
+    return [*list_facts(view), *_list_settings(view)]
+
+
+def _list_settings(view: CityView) -> Iterator[tuple[str, str]]:
+    settings, ground = view.settings, view.ground
+    if ground is not None:
+        yield _("SHA-256 of {file}", file=ground.file), ground.sha256
+    simulated = {"all": _("all pieces"), "high": _("pieces of high risk, doubtful, or on routes"), "none": _("none")}
+    yield _("Simulated"), simulated[settings.verify]
+    if settings.verify != "none":
+        yield _("Draws, seed"), f"{say_whole(int(settings.runs))}, {settings.seed}"
+    if settings.scenario:
+        yield _("Motion of the floors"), settings.scenario
+    if settings.scale != 1:
+        yield _("Factor on all motions"), number(settings.scale, "g")
+    yield _("Limit on the chance that a route is blocked"), words.percent(settings.route_risk)
+    yield _("Program"), f"assess {__version__}"
+
+
+def list_method(view: CityView, totals: CityTotals) -> list[str]:
+    """Return how the numbers were made, in short paragraphs."""
+    return list(_list_method(view, totals))
+
+
+def _list_method(view: CityView, totals: CityTotals) -> Iterator[str]:
+    yield _("Every percentage and every expected number is for this scenario, not per year. Classes by the chance of "
+            "overturning: low below {low}, medium below {medium}, high below {high}, very high above.",
+            low=_share(LIMITS[0]), medium=_share(LIMITS[1]), high=_share(LIMITS[2]))  # fmt: skip
+    group = next((group for group in totals.groups if group.falls.draws), None)
+    if group is not None:
+        drawn = group.falls
+        yield _say_draws(view, drawn)
+        yield from _say_alone(group)
+        yield _("The expected number itself is known within the sampling interval, by the number of draws alone "
+                "(95 %): {interval}.", interval=say_interval(drawn))  # fmt: skip
+    yield from _say_dispersion(view)
+    yield from _say_routes(view, totals)
+    if any(group.basis == "formula" for group in totals.groups):
+        yield _("Results by formula only are chances by {formula}, under the median of the ground motion; nothing was "
+                "simulated, so that no range is given.", formula=_(adopted_formula().title))  # fmt: skip
+    if any(group.inventory == "assumed" for group in totals.groups):
+        yield _("Assumed inventories: pieces by use and floor area from the normative quantities of FEMA P-58; low, "
+                "median and high are its 10, 50 and 90 % quantities. No piece of them has been seen.")  # fmt: skip
+
+
+def _say_dispersion(view: CityView) -> Iterator[str]:
+    """Yield how the dispersion of the drawn motions is made up, with its range over the buildings."""
+    drawn = view.buildings["motion_uncertainty"].dropna().astype("float64")
+    if view.ground is None or drawn.empty:
+        return
+    low, high = (number(float(end), ".2f") for end in (drawn.min(), drawn.max()))
+    yield _("The standard deviation of ln PFA that is drawn is √(β² + σ²): β the Motion uncertainty of the workbook, "
+            "{default} (assumed) where that is blank, σ that of the ground motion at the building. It is {low} to "
+            "{high}.", default=number(Uncertainty().motion, "g"), low=low, high=high)  # fmt: skip
+
+
+def _say_routes(view: CityView, totals: CityTotals) -> Iterator[str]:
+    if not any(sum(group.routes.values()) for group in totals.groups):
+        return
+    yield _("A route is open where the upper end of its chance of being blocked is below {limit} and every piece that "
+            "matters is known, doubtful below {blocked}, blocked from {blocked} on, and not known where something "
+            "missing could change its state.",
+            limit=words.percent(view.settings.route_risk), blocked=_share(BLOCKED_FROM))  # fmt: skip
+    if any(group.occupants for group in totals.groups):
+        yield _(PEOPLE_RULE)
+
+
+def _say_alone(group: Group) -> Iterator[str]:
+    """Yield the range if buildings were independent, where it differs from the range of the city."""
+    drawn = group.falls
+    alone, together = say_range(drawn.independent_low, drawn.independent_high), say_range(drawn.low, drawn.high)
+    if group.buildings > 1 and alone != together:
+        yield _("If every building had an earthquake of its own, the range would be {alone} in place of {together}: "
+                "that is not so, and the difference shows why ranges of buildings must not be added up.",
+                alone=alone, together=together)  # fmt: skip
+
+
+def _say_draws(view: CityView, drawn: Spread) -> str:
+    """Return what the draws of a city have in common."""
+    ends = _("The range from 5 to 95 % of the draws is that of the sum over buildings, draw by draw.")
+    if view.settings.ideal:
+        start = _("Each of the {draws:,} draws is one motion of each floor, without the uncertainty of the earthquake.",
+                  draws=drawn.draws)  # fmt: skip
+    elif view.ground is not None and view.ground.is_known:
+        start = _("The motion of the ground is taken as known. Each of the {draws:,} draws varies the buildings' own "
+                  "motions alone: {shared} of their variance is common to all of them (Boore et al. 2014), the rest is "
+                  "correlated by exp(-3 h / {range:g} km) at the distance h (Jayaram and Baker 2009).",
+                  draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
+    elif view.ground is not None and view.ground.kind == "scenarios":
+        start = _("Each of the {draws:,} draws takes one of the computed scenarios, the same for all buildings. The "
+                  "uncertainty of the buildings' own motions is drawn besides: {shared} of its variance is common to "
+                  "all of them (Boore et al. 2014), the rest is correlated by exp(-3 h / {range:g} km) at the distance "
+                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
+    else:
+        start = _("Each of the {draws:,} draws is one earthquake for all buildings. Of the variance of ln PGA, "
+                  "{shared} is common to all of them (Boore et al. 2014) unless the ShakeMap gives that share itself; "
+                  "the rest differs from place to place, with the correlation exp(-3 h / {range:g} km) at the distance "
+                  "h (Jayaram and Baker 2009).", draws=drawn.draws, shared=_share(SHARED), range=RANGE)  # fmt: skip
+    return f"{start} {ends}"
+
+
+def _share(value: float) -> str:
+    return f"{number(100 * value, '.0f')} %"
+
+
+def list_references(view: CityView, totals: CityTotals) -> list[str]:
+    """Return the publications that the numbers rest on."""
+    drawn = any(group.falls.draws for group in totals.groups) and not view.settings.ideal
+    by_formula = any(group.basis == "formula" or group.by_formula for group in totals.groups)
+    assumed = any(group.inventory == "assumed" for group in totals.groups)
+    formula = say_reference(adopted_formula().reference)
+    return [*((formula,) if by_formula else ()), *(REFERENCES if drawn else ()), *((P58,) if assumed else ())]
