@@ -359,7 +359,7 @@ def _read_site(heading: Sequence[str], line: int, cells: Sequence[str]) -> tuple
     if abs(lat) > 90 or abs(lon) > 360:
         raise InputError(
             fill(
-                "line {line}: lon {lon:g} and lat {lat:g} are no place on earth",
+                "line {line}: lon {lon:g} and lat {lat:g} are not a place on earth",
                 line=line,
                 lon=lon,
                 lat=lat,

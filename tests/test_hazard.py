@@ -189,7 +189,7 @@ def test_a_curve_that_is_not_the_mean_says_so():
         (("poe-0.2000000", "poe-0.0500000"), "line 2: expected two or more columns poe-LEVEL with rising levels"),
         (("poe-0.2000000", "poe-x"), "line 2: poe-x is 'x', not a number"),
         (("13.0,42.0,0.0,9.0E-01,", "13.0,42.0,0.0,"), "line 3: the number of cells is 5, but there are 6 headings"),
-        (("13.0,42.0", "13.0,91.0"), "line 3: lon 13 and lat 91 are no place on earth"),
+        (("13.0,42.0", "13.0,91.0"), "line 3: lon 13 and lat 91 are not a place on earth"),
         (("13.5,42.0", "13.5,north"), "line 4: lat is 'north', not a number"),
         (("9.0E-01", "9.0E+01"), "line 3: the chance of exceeding 0.1 g is 90, expected 0 to 1"),
         (("4.0E-01", "much"), "line 3: poe-0.2000000 is 'much', not a number"),

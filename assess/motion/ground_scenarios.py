@@ -403,7 +403,7 @@ def _read_sites(sites: _Table, key: str) -> tuple[FloatArray, FloatArray, FloatA
     bad = ~((np.abs(latitude) <= 90) & (np.abs(longitude) <= 360))
     if bad.any():
         line = sites.line(int(bad.argmax()))
-        raise InputError(fill("line {line}: lon and lat are no place on earth", line=line))
+        raise InputError(fill("line {line}: lon and lat are not a place on earth", line=line))
     if np.unique(names).size < names.size:
         raise InputError(fill("a {key} is there twice", key=key))
     order = np.argsort(names)

@@ -31,7 +31,7 @@ _LONGEST = 200
 """Characters of a text of the file that are kept."""
 
 _FOREIGN = (b"\x89HDF", b"PK\x03\x04", b"\x1f\x8b", b"{", b"[", b"%PDF", b"\xff\xfe", b"\xfe\xff")
-"""How files begin that are no XML of ShakeMap: HDF, zip, gzip, JSON, PDF, UTF-16."""
+"""How files begin that are not XML of ShakeMap: HDF, zip, gzip, JSON, PDF, UTF-16."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,15 +64,15 @@ def parse_grid(data: bytes) -> Grid:
     Raises
     ------
     InputError
-        If it is no XML of ShakeMap, is cut off, claims more points than it has rows or than can be read, declares
-        entities, holds something that is no number, or its places are not a regular grid.
+        If it is not XML of ShakeMap, is cut off, claims more points than it has rows or than can be read, declares
+        entities, holds something that is not a number, or its places are not a regular grid.
     """
     if len(data) > LARGEST_FILE:
         raise InputError(fill("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6))
     if not data.strip():
         raise InputError(fill("the file is empty"))
     if data.startswith(_FOREIGN):
-        raise InputError(fill("the file is no XML. {hint}", hint=_HINT))
+        raise InputError(fill("the file is not XML. {hint}", hint=_HINT))
     reader = _Reader()
     try:
         reader.parser.Parse(data, True)
@@ -87,7 +87,7 @@ _HINT = fill("Download grid.xml from the products of the event's ShakeMap at ear
 def _damaged(error: Exception, reader: "_Reader") -> InputError:
     line = getattr(error, "lineno", None)
     if not reader.is_shakemap:
-        return InputError(fill("the file is no XML of a ShakeMap. {hint}", hint=_HINT))
+        return InputError(fill("the file is not the XML of a ShakeMap. {hint}", hint=_HINT))
     if line is None:
         return InputError(fill("the XML cannot be read. Download it again"))
     return InputError(fill("line {line}: the XML is damaged or cut off. Download it again", line=line))
@@ -229,7 +229,7 @@ def _split(texts: Sequence[str]) -> Iterator[list[str]]:
     rest = ""
     for text in texts:
         if len(rest) > _LONGEST or "_" in text or not text.isascii():
-            raise InputError(fill("grid_data holds what is no number"))
+            raise InputError(fill("grid_data holds something that is not a number"))
         cells = (rest + text).split()
         rest = cells.pop() if cells and not text[-1].isspace() else ""
         yield cells
@@ -243,12 +243,12 @@ def _describe_text(cells: Sequence[str], at: int, width: int) -> InputError:
         except ValueError:
             row, column = divmod(place, width)
             return _describe_cell(row, column, cell)
-    return InputError(fill("the XML cannot be read. Download it again"))  # pragma: no cover - one of them is no number
+    return InputError(fill("the XML cannot be read. Download it again"))  # pragma: no cover - one is not a number
 
 
 def _describe_cell(row: int, column: int, cell: str) -> InputError:
     places = {"row": row + 1, "column": column + 1, "text": _shorten(cell)[:40]}
-    return InputError(fill("grid_data, row {row:,}: number {column} is {text!r}, which is no number", **places))
+    return InputError(fill("grid_data, row {row:,}: number {column} is {text!r}, which is not a number", **places))
 
 
 # ---------------------------------------------------------------- places
@@ -263,7 +263,7 @@ def _arrange(
         row = int((~is_place).argmax())
         places = {"lat": float(latitudes[row]), "lon": float(longitudes[row])}
         raise InputError(
-            fill("grid_data, row {row:,}: LON {lon:g} and LAT {lat:g} are no place on earth", row=row + 1, **places)
+            fill("grid_data, row {row:,}: LON {lon:g} and LAT {lat:g} are not a place on earth", row=row + 1, **places)
         )
     longitudes = _unwrap(longitudes)
     order = np.lexsort((longitudes, latitudes))

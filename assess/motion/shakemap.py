@@ -3,8 +3,9 @@
 The values of the map are medians; they hold the effect of the ground (Vs30), which is not applied again. Between the
 points of the grid ln of a value is interpolated linearly along both axes; nothing is taken beyond the grid. The
 standard deviation of ln PGA is the field STDPGA of the grid, else that of uncertainty.xml in the same folder, else that
-of Boore et al. (2014). It mixes what a whole earthquake and what single places have of their own; where uncertainty.xml
-holds the parts of the ground-motion model (GMPE_INTER_STDPGA, GMPE_INTRA_STDPGA), their share is taken from there.
+of Boore et al. (2014); a field that is 0 at every point counts as none. It mixes what a whole earthquake and what
+single places have of their own; where uncertainty.xml holds the parts of the ground-motion model (GMPE_INTER_STDPGA,
+GMPE_INTRA_STDPGA), their share is taken from there.
 
 References
 ----------
@@ -69,7 +70,7 @@ class ShakeMap:
     path : Path, optional
         Where the grid was read from.
     gaps : int
-        Points of the grid at which a field that is used is no number.
+        Points of the grid at which a field that is used is not a number.
     """
 
     file: str
@@ -110,7 +111,8 @@ class ShakeMap:
             pga = read("PGA", logarithmic=True)
             if math.isnan(pga):
                 message = fill(
-                    "the PGA of the map is 0 or no number (NaN) at {place}", place=describe_place(latitude, longitude)
+                    "the PGA of the map is 0 or not a number (NaN) at {place}",
+                    place=describe_place(latitude, longitude),
                 )
                 raise InputError(message)
         except InputError as error:
@@ -132,28 +134,29 @@ class ShakeMap:
             dispersion_source=source,
             shared=shared,
             facts=tuple(self._list_facts(read)),
-            cautions=tuple(self._list_cautions()),
+            cautions=tuple(self._list_cautions(read)),
         )
 
     def _find_sigma(self, read: "_Reading", latitude: float, longitude: float) -> tuple[float, Text, float | None]:
         """Return the standard deviation of ln PGA [-], where it comes from, and its share common to all places."""
         beside = self._look_beside(latitude, longitude)
         shared = _find_shared(beside) if beside else None
+        why = fill("the map has none at this place")
         for reading, file in ((read, self.file), (beside, self.uncertainty_file)):
             sigma = reading(SIGMA) if reading and SIGMA in reading.fields else math.nan
-            if not math.isnan(sigma):
+            if sigma == 0 and reading and not (reading.fields[SIGMA] > 0).any():
+                why = fill("the map's STDPGA is 0 everywhere")
+            elif not math.isnan(sigma):
                 return sigma, fill("STDPGA of {file}", file=file), shared
-        return self._assume_sigma()
+        return self._assume_sigma(why)
 
-    def _assume_sigma(self) -> tuple[float, Text, float]:
+    def _assume_sigma(self, why: Text) -> tuple[float, Text, float]:
         """Return the scatter of a ground-motion model at the magnitude, or from 5.5 on where that is not known."""
         magnitude = _read_magnitude(self.grid)
         between, within = (float(np.interp(magnitude, MAGNITUDES, values)) for values in (BETWEEN, WITHIN))
-        source = fill("assumed, as the map has none at this place: the total of Boore et al. 2014 for this magnitude")
+        source = fill("assumed, as {why}: the total of Boore et al. 2014 for this magnitude", why=why)
         if magnitude >= MAGNITUDES[1]:
-            source = fill(
-                "assumed, as the map has none at this place: the total of Boore et al. 2014 for magnitude 5.5 or more"
-            )
+            source = fill("assumed, as {why}: the total of Boore et al. 2014 for magnitude 5.5 or more", why=why)
         return math.hypot(between, within), source, between**2 / (between**2 + within**2)
 
     def _look_beside(self, latitude: float, longitude: float) -> "_Reading | None":
@@ -189,19 +192,22 @@ class ShakeMap:
             return ""
         return fill("{file}, SHA-256 {sha256}", file=self.uncertainty_file, sha256=self.uncertainty_sha256)
 
-    def _list_cautions(self) -> Iterator[Text]:
+    def _list_cautions(self, read: "_Reading") -> Iterator[Text]:
         status = self.grid.header.get("map_status", "").upper()
         if status == "AUTOMATIC":
             yield fill("the ShakeMap is AUTOMATIC: nobody had reviewed it when it was computed; a later one may differ")
         if status in ("CANCELLED", "CANCELED"):
             yield fill("the ShakeMap is marked as {status}: its maker has withdrawn it", status=status)
-
-        if self.gaps:
+        missing = [name for name in read.fields if math.isnan(read(name))]
+        if missing:
+            yield fill(
+                "the ShakeMap holds no value (NaN) of {fields} next to the building: it is taken as not known there",
+                fields=join(", ", missing),
+            )
+        elif self.gaps:
             yield nfill(
-                "the ShakeMap has no number (NaN) at {n:,} point of its grid; no value next to the building is taken "
-                "from it",
-                "the ShakeMap has no number (NaN) at {n:,} points of its grid; no value next to the building is taken "
-                "from them",
+                "{n:,} point of the ShakeMap's grid holds no value (NaN); it is not next to the building",
+                "{n:,} points of the ShakeMap's grid hold no value (NaN); none of them is next to the building",
                 self.gaps,
             )
 
@@ -268,14 +274,16 @@ def parse_shakemap(
     Raises
     ------
     InputError
-        If one is no such file, is damaged or cut off, lacks PGA, has an unknown unit, or holds a number that is
+        If one is not such a file, is damaged or cut off, lacks PGA, has an unknown unit, or holds a number that is
         impossible; if the two are of different earthquakes.
     """
     grid = _named(name, lambda: _read_grid(data))
     digest = hashlib.sha256(data).hexdigest()
     if uncertainty is None:
         return ShakeMap(file=name, sha256=digest, grid_sha256=digest, grid=grid, path=path, gaps=_count_gaps(grid))
-    beside = _named(uncertainty_name, lambda: _check_uncertainty(parse_grid(uncertainty), grid))
+    beside = _read_uncertainty(
+        uncertainty, grid, uncertainty_name if path is None else str(path.with_name(uncertainty_name)), name
+    )
     its = hashlib.sha256(uncertainty).hexdigest()
     return ShakeMap(
         file=name,
@@ -291,13 +299,25 @@ def parse_shakemap(
 
 
 def _count_gaps(grid: Grid) -> int:
-    """Return at how many points a field is no number."""
+    """Return at how many points a field is not a number."""
     return int(np.logical_or.reduce([np.isnan(values) for values in grid.fields.values()]).sum())
 
 
 @lru_cache(maxsize=2)  # workbooks of one folder name the same map
 def _read_grid(data: bytes) -> Grid:
     return _check_grid(parse_grid(data))
+
+
+def _read_uncertainty(data: bytes, grid: Grid, name: str, grid_name: str) -> Grid:
+    """Return what a file of uncertainties holds; InputError, which says what the map gives without it."""
+    try:
+        return _named(name, lambda: _check_uncertainty(parse_grid(data), grid))
+    except InputError as error:
+        way = fill(
+            "You can remove the file: the STDPGA of {grid} is then used, or an assumed one where it has none",
+            grid=grid_name,
+        )
+        raise InputError(join(". ", (error.message, way))) from None
 
 
 def _named(name: str, read: Callable[[], Grid]) -> Grid:
@@ -345,7 +365,7 @@ def _check_field(grid: Grid, name: str, units: frozenset[str], unit: str, most: 
         message = fill("the field {name} has the unit {own!r}, expected {unit}", name=name, own=own[:40], unit=unit)
         raise InputError(message)
     values = grid.fields[name]
-    bad = (values < 0) | (values > most)  # what is no number (NaN) is refused only next to a building
+    bad = (values < 0) | (values > most)  # NaN is refused only next to a building
     if bad.any():
         row, column = divmod(int(bad.argmax()), values.shape[1])
         place = describe_place(float(grid.latitude[row]), float(grid.longitude[column]))

@@ -50,7 +50,7 @@ def read_background(path: Path) -> Background:
     Raises
     ------
     InputError
-        If it cannot be read, is no GeoJSON, is too large, or a coordinate is no longitude and latitude: the message
+        If it cannot be read, is not GeoJSON, is too large, or a coordinate is not longitude and latitude: the message
         names the place in the file.
     """
     return _Reader(path).read()
@@ -65,7 +65,7 @@ class _Reader:
     def read(self) -> Background:
         found = self._parse()
         if not isinstance(found, dict) or not isinstance(found.get("type"), str):
-            self._refuse(fill("it is no GeoJSON: a FeatureCollection, Feature or geometry is expected at its top"))
+            self._refuse(fill("it is not GeoJSON: a FeatureCollection, Feature or geometry is expected at its top"))
         self._check_system(found)
         drawn = list(self._list_shapes(found, str(found["type"]), 0))
         areas = tuple(shape for kind, shapes in drawn if "Polygon" in kind for shape in shapes)
@@ -89,16 +89,16 @@ class _Reader:
         try:
             return json.loads(data.decode("utf-8-sig"), parse_constant=self._refuse_constant)
         except UnicodeDecodeError:
-            self._refuse(fill("it is no text in UTF-8, so it is no GeoJSON. A shapefile or GeoPackage has to be "
+            self._refuse(fill("it is not UTF-8 text, so it is not GeoJSON. A shapefile or GeoPackage has to be "
                               "exported as GeoJSON first"))  # fmt: skip
         except json.JSONDecodeError as error:
-            self._refuse(fill("line {line}, column {column}: it is no GeoJSON, or the file is cut off ({reason})",
+            self._refuse(fill("line {line}, column {column}: it is not GeoJSON, or the file is cut off ({reason})",
                               line=error.lineno, column=error.colno, reason=error.msg))  # fmt: skip
         except RecursionError:
             self._refuse(fill("its brackets are nested too deep for GeoJSON"))
 
     def _refuse_constant(self, constant: str) -> NoReturn:
-        self._refuse(fill("it holds {constant}, which is no number of JSON. Remove that point", constant=constant))
+        self._refuse(fill("it holds {constant}, which is not a JSON number. Remove that point", constant=constant))
 
     def _check_system(self, found: Mapping[str, Any]) -> None:
         """Refuse a file that says that its coordinates are not longitude and latitude."""
@@ -122,14 +122,14 @@ class _Reader:
         elif kind in _DIMENSIONS:
             yield str(kind), self._read_shapes(str(kind), found.get("coordinates"), where)
         elif kind not in _NO_DRAWING:
-            self._refuse(fill("{where}: {kind} is no type of GeoJSON", where=where, kind=repr(kind)))
+            self._refuse(fill("{where}: {kind} is not a type of GeoJSON", where=where, kind=repr(kind)))
 
     def _list_members(
         self, found: Mapping[str, Any], name: str, where: str, depth: int
     ) -> Iterator[tuple[str, list[Any]]]:
         members = found.get(name)
         if not isinstance(members, list):
-            self._refuse(fill("{where}: {name} is missing, or no list", where=where, name=name))
+            self._refuse(fill("{where}: {name} is missing, or not a list", where=where, name=name))
         for at, member in enumerate(members):
             yield from self._list_shapes(member, f"{name}[{at}]" if depth == 0 else f"{where}.{name}[{at}]", depth + 1)
 
@@ -141,7 +141,7 @@ class _Reader:
         try:
             return [tuple(self._read_line(line, least, where) for line in shape) for shape in shapes if shape]
         except TypeError:
-            self._refuse(fill("{where}: the coordinates are no lists of points as a {kind} has them",
+            self._refuse(fill("{where}: the coordinates are not lists of points as a {kind} has them",
                               where=where, kind=kind))  # fmt: skip
 
     def _read_line(self, given: Any, least: int, where: str) -> tuple[Place, ...]:
@@ -157,12 +157,12 @@ class _Reader:
 
     def _read_point(self, given: Any, where: str) -> Place:
         if not isinstance(given, list) or len(given) < 2 or not all(map(_is_number, given[:2])):
-            self._refuse(fill("{where}: {point} is no point, expected [longitude, latitude]",
+            self._refuse(fill("{where}: {point} is not a point, expected [longitude, latitude]",
                               where=where, point=json.dumps(given)[:60]))  # fmt: skip
         longitude, latitude = float(given[0]), float(given[1])
         if not (abs(longitude) <= 180 and abs(latitude) <= 90):
-            self._refuse(fill("{where}: [{longitude:g}, {latitude:g}] is no longitude (-180 to 180) and latitude "
-                              "(-90 to 90). Are they metres of a projection, or in the other order? Export the file in "
+            self._refuse(fill("{where}: [{longitude:g}, {latitude:g}] is not [longitude, latitude], -180 to 180 and "
+                              "-90 to 90. Are these projected metres, or is the order swapped? Export the file in "
                               "WGS 84 (EPSG:4326)", where=where, longitude=longitude, latitude=latitude))  # fmt: skip
         return longitude, latitude
 

@@ -136,8 +136,8 @@ def test_values_that_cannot_be_used(tmp_path, values, match):
     [
         (SITES.replace("lon", "x"), r"^sitemesh\.csv: the column lon is missing"),
         (SITES.replace("\n1,", "\n0,"), r"sitemesh\.csv: a site_id is there twice"),
-        (SITES.replace("37.80", "97.80"), r"sitemesh\.csv: line 3: lon and lat are no place on earth"),
-        (SITES.replace("37.80", "nan"), r"sitemesh\.csv: line 3: lon and lat are no place on earth"),
+        (SITES.replace("37.80", "97.80"), r"sitemesh\.csv: line 3: lon and lat are not a place on earth"),
+        (SITES.replace("37.80", "nan"), r"sitemesh\.csv: line 3: lon and lat are not a place on earth"),
     ],
 )
 def test_sites_that_cannot_be_used(tmp_path, sites, match):

@@ -1,6 +1,7 @@
 """ShakeMaps: values at a place, their scatter, what is told of the map, and files that cannot be used."""
 
 import pickle
+import re
 import shutil
 from pathlib import Path
 
@@ -102,7 +103,7 @@ def test_both_spellings_of_units_and_none(unit, speed):
 def test_a_pgv_that_is_rounded_to_0_is_not_known_and_a_pga_is_refused():
     site = _at(build_grid(PLAIN | {"PGV": ("cms", (0.0,) * 6)}))
     assert site.pgv is None
-    with pytest.raises(InputError, match=r"the PGA of the map is 0 or no number \(NaN\) at latitude 37\.5000"):
+    with pytest.raises(InputError, match=r"the PGA of the map is 0 or not a number \(NaN\) at latitude 37\.5000"):
         _at(build_grid({"PGA": ("pctg", (1, 1, 0.0, 1, 1, 1))}))
 
 
@@ -131,6 +132,22 @@ def test_sigma_is_interpolated_linearly():
     )
 
 
+def test_a_sigma_of_0_everywhere_is_none_and_at_some_points_is_kept():
+    """An instrument leaves no doubt at its own point; a map without any doubt has a field that was not filled in."""
+    zero = build_grid(PLAIN | {"STDPGA": ("ln(pctg)", (0.0,) * 6)})
+    site = _at(zero)
+    assert site.dispersion == pytest.approx(0.605, abs=5e-4)
+    assert site.shared == pytest.approx(0.348**2 / 0.605**2, rel=1e-3)
+    why = "assumed, as the map's STDPGA is 0 everywhere: the total of Boore et al. 2014 for magnitude 5.5 or more"
+    assert site.dispersion_source == why
+    some = _at(build_grid(PLAIN | {"STDPGA": ("ln(pctg)", (0.3, 0.3, 0.0, 0.3, 0.3, "nan"))}))
+    assert (some.dispersion, some.dispersion_source) == (0.0, "STDPGA of grid.xml")
+    beside = {"uncertainty_name": "uncertainty.xml", "uncertainty": build_grid({"STDPGA": ("", (0.25,) * 6)})}
+    assert _at(zero, **beside).dispersion_source == "STDPGA of uncertainty.xml"
+    beside["uncertainty"] = build_grid({"STDPGA": ("", (0.0,) * 6)})
+    assert _at(build_grid(PLAIN), **beside).dispersion_source == why
+
+
 @pytest.mark.parametrize("name", ["uncertainty.xml", "my-uncertainty.xml"])
 def test_sigma_of_the_file_beside(tmp_path, name):
     (tmp_path / "my-grid.xml").write_bytes(build_grid(PLAIN))
@@ -153,6 +170,15 @@ def test_the_file_beside_may_not_be_of_another_earthquake():
         )
 
 
+def test_a_file_beside_that_is_cut_off_is_named_with_its_folder_and_the_way_out(tmp_path):
+    (tmp_path / "grid.xml").write_bytes(build_grid(PLAIN))
+    (tmp_path / "uncertainty.xml").write_bytes(build_grid({"STDPGA": ("", (0.25,) * 6)})[:-60])
+    fault = r"uncertainty\.xml: line \d+: the XML is damaged or cut off\. Download it again"
+    way = r"You can remove the file: the STDPGA of grid\.xml is then used, or an assumed one where it has none"
+    with pytest.raises(InputError, match=rf"^{re.escape(str(tmp_path))}.{fault}\. {way}$"):
+        read_shakemap(tmp_path / "grid.xml")
+
+
 def test_names_of_the_file_beside():
     assert name_uncertainty("grid.xml") == ("uncertainty.xml",)
     assert name_uncertainty("ev1_grid.xml") == ("ev1_uncertainty.xml", "uncertainty.xml")
@@ -171,20 +197,23 @@ def test_a_map_that_is_not_reviewed_is_warned_of(status, text):
 GOOD = build_grid(PLAIN)
 BAD = {
     "empty": (b"", "the file is empty"),
-    "zip": (b"PK\x03\x04" + bytes(50), r"no XML.*Download grid\.xml"),
-    "HDF": (b"\x89HDF\r\n\x1a\n" + bytes(50), "no XML"),
-    "JSON": (b'{"input": {}}', "no XML"),
-    "text": (b"lon,lat,pga\n1,2,3\n", "no XML of a ShakeMap"),
+    "zip": (b"PK\x03\x04" + bytes(50), r"not XML.*Download grid\.xml"),
+    "HDF": (b"\x89HDF\r\n\x1a\n" + bytes(50), "not XML"),
+    "JSON": (b'{"input": {}}', "not XML"),
+    "text": (b"lon,lat,pga\n1,2,3\n", "not the XML of a ShakeMap"),
     "another XML": (b"<?xml version='1.0'?><svg/>", "its first element is svg, expected shakemap_grid"),
     "cut off in a row": (GOOD[:-60], "line 6: the XML is damaged or cut off"),
-    "cut off in the head": (GOOD[:200], "damaged or cut off|no XML of a ShakeMap"),
+    "cut off in the head": (GOOD[:200], "damaged or cut off|not the XML of a ShakeMap"),
     "entities": (GOOD.replace(b"<shakemap", b'<!DOCTYPE a [<!ENTITY b "c">]><shakemap', 1), "declares XML entities"),
     "a huge claim": (build_grid(PLAIN, size=(10**9, 3)), "1,000,000,000 x 3 points are more than"),
     "no count": (GOOD.replace(b'nlon="2"', b'nlon="two"'), "nlon is 'two', expected 2 or more"),
     "rows are missing": (build_grid(PLAIN, size=(2, 4)), "6 whole rows of 3 numbers, expected 8"),
     "too many rows": (build_grid(PLAIN, size=(2, 2)), "more than 4 rows"),
-    "no number": (build_grid({"PGA": ("pctg", (1, 2, "high", 4, 5, 6))}), "row 3: number 3 is 'high'"),
-    "underscores": (build_grid({"PGA": ("pctg", (1, 2, "1_0", 4, 5, 6))}), "holds what is no number"),
+    "no number": (
+        build_grid({"PGA": ("pctg", (1, 2, "high", 4, 5, 6))}),
+        "row 3: number 3 is 'high', which is not a number",
+    ),
+    "underscores": (build_grid({"PGA": ("pctg", (1, 2, "1_0", 4, 5, 6))}), "holds something that is not a number"),
     "infinite": (build_grid({"PGA": ("pctg", (1, 2, "inf", 4, 5, 6))}), "PGA is inf at"),
     "negative": (build_grid({"PGA": ("pctg", (1, 2, -3, 4, 5, 6))}), "PGA is -3 at .* expected 0 to 1000 %g"),
     "cm/s2": (build_grid({"PGA": ("cm/s2", PGA)}), "the field PGA has the unit 'cm/s2', expected %g"),
@@ -197,7 +226,7 @@ BAD = {
     "data twice": (GOOD.replace(b"<grid_data>", b"<grid_data></grid_data><grid_data>"), "grid_data is there twice"),
     "uneven": (build_grid(PLAIN, (38.0, 37.6, 37.0)), "not those of a regular grid"),
     "one place twice": (build_grid(PLAIN, longitudes=(-122.0, -122.0)), "not those of a regular grid"),
-    "off the earth": (build_grid(PLAIN, (98.0, 97.5, 97.0)), "row 1: LON -122 and LAT 98 are no place on earth"),
+    "off the earth": (build_grid(PLAIN, (98.0, 97.5, 97.0)), "row 1: LON -122 and LAT 98 are not a place on earth"),
 }
 
 
@@ -209,20 +238,35 @@ def test_a_file_that_cannot_be_used_is_named_with_the_reason(data, match):
 
 def test_no_number_is_refused_only_next_to_a_building():
     found = parse_shakemap(build_grid({"PGA": ("pctg", (1, 2, "NaN", 4, 5, 6))}), "grid.xml")
-    with pytest.raises(InputError, match=r"grid\.xml: the PGA of the map is 0 or no number \(NaN\) at latitude 37\.6"):
+    with pytest.raises(
+        InputError, match=r"grid\.xml: the PGA of the map is 0 or not a number \(NaN\) at latitude 37\.6"
+    ):
         found.at(37.6, -121.7)
     site = found.at(38.0, -121.7)
     assert np.isfinite(site.pga)
-    assert site.cautions == (
-        "the ShakeMap has no number (NaN) at 1 point of its grid; no value next to the building is taken from it",
-    )
+    assert site.cautions == ("1 point of the ShakeMap's grid holds no value (NaN); it is not next to the building",)
 
 
 def test_a_scatter_that_is_no_number_is_assumed():
     found = parse_shakemap(build_grid(PLAIN | {"STDPGA": ("", ("nan",) * 6)}), "grid.xml").at(37.5, -121.7)
     assert found.dispersion > 0.5
     assert str(found.dispersion_source).startswith("assumed, as the map has none at this place")
-    assert "6 points" in found.cautions[0]
+    assert found.cautions == (
+        "the ShakeMap holds no value (NaN) of STDPGA next to the building: it is taken as not known there",
+    )
+
+
+def test_points_without_a_value_are_next_to_some_buildings_only():
+    data = build_grid(PLAIN | {"PGV": ("cms", (1, 1, "nan", "nan", 1, 1))}, (38.0, 37.5, 37.0))
+    near, far = _at(data, 37.6, -121.7), _at(data, 37.0, -121.7)
+    assert near.pgv is None
+    assert near.cautions == (
+        "the ShakeMap holds no value (NaN) of PGV next to the building: it is taken as not known there",
+    )
+    assert far.pgv is not None
+    assert far.cautions == (
+        "2 points of the ShakeMap's grid hold no value (NaN); none of them is next to the building",
+    )
 
 
 def test_a_file_that_is_not_there(tmp_path):

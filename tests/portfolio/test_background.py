@@ -53,20 +53,20 @@ def test_all_kinds_of_geometry_are_drawn_and_points_are_left_out(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('{"type": "FeatureCollection", "features": [', r"line 1, column 44: it is no GeoJSON, or the file is cut off"),
-        ('{"type": "LineString", "coordinates": [[0, 0], [NaN, 1]]}', r"it holds NaN, which is no number of JSON"),
-        (_of("LineString", [[0, 0], [545000, 4180000]]), r"LineString: \[545000, 4.18e\+06\] is no longitude"),
-        (_of("LineString", [[37.7, -122.4], [37.8, -122.5]]), r"other order"),
+        ('{"type": "FeatureCollection", "features": [', r"column 44: it is not GeoJSON, or the file is cut off"),
+        ('{"type": "LineString", "coordinates": [[0, 0], [NaN, 1]]}', r"which is not a JSON number\. Remove"),
+        (_of("LineString", [[0, 0], [545000, 4180000]]), r"\[545000, 4.18e\+06\] is not \[longitude, latitude\]"),
+        (_of("LineString", [[37.7, -122.4], [37.8, -122.5]]), r"projected metres, or is the order swapped\?"),
         (_of("LineString", [[0, 0]]), r"has 1 points, expected at least 2"),
-        (_of("LineString", [[0, 0], ["x", 1]]), r'\["x", 1\] is no point'),
-        (_of("LineString", [[0, 0], [10**400, 1]]), r"is no point"),
-        (_of("Polygon", [[1, 2], [3, 4]]), r"1 is no point"),
-        (_of("Polygon", 5), r"no lists of points as a Polygon has them"),
+        (_of("LineString", [[0, 0], ["x", 1]]), r'\["x", 1\] is not a point'),
+        (_of("LineString", [[0, 0], [10**400, 1]]), r"is not a point"),
+        (_of("Polygon", [[1, 2], [3, 4]]), r"1 is not a point"),
+        (_of("Polygon", 5), r"not lists of points as a Polygon has them"),
         (_of("Point", [0, 0]), r"it holds no Polygon"),
-        ({"type": "FeatureCollection"}, r"features is missing"),
-        ({"type": "FeatureCollection", "features": [{"type": "Circle"}]}, r"features\[0\]: 'Circle' is no type"),
+        ({"type": "FeatureCollection"}, r"features is missing, or not a list"),
+        ({"type": "FeatureCollection", "features": [{"type": "Circle"}]}, r"features\[0\]: 'Circle' is not a type"),
         ([1, 2], r"FeatureCollection, Feature or geometry is expected"),
-        ("path,building\na,b\n", r"it is no GeoJSON"),
+        ("path,building\na,b\n", r"it is not GeoJSON"),
         (_of("LineString", SQUARE) | {"crs": {"properties": {"name": "EPSG:26910"}}}, r"another system than WGS 84"),
         ("[" * 200_000, r"nested too deep|cut off"),
     ],
@@ -79,7 +79,7 @@ def test_what_cannot_be_drawn_is_refused_with_its_place(tmp_path, text, message)
 
 def test_a_binary_file_and_a_missing_one_are_told(tmp_path):
     (tmp_path / "a.shp").write_bytes(b"\x00\x00\x27\x0a\xff\xfe")
-    with pytest.raises(InputError, match=r"no text in UTF-8.*exported as GeoJSON"):
+    with pytest.raises(InputError, match=r"not UTF-8 text, so it is not GeoJSON.*exported as GeoJSON"):
         read_background(tmp_path / "a.shp")
     with pytest.raises(InputError, match=r"background no\.geojson: it cannot be read \(No such file"):
         read_background(tmp_path / "no.geojson")

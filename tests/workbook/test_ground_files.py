@@ -65,7 +65,7 @@ def test_ground_pga_and_sds_come_before_it(tmp_path, known):
         ({"latitude": 10, "longitude": 10}, "Building!B23", r"grid\.xml: latitude 10\.0000, .* is outside the map"),
         (PLACE | {"shakemap": "map.xml"}, "Building!B23", r"the file 'map\.xml' was not found next to the workbook"),
         (PLACE | {"shakemap": "../grid.xml"}, "Building!B23", "outside the workbook's folder"),
-        (PLACE | {"shakemap": "w.xlsx"}, "Building!B23", r"the ShakeMap cannot be used: w\.xlsx: the file is no XML"),
+        (PLACE | {"shakemap": "w.xlsx"}, "Building!B23", r"the ShakeMap cannot be used: w\.xlsx: the file is not XML"),
     ],
     ids=["no place", "half a place", "outside", "no file", "another folder", "no map"],
 )
