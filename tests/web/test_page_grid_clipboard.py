@@ -73,7 +73,7 @@ def test_tables_of_other_programs(small):
     assert small.values("Items", "quantity")[5] == 38.25
     assert small.values("Items", "type")[6] == "joined"
     assert small.values("Items", "photo")[4] == "Desk"
-    assert small.values("Items", "notes")[4] == 62.5
+    assert small.values("Items", "source_id")[4] == 62.5
 
 
 def test_what_is_copied_can_be_pasted_elsewhere_and_back(small):
