@@ -113,6 +113,8 @@ def _open_archive(data: bytes, name: str) -> zipfile.ZipFile:
 
     A declared size is a sound bound: Python's zipfile stops with an error after that many bytes.
     """
+    if not data:
+        raise unreadable(fill("{name} is empty (0 bytes).", name=name), fill("Download or copy it again."))
     if data.startswith(_OLE):
         raise unreadable(
             fill("{name} is an old .xls workbook or is protected by a password.", name=name),

@@ -341,7 +341,8 @@ def _check(
     problems = [*found, *notes, *more]
     if not any(one.severity == "error" for one in problems):
         return tables, problems
-    order = {table.sheet.name: at for at, table in enumerate(tables.values())}
+    listed = [table.sheet.name for table in tables.values() if table.found or not table.sheet.required]
+    order = {name: at for at, name in enumerate(listed)}  # before all: required sheets that are missing
     problems.sort(key=lambda one: (order.get(one.sheet, -1), first_row(one.cell)))
     if strict:
         raise WorkbookError(problems, _language(tables))

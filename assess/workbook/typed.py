@@ -107,7 +107,7 @@ def _take_number(column: Column, value: object, unit: str, quote: Quote) -> tupl
     factor = _find_factor(match["unit"].strip(), column, unit) if match else None
     if match is None or factor is None:
         return value, None
-    readings = [_convert(match, digits, factor) for digits in _read_digits(match["digits"].rstrip())]
+    readings = [_convert(match, digits, factor) for digits in read_digits(match["digits"].rstrip())]
     if len(readings) == 2:
         raise _describe_two(column, unit, quote(value), readings)
     if not readings or not math.isfinite(readings[0]):
@@ -150,7 +150,7 @@ def _note_shown(column: Column, value: Percent, unit: str) -> Remark:
     return replace(found, value=None)
 
 
-def _read_digits(digits: str) -> list[float]:
+def read_digits(digits: str) -> list[float]:
     """Return the ways to read digits with separators: none, one or two.
 
     A single separator before exactly three digits can be a decimal sign or part thousands, except after 0.

@@ -15,7 +15,7 @@ DOCX = zip_bytes({"[Content_Types].xml": b"<Types/>", "word/document.xml": b"<do
 FOREIGN = [
     ("list.csv", b"Item,Floor\nA1,1\n", "list.csv is not an Excel workbook (.xlsx). Save it from Excel as .xlsx."),
     ("page.xlsx", b"<html><table></table></html>", "page.xlsx is not an Excel workbook (.xlsx)."),
-    ("empty.xlsx", b"", "empty.xlsx is not an Excel workbook (.xlsx)."),
+    ("empty.xlsx", b"", "empty.xlsx is empty (0 bytes). Download or copy it again."),
     ("noise.xlsx", random.Random(1).randbytes(5000), "noise.xlsx is not an Excel workbook (.xlsx)."),
     ("letter.xlsx", DOCX, "letter.xlsx is a zip file, but not an Excel workbook (.xlsx). Save it from Excel as .xlsx."),
     ("old.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(5000),
