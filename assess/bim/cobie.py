@@ -18,7 +18,7 @@ from typing import Any
 
 from assess.bim.cobie_floors import CobieFloor, list_rows, read_floors
 from assess.bim.cobie_sheets import CobieSheet, is_cobie, read_sheets, say
-from assess.bim.cobie_types import CobieType, find_unit, read_types
+from assess.bim.cobie_types import CobieType, check_unit, find_unit, read_types
 from assess.bim.import_workbook import ImportedBuilding, Skipped, build_workbook, name_apart
 from assess.i18n import Text, fill, nfill
 from assess.progress import SILENT, Progress
@@ -64,11 +64,12 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
     Raises
     ------
     WorkbookError
-        If it is no COBie file, is damaged or larger than the limits, lacks a sheet or a column, or names no unit of
-        length.
+        If it is no COBie file, is damaged or larger than the limits, lacks a sheet or a column, names no unit of
+        length, or one in which no size of its furniture can be.
     """
     sheets = read_sheets(source, name, progress)
     unit = find_unit(sheets["Facility"])
+    check_unit(sheets["Facility"], sheets["Type"], unit)
     floors, faults = read_floors(sheets["Floor"], unit)
     found = _Sorted(types=read_types(sheets["Type"], unit), floors=floors, spaces=_read_spaces(sheets["Space"], floors))
     for _, row in sheets["Component"].rows:
@@ -218,8 +219,8 @@ def _note_pieces(found: _Sorted) -> Iterator[Text]:
         )  # fmt: skip
     if found.pieces:
         yield fill(
-            "COBie tells no fixings and no positions: fill in Anchored where you have seen the fixing; blank counts as "
-            "free-standing. Pieces without a position are not checked against evacuation routes."
+            "COBie files do not record fixings or positions: fill in Anchored where you have seen the fixing; blank "
+            "counts as free-standing. Pieces without a position are not checked against evacuation routes."
         )
 
 

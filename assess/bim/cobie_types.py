@@ -13,6 +13,7 @@ from assess.units import LENGTH, read_unit
 from assess.workbook.habits import CellError
 from assess.workbook.names import key
 from assess.workbook.open import UNSAVED
+from assess.workbook.ranges import is_within
 from assess.workbook.schema import CATALOGUE, Column
 from assess.workbook.values import read_cell, shorten
 
@@ -60,6 +61,36 @@ def find_unit(sheet: CobieSheet) -> str:
         cell = f"{sheet.letters['LinearUnits']}{number}"
         raise WorkbookError([Problem("error", sheet.name, cell, message, fix)])
     return found
+
+
+def check_unit(facility: CobieSheet, types: CobieSheet, unit: str) -> None:
+    """Refuse the unit of a file if no size of its furniture is in range in it, and most are in another.
+
+    Raises
+    ------
+    WorkbookError
+        If so; it names the cell of LinearUnits.
+    """
+    sizes = [
+        (say(row.get("Name")), column, number)
+        for _, row in types.rows
+        if say(row.get("AssetType")).casefold() in MOVEABLE
+        for column in SIZES
+        if (number := read_number(row.get(column)))
+    ]
+    fits = {one: sum(is_within(CATALOGUE.column("height"), size, one) for *_, size in sizes) for one in LENGTH}
+    others = [one for one in LENGTH if 2 * fits[one] > len(sizes)]
+    if fits[unit] or not others:
+        return
+    name, column, number = sizes[0]
+    line, row = facility.rows[0]
+    message = fill(
+        "LinearUnits is {unit}, but all sizes of furniture are out of range in that unit: {column} of {name} would be "
+        "{number:g} {short}.",
+        unit=shorten(say(row.get("LinearUnits"))), column=column, name=shorten(name), number=number, short=unit,
+    )  # fmt: skip
+    fix = fill("Check LinearUnits: in {units} most of them are in range.", units=", ".join(others))
+    raise WorkbookError([Problem("error", facility.name, f"{facility.letters['LinearUnits']}{line}", message, fix)])
 
 
 def read_types(sheet: CobieSheet, unit: str) -> dict[str, CobieType]:

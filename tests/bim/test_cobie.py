@@ -5,6 +5,7 @@ import pytest
 
 from assess.bim.cobie import convert, read_cobie
 from assess.bim.import_workbook import ImportedBuilding
+from assess.errors import WorkbookError
 from assess.workbook.read import read_inventory
 from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, one_type, write_cobie
 
@@ -71,6 +72,35 @@ def test_units_and_numbers_stored_as_texts(tmp_path: Path, unit: str, size: Any,
     sizes = dict.fromkeys(("NominalLength", "NominalWidth", "NominalHeight"), size)
     found = _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
     assert found.items[0]["height"] == found.items[0]["breadth"] == cm
+
+
+@pytest.mark.parametrize(
+    ("unit", "size", "message"),
+    [
+        ("feet", 1.0, r"LinearUnits is 'feet', but all sizes of furniture are out of range in that unit: "
+                      r"NominalLength of 'Bookcase A' would be 900 ft\. Check LinearUnits: in mm most of them are"),
+        ("millimeters", 0.001, r"would be 0\.9 mm\. Check LinearUnits: in m, ft most of them are in range"),
+    ],
+)  # fmt: skip
+def test_a_unit_in_which_no_size_can_be_is_refused_with_its_cell(
+    tmp_path: Path, unit: str, size: float, message: str
+) -> None:
+    sizes = {"NominalLength": 900 * size, "NominalWidth": 303 * size, "NominalHeight": 2000 * size}
+    with pytest.raises(WorkbookError, match=message) as caught:
+        _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
+    assert caught.value.problems[0].place == "Facility!G2"
+
+
+def test_pieces_that_no_unit_makes_furniture_are_left_out_and_the_unit_is_not_doubted(tmp_path: Path) -> None:
+    found = _read(tmp_path, **one_type(NominalLength=30_000, NominalWidth=1, NominalHeight=0.001))
+    assert [one.type for one in found.skipped] == ["Bookcase A"]
+
+
+def test_what_cobie_files_do_not_record_is_remarked(tmp_path: Path) -> None:
+    text = (
+        "COBie files do not record fixings or positions: fill in Anchored where you have seen the fixing; blank counts"
+    )
+    assert any(one.startswith(text) for one in _read(tmp_path).remarks)
 
 
 @pytest.mark.parametrize("blank", ["n/a", None, "", 0, "0.0", "N/A", "-"])
