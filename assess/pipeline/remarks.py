@@ -229,16 +229,20 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     if building.height and building.storeys:
         each = building.height / building.storeys
         if not STOREY[0] <= each <= STOREY[1]:
+            effect = fill("too large a Height lowers the profile")
+            if each < STOREY[0]:
+                effect = fill("too small a Height raises the profile")
             message = nfill(
                 "Height {height:g} m over {n} storey is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
-                "too large a Height lowers the profile.",
+                "{effect}.",
                 "Height {height:g} m over {n} storeys is {each:.3g} m a storey, outside {low:g} to {high:g} m; "
-                "too large a Height lowers the profile.",
+                "{effect}.",
                 building.storeys,
                 height=building.height,
                 each=each,
                 low=STOREY[0],
                 high=STOREY[1],
+                effect=effect,
             )
             yield Problem("warning", "Building", building.cell("height"), message, fill("Check Height and Storeys."))
     highest = max((z for floor in inventory.floors if (z := ground.place(floor)[0]) is not None), default=0.0)

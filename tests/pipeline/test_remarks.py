@@ -167,9 +167,10 @@ def test_in_a_building_of_basements_no_floor_is_above_the_roof(tmp_path):
 @pytest.mark.parametrize(("storeys", "each"), [(1, "30"), (4, "7.5"), (15, "2"), (5, ""), (12, ""), (None, "")])
 def test_a_height_that_does_not_fit_the_storeys_is_told(tmp_path, storeys, each):
     floors = [{"floor": "1", "elevation": 27}]
+    effect = "too small a Height raises the profile" if each == "2" else "too large a Height lowers the profile"
     text = (
         f"Building!B8: Height 30 m over {count(storeys or 0, 'storey')} is {each} m a storey, outside 2.5 to 6 m; "
-        "too large a Height lowers the profile. Check Height and Storeys."
+        f"{effect}. Check Height and Storeys."
     )
     building = {"storeys": storeys} if storeys else {}
     remarks = _remarks(tmp_path, floors, ground_pga=0.2, height=30, **building)
