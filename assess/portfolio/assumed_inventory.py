@@ -110,7 +110,7 @@ def build_assumed(row: IndexRow) -> AssumedInventory:
     use = find_use(row.use)
     if row.storeys is None or row.floor_area_m2 is None:
         missing = [name for name in ("storeys", "floor_area_m2") if getattr(row, name) is None]
-        text = "no inventory can be assumed without {columns}. Fill it in in the index, or survey the building."
+        text = "no inventory can be assumed without {columns}. Give it in the index, or survey the building."
         raise InputError(fill(text, columns=", ".join(missing)))
     area, storeys = row.floor_area_m2, row.storeys
     counts = {kind: kind.count(area) for kind in _read_kinds()[use]}
@@ -140,7 +140,7 @@ def find_use(text: str) -> str:
         If it is blank, or P-58 gives no quantities of it.
     """
     if not text.strip():
-        fault = "no inventory can be assumed without use. Fill it in in the index, or survey the building."
+        fault = "no inventory can be assumed without use. Give it in the index, or survey the building."
         raise InputError(fill(fault))
     if (use := _names().get(key(text))) is not None:
         return use
@@ -250,7 +250,7 @@ def _describe(row: IndexRow, use: str, counts: Mapping[_Kind, Quantity], height:
     yield Problem("warning", "", "", text, fix)
     if row.height_m is None:
         note = fill("height_m is blank: {each:g} m a storey assumed, {height:g} m.", each=STOREY_HEIGHT, height=height)
-        yield Problem("note", "", "", note, fill("Fill it in in the index."))
+        yield Problem("note", "", "", note, fill("Give it in the index."))
 
 
 def _say_counts(counts: Sequence[tuple[_Kind, Quantity]]) -> str:

@@ -145,7 +145,7 @@ def _assess_surely(task: Task, key: str, data: bytes | None) -> Part:
     """Return the part of a building, skipped with the reason if anything is wrong with it."""
     source = task.source
     if source.refused:
-        return skip(source, key, [Problem("error", "", "", str(source.refused))])
+        return skip(source, key, [Problem("error", "", "", source.refused, source.fix)])
     try:
         return _assess(task, key, data)
     except WorkbookError as error:

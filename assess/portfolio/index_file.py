@@ -4,7 +4,6 @@ import csv
 import difflib
 import io
 import re
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -16,6 +15,7 @@ from assess.i18n import Text, fill, join
 from assess.motion.formats.plain_csv import decode, is_comment
 from assess.plain_text import plain_line
 from assess.workbook.schema import BUILDING
+from assess.workbook.typed import read_digits, straighten
 
 LARGEST_FILE = 64_000_000
 """Bytes: some hundred thousand rows."""
@@ -25,7 +25,10 @@ LONGEST = 4000
 MOST_FAULTS = 20
 """Faults that one message lists."""
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+MOST_LINES = 10
+"""Lines that a message on a repeated name lists."""
+
+_NUMBER = re.compile(r"([+-]?)(\d[\d.,' ]*|[.,]\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
 _FIELDS: Mapping[str, str] = {
     "latitude": "latitude", "longitude": "longitude", "storeys": "storeys", "height_m": "height",
     "ground_pga_g": "ground_pga",
@@ -89,8 +92,9 @@ _TEXTS = ("path", "building", "use")
 def read_index(file: Path) -> tuple[IndexRow, ...]:
     """Read an index, in the order of its rows.
 
-    Cells are separated by commas, semicolons or tabs, with the last two also with decimal commas; columns are found by
-    their names, in any order; lines that begin with # are comments.
+    Cells are separated by commas, semicolons or tabs; columns are found by their names, in any order; lines that begin
+    with # are comments. Numbers are read as those of a workbook: with a decimal point or comma and separators between
+    thousands, refused where both readings can be meant. A row stands on one line.
 
     Raises
     ------
@@ -123,26 +127,41 @@ def _read_text(file: Path) -> str:
 
 def _split(text: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the cells of each line that is neither blank nor a comment, with its number."""
-    lines = (line for line in text.splitlines() if line.strip() and not is_comment(line))
-    heading = next(lines, "")
+    numbered = enumerate(io.StringIO(text, newline=None), 1)
+    lines = [(number, line.rstrip("\n")) for number, line in numbered if line.strip() and not is_comment(line)]
+    heading = lines[0][1] if lines else ""
     mark = next((one for one in "\t;" if one in heading), ",")
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
-    before = 0
+    for number, line in lines:
+        cells = _cut(number, line, mark)
+        if any(cells):
+            yield number, cells
+
+
+def _cut(number: int, line: str, mark: str) -> list[str]:
+    """Return the cells of a line, without spaces around them."""
     try:
-        for cells in reader:
-            line, before = before + 1, reader.line_num
-            if any(cell.strip() for cell in cells) and not is_comment(cells[0]):
-                yield line, [_tidy(cell, mark, line) for cell in cells]
+        (cells,) = csv.reader([line], delimiter=mark, strict=True)
     except csv.Error as error:
-        raise InputError(fill("line {line} cannot be read: {why}.", line=reader.line_num, why=error)) from None
+        raise InputError(_describe_cut(number, str(error))) from None
+    if any(len(cell) > LONGEST for cell in cells):
+        raise InputError(fill("line {line}: a cell is longer than {most:,} characters.", line=number, most=LONGEST))
+    return [cell.strip() for cell in cells]
 
 
-def _tidy(cell: str, mark: str, line: int) -> str:
-    if len(cell) > LONGEST:
-        raise InputError(fill("line {line}: a cell is longer than {most:,} characters.", line=line, most=LONGEST))
-    text = cell.strip()
-    is_decimal = mark != "," and re.fullmatch(r"[+-]?\d*,\d+(e[+-]?\d+)?", text, re.IGNORECASE | re.ASCII)
-    return text.replace(",", ".") if is_decimal else text
+def _describe_cut(line: int, why: str) -> Text:
+    if "unexpected end" in why:
+        return fill(
+            "line {line}: a quotation mark is not closed. Close it on the same line, or remove it: a cell cannot hold "
+            "a line break.",
+            line=line,
+        )
+    if "expected after" in why:
+        return fill(
+            "line {line}: characters follow a closing quotation mark. Write a quotation mark inside a quoted cell "
+            "twice, or remove the marks.",
+            line=line,
+        )
+    return fill("line {line} cannot be read: {why}.", line=line, why=why)
 
 
 # ---------------------------------------------------------------- cells to rows
@@ -218,12 +237,18 @@ def _read_row(line: int, names: Sequence[str], cells: Sequence[str], faults: lis
 
 
 def _read_number(name: str, text: str) -> float | int:
-    """Return a number within the limits of the column; InputError if it is none."""
-    if not _NUMBER.fullmatch(text):
+    """Return a number within the limits of the column; InputError if it is none, or can be read in two ways."""
+    match = _NUMBER.fullmatch(straighten(text))
+    digits = read_digits(match[2].rstrip()) if match else []
+    if match is None or not digits:
         raise InputError(fill("{name} is {text!r}, not a number.", name=name, text=text[:40]))
     low, high = _find_limits(name)
-    value = float(text)
-    if not low <= value <= high:
+    readings = [float(f"{match[1]}1{match[3] or ''}") * one for one in digits]
+    within = [one for one in readings if low <= one <= high]
+    if len(within) > 1:
+        raise InputError(_describe_two(name, text, within))
+    value = (within or readings)[0]
+    if not within:
         raise InputError(
             fill("{name} is {value:g}, expected {low:g} to {high:g}.", name=name, value=value, low=low, high=high)
         )
@@ -234,6 +259,16 @@ def _read_number(name: str, text: str) -> float | int:
     return int(value)
 
 
+def _describe_two(name: str, text: str, readings: Sequence[float]) -> Text:
+    """Say of a number in which way it can be read, and how to write either: three decimals with a zero after them."""
+    one, other = (f"{number:.10g}" for number in readings)
+    return fill(
+        "{name}: {text} can be {one:,.10g} or {other:,.10g}: write {plain_one} or {plain_other}.",
+        name=name, text=text[:40], one=readings[0], other=readings[1],
+        plain_one=f"{one}0" if len(read_digits(one)) > 1 else one, plain_other=other,
+    )  # fmt: skip
+
+
 def _find_limits(name: str) -> tuple[float, float]:
     if name == "floor_area_m2":
         return 1.0, _LARGEST_AREA
@@ -242,15 +277,32 @@ def _find_limits(name: str) -> tuple[float, float]:
 
 
 def _list_repeated(rows: Sequence[IndexRow]) -> Iterator[Text]:
-    """Yield a fault where a path, or the name of a building without one, stands there twice."""
-    paths = Counter(tidy_path(row.path) for row in rows if row.path)
-    names = Counter(row.building for row in rows if not row.path)
+    """Yield a fault for each path, and each name of a building without one, that stands there more than once."""
+    paths: dict[str, list[int]] = {}
+    names: dict[str, list[int]] = {}
     for row in (one for one in rows if one.path or one.building):
-        name = tidy_path(row.path) if row.path else row.building
-        if (paths if row.path else names)[name] > 1:
-            yield fill("line {line}: {name!r} is listed more than once.", line=row.line, name=name[:80])
-        elif not row.path and name in paths:
-            yield fill("line {line}: {name!r} is also the path of a workbook.", line=row.line, name=name[:80])
+        found = paths if row.path else names
+        found.setdefault(tidy_path(row.path) if row.path else row.building, []).append(row.line)
+    for found in (paths, names):
+        for name, lines in found.items():
+            if len(lines) > 1:
+                yield _describe_repeated(name, lines, is_path=found is paths)
+    for name in (one for one in names if one in paths):
+        yield fill("line {line}: {name!r} is also the path of a workbook.", line=names[name][0], name=name[:80])
+
+
+def _describe_repeated(name: str, lines: Sequence[int], *, is_path: bool) -> Text:
+    last: Text | str = str(lines[-1])
+    first = lines[:-1]
+    if len(lines) > MOST_LINES:
+        first = lines[:MOST_LINES]
+        last = fill("{n:,} more", n=len(lines) - MOST_LINES)
+    values = {"lines": ", ".join(map(str, first)), "last": last, "name": plain_line(name[:80])}
+    if is_path:
+        return fill("lines {lines} and {last} list the same workbook, {name}: keep one of them.", **values)
+    return fill(
+        "lines {lines} and {last} list the same building without a workbook, {name}: keep one of them.", **values
+    )
 
 
 def tidy_path(text: str) -> str:

@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any
 
 from assess.delivery.deliver import deliver, explain_fault, stage_for
@@ -13,7 +13,7 @@ from assess.delivery.stages import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField
-from assess.plain_text import plain_line
+from assess.plain_text import plain_line, plain_text
 from assess.portfolio.building_rows import list_problems, to_row
 from assess.portfolio.building_task import Summary
 from assess.portfolio.part_files import FOLDER, Part, read_part
@@ -138,7 +138,9 @@ def _note_alike(part: Part, first: str | None) -> Part:
                  path=plain_line(first))  # fmt: skip
     fix = fill("Remove one of them if they are the same building.")
     notes = [to_row("problems", one) for one in list_problems(part.path, [Problem("note", "", "", fault, fix)])]
-    return replace(part, tables={**part.tables, "problems": [*part.rows("problems"), *notes]})
+    at = [column.name for column in TABLES["buildings"]].index("same_as")
+    rows = [[*row[:at], first, *row[at + 1 :]] for row in part.rows("buildings")]
+    return replace(part, tables={**part.tables, "buildings": rows, "problems": [*part.rows("problems"), *notes]})
 
 
 def _find_part(out: Path, summary: Summary) -> Part:
@@ -209,7 +211,9 @@ def list_skipped(view: "CityView") -> Iterator[tuple[str, str]]:
             row = first.loc[path]
             place = "!".join(one for one in (row["sheet"], row["cell"]) if one)
             said = " ".join(str(row[name]) for name in ("message", "fix") if row[name])
-            yield path, f"{place}: {said}" if place else said
+            file = f"{plain_text(PurePath(path).name)} "
+            said = f"it {said.removeprefix(file)}" if said.startswith(file) else said  # the path stands before it
+            yield path, f"{place}: {said}" if place else said[:1].upper() + said[1:]
         else:
             yield path, ""
 

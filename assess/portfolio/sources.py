@@ -23,6 +23,9 @@ MOST_BUILDINGS = 200_000
 OURS = {"report.xlsx": "results.json", "ranking.xlsx": "portfolio.json", "compare.xlsx": "compare.json"}
 """Workbooks that are results of `assess`, where the file that lists them lies next to them."""
 
+_Fault = tuple[Text | str, Text | str]
+"""What is wrong, and what to do about it."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
@@ -38,8 +41,8 @@ class Source:
         The workbook.
     index : IndexRow, optional
         Its row of the index.
-    refused : Text
-        Why it cannot be used; "" if it can.
+    refused, fix : Text
+        Why it cannot be used, and what to do about it; "" if it can.
     """
 
     path: str
@@ -47,6 +50,7 @@ class Source:
     file: Path | None = None
     index: IndexRow | None = None
     refused: Text | str = ""
+    fix: Text | str = ""
 
 
 def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
@@ -115,9 +119,8 @@ def _search(root: Path, out: Path | None) -> Iterator[Source]:
         try:
             entries = sorted(os.scandir(folder), key=lambda one: one.name)
         except OSError as error:
-            yield Source(
-                path=_name(folder, root), refused=fill("the folder cannot be read: {why}.", why=error.strerror)
-            )
+            fault = fill("the folder cannot be read: {why}.", why=error.strerror)
+            yield Source(path=_name(folder, root), refused=fault, fix=fill("Check its name and its access rights."))
             continue
         names = {one.name for one in entries}
         for entry in entries:
@@ -134,19 +137,19 @@ def _take_entry(entry: "os.DirEntry[str]", path: Path, root: Path, names: set[st
     """Return the building of an entry that is no folder; None where it is no workbook."""
     name = _name(path, root)
     if entry.name.lower().endswith(OTHER_ENDINGS):
-        return Source(path=name, refused=_refuse_format(entry.name))
+        what = _refuse_format(entry.name)
+        return Source(path=name, refused=what, fix=fill("Save it as .xlsx (Excel Workbook) and remove this file."))
     if entry.is_symlink() and path.is_dir():
-        return Source(path=name, refused=fill("it is a link to a folder, which is not searched. Copy the folder here."))
+        what = fill("it is a link to a folder, which is not searched.")
+        return Source(path=name, refused=what, fix=fill("Copy the folder here."))
     if not entry.name.lower().endswith(ENDINGS) or OURS.get(entry.name) in names:
         return None
-    return Source(path=name, file=path, refused=_judge(path, root))
+    fault, fix = _judge(path, root)
+    return Source(path=name, file=path, refused=fault, fix=fix)
 
 
 def _refuse_format(name: str) -> Text:
-    return fill(
-        "workbooks ending in {ending} are not read. Save it as .xlsx (Excel Workbook) and remove this file.",
-        ending=Path(name.lower()).suffix,
-    )
+    return fill("workbooks ending in {ending} are not read.", ending=Path(name.lower()).suffix)
 
 
 def _name(path: Path, root: Path) -> str:
@@ -155,17 +158,28 @@ def _name(path: Path, root: Path) -> str:
     return text.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
 
 
-def _judge(path: Path, root: Path) -> Text | str:
-    """Return why a workbook below the folder cannot be used; "" if it can."""
+def _is_link(path: Path) -> bool:
+    try:
+        return path.is_symlink()
+    except OSError:  # a name that is too long
+        return False
+
+
+def _judge(path: Path, root: Path) -> _Fault:
+    """Return why a workbook below the folder cannot be used, and what to do; "" if it can."""
     try:
         real = path.resolve(strict=True)
     except (OSError, RuntimeError) as error:
+        if _is_link(path):
+            fault = fill("it is a link that leads to no file, or in a circle.")
+            return fault, fill("Copy the workbook here in place of the link.")
         if getattr(error, "errno", None) == errno.ENOENT:
-            return fill("there is no such file.")
-        return fill("the file cannot be found: {why}.", why=getattr(error, "strerror", None) or str(error))
+            return fill("there is no such file."), fill("Check the name and the folder.")
+        fault = fill("the file cannot be found: {why}.", why=getattr(error, "strerror", None) or str(error))
+        return fault, fill("Check its name and its access rights.")
     if not real.is_relative_to(root):
-        return fill("it is a link that leads out of the folder. Copy the workbook here.")
-    return "" if real.is_file() else fill("it is not a file.")
+        return fill("it is a link that leads out of the folder."), fill("Copy the workbook here.")
+    return ("", "") if real.is_file() else (fill("it is not a file."), fill("Check the name and the folder."))
 
 
 # ---------------------------------------------------------------- an index
@@ -176,21 +190,25 @@ def _take_row(row: IndexRow, root: Path) -> Source:
     if not row.path:
         return Source(path=row.building, kind="assumed", index=row)
     name = tidy_path(row.path)
-    fault = _judge_text(name)
+    fault, fix = _judge_text(name)
     file = None if fault else root / name
-    return Source(path=name, file=file, index=row, refused=fault or _judge(root / name, root))
+    if not fault:
+        fault, fix = _judge(root / name, root)
+    return Source(path=name, file=file, index=row, refused=fault, fix=fix)
 
 
-def _judge_text(name: str) -> Text | str:
-    """Return why a path of an index cannot be used, judged before the file system sees it; "" if it can."""
+def _judge_text(name: str) -> _Fault:
+    """Return why a path of an index cannot be used, and what to do; "" if it can.
+
+    It is judged before the file system sees it.
+    """
     is_absolute = name.startswith("/") or name[1:2] == ":"
     if is_absolute or ".." in name.split("/") or "\0" in name:
-        return fill("the path leads out of the folder of the index. Write it relative to that folder.")
+        fault = fill("the path leads out of the folder of the index.")
+        return fault, fill("Write it relative to that folder.")
     if name.lower().endswith(OTHER_ENDINGS):
-        return fill(
-            "workbooks ending in {ending} are not read. Save it as .xlsx (Excel Workbook) and name that file.",
-            ending=Path(name.lower()).suffix,
-        )
+        return _refuse_format(name), fill("Save it as .xlsx (Excel Workbook) and name that file.")
     if not name.lower().endswith(ENDINGS):
-        return fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
-    return ""
+        fault = fill("it is not a workbook: its name has to end in .xlsx or .xlsm.")
+        return fault, fill("Correct the path in the index.")
+    return "", ""

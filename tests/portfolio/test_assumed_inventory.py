@@ -92,8 +92,8 @@ def test_uses_without_quantities_are_refused_with_the_reason(use):
 @pytest.mark.parametrize(
     ("blank", "message"),
     [
-        ({"use": ""}, r"^no inventory can be assumed without use\. Fill it in in the index"),
-        ({"storeys": None}, r"^no inventory can be assumed without storeys\. Fill it in"),
+        ({"use": ""}, r"^no inventory can be assumed without use\. Give it in the index"),
+        ({"storeys": None}, r"^no inventory can be assumed without storeys\. Give it in"),
         ({"floor_area_m2": None, "storeys": None}, r"without storeys, floor_area_m2\."),
         ({"floor_area_m2": 5.0}, "for a floor area of 5 m2: FEMA P-58 gives less than one piece"),
         (

@@ -4,6 +4,7 @@ from assess.errors import InputError, WorkbookError
 from assess.portfolio.building_inventory import read_building
 from assess.portfolio.index_file import IndexRow
 from assess.portfolio.sources import Source
+from assess.workbook.template import Content, write_workbook
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
 from tests.workbooks import write
 
@@ -74,3 +75,90 @@ def test_a_use_without_quantities_is_refused():
     row = IndexRow(building="School", use="School", storeys=2, floor_area_m2=1000.0, ground_pga_g=0.3)
     with pytest.raises(InputError, match="FEMA P-58 gives quantities of furniture for office, healthcare"):
         _read(Source(path="School", kind="assumed", index=row))
+
+
+# ---------------------------------------------------------------- an index that contradicts its workbook
+
+SURVEYED = {
+    "building": "Town hall",
+    "latitude": 37.77509,
+    "longitude": -122.41,
+    "use": "School",
+    "storeys": 3,
+    "height": 10,
+}
+SAME = {
+    "building": "TOWN  HALL",
+    "latitude": 37.78,
+    "longitude": -122.405,
+    "use": "school",
+    "storeys": 3,
+    "height_m": 10.05,
+}
+
+
+def _warn(tmp_path, **index):
+    path = tmp_path / "w.xlsx"
+    rows = {
+        "Building": [{**SURVEYED, "ground_pga": 0.3}],
+        "Floors": [{"floor": "1", "elevation": 0}],
+        "Items": [{"item": "A1", "floor": "1", "breadth": 30, "height": 200}],
+    }
+    write_workbook(path, Content(rows=rows), spare=1)
+    origin, inventory = _read(Source(path="w.xlsx", file=path, index=IndexRow(path="w.xlsx", **index)), path)
+    assert origin.inventory == "surveyed"
+    assert inventory.building.building == "Town hall", "the workbook holds"
+    return [one for one in inventory.problems if one.severity == "warning" and "the index says" in one.message]
+
+
+def test_an_index_that_contradicts_its_workbook_is_told_in_one_warning(tmp_path):
+    (warning,) = _warn(tmp_path, **SAME | {"latitude": 37.2, "use": "hospital"})
+    assert warning.message == (
+        "the index says Latitude 37.2, Use hospital; the workbook says 37.77509, School: the workbook holds."
+    )
+    assert warning.fix == "Check that the line of the index belongs to this workbook."
+    assert warning.sheet == "Building"
+
+
+def test_every_field_that_can_contradict_is_listed(tmp_path):
+    row = {"building": "Library", "latitude": 38, "longitude": -121, "use": "Shop", "storeys": 4, "height_m": 14}
+    (warning,) = _warn(tmp_path, **row)
+    assert warning.message == (
+        "the index says Building Library, Latitude 38, Longitude -121, Use Shop, Storeys 4, Height 14; the workbook "
+        "says Town hall, 37.77509, -122.41, School, 3, 10: the workbook holds."
+    )
+
+
+@pytest.mark.parametrize("row", [{}, SAME, {"floor_area_m2": 500.0, "ground_pga_g": 0.4}])
+def test_an_index_that_says_the_same_or_nothing_is_not_warned_of(tmp_path, row):
+    assert _warn(tmp_path, **row) == []
+
+
+def test_two_sides_of_the_date_line_are_near():
+    from assess.portfolio.building_inventory import _is_near
+
+    assert _is_near(179.999, -179.999)
+    assert not _is_near(179.9, -179.9)
+
+
+def test_a_cobie_file_takes_its_name_from_the_index_and_keeps_its_use(tmp_path):
+    path = write_cobie(tmp_path / "c.xlsx")
+    row = IndexRow(path="c.xlsx", building="Clinic", use="office", height_m=8.0, ground_pga_g=0.3)
+    _, inventory = _read(Source(path="c.xlsx", file=path, index=row), path)
+    assert (inventory.building.building, inventory.building.use) == ("Clinic", "Hospital")
+    (warning,) = (one for one in inventory.problems if "the index says" in one.message)
+    assert warning.message == "the index says Use office; the COBie file says Hospital: the COBie file holds."
+    assert warning.fix == "Check that the line of the index belongs to this COBie file."
+
+
+def test_a_cobie_file_keeps_its_own_name_without_one_of_the_index(tmp_path):
+    path = write_cobie(tmp_path / "c.xlsx")
+    _, inventory = _read(Source(path="c.xlsx", file=path, index=SHAKEN), path)
+    assert inventory.building.building == "East wing"
+    assert not any("the index says" in one.message for one in inventory.problems)
+
+
+def test_a_cobie_file_in_a_wrong_unit_is_named_by_the_cell_of_the_unit(tmp_path):
+    path = write_cobie(tmp_path / "c.xlsx", facility={"LinearUnits": "feet"})
+    with pytest.raises(WorkbookError, match="Facility!G2: LinearUnits is 'feet', but all sizes of furniture are out"):
+        _read(Source(path="c.xlsx", file=path, index=SHAKEN), path)

@@ -15,6 +15,7 @@ from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings
 from assess.workbook.template import Content, write_workbook
 from tests.portfolio.staged import StagedGround, write_building, write_city
+from tests.workbook.books import write_book
 from tests.workbooks import write
 
 SETTINGS = Settings(verify="none", city=True)
@@ -105,6 +106,41 @@ def test_a_workbook_that_cannot_be_used_is_skipped_with_its_problems(task):
     assert (building["status"], building["pieces"], building["expected_falls"]) == ("skipped", None, None)
 
 
+@pytest.mark.parametrize(
+    ("row", "use"), [("office", "Office"), ("HOSPITAL", "Hospital"), ("Town hall", "Town hall"), ("ufficio", "ufficio")]
+)
+def test_a_use_is_spelled_as_the_workbook_offers_it(task, row, use):
+    index = replace(task, source=replace(task.source, index=IndexRow(path=task.source.path, use=row)))
+    assert _rows(index, "buildings")[0]["use"] == use
+    write_building(task.source.file, latitude=40.0, longitude=10.0, use=row)
+    assert _rows(task, "buildings")[0]["use"] == use
+    task.source.file.write_bytes(b"junk")
+    assert _rows(index, "buildings")[0]["use"] == use, "of a building that is skipped"
+
+
+def test_an_index_that_contradicts_its_workbook_is_a_warning_of_the_building(task):
+    row = IndexRow(path=task.source.path, latitude=41.0, longitude=10.0)
+    other = replace(task, source=replace(task.source, index=row))
+    (warning,) = [one for one in _rows(other, "problems") if "the index says" in one["message"]]
+    assert (warning["severity"], warning["sheet"]) == ("warning", "Building")
+    assert warning["message"] == "the index says Latitude 41; the workbook says 40: the workbook holds."
+    assert _rows(other, "buildings")[0]["warnings"] == 1 + _rows(task, "buildings")[0]["warnings"]
+
+
+def test_missing_sheets_are_told_before_the_place_that_the_ground_motion_needs(task):
+    write_book(task.source.file, {"Sheet": [["hi"]]})
+    errors = [one for one in _rows(task, "problems") if one["severity"] == "error"]
+    assert [one["message"] for one in errors[:2]] == ["the sheet is missing."] * 2
+    assert {one["sheet"] for one in errors[:2]} == {"Floors", "Items"}
+    assert "Latitude, Longitude are blank" in errors[2]["message"]
+
+
+def test_a_file_of_0_bytes_is_called_empty(task):
+    task.source.file.write_bytes(b"")
+    (problem,) = _rows(task, "problems")
+    assert (problem["message"], problem["fix"]) == ("b00.xlsx is empty (0 bytes).", "Download or copy it again.")
+
+
 @pytest.mark.parametrize("data", [b"", b"junk", b"PK\x03\x04junk"])
 def test_what_is_no_workbook_is_skipped(task, data):
     task.source.file.write_bytes(data)
@@ -113,8 +149,9 @@ def test_what_is_no_workbook_is_skipped(task, data):
 
 
 def test_a_refused_source_is_skipped_with_the_reason(task):
-    refused = replace(task, source=Source(path="x.xlsx", refused="it is a link that leads out of the folder."))
-    assert [one["message"] for one in _rows(refused, "problems")] == ["it is a link that leads out of the folder."]
+    source = Source(path="x.xlsx", refused="it is a link that leads out of the folder.", fix="Copy the workbook here.")
+    (problem,) = _rows(replace(task, source=source), "problems")
+    assert (problem["message"], problem["fix"]) == (source.refused, source.fix)
 
 
 @pytest.mark.parametrize(("error", "message"), [(MemoryError, "memory of this machine"), (KeyError("x"), "KeyError")])

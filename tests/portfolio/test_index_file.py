@@ -60,8 +60,13 @@ def test_latin_1_is_read(tmp_path):
         ("path,floor_area_m2\na.xlsx,-5\n", "line 2: floor_area_m2 is -5"),
         ("path\na.xlsx,b\n", "line 2: there are more cells than headings"),
         ("path,use\n,office\n", "line 2: give a path, or the name of a building without a survey"),
-        ("path\na.xlsx\n./a.xlsx\n", "line 2: 'a.xlsx' is listed more than once"),
-        ("building\nHall\nHall\n", "line 3: 'Hall' is listed more than once"),
+        (
+            "path\na.xlsx\n./a.xlsx\n",
+            r"^index\.csv: lines 2 and 3 list the same workbook, a\.xlsx: keep one of them\.$",
+        ),
+        ("path\na.xlsx\nb.xlsx\na.xlsx\n\na.xlsx\n", r"lines 2, 4 and 6 list the same workbook, a\.xlsx"),
+        ("path\n" + 13 * "a.xlsx\n", r"lines 2, 3, 4, 5, 6, 7, 8, 9, 10, 11 and 3 more list the same workbook"),
+        ("building\nHall\nHall\n", "lines 2 and 3 list the same building without a workbook, Hall: keep one of them"),
         ("path,building\na.xlsx,\n,a.xlsx\n", "line 3: 'a.xlsx' is also the path of a workbook"),
         (b"PK\x03\x04", "not plain text. Save it as CSV UTF-8"),
         ("building\n" + "x" * 5000 + "\n", "line 2: a cell is longer than 4,000 characters"),
@@ -70,6 +75,77 @@ def test_latin_1_is_read(tmp_path):
 def test_a_slip_is_named_with_its_line(tmp_path, text, message):
     with pytest.raises(InputError, match=message):
         _read(tmp_path, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            'path,building\na.xlsx,"Old town hall\nb.xlsx,Library\nc.xlsx,Office\n',
+            "line 2: a quotation mark is not closed",
+        ),
+        ('path,building\na.xlsx,"Old\nb.xlsx,"Library"\n', "line 2: a quotation mark is not closed"),
+        ('path,building\na.xlsx,x\nb.xlsx,"Old\ntown hall"\n', "line 3: .* a cell cannot hold a line break"),
+        ('path,building\r\na.xlsx,"Old\rtown"\r\n', "line 2: .* a cell cannot hold a line break"),
+        ('"path\na.xlsx\n', r"^index\.csv: line 1: a quotation mark is not closed\. Close it on the same line"),
+        ('path,building\na.xlsx,"Old" hall\n', "line 2: characters follow a closing quotation mark. Write a quotation"),
+        ("path\n" + "x" * 200_000, "line 2 cannot be read: field larger"),
+    ],
+)
+def test_quotation_marks_that_do_not_pair_and_line_breaks_in_cells_are_refused(tmp_path, text, message):
+    with pytest.raises(InputError, match=message):
+        _read(tmp_path, text)
+
+
+def test_quotation_marks_in_comments_and_inside_of_cells_are_no_slips(tmp_path):
+    text = '# a, "note\n"# another, one"\npath,building\na.xlsx,Hall "A\nb.xlsx,"The ""Hall"", east"\n'
+    assert [(one.line, one.building) for one in _read(tmp_path, text)] == [(4, 'Hall "A'), (5, 'The "Hall", east')]
+
+
+@pytest.mark.parametrize(
+    ("typed", "message"),
+    [
+        ("25.000", r"line 2: floor_area_m2: 25\.000 can be 25 or 25,000: write 25 or 25000\."),
+        ("25,000", r"line 2: floor_area_m2: 25,000 can be 25 or 25,000: write 25 or 25000\."),
+        ("25.125", r"25\.125 can be 25\.125 or 25,125: write 25\.1250 or 25125\."),
+    ],
+)
+def test_a_number_that_can_be_read_in_two_ways_is_refused_with_both(tmp_path, typed, message):
+    text = f"{HEAD.replace(',', ';')};Semi;37,7;-122,4;office;3;10,5;{typed};\n"
+    with pytest.raises(InputError, match=message):
+        _read(tmp_path, text)
+
+
+@pytest.mark.parametrize(
+    ("name", "typed", "number"),
+    [
+        ("latitude", "37.789", 37.789),
+        ("longitude", "-122,419", -122.419),
+        ("longitude", "\u2212122,419", -122.419),
+        ("ground_pga_g", "0,150", 0.15),
+        ("ground_pga_g", "1.250", 1.25),
+        ("height_m", "10.500", 10.5),
+        ("height_m", "1.050,5", None),
+        ("floor_area_m2", "25.1250", 25.125),
+        ("floor_area_m2", "1250.125", 1250.125),
+        ("floor_area_m2", "25.000,5", 25000.5),
+        ("floor_area_m2", "1.250.000", 1250000.0),
+        ("floor_area_m2", "25 000", 25000.0),
+        ("floor_area_m2", "2.5e3", 2500.0),
+    ],
+)
+def test_a_number_that_can_be_read_in_one_way_within_the_range_is_read(tmp_path, name, typed, number):
+    other = {"latitude": "longitude", "longitude": "latitude"}.get(name, "use")
+    text = f"path;{name};{other}\na.xlsx;{typed};1\n"
+    if number is None:
+        with pytest.raises(InputError, match=r"line 2: height_m is 1050\.5, expected 2 to 1000"):
+            _read(tmp_path, text)
+    else:
+        assert getattr(_read(tmp_path, text)[0], name) == number
+
+
+def test_a_name_that_looks_like_a_number_stays_as_it_is(tmp_path):
+    assert _read(tmp_path, "path;building\na.xlsx;12,5\n")[0].building == "12,5"
 
 
 def test_all_slips_are_named_at_once_up_to_a_limit(tmp_path):
@@ -86,8 +162,7 @@ def test_a_slip_is_told_once_and_together_with_those_of_names(tmp_path):
         "index.csv: line 2: latitude is 95, expected -90 to 90.",
         "line 3: latitude is 'x', not a number.",
         "line 5: give a path, or the name of a building without a survey.",
-        "line 2: 'a.xlsx' is listed more than once.",
-        "line 3: 'a.xlsx' is listed more than once.",
+        "lines 2 and 3 list the same workbook, a.xlsx: keep one of them.",
     ]
 
 

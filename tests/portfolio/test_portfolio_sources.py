@@ -39,11 +39,13 @@ def test_a_workbook_of_another_format_is_a_building_that_is_refused_with_what_to
     _put(tmp_path, f"sub/old{ending}", "~$old.xls", ".hidden.ods")
     (found,) = find_sources(tmp_path)
     assert found.path == f"sub/old{ending}"
-    assert f"workbooks ending in {ending.lower()} are not read. Save it as .xlsx" in str(found.refused)
+    assert found.refused == f"workbooks ending in {ending.lower()} are not read."
+    assert found.fix == "Save it as .xlsx (Excel Workbook) and remove this file."
     index = tmp_path / "index.csv"
     index.write_text(f"path\nsub/old{ending}\n", encoding="utf-8")
     (listed,) = find_sources(index)
-    assert "Save it as .xlsx (Excel Workbook) and name that file." in str(listed.refused)
+    assert listed.refused == found.refused
+    assert listed.fix == "Save it as .xlsx (Excel Workbook) and name that file."
 
 
 def test_equal_bytes_at_two_paths_are_two_buildings(tmp_path):
@@ -80,12 +82,12 @@ def test_links_that_lead_out_are_refused_and_those_inside_are_buildings(tmp_path
     (root / "folder").symlink_to(outside)
     (root / "gone.xlsx").symlink_to(root / "nothing.xlsx")
     (root / "round.xlsx").symlink_to(root / "round.xlsx")
-    found = {one.path: str(one.refused) for one in find_sources(root)}
-    assert found["a.xlsx"] == found["inside.xlsx"] == ""
-    assert found["leads-out.xlsx"] == "it is a link that leads out of the folder. Copy the workbook here."
-    assert "link to a folder, which is not searched" in found["folder"]
-    assert found["gone.xlsx"] == "there is no such file."
-    assert found["round.xlsx"].startswith("the file cannot be found")
+    found = {one.path: (str(one.refused), str(one.fix)) for one in find_sources(root)}
+    assert found["a.xlsx"] == found["inside.xlsx"] == ("", "")
+    assert found["leads-out.xlsx"] == ("it is a link that leads out of the folder.", "Copy the workbook here.")
+    assert found["folder"] == ("it is a link to a folder, which is not searched.", "Copy the folder here.")
+    nowhere = "it is a link that leads to no file, or in a circle.", "Copy the workbook here in place of the link."
+    assert found["gone.xlsx"] == found["round.xlsx"] == nowhere
 
 
 def test_a_folder_without_workbooks_a_workbook_and_nothing_are_errors(tmp_path):
@@ -116,6 +118,7 @@ def test_an_index_names_buildings_below_its_folder_alone(tmp_path):
     assert found["sub/b.xlsx"].file == tmp_path / "in" / "sub" / "b.xlsx"
     outside = "the path leads out of the folder of the index"
     refused = {path: str(one.refused) for path, one in found.items() if one.refused}
+    assert all(found[path].fix for path in refused)
     assert sorted(refused) == sorted(
         ["../secret.xlsx", "gone.xlsx", f"{tmp_path.as_posix()}/secret.xlsx", "C:/x.xlsx", "a.pdf"]
     )
