@@ -6,12 +6,15 @@ is given to another one; a batch that keeps killing workers is done building by 
 is skipped. Whoever can reach a scheduler can run code on its workers: it belongs in a trusted network.
 """
 
+import asyncio
 import hashlib
 import os
 import platform
+import re
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,6 +42,9 @@ CONNECTING, JOINING = 10.0, 30.0
 _ASKED_EVERY = 0.5
 _RETRIES = 2
 _PROBE = ".probe-"
+_ADDRESS = re.compile(
+    r"(?:(?:tcp|tls|ucx|wss?)://)?(?:\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9][A-Za-z0-9._-]*):(\d{1,5})", re.ASCII
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,6 +96,19 @@ def check_cluster() -> None:
         ) from None
 
 
+def check_address(scheduler: str) -> None:
+    """Raise InputError unless an address has the form of one of a scheduler."""
+    match = _ADDRESS.fullmatch(scheduler)
+    if match is None or not 0 < int(match[1]) < 65536:
+        raise InputError(
+            fill(
+                "scheduler is {address!r}, expected tcp://HOST:PORT, such as tcp://10.0.0.5:8786 (tls, ucx, ws or wss "
+                "may take the place of tcp)",
+                address=plain_line(scheduler)[:100],
+            )
+        )
+
+
 def run_on_cluster(
     tasks: Sequence[Task], scheduler: str, *, is_simulated: bool, progress: Progress = SILENT
 ) -> Iterator[Summary]:
@@ -109,38 +128,101 @@ def run_on_cluster(
     Raises
     ------
     InputError
-        If dask is not installed, the scheduler cannot be reached or has no workers, or a worker has another version of
-        a package, several threads, or does not see the folders.
+        If dask is not installed, the address is none, no scheduler can be reached there or it has no workers, or a
+        worker has another version of a package, several threads, or does not see the folders.
     OutputError
         If the scheduler is lost; parts that are written stay.
     CancelledError
         If the work was cancelled; parts that are written stay.
     """
     check_cluster()
+    check_address(scheduler)
     size = 1 if is_simulated else BATCH
     batches = deque(Batch(tuple(tasks[at : at + size])) for at in range(0, len(tasks), size))
-    with _connect(scheduler) as client, _probe(tasks) as site:
+    with _connect(scheduler, progress) as client, _probe(tasks) as site:
         _wait_for_worker(client, scheduler, progress)
         check_workers(client, site)
         yield from _hand_over(client, site, batches, scheduler, progress)
 
 
 @contextmanager
-def _connect(scheduler: str) -> Iterator["Client"]:
+def _connect(scheduler: str, progress: Progress) -> Iterator["Client"]:
     from distributed import Client
 
+    _find_scheduler(scheduler, progress)  # a Client that fails says so for itself, at length and late
     try:
         client = Client(scheduler, timeout=CONNECTING, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        why = plain_line(str(error)).strip() or type(error).__name__
-        raise InputError(
-            fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why)
-        ) from None
+    except Exception as error:  # whatever dask makes of what it was sent
+        raise _describe_silence(scheduler, error) from None
     try:
         yield client
     finally:
         with suppress(Exception):  # a scheduler that is gone
             client.close(timeout=2)
+
+
+def _find_scheduler(scheduler: str, progress: Progress) -> None:
+    """Raise InputError unless a scheduler of dask answers at the address."""
+    with ThreadPoolExecutor(1) as thread:  # the caller may have a loop of its own
+        answer = thread.submit(asyncio.run, _ask(scheduler, progress)).result()
+    if isinstance(answer, Exception):
+        raise _describe_silence(scheduler, answer)
+    if not isinstance(answer, dict) or answer.get("type") != "Scheduler":
+        raise _describe_other(scheduler)
+
+
+async def _ask(scheduler: str, progress: Progress) -> Any:
+    """Return what is answered at the address to the question who is there, or the error that came instead."""
+    asking = asyncio.ensure_future(_ask_identity(scheduler))
+    latest = time.monotonic() + CONNECTING
+    while not asking.done() and time.monotonic() < latest:
+        progress.check()
+        await asyncio.wait((asking,), timeout=_ASKED_EVERY / 5)
+    if not asking.done():
+        asking.cancel()
+        return TimeoutError()
+    return asking.exception() or asking.result()
+
+
+async def _ask_identity(scheduler: str) -> Any:
+    from distributed.comm import connect
+    from distributed.security import Security
+
+    comm = await connect(scheduler, timeout=CONNECTING / 2, **Security().get_connection_args("client"))
+    try:
+        await comm.write({"op": "identity", "reply": True})
+        return await comm.read()
+    finally:
+        comm.abort()
+
+
+def _describe_silence(scheduler: str, error: Exception) -> InputError:
+    """Return an error that says that nobody is at the address, or what is not a scheduler."""
+    is_silent = isinstance(error, OSError) and not isinstance(error, TimeoutError)
+    if not is_silent and not isinstance(error, TypeError | ImportError):  # these: no certificate, no package
+        return _describe_other(scheduler)
+    why = plain_line(_find_reason(error)).strip() or type(error).__name__
+    return InputError(fill("scheduler {address} cannot be reached: {why}. Is it running?", address=scheduler, why=why))
+
+
+def _find_reason(error: Exception) -> str:
+    """Return what the system refused, which dask wraps; else the text of the error."""
+    inner: BaseException | None = error
+    while inner is not None:
+        if isinstance(inner, OSError) and inner.strerror:
+            return str(inner.strerror)
+        inner = getattr(inner, "real_error", None) or inner.__cause__
+    return str(error)
+
+
+def _describe_other(scheduler: str) -> InputError:
+    return InputError(
+        fill(
+            "scheduler {address}: what is there does not answer as a dask scheduler of this version. Check host and "
+            "port: a scheduler prints its address when it starts.",
+            address=scheduler,
+        )
+    )
 
 
 def _wait_for_worker(client: "Client", scheduler: str, progress: Progress) -> None:

@@ -122,7 +122,7 @@ def run_portfolio(
     job = Output(
         sources=find_sources(source, out),
         out=out,
-        settings=_check_settings(settings or Settings()),
+        settings=_check_settings(settings or Settings(), ground),
         ground=_locate(ground),
         formats=tuple(name for name in FORMATS if name in formats),
         background=background,
@@ -147,11 +147,12 @@ def run_portfolio(
 
 
 def check_extras(formats: Sequence[str], scheduler: str | None) -> None:
-    """Raise InputError if a format is unknown, or a package is not installed that the run needs."""
+    """Raise InputError if a format or the address is none, or a package is not installed that the run needs."""
     check_formats(formats)
     if scheduler is not None:
-        from assess.portfolio.cluster import check_cluster
+        from assess.portfolio.cluster import check_address, check_cluster
 
+        check_address(scheduler)
         check_cluster()
 
 
@@ -180,11 +181,17 @@ def _check_out(source: Path, out: Path, formats: Sequence[str]) -> None:
         find_reports(out, list_names(formats), DATA)
 
 
-def _check_settings(settings: Settings) -> Settings:
+def _check_settings(settings: Settings, ground: GroundField | None) -> Settings:
+    """Return the settings of all buildings; InputError if none of them could be assessed with their draws."""
     if settings.runs == AUTO and settings.verify != "none":
         raise InputError(
             fill("runs is {runs}: all buildings of a city need the same draws. Give a number, such as 200.", runs=AUTO)
         )
+    scenarios = getattr(ground, "event_count", 0)
+    if scenarios and settings.verify != "none":
+        from assess.pipeline.city_draws import choose_runs
+
+        choose_runs(scenarios, settings.runs)
     return replace(settings, city=True)
 
 

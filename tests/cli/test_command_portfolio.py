@@ -74,6 +74,8 @@ def test_the_same_command_goes_on_from_what_is_there(tmp_path):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
+        (["--scheduler", "banana"], r"^error  --scheduler is 'banana', expected tcp://HOST:PORT, such as .*\)$"),
+        (["--scheduler", "http://127.0.0.1:1"], "--scheduler is 'http://127.0.0.1:1', expected tcp://HOST:PORT"),
         (["--jobs", "2", "--scheduler", "tcp://127.0.0.1:1"], "--jobs: the workers of --scheduler do the work"),
         (["--ideal"], "--ideal is about the simulation"),
         (["--runs", "auto", "--verify", "all"], "--runs is auto: all buildings of a city need the same draws"),
@@ -91,6 +93,23 @@ def test_bad_usage_is_named_with_its_option_and_writes_nothing(tmp_path, monkeyp
     assert result.exit_code == 2
     assert re.search(message, result.stderr)
     assert [path.name for path in tmp_path.iterdir()] == ["city"]
+
+
+def test_runs_that_do_not_fit_the_scenarios_are_refused_and_leave_the_results(tmp_path):
+    city = write_city(tmp_path / "city", [40.0])
+    ground, out = tmp_path / "gm", tmp_path / "out"
+    ground.mkdir()
+    rows = "".join(f"0,{event},{0.2 + event / 100}\n" for event in range(5))
+    (ground / "gmf-data.csv").write_text(f"site_id,event_id,gmv_PGA\n{rows}")
+    (ground / "sitemesh.csv").write_text("site_id,lon,lat\n0,10.0,40.0\n")
+    words = ("portfolio", city, "--ground-motions", ground, "--formats", "html", "--jobs", "1", "--out", out)
+    assert run(app, [str(word) for word in (*words, "--runs", "10")]).exit_code == 0
+    before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
+    result = run(app, [str(word) for word in (*words, "--runs", "12")])
+    assert result.exit_code == 2
+    said = "error  --runs is 12, expected a multiple of 5, the number of scenarios: each has to count alike."
+    assert said in result.stderr
+    assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
 
 
 def test_an_example_is_written_to_a_new_folder_alone(tmp_path):

@@ -2,10 +2,12 @@
 
 import contextlib
 import os
+import re
 import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +21,7 @@ from assess.portfolio.cluster import (
     Site,
     WorkerUnfitError,
     answer_probe,
+    check_address,
     check_workers,
     list_versions,
     run_batch,
@@ -162,14 +165,86 @@ def test_a_scheduler_that_dies_is_told_and_what_is_done_is_kept(tmp_path):
     assert len(list((tmp_path / "out" / FOLDER).glob("*/*.part"))) >= len(done) >= 1
 
 
+UNREACHED = (
+    r"cannot be reached: (Connection refused|Timed out trying to connect to [^ ]* after [0-9.]* s)\. Is it running\?"
+)
+
+
 def test_no_scheduler_and_no_workers_are_told(tmp_path, monkeypatch):
     write_city(tmp_path / "city", [40.0])
     monkeypatch.setattr(cluster, "CONNECTING", 1.0)
     monkeypatch.setattr(cluster, "JOINING", 1.0)
-    with pytest.raises(InputError, match=r"scheduler tcp://127\.0\.0\.1:1 cannot be reached: .*Is it running"):
+    with pytest.raises(InputError, match=rf"^scheduler tcp://127\.0\.0\.1:1 {UNREACHED}$"):
         _run(tmp_path, "out", "tcp://127.0.0.1:1")
     with _scheduler() as (_, own), pytest.raises(InputError, match=r"has no workers\. Start some with one thread"):
         _run(tmp_path, "out", own)
+
+
+@contextlib.contextmanager
+def _serving(data):
+    """Serve bytes to whoever connects, or nothing at all and keep the connection."""
+    with socket.create_server(("127.0.0.1", 0)) as server, contextlib.ExitStack() as held:
+
+        def serve():
+            with contextlib.suppress(OSError):  # the end
+                while True:
+                    connection = held.enter_context(server.accept()[0])
+                    if data:
+                        connection.sendall(data)
+
+        threading.Thread(target=serve, daemon=True).start()
+        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        server.shutdown(socket.SHUT_RDWR)
+
+
+def _fail(tmp_path, scheduler):
+    """Return what the command prints where no scheduler is; besides progress it has to be one line, in time."""
+    write_city(tmp_path / "city", [40.0])
+    words = (tmp_path / "city", "--verify", "none", "--formats", "html", "--out", tmp_path / "out")
+    command = [sys.executable, "-m", "assess", "portfolio", *map(str, words), "--scheduler", scheduler]
+    start = time.monotonic()
+    done = subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True, timeout=SOON)
+    assert time.monotonic() - start < 20, "10 s of it are the time that a scheduler has, the rest is to start"
+    assert (done.returncode, done.stdout) == (2, "")
+    progress = ("Working, ", "Assessing 0 of 1 buildings")
+    lines = [line for line in done.stderr.splitlines() if not line.startswith(progress)]
+    assert len(lines) == 1, done.stderr
+    assert not (tmp_path / "out" / "city.html").exists()
+    return lines[0]
+
+
+HTTP = b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n"
+ANSWERS = {"HTTP": HTTP, "any bytes": bytes(range(256)) * 40, "zeros": bytes(2000), "nothing": b""}
+
+
+@pytest.mark.parametrize("data", ANSWERS.values(), ids=ANSWERS)
+def test_what_is_not_a_scheduler_is_told_in_one_line(tmp_path, data):
+    with _serving(data) as address:
+        line = _fail(tmp_path, address)
+    assert line.startswith(f"error  --scheduler {address}: what is there does not answer as a dask scheduler")
+    assert line.endswith("a scheduler prints its address when it starts.")
+
+
+def test_an_address_where_nobody_is_and_one_of_a_worker_are_told_in_one_line(tmp_path):
+    assert re.fullmatch(rf"error  --scheduler 127\.0\.0\.1:1 {UNREACHED}", _fail(tmp_path, "127.0.0.1:1"))
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with _scheduler() as (_, found), _workers(found, 1, "--nthreads", "1", "--worker-port", str(port)):
+        _wait_for(lambda: _answers(port))
+        assert "what is there does not answer as a dask scheduler" in _fail(tmp_path, f"tcp://127.0.0.1:{port}")
+
+
+@pytest.mark.parametrize(
+    "address", ["banana", "http://127.0.0.1:1", "tcp://host", "tcp://host:0", "host:70000", "", ":1"]
+)
+def test_an_address_of_another_form_is_refused_at_once(address):
+    with pytest.raises(InputError, match=r"^scheduler is .*, expected tcp://HOST:PORT, such as tcp://10\.0\.0\.5:8786"):
+        check_address(address)
+
+
+@pytest.mark.parametrize("address", ["tcp://10.0.0.5:8786", "a-host.local:1", "wss://[::1]:65535", "tls://h_1:2"])
+def test_forms_that_dask_knows_are_accepted(address):
+    check_address(address)
 
 
 def test_workers_with_several_threads_are_refused(tmp_path):

@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -258,6 +259,10 @@ def test_what_cannot_be_done_is_an_error_before_the_work(tmp_path, monkeypatch):
         run_portfolio(city, tmp_path / "out", FORMULAS, formats=("csv",))
     with pytest.raises(InputError, match="runs is auto: all buildings of a city need the same draws"):
         run_portfolio(city, tmp_path / "out", Settings(runs="auto"))
+    with pytest.raises(InputError, match="runs is 20, expected a multiple of 50, the number of scenarios"):
+        run_portfolio(city, tmp_path / "out", Settings(runs=20), ground=SimpleNamespace(event_count=50))
+    with pytest.raises(InputError, match=r"scheduler is 'http://127\.0\.0\.1:1', expected tcp://HOST:PORT"):
+        run_portfolio(city, tmp_path / "out", scheduler="http://127.0.0.1:1")
     monkeypatch.setitem(sys.modules, "duckdb", None)
     with pytest.raises(InputError, match=re.escape("pip install '.[parquet]'")):
         run_portfolio(city, tmp_path / "out", FORMULAS)
