@@ -276,10 +276,11 @@ def _of_groups(totals: CityTotals) -> Iterator[str]:
 def list_total_heads() -> list[str]:
     """Return the headings of the table of groups."""
     classes = [words.risk_label(risk) for risk in RiskClass]
-    return [_("Buildings by inventory and basis"), _("Buildings"), _("Pieces"), *classes, _("apart"), _("anchored"),
+    return [_("Buildings by inventory and basis"), _("Buildings"), _("Pieces"), *classes,
+            _("unconfirmed or by formula only"), _("anchored"),
             _("Expected falls"), _("5 to 95 % of draws"), _("People on blocked routes"),
-            _("of people on routes that are known"), _("5 to 95 % of draws"),
-            _("People on routes not known")]  # fmt: skip
+            _("People on routes of known state"), _("5 to 95 % of draws"),
+            _("People on routes of unknown state")]  # fmt: skip
 
 
 def list_total_rows(totals: CityTotals) -> list[list[str]]:

@@ -209,6 +209,14 @@ def open_page(browser, html, tmp_path):
     assert complaints == []
 
 
+_LINES = """[...document.querySelectorAll('table.sums td.num, section.types td.num')].map((cell) => {
+  const range = document.createRange();
+  range.selectNodeContents(cell);
+  return [cell.textContent, new Set([...range.getClientRects()].map((box) => box.top)).size];
+})"""
+"""The text of each number of the tables of sums and types, and in how many lines it stands."""
+
+
 class TestInBrowser:
     """What hands do with it."""
 
@@ -293,6 +301,22 @@ class TestInBrowser:
         page.evaluate(f"location.hash = 'building-{at + 1}'")
         page.wait_for_function("!document.getElementById('one').hidden")
         assert "<script>alert(1)</script>" in page.locator("#one h1").inner_text()
+
+    @pytest.mark.parametrize("width", [390, 800, 1400])
+    def test_no_number_of_the_sums_is_broken_or_cut_off(self, open_page, width):
+        page = open_page(width)
+        lines = page.evaluate(_LINES)
+        assert len(lines) > 20
+        assert [text for text, count in lines if count != 1] == []
+        if width == 390:
+            edges = "[...document.querySelectorAll('#sums *')].map((one) => one.getBoundingClientRect())"
+            assert page.evaluate(f"{edges}.filter((box) => box.left < 0 || box.right > innerWidth).length") == 0
+            assert (
+                page.evaluate("getComputedStyle(document.querySelector('table.sums td'), '::before').content") != "none"
+            )
+        else:
+            box = "document.querySelector('#sums .scroll')"
+            assert page.evaluate(f"{box}.scrollHeight - {box}.clientHeight") <= 1, "it scrolls to the side alone"
 
     @pytest.mark.parametrize("width", [390, 1400])
     def test_it_fits_the_screen_and_axe_core_finds_nothing_grave(self, open_page, width):
