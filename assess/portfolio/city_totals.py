@@ -23,22 +23,24 @@ GROUPS = tuple((inventory, basis) for inventory in INVENTORIES for basis in BASE
 FIRST = 10
 """Buildings, and types of furniture, that are named as those to start with."""
 BUILDING_RULE = fill(
-    "Buildings come first whose routes are expected to be blocked for most people, in whole people; then those with "
-    "most expected falls."
+    "Ranked by the expected number of people on blocked routes (in whole people), then by expected falls."
 )
 PEOPLE_RULE = fill(
     "People are counted once for each route that they leave by, as the sheet Routes has them: who takes the route of a "
     "floor and then that of a stair is counted twice."
 )
-TYPE_RULE = fill(
-    "Types come first of which most pieces are expected to fall; pieces without a Type are grouped by their size."
-)
+TYPE_RULE = fill("Ranked by expected falls; pieces without a Type are grouped by their size.")
 CLASS_COLUMNS = {RiskClass.LOW: "low", RiskClass.MEDIUM: "medium", RiskClass.HIGH: "high",
                  RiskClass.VERY_HIGH: "very_high"}  # fmt: skip
 STATE_COLUMNS = {RouteState.OPEN: "routes_open", RouteState.DOUBTFUL: "routes_doubtful",
                  RouteState.BLOCKED: "routes_blocked", RouteState.NOT_KNOWN: "routes_not_known"}  # fmt: skip
 BREADTH_STEP, HEIGHT_STEP = 10, 20
 """Widths of the groups of sizes [cm]."""
+
+
+RangeOver = Literal["earthquakes", "known ground", "own grounds", "motions"]
+"""What a range is over: earthquakes like the one of the map; the buildings' own motions on a ground that is taken as
+known; earthquakes in which every building has the ground motion of its own workbook; motions without uncertainty."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,8 +123,10 @@ class Group:
         Pieces outside the classes.
     left_out : int
         Components of handover files that may be furniture and were left out: in no number.
-    is_ground_known : bool
-        Whether the motion of the ground is taken as known: ranges are then no ranges over earthquakes.
+    range_over : str
+        What differs from draw to draw, one of `RangeOver`: not every range is one over earthquakes.
+    cannot_rock : int
+        Pieces of class high or very high by formula that cannot start to rock under their motion.
     falls : Spread
         Number of pieces that fall, of those in the classes.
     falls_low_inventory, falls_high_inventory : float, optional
@@ -161,7 +165,8 @@ class Group:
     by_formula: int
     anchored: int
     left_out: int
-    is_ground_known: bool
+    range_over: RangeOver
+    cannot_rock: int
     falls: Spread
     falls_low_inventory: float | None
     falls_high_inventory: float | None
@@ -205,8 +210,8 @@ class CityTotals:
 
 
 def is_made_up(view: CityView) -> bool:
-    """Tell whether all buildings with a name are made up, as those of the worked city are."""
-    names = view.buildings["building"].dropna()
+    """Tell whether all assessed buildings with a name are made up, as those of the worked city are."""
+    names = view.buildings[view.buildings["status"] == "assessed"]["building"].dropna()
     return not names.empty and all(str(name).endswith(MADE_UP) for name in names)
 
 
@@ -228,7 +233,7 @@ def build_totals(view: CityView) -> CityTotals:
     return CityTotals(groups=tuple(groups), skipped=int((rows["status"] == "skipped").sum()))
 
 
-_ADDED = ("unconfirmed", "by_formula", "anchored", "left_out", "works", "works_without_cost", "warnings")
+_ADDED = ("unconfirmed", "by_formula", "cannot_rock", "anchored", "left_out", "works", "works_without_cost", "warnings")
 """Fields of a group that are plain sums of a column of the same name."""
 
 
@@ -243,7 +248,7 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
         buildings=len(rows),
         pieces=_count(rows, "pieces"),
         by_class=by_class,
-        is_ground_known=view.ground is not None and view.ground.is_known,
+        range_over=_find_range(view),
         falls=build_spread(draws, "falls", _sum(rows, "expected_falls"), sum(by_class.values())),
         falls_low_inventory=_sum_known(rows, "falls_low_inventory"),
         falls_high_inventory=_sum_known(rows, "falls_high_inventory"),
@@ -260,6 +265,14 @@ def _build_group(view: CityView, rows: pd.DataFrame, inventory: str, basis: str)
         first_types=tuple(_list_types(_rows_of(view.pieces, rows), basis)),
         **{name: _count(rows, name) for name in _ADDED},
     )
+
+
+def _find_range(view: CityView) -> RangeOver:
+    if view.settings.ideal:
+        return "motions"
+    if view.ground is None:
+        return "own grounds"
+    return "known ground" if view.ground.is_known else "earthquakes"
 
 
 def _count_not_known(routes: pd.DataFrame) -> int:
