@@ -60,5 +60,7 @@ def shape_curves(found: PieceFragilities, *named: tuple[str, Sequence[float]]) -
 
 RISING = (0.0, 0.16, 0.5, 0.84, 1.0)
 """Near a lognormal of median 0.4 g and beta 0.7."""
+STEEP = (0.0, 0.01, 0.5, 0.99, 1.0)
+"""Near a lognormal of median 0.4 g and beta 0.3."""
 UNEVEN = (0.0, 0.4, 0.4, 0.3, 1.0)
 """Which no lognormal is near to."""

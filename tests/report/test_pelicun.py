@@ -10,7 +10,7 @@ import pytest
 from assess.errors import InputError
 from assess.report.interchange.pelicun import write_pelicun
 from assess.units import GRAVITY
-from tests.report.made_fragilities import RISING, UNEVEN, assess_small, shape_curves
+from tests.report.made_fragilities import RISING, STEEP, UNEVEN, assess_small, shape_curves
 
 
 @pytest.fixture(scope="module")
@@ -29,11 +29,12 @@ def read(written):
 )
 def test_medians_and_betas_are_those_found(im, demand, unit, size):
     assessment, found = assess_small(im=im)
+    found = shape_curves(found, ("Shelf", RISING), ("Uneven", UNEVEN), ("Cabinet", STEEP))
     written = write_pelicun(assessment, found)
     rows, about = read(written)
     kept = [one for one in found.curves if one.curve.is_lognormal]
-    assert kept
-    assert len(rows) + len(written.left_out) == len(found.curves)
+    assert [one.name for one in kept] == ["Shelf", "Cabinet"]
+    assert [one.name for one in written.left_out] == ["Uneven"]
     for row, one in zip(rows, kept, strict=True):
         assert (row["Demand-Type"], row["Demand-Unit"], row["LS1-Family"]) == (demand, unit, "lognormal")
         assert (row["Incomplete"], row["Demand-Offset"], row["Demand-Directional"]) == ("0", "0", "1")
