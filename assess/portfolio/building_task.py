@@ -80,9 +80,9 @@ class Summary:
 def run_task(task: Task) -> Summary:
     """Assess a building and write its part, unless it is there already."""
     start = time.monotonic()
-    key, data = _find_key(task)
-    summary = _run(task, key, data, start)
-    return summary if data is None else replace(summary, content=hashlib.sha256(data).hexdigest())
+    data = _read_workbook(task.source)
+    content = None if data is None else hashlib.sha256(data).hexdigest()
+    return replace(_run(task, _find_key(task, content), data, start), content=content or "")
 
 
 def _run(task: Task, key: str, data: bytes | None, start: float) -> Summary:
@@ -120,18 +120,23 @@ def _sum_up(part: Part, start: float, *, is_kept: bool = False) -> Summary:
     )
 
 
-def _find_key(task: Task) -> tuple[str, bytes | None]:
-    """Return the key of a task, and the bytes of its workbook as far as they can be read."""
-    source, data = task.source, None
-    if source.file is not None and not source.refused:
-        with suppress(AssessError, OSError):
-            from assess.workbook.open import read_file
+def _read_workbook(source: Source) -> bytes | None:
+    """Return the bytes of the workbook of a building; None where it has none, or where they cannot be read."""
+    from assess.workbook.open import read_file
 
-            data = read_file(source.file)
+    if source.file is None or source.refused:
+        return None
+    try:
+        return read_file(source.file)
+    except (AssessError, OSError):
+        return None
+
+
+def _find_key(task: Task, content: str | None) -> str:
+    source = task.source
     ground = None if task.ground is None else (type(task.ground).__name__, task.ground.file, task.ground.sha256)
-    content = None if data is None else hashlib.sha256(data).hexdigest()
     row = None if source.index is None else {**_fields(source.index), "line": 0}  # a row may move in the index
-    return find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, __version__), data
+    return find_key(source.path, source.kind, content, row, task.settings.as_record(), ground, __version__)
 
 
 def _fields(row: Any) -> dict[str, Any]:
