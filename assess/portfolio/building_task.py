@@ -122,10 +122,10 @@ def _sum_up(part: Part, start: float, *, is_kept: bool = False) -> Summary:
 
 def _read_workbook(source: Source) -> bytes | None:
     """Return the bytes of the workbook of a building; None where it has none, or where they cannot be read."""
-    from assess.workbook.open import read_file
-
     if source.file is None or source.refused:
         return None
+    from assess.workbook.open import read_file
+
     try:
         return read_file(source.file)
     except (AssessError, OSError):

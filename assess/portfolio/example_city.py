@@ -42,6 +42,9 @@ furniture, routes, occupants and costs are drawn at random and describe no build
 * `index.csv`: every building, with its floor area; {unsurveyed} of them have no workbook: their furniture is assumed.
 * the folders: a workbook a building. It says nothing of the shaking, which comes from the ShakeMap.
 * `coast.geojson`: the coastline of the map, from Natural Earth (public domain).
+
+`assess portfolio` takes `index.csv` as its source and `grid.xml` as the ShakeMap. With the folder as its source it
+reads the workbooks alone, and leaves out the buildings that have none.
 """
 
 
