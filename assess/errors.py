@@ -6,7 +6,8 @@ AssessError
 ├── InputError          what the user gave cannot be used: nothing is written, exit status 2
 │   ├── SettingsError   ... in a setting; also a ValueError
 │   ├── WorkbookError   ... in the workbook: every problem with its sheet and cell
-│   └── RecordError     ... in a file of recorded motion
+│   ├── RecordError     ... in a file of recorded motion
+│   └── ModelError      ... in a building model, or another file that an inventory is imported from
 ├── OutputError         a result could not be written, exit status 1
 │   └── PdfUnavailableError  the native libraries of the PDF are missing
 └── CancelledError      the caller stopped the work; nothing was written
@@ -15,7 +16,7 @@ AssessError
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
 
 Severity = Literal["error", "warning", "note"]
 
@@ -109,6 +110,10 @@ class SettingsError(InputError, ValueError):
     """A setting cannot be used; the message begins with the setting's name."""
 
 
+class ModelError(InputError):
+    """A building model, or another file that an inventory is imported from, cannot be used."""
+
+
 class WorkbookError(InputError):
     """The workbook cannot be used; `problems` holds all that was found, errors first.
 
@@ -120,6 +125,9 @@ class WorkbookError(InputError):
         self.language = language
         self.problems = tuple(sorted(problems, key=lambda problem: problem.severity != "error"))
         super().__init__("\n".join(str(problem) for problem in self.problems))
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Sequence[Problem], str]]:
+        return type(self), (self.problems, self.language)
 
     @property
     def is_incomplete(self) -> bool:

@@ -1,0 +1,115 @@
+"""Work on a building model in a process of its own, with limits: its library is native code, and its file a stranger's.
+
+Whatever such work does, it ends: the process is stopped at `SECONDS` of processor time (the clock counts where a
+system does not count processor time), cannot use more than `MEMORY`, and takes nothing down with it if it crashes.
+"""
+
+import pickle
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import ParamSpec, TypeVar, cast
+
+from assess.errors import AssessError, ModelError
+from assess.i18n import fill
+from assess.progress import Progress
+
+SECONDS = 120
+"""Processor time that the work may take [s]; the clock may show `PATIENCE` times as much."""
+MEMORY = 4 * 2**30
+"""Memory that it may use [bytes]."""
+PATIENCE = 4
+_ASKED_EVERY = 0.05
+ORDER, ANSWER = "order", "answer"
+"""Names of the files in which a process gets its work and leaves what came out."""
+
+_Found = TypeVar("_Found")
+_Given = ParamSpec("_Given")
+
+
+def run_apart(
+    name: str,
+    progress: Progress,
+    work: Callable[_Given, _Found],
+    *args: _Given.args,
+    **named: _Given.kwargs,
+) -> _Found:
+    """Return what `work` returns, called in a process of its own.
+
+    Parameters
+    ----------
+    name : str
+        How messages call the file that is worked on.
+    progress : Progress
+        Checked while it works; the process is stopped if the work is cancelled.
+    work : callable
+        A function of a module of this package; arguments and what it returns are plain data.
+
+    Raises
+    ------
+    ModelError
+        If the process crashed, or reached a limit.
+    AssessError
+        As `work` raises it.
+    """
+    with TemporaryDirectory(prefix="assess-model-") as folder:
+        order = (work.__module__, work.__qualname__, args, named, SECONDS, MEMORY)
+        Path(folder, ORDER).write_bytes(pickle.dumps(order))
+        status = _wait(folder, name, progress)
+        answer = Path(folder, ANSWER)
+        if not answer.exists():
+            raise _explain(name, status)
+        is_error, found = pickle.loads(answer.read_bytes())  # noqa: S301  written by our own process, just now
+    if is_error:
+        raise cast(AssessError, found)
+    return cast(_Found, found)
+
+
+def _wait(folder: str, name: str, progress: Progress) -> int:
+    """Run the process to its end, and return its status."""
+    command = [sys.executable, "-m", "assess.bim.apart_process", folder]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: S603
+    end = time.monotonic() + PATIENCE * SECONDS
+    try:
+        while True:
+            progress.check()
+            try:
+                return process.wait(_ASKED_EVERY)
+            except subprocess.TimeoutExpired:
+                if time.monotonic() > end:
+                    raise _too_long(name) from None
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def _explain(name: str, status: int) -> ModelError:
+    """Return why there is no answer, by how the process ended."""
+    xcpu = getattr(signal, "SIGXCPU", 0)
+    if xcpu and status == -xcpu:
+        return _too_long(name)
+    if status == OUT_OF_MEMORY:
+        return ModelError(
+            fill("{name} needs more than {most} GB of memory to be read. Export fewer storeys, or furniture, "
+                 "spaces, doors and walls only.", name=name, most=MEMORY // 2**30)
+        )  # fmt: skip
+    return ModelError(
+        fill("{name} could not be read: the library that reads building models stopped. The file may be damaged, "
+             "or need more than {most} GB of memory. Export it again from the program that made it.",
+             name=name, most=MEMORY // 2**30)
+    )  # fmt: skip
+
+
+OUT_OF_MEMORY = 3
+"""Status with which the process ends when memory runs out."""
+
+
+def _too_long(name: str) -> ModelError:
+    return ModelError(
+        fill("{name} takes more than {n} s of processor time to be read. Export fewer storeys, or "
+             "furniture, spaces, doors and walls only.", name=name, n=SECONDS)
+    )  # fmt: skip

@@ -1,0 +1,190 @@
+"""What is read of a building model, as plain data: what makes rows, plans and routes of it needs no reader of models.
+
+Lengths are in metres in the axes of the model, X and Y in plan and Z upwards; angles in degrees anticlockwise from X.
+Readers fill it in (`ifc_model`), and `model_rows`, `floor_drawing` and `draft_routes` use it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from assess.i18n import Text
+
+Point = tuple[float, float]
+Ring = tuple[Point, ...]
+"""Corners in order round it; the last is not the first again."""
+Area = tuple[Ring, ...]
+"""A polygon: its outer ring, then those of its holes."""
+StairEnd = Literal["foot", "head"]
+
+
+@dataclass(frozen=True, slots=True)
+class Storey:
+    """A storey that holds something.
+
+    Attributes
+    ----------
+    key : str
+        Its GlobalId; "" where the model has no storeys, and this one stands for all of it.
+    name : str
+        As the model has it.
+    elevation : float
+        Height of its floor above the building's zero [m].
+    level : float
+        Z of its floor [m].
+    """
+
+    key: str
+    name: str
+    elevation: float
+    level: float
+
+
+@dataclass(frozen=True, slots=True)
+class Space:
+    """A room or corridor: `area` is its plan, `bottom` and `top` its floor and ceiling [m].
+
+    `name` is what the model calls it (often a number), `title` its longer name. `storey` is a `Storey.key`.
+    """
+
+    key: str
+    storey: str
+    name: str
+    title: str
+    area: Area
+    bottom: float
+    top: float
+
+
+@dataclass(frozen=True, slots=True)
+class Door:
+    """A door: its centre, the direction of the normal of its wall, and the sizes of its opening [m].
+
+    `width` is that of the opening in the plan, `thickness` that of the wall; `overall` is the OverallWidth that the
+    model states, 0 where it states none.
+    """
+
+    key: str
+    storey: str
+    name: str
+    x: float
+    y: float
+    normal_deg: float
+    width: float
+    thickness: float
+    overall: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stair:
+    """One end of a stair or ramp on a storey."""
+
+    key: str
+    storey: str
+    name: str
+    end: StairEnd
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A piece of furniture.
+
+    Attributes
+    ----------
+    key : str
+        Its GlobalId.
+    storey, space : str
+        Keys of its storey and its room, "" if it lies in none.
+    ifc_class, name, type : str
+        Its class, name and type as the model has them; `type` is "" where it has none.
+    x, y : float
+        Centre of its plan [m].
+    breadth, width, height : float
+        Shorter and longer side of its plan, and height [m].
+    angle_deg : float
+        Direction of `breadth`, in [-90, 90).
+    support_breadth, support_width : float
+        Distance between its outermost points at the floor along `breadth` and along `width` [m].
+    bottom : float
+        Height of its lowest point above the floor of its room, or of its storey [m].
+    is_fitted : bool
+        Whether its name tells of kitchen or fitted furniture, which is usually fixed.
+    """
+
+    key: str
+    storey: str
+    space: str
+    ifc_class: str
+    name: str
+    type: str
+    x: float
+    y: float
+    breadth: float
+    width: float
+    height: float
+    angle_deg: float
+    support_breadth: float
+    support_width: float
+    bottom: float
+    is_fitted: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """Elements of one class and type that were left out for one reason."""
+
+    ifc_class: str
+    type: str
+    reason: Text
+    count: int
+    is_furniture: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuildingModel:
+    """A building model.
+
+    Attributes
+    ----------
+    source : str
+        Name of its file.
+    schema : str
+        IFC2X3, IFC4, IFC4X3.
+    name, address : str
+        Of the building, "" if it has none.
+    storeys : tuple of Storey
+        From the lowest to the highest.
+    spaces, doors, stairs, pieces : tuple
+        What they hold.
+    walls, windows : mapping of str to tuple of Area
+        By the storey's key, cut at 1.2 m above its floor: walls with columns and curtain walls, and windows.
+    left_out : tuple of LeftOut
+        What was not taken, and why.
+    azimuth_deg, latitude, longitude : float, optional
+        Compass direction of X, and the site [deg], where the model tells them.
+    shift : Point
+        What was taken off X and Y [m]: 0 unless the model stands far from its origin.
+    warnings, remarks : tuple of Text
+        What may distort results, and what else a user should know.
+    """
+
+    source: str
+    schema: str
+    name: str = ""
+    address: str = ""
+    storeys: tuple[Storey, ...] = ()
+    spaces: tuple[Space, ...] = ()
+    doors: tuple[Door, ...] = ()
+    stairs: tuple[Stair, ...] = ()
+    pieces: tuple[Piece, ...] = ()
+    walls: Mapping[str, tuple[Area, ...]] = field(default_factory=dict)
+    windows: Mapping[str, tuple[Area, ...]] = field(default_factory=dict)
+    left_out: tuple[LeftOut, ...] = ()
+    azimuth_deg: float | None = None
+    latitude: float | None = None
+    longitude: float | None = None
+    shift: Point = (0.0, 0.0)
+    warnings: tuple[Text, ...] = ()
+    remarks: tuple[Text, ...] = ()

@@ -1,0 +1,53 @@
+"""Work in a process of its own: what it returns, raises, and how it ends when it crashes or reaches a limit."""
+
+import os
+import signal
+import sys
+import threading
+
+import pytest
+
+from assess.bim import apart
+from assess.bim.apart import run_apart
+from assess.bim.cobie import read_cobie
+from assess.errors import CancelledError, ModelError, WorkbookError
+from assess.progress import SILENT, Progress
+
+ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="only Linux limits addresses")
+
+
+def test_it_returns_what_the_work_returns_from_another_process():
+    assert run_apart("a.ifc", SILENT, divmod, 17, 5) == (3, 2)
+    assert run_apart("a.ifc", SILENT, os.getpid) != os.getpid()
+
+
+def test_it_raises_what_the_work_raises_with_all_that_it_holds():
+    with pytest.raises(WorkbookError, match="not an Excel workbook") as caught:
+        run_apart("a.ifc", SILENT, read_cobie, b"no workbook", "a.xlsx")
+    assert caught.value.problems
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no signals of this kind")
+def test_a_crash_is_told_in_words():
+    with pytest.raises(ModelError, match="a.ifc could not be read: the library .* stopped"):
+        run_apart("a.ifc", SILENT, signal.raise_signal, signal.SIGSEGV)
+
+
+@ON_LINUX
+def test_memory_is_limited():
+    with pytest.raises(ModelError, match="needs more than 4 GB of memory"):
+        run_apart("a.ifc", SILENT, eval, "bytes(6 * 2**30)")
+
+
+@ON_LINUX
+def test_processor_time_is_limited(monkeypatch):
+    monkeypatch.setattr(apart, "SECONDS", 1)
+    with pytest.raises(ModelError, match="takes more than 1 s of processor time"):
+        run_apart("a.ifc", SILENT, eval, "sum(range(10**12))")
+
+
+def test_a_cancel_stops_the_process():
+    cancel = threading.Event()
+    threading.Timer(0.3, cancel.set).start()
+    with pytest.raises(CancelledError):
+        run_apart("a.ifc", Progress(cancel=cancel), eval, "sum(range(10**12))")
