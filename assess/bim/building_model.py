@@ -16,6 +16,8 @@ Ring = tuple[Point, ...]
 Area = tuple[Ring, ...]
 """A polygon: its outer ring, then those of its holes."""
 StairEnd = Literal["foot", "head"]
+SizesFrom = Literal["model", "scan"]
+"""Words of the column Sizes from of a workbook that such files can say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +154,8 @@ class BuildingModel:
         Name of its file.
     schema : str
         IFC2X3, IFC4, IFC4X3.
+    sizes_from : str
+        Where the sizes of all pieces come from: of a "scan" they are less certain.
     name, address : str
         Of the building, "" if it has none.
     storeys : tuple of Storey
@@ -172,6 +176,7 @@ class BuildingModel:
 
     source: str
     schema: str
+    sizes_from: SizesFrom = "model"
     name: str = ""
     address: str = ""
     storeys: tuple[Storey, ...] = ()
