@@ -1,0 +1,133 @@
+"""Elements of an open building model: by class, their parts, storeys and shapes."""
+
+import multiprocessing
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from assess.bim.plan_shapes import Shape, join
+
+Element = Any
+"""An entity of ifcopenshell."""
+_DEEPEST = 20
+"""Levels of parts and containers that are followed: a model may hold a loop."""
+MOST_TRIANGLES = 2_000_000
+"""Triangles of one element beyond which its shape is not taken."""
+
+
+def list_elements(model: Any, classes: Iterable[str]) -> list[Element]:
+    """Return the elements of some classes and their subclasses, in the order of the file; unknown classes have none."""
+    found: dict[int, Element] = {}
+    for name in classes:
+        try:
+            found |= {one.id(): one for one in model.by_type(name)}
+        except RuntimeError:  # not a class of this schema
+            continue
+    return [found[number] for number in sorted(found)]
+
+
+def list_outer(elements: Sequence[Element]) -> list[Element]:
+    """Return the elements that are not parts of others among them."""
+    from ifcopenshell.util.element import get_aggregate
+
+    ids = {one.id() for one in elements}
+    return [one for one in elements if (whole := get_aggregate(one)) is None or whole.id() not in ids]
+
+
+def list_parts(element: Element) -> list[Element]:
+    """Return an element and its parts; neither openings in it nor what fills them."""
+    from ifcopenshell.util.element import get_components, get_parts
+
+    found: dict[int, Element] = {}
+    queue = [(element, 0)]
+    while queue:
+        one, depth = queue.pop()
+        if one.id() in found or depth > _DEEPEST or one.is_a("IfcFeatureElement"):
+            continue
+        found[one.id()] = one
+        queue += [(part, depth + 1) for part in (*get_parts(one), *get_components(one))]
+    return list(found.values())
+
+
+def find_holders(element: Element) -> Iterator[Element]:
+    """Yield what holds an element, from the innermost: a space, a storey, a building."""
+    from ifcopenshell.util.element import get_aggregate, get_container
+
+    one = get_container(element) if not element.is_a("IfcSpatialStructureElement") else get_aggregate(element)
+    for _ in range(_DEEPEST):
+        if one is None:
+            return
+        yield one
+        one = get_aggregate(one) or (get_container(one) if one.is_a("IfcElement") else None)
+
+
+def find_storey(element: Element) -> str:
+    """Return the GlobalId of the storey that holds an element, "" if none does."""
+    return next((one.GlobalId for one in find_holders(element) if one.is_a("IfcBuildingStorey")), "")
+
+
+def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:
+    """Yield the shape of each element that has one, by its number in the file.
+
+    Parameters
+    ----------
+    model : ifcopenshell.file
+        The model.
+    elements : sequence
+        The elements.
+    with_openings : bool
+        Whether openings are cut out, which takes most of the time: needed for walls alone.
+    """
+    import ifcopenshell.geom
+
+    drawn = [one for one in elements if one.Representation]
+    if not drawn:
+        return
+    settings = ifcopenshell.geom.settings()
+    settings.set("disable-opening-subtractions", not with_openings)
+    threads = min(2, multiprocessing.cpu_count())
+    iterator = ifcopenshell.geom.iterator(settings, model, threads, include=drawn)
+    if not iterator.initialize():
+        return
+    while True:
+        one = iterator.get()
+        shape = _to_shape(one)
+        if shape is not None:
+            yield one.id, shape
+        if not iterator.next():
+            return
+
+
+def _to_shape(found: Any) -> Shape | None:
+    points = np.array(found.geometry.verts, float).reshape(-1, 3)
+    triangles = np.array(found.geometry.faces, np.int64).reshape(-1, 3)
+    matrix = np.array(found.transformation.matrix, float).reshape(4, 4).T  # column-major
+    if not 0 < len(triangles) <= MOST_TRIANGLES or not np.isfinite(points).all() or not np.isfinite(matrix).all():
+        return None
+    return Shape(points @ matrix[:3, :3].T + matrix[:3, 3], triangles, matrix[:3, :3])
+
+
+def join_parts(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:
+    """Yield the shape of each element with all of its parts, by its number; none of one without any shape.
+
+    A part that several elements name belongs to the first. What consists of one part is not kept: a building may hold
+    thousands of chairs of thousands of triangles each.
+    """
+    owners: dict[int, int] = {}
+    parts: dict[int, Element] = {}
+    for element in elements:
+        for part in list_parts(element):
+            owners.setdefault(part.id(), element.id())
+            parts.setdefault(part.id(), part)
+    counts = Counter(owners[number] for number, part in parts.items() if part.Representation)
+    kept: dict[int, dict[int, Shape]] = {}
+    for number, shape in list_shapes(model, list(parts.values()), with_openings=with_openings):
+        owner = owners[number]
+        if counts[owner] == 1:
+            yield owner, shape
+        else:
+            kept.setdefault(owner, {})[number] = shape
+    for owner, shapes in kept.items():  # its own first: its axes count
+        yield owner, join([shapes[number] for number in sorted(shapes, key=lambda number: (number != owner, number))])

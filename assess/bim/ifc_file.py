@@ -1,0 +1,105 @@
+"""A building model as a file: what can be told of it before the library opens it, and the model that it opens.
+
+The library takes a file that breaks off as if it were whole, with the elements up to there. So the end is looked for
+first. STEP physical files: ISO 10303-21, of which a first line, a header and a last line are required.
+"""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from assess.errors import ModelError
+from assess.extras import say_install
+from assess.i18n import Text, fill
+
+MOST_BYTES = 512 * 2**20
+"""Size of a model that is read [bytes]."""
+FIRST, LAST = b"ISO-10303-21;", b"END-ISO-10303-21;"
+_LOOKED_AT = 65536
+_SCHEMA = re.compile(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^']{1,80})'", re.IGNORECASE)
+SCHEMAS = ("IFC2X3", "IFC4", "IFC4X3")
+"""Schemas that are read, with their corrections such as IFC4X3_ADD2."""
+_NO_MODEL = fill("it does not begin as an IFC file (ISO-10303-21) does. Export the building as IFC (.ifc, STEP)")
+
+
+def is_model(start: bytes) -> bool:
+    """Tell whether a file begins as a STEP physical file does."""
+    return _strip(start).startswith(FIRST)
+
+
+def check_model(path: Path, name: str) -> None:
+    """Raise unless a file is a whole STEP file of a known schema, as far as can be told without reading all of it.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be opened, is empty, too large, packed, XML, no model, cut off, or of another schema.
+    """
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            start = file.read(_LOOKED_AT)
+            file.seek(max(0, size - _LOOKED_AT))
+            end = file.read()
+    except OSError as error:
+        raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=error.strerror or str(error))) from None
+    why = _find_fault(size, start, end)
+    if why is not None:
+        raise ModelError(fill("{name} cannot be imported: {why}.", name=name, why=why))
+
+
+def _find_fault(size: int, start: bytes, end: bytes) -> Text | None:
+    """Return why a file cannot be read, None if it can."""
+    if size == 0:
+        return fill("it is empty. Export the building again")
+    if size > MOST_BYTES:
+        return fill("it has {size:,.0f} MB, more than {most:,} MB. Export fewer storeys, or furniture, "
+                    "spaces, doors and walls only", size=size / 2**20, most=MOST_BYTES >> 20)  # fmt: skip
+    if start.startswith(b"PK\x03\x04"):
+        return fill("it is packed as a zip file. Unpack it and import the .ifc file in it")
+    if b"<ifcXML" in start or b"ifcXML" in start[:2048]:
+        return fill("it is an ifcXML file. Export the building as IFC (.ifc, STEP)")
+    if not is_model(start):
+        return _NO_MODEL
+    if LAST not in end:
+        return fill("it is cut off: its last line, {last}, is missing. Copy or export it again", last=LAST.decode())
+    found = _SCHEMA.search(start)
+    schema = found[1].decode("ascii", "replace") if found else "-"
+    if not schema.upper().startswith(SCHEMAS):
+        known = ", ".join(SCHEMAS)
+        return fill("its schema is {schema}, expected one of: {known}. Export it as IFC4", schema=schema, known=known)
+    return None
+
+
+def _strip(start: bytes) -> bytes:
+    return start.removeprefix(b"\xef\xbb\xbf").lstrip()
+
+
+def check_installed() -> None:
+    """Raise ModelError with the line that tells how to install the library, if it is not there."""
+    from importlib.util import find_spec
+
+    if find_spec("ifcopenshell") is None:
+        raise ModelError(fill("Building models (IFC) need the library ifcopenshell. {how}", how=say_install("ifc")))
+
+
+def open_model(path: Path, name: str) -> Any:
+    """Return the model of a file that `check_model` has passed.
+
+    Raises
+    ------
+    ModelError
+        If the library cannot make sense of it.
+    """
+    import ifcopenshell
+
+    try:
+        model = ifcopenshell.open(str(path))
+    except (RuntimeError, ValueError, OSError) as error:
+        first = str(error).strip().split("\n")[0][:120].rstrip(".")
+        raise ModelError(
+            fill("{name} is damaged: {why}. Export it again.", name=name, why=first or type(error).__name__)
+        ) from None
+    if not isinstance(model, ifcopenshell.file):
+        raise ModelError(fill("{name} cannot be imported: {why}.", name=name, why=_NO_MODEL))
+    return model

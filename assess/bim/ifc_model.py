@@ -1,0 +1,143 @@
+"""A building model in IFC (ISO 16739-1: IFC2X3, IFC4, IFC4X3) as plain data.
+
+Shapes are trusted, names and properties are not: sizes are those of the shapes, exits are found by the rooms on both
+sides of a door, whatever its IsExternal says.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from assess.bim.building_model import BuildingModel, Door, Piece, Point, Stair, Storey
+from assess.bim.ifc_file import check_model, open_model
+from assess.bim.ifc_pieces import FoundPieces, find_pieces
+from assess.bim.ifc_rooms import cut_walls, list_doors, list_spaces, list_stairs
+from assess.bim.ifc_site import find_azimuth, find_names, find_position, find_unit, list_storeys
+from assess.errors import ModelError
+from assess.i18n import Text, fill
+
+FARTHEST = 10_000.0
+"""Distance from the origin up to which positions are kept as they are [m]."""
+ROUND = 100.0
+"""What is taken off positions farther away is a multiple of this [m]."""
+
+
+def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
+    """Read a building model; call it in a process of its own (`assess.bim.apart`).
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    name : str
+        How messages and the workbook call it.
+    also : sequence of str
+        Further classes whose elements are pieces, such as IfcBuildingElementProxy.
+
+    Returns
+    -------
+    BuildingModel
+        Storeys, rooms, doors, stairs, walls and pieces.
+
+    Raises
+    ------
+    ModelError
+        If it is no whole building model, names no unit of length, holds no building, or `also` names no class.
+    """
+    check_model(path, name)
+    model = open_model(path, name)
+    unit = find_unit(model, name)
+    storeys = list_storeys(model, unit)
+    warnings: list[Text] = []
+    if not storeys:
+        storeys = [_stand_in(model, name)]
+        warnings.append(
+            fill("The model has no storeys: all of it was put on one floor, {floor}. Check Floor in Items.",
+                 floor=storeys[0].name)
+        )  # fmt: skip
+    return _read(model, name, unit, storeys, also, tuple(warnings))
+
+
+def _stand_in(model: Any, name: str) -> Storey:
+    """Return a storey for a model that has none: its floor is the lowest point of its furniture or rooms."""
+    from assess.bim.ifc_elements import list_elements, list_shapes
+    from assess.bim.ifc_pieces import FURNITURE
+
+    for classes in (("IfcSpace",), FURNITURE, ("IfcWall",)):
+        bottoms = [shape.bottom for _, shape in list_shapes(model, list_elements(model, classes))]
+        if bottoms:
+            return Storey("", "1", 0.0, min(bottoms))
+    raise ModelError(
+        fill("{name} holds neither storeys nor rooms, furniture or walls with a shape. Export the building with its "
+             "storeys.", name=name)
+    )  # fmt: skip
+
+
+def _read(
+    model: Any, name: str, unit: float, storeys: Sequence[Storey], also: Sequence[str], warnings: tuple[Text, ...]
+) -> BuildingModel:
+    known = {one.key: one for one in storeys}
+    spaces = tuple(list_spaces(model, known))
+    found = find_pieces(model, storeys, spaces, also)
+    walls, windows = cut_walls(model, storeys)
+    title, address = find_names(model)
+    latitude, longitude = find_position(model) or (None, None)
+    read = BuildingModel(
+        source=name, schema=model.schema_identifier, name=title, address=address, storeys=tuple(storeys), spaces=spaces,
+        doors=tuple(list_doors(model, known, unit)), stairs=tuple(list_stairs(model, storeys)),
+        pieces=tuple(found.pieces), walls=walls, windows=windows, left_out=found.list_left_out(),
+        azimuth_deg=find_azimuth(model), latitude=latitude, longitude=longitude, warnings=warnings,
+        remarks=tuple(_note_rooms(model, spaces, found)),
+    )  # fmt: skip
+    return bring_near(read)
+
+
+def _note_rooms(model: Any, spaces: Sequence[Any], found: FoundPieces) -> list[Text]:
+    """Return what else there is to know of rooms."""
+    remarks = []
+    missing = len(model.by_type("IfcSpace")) - len(spaces)
+    if not spaces and not missing:
+        remarks.append(
+            fill("The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys.")
+        )
+    if missing:
+        remarks.append(fill("{n:,} of the rooms in the model have no plan or no storey: left out.", n=missing))
+    outside = sum(not piece.space for piece in found.pieces) if spaces else 0
+    if outside:
+        remarks.append(fill("{n:,} of the pieces stand in no room of the model: Room stays blank.", n=outside))
+    return remarks
+
+
+# ---------------------------------------------------------------- models far from their origin
+
+
+def bring_near(model: BuildingModel) -> BuildingModel:
+    """Return a model whose positions lie near the origin: a workbook holds them to 100 km only."""
+    placed: Sequence[Piece | Door | Stair] = (*model.pieces, *model.doors, *model.stairs)
+    points = [(one.x, one.y) for one in placed]
+    points += [corner for one in model.spaces for corner in one.area[0]]
+    points += [corner for areas in model.walls.values() for area in areas for corner in area[0]]
+    if not points or max(max(abs(x), abs(y)) for x, y in points) <= FARTHEST:
+        return model
+    shift = (ROUND * (min(x for x, _ in points) // ROUND), ROUND * (min(y for _, y in points) // ROUND))
+    text = fill("The model stands far from its origin: {x:,.0f} m were taken off every X, and {y:,.0f} m off every Y.",
+                x=shift[0], y=shift[1])  # fmt: skip
+    return replace(_move(model, (-shift[0], -shift[1])), shift=shift, remarks=(*model.remarks, text))
+
+
+def _move(model: BuildingModel, by: Point) -> BuildingModel:
+    def move_area(area: Any) -> Any:
+        return tuple(tuple((round(x + by[0], 3), round(y + by[1], 3)) for x, y in ring) for ring in area)
+
+    def move_all(some: Any) -> Any:
+        return tuple(replace(one, x=one.x + by[0], y=one.y + by[1]) for one in some)
+
+    def move_plans(plans: Any) -> Any:
+        return {key: tuple(map(move_area, areas)) for key, areas in plans.items()}
+
+    return replace(
+        model, pieces=move_all(model.pieces), doors=move_all(model.doors), stairs=move_all(model.stairs),
+        spaces=tuple(replace(one, area=move_area(one.area)) for one in model.spaces),
+        walls=move_plans(model.walls), windows=move_plans(model.windows),
+    )  # fmt: skip

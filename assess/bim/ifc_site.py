@@ -1,0 +1,101 @@
+"""What a building model tells of its site: unit, name, address, latitude and longitude, true north, storeys."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from assess.bim.building_model import Storey
+from assess.bim.ifc_elements import Element
+from assess.errors import ModelError
+from assess.i18n import fill
+
+_PLACEHOLDERS = ("enter address here", "//", "default")
+"""What programs write where nobody has typed a name or an address."""
+_ARC = (1.0, 60.0, 3600.0, 3.6e9)
+"""Parts of an IfcCompoundPlaneAngleMeasure in a degree: degrees, minutes, seconds, millionths of a second."""
+
+
+def find_unit(model: Any, name: str) -> float:
+    """Return the metres in a unit of length of the model.
+
+    Raises
+    ------
+    ModelError
+        If it names no unit of length.
+    """
+    from ifcopenshell.util.unit import calculate_unit_scale
+
+    assigned = [one for project in model.by_type("IfcProject") if (one := project.UnitsInContext)]
+    units = [unit for one in assigned for unit in one.Units or ()]
+    if not any(getattr(unit, "UnitType", "") == "LENGTHUNIT" for unit in units):
+        raise ModelError(
+            fill("{name} names no unit of length, so that no size in it can be known. Set the unit in the program that "
+                 "made it, and export again.", name=name)
+        )  # fmt: skip
+    scale = float(calculate_unit_scale(model))
+    if not (math.isfinite(scale) and 1e-6 < scale < 1e4):
+        raise ModelError(fill("{name}: its unit of length cannot be understood. Export it in metres.", name=name))
+    return scale
+
+
+def say(value: object) -> str:
+    """Return a text of the model in one line, "" for none and for what programs write in its place."""
+    text = " ".join(str(value).split()) if value is not None else ""
+    return "" if text.casefold().startswith(_PLACEHOLDERS) else text
+
+
+def find_names(model: Any) -> tuple[str, str]:
+    """Return the name and the address of the building, "" where it has none."""
+    buildings, projects = model.by_type("IfcBuilding"), model.by_type("IfcProject")
+    named = [say(one.LongName) or say(one.Name) for one in (*buildings, *projects)]
+    address = next((one.BuildingAddress for one in buildings if one.BuildingAddress), None)
+    return next(filter(None, named), ""), ", ".join(_list_address(address))
+
+
+def _list_address(address: Element | None) -> Iterator[str]:
+    if address is None:
+        return
+    lines = [say(line) for line in address.AddressLines or ()]
+    for part in (*lines, *(say(getattr(address, name)) for name in ("PostalCode", "Town", "Region", "Country"))):
+        if part:
+            yield part
+
+
+def find_position(model: Any) -> tuple[float, float] | None:
+    """Return latitude and longitude of the site [deg], None where the model gives none, or both are 0."""
+    for site in model.by_type("IfcSite"):
+        latitude, longitude = to_degrees(site.RefLatitude), to_degrees(site.RefLongitude)
+        if latitude is not None and longitude is not None and (latitude or longitude):
+            return latitude, longitude
+    return None
+
+
+def to_degrees(angle: Sequence[int] | None) -> float | None:
+    """Return an IfcCompoundPlaneAngleMeasure in degrees; None if there is none, or it is no angle of a site."""
+    if not angle or len(angle) > len(_ARC):
+        return None
+    degrees = sum(part / size for part, size in zip(angle, _ARC, strict=False))
+    return round(degrees, 6) if abs(degrees) <= 180 else None
+
+
+def find_azimuth(model: Any) -> float | None:
+    """Return the compass direction of the X axis [deg], None where no true north is given."""
+    for context in model.by_type("IfcGeometricRepresentationContext", include_subtypes=False):
+        if context.TrueNorth is not None:
+            x, y = context.TrueNorth.DirectionRatios[:2]
+            return round(math.degrees(math.atan2(y, x)), 3) % 360
+    return None
+
+
+def list_storeys(model: Any, unit: float) -> list[Storey]:
+    """Return all storeys of a model, from the lowest."""
+    from ifcopenshell.util.placement import get_storey_elevation
+
+    found = []
+    for number, one in enumerate(model.by_type("IfcBuildingStorey"), 1):
+        level = float(get_storey_elevation(one)) * unit
+        elevation = level if one.Elevation is None else float(one.Elevation) * unit
+        name = say(one.Name) or say(one.LongName) or str(number)
+        if math.isfinite(level) and math.isfinite(elevation):
+            found.append(Storey(one.GlobalId, name, elevation, level))
+    return sorted(found, key=lambda one: (one.level, one.name))
