@@ -3,15 +3,19 @@
 import base64
 import hashlib
 import re
+import shutil
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from assess.i18n import fill
+from assess.web.guard import MOST_MODEL
+from assess.web.importing import SOURCE, choose_routes
 from assess.web.jobs import REPORT, Job
 from assess.web.request_errors import NOT_FOUND, UNUSABLE, RequestError
+from assess.web.safe_names import clean_name
 from assess.web.sessions import Session
 
 if TYPE_CHECKING:
@@ -24,12 +28,13 @@ LOOK = 1.5
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """A request: its session, the values of its address, its body, and what is to be done after an edit."""
+    """A request: its session, the values of its address, its body or the file that holds it, what an edit calls."""
 
     session: Session
     query: Mapping[str, str] = field(default_factory=dict)
     body: Mapping[str, Any] = field(default_factory=dict)
     data: bytes = b""
+    file: Path | None = None
     language: str = "en"
     note_edit: Callable[[Session], None] = lambda _session: None
 
@@ -157,8 +162,16 @@ def close(asked: Asked) -> Answer:
 
 
 def upload(asked: Asked) -> Answer:
-    """Hold a workbook that was dropped in."""
-    return asked.session.hold(_name(asked), asked.data).describe()
+    """Hold a workbook that was dropped in; a COBie file, which is no inventory yet, is read as a building model is."""
+    from assess.bim.cobie_sheets import is_cobie
+
+    name = _name(asked)
+    if not is_cobie(asked.data):
+        return asked.session.hold(name, asked.data).describe()
+    asked.session.check_room(len(asked.data))
+    folder = asked.session.make_import_folder()
+    (folder / SOURCE).write_bytes(asked.data)
+    return import_model(replace(asked, file=folder / SOURCE))
 
 
 def add_file(asked: Asked) -> Answer:
@@ -280,6 +293,46 @@ def _job(asked: Asked) -> Job:
     if asked.session.job is None:
         raise RequestError(fill("Nothing has been simulated yet."), NOT_FOUND)
     return asked.session.job
+
+
+# ---------------------------------------------------------------- building models
+
+
+def import_model(asked: Asked) -> Answer:
+    """Begin to read a building model that was sent."""
+    if asked.file is None:
+        raise RequestError(fill("The request cannot be read."), UNUSABLE)
+    try:
+        name, routes = clean_name(_name(asked)), choose_routes(asked.query.get("routes", ""))
+    except RequestError:
+        shutil.rmtree(asked.file.parent, ignore_errors=True)
+        raise
+    asked.session.read_model(asked.file.parent, name or SOURCE, routes)
+    return describe_import(asked)
+
+
+def describe_import(asked: Asked) -> Answer:
+    """Answer with the building model that is or was read, and with that of the open workbook."""
+    session = asked.session
+    found, opened = session.reading, session.imported
+    return {
+        "import": found.describe() if found else None,
+        "opened": opened.describe() if opened else None,
+        "most": MOST_MODEL,
+    }
+
+
+def cancel_import(asked: Asked) -> Answer:
+    """End the reading, or drop what was read."""
+    asked.session.cancel_import()
+    return describe_import(asked)
+
+
+def open_import(asked: Asked) -> Answer:
+    """Open a new workbook of what was read."""
+    from assess.web.starting import choose_shaking
+
+    return asked.session.open_imported(choose_shaking(asked.body)).describe()
 
 
 # ---------------------------------------------------------------- start and texts

@@ -3,6 +3,7 @@
 import json
 import logging
 import math
+import shutil
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,18 +22,19 @@ from assess.errors import AssessError
 from assess.i18n import fill, load_catalogue, speaking
 from assess.web import answers
 from assess.web.answers import Answer, Asked, Content
-from assess.web.guard import SESSION
+from assess.web.guard import MODELS, MOST_MODEL, SESSION
+from assess.web.importing import SOURCE
 from assess.web.problem_answers import describe_fault
 from assess.web.request_errors import NOT_FOUND, RequestError
 from assess.web.sessions import Session
 from assess.web.texts import COOKIE, choose_language
-from assess.web.uploads import parse_body, read_body
+from assess.web.uploads import parse_body, read_body, save_body, skip_body
 
 MOST_JSON = 32 * 2**20
 """Bytes of a request in JSON: a whole sheet that is pasted."""
 MOST_FILE = 64 * 2**20
 """Bytes of a file that is sent."""
-POLLED = ("/api/state", "/api/job")
+POLLED = ("/api/state", "/api/job", MODELS)
 """What a page asks by itself: it is not its user who asks."""
 LOG = logging.getLogger("assess.web")
 
@@ -50,6 +52,7 @@ READ: dict[str, Handler] = {
     "/api/job": answers.describe_job,
     "/api/job/file/{name:path}": answers.find_job_file,
     "/api/job/report": answers.find_report,
+    MODELS: answers.describe_import,
     "/api/start": answers.describe_start,
     "/api/texts": answers.describe_texts,
 }
@@ -63,6 +66,8 @@ CHANGE: dict[str, Handler] = {
     "/api/what-if": answers.try_out,
     "/api/job": answers.simulate,
     "/api/job/cancel": answers.cancel,
+    "/api/import/cancel": answers.cancel_import,
+    "/api/import/open": answers.open_import,
     "/api/start": answers.start,
 }
 SEND: dict[str, Handler] = {"/api/upload": answers.upload, "/api/file": answers.add_file}
@@ -76,6 +81,7 @@ def build_application(note_edit: NoteEdit) -> Starlette:
     routes = [Route(path, partial(_read, note_edit, handler), methods=["GET"]) for path, handler in READ.items()]
     routes += [Route(path, partial(_change, note_edit, handler), methods=["POST"]) for path, handler in CHANGE.items()]
     routes += [Route(path, partial(_send, note_edit, handler), methods=["POST"]) for path, handler in SEND.items()]
+    routes += [Route(MODELS, partial(_receive, note_edit, answers.import_model), methods=["POST"])]
     routes += [Route("/{name:path}", _give_file, methods=["GET"])]
     return Starlette(routes=routes)
 
@@ -100,7 +106,29 @@ async def _send(note_edit: NoteEdit, handler: Handler, request: Request) -> Resp
     return await run_in_threadpool(_carry_out, handler, replace(_ask(request, note_edit), data=data))
 
 
-def _fail(error: RequestError) -> Handler:
+async def _receive(note_edit: NoteEdit, handler: Handler, request: Request) -> Response:
+    """Have a handler take a file that is too large for the memory, in a folder of its own."""
+    asked = _ask(request, note_edit)
+    try:
+        path = await run_in_threadpool(_make_room, asked.session, request)
+    except (RequestError, OSError) as error:
+        await skip_body(request)
+        return await run_in_threadpool(_carry_out, _fail(error), asked)
+    try:
+        await save_body(request, path, MOST_MODEL)
+    except (RequestError, OSError) as error:
+        await run_in_threadpool(shutil.rmtree, path.parent, ignore_errors=True)
+        return await run_in_threadpool(_carry_out, _fail(error), asked)
+    return await run_in_threadpool(_carry_out, handler, replace(asked, file=path))
+
+
+def _make_room(session: Session, request: Request) -> Path:
+    """Return where the body of a request goes."""
+    session.check_room(int(request.headers.get("content-length", "0")))
+    return session.make_import_folder() / SOURCE
+
+
+def _fail(error: RequestError | OSError) -> Handler:
     """Return a handler that refuses, so that it is said in the language of the page."""
 
     def refuse(_asked: Asked) -> Answer:

@@ -18,8 +18,12 @@ from assess.web.sessions import ENTRANCE, Headers, Keys, Session, Visit
 from assess.web.texts import COOKIE, choose_language
 
 MOST_BODY = 64 * 2**20
-"""Bytes of the largest body that any request may have; most may have less."""
-MOST_SKIPPED = 4 * MOST_BODY
+"""Bytes of the largest body that a request may have, but for a building model; most may have less."""
+MOST_MODEL = 256 * 2**20
+"""Bytes of the largest building model."""
+MODELS = "/api/import"
+"""Where building models are sent."""
+MOST_SKIPPED = 2 * MOST_MODEL
 """Bytes of a body that is too large which are still read, so that the browser gets to the answer."""
 COOKIE_AGE = 30 * 24 * 3600
 """Time that a browser keeps the cookie [s]; its key is void once the server has ended."""
@@ -71,7 +75,7 @@ class Guard:
             await self._enter(scope, send, visit, session)
         elif not self._is_ours(scope["method"], visit):
             await _refuse(scope, send, FORBIDDEN, fill("The request does not come from this page."))
-        elif _read_length(headers) > MOST_BODY:
+        elif _read_length(headers) > (MOST_MODEL if visit.path == MODELS else MOST_BODY):
             await _skip_body(receive)
             await _refuse(scope, send, TOO_LARGE, fill("The file is too large."))
         else:
@@ -128,7 +132,7 @@ def _read_cookies(headers: Headers) -> dict[str, str]:
 
 def _read_length(headers: Headers) -> int:
     text = headers.get(b"content-length", [b"0"])[0]
-    return int(text) if text.isdigit() and len(text) < 20 else MOST_BODY + 1
+    return int(text) if text.isdigit() and len(text) < 20 else MOST_MODEL + 1
 
 
 async def _skip_body(receive: Receive) -> None:

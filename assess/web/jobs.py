@@ -44,19 +44,23 @@ STAGES: Mapping[str, Text] = {
     "rendering": fill("Writing reports"),
 }
 """What the stages are called; others by their own names."""
+BUSY = fill("Other simulations are running. Try again in some minutes.")
+READING = fill("Other building models are being read. Try again in a minute.")
+"""Why there is no place for another."""
 
 
 class Slots:
-    """How many jobs may run at once, in all sessions."""
+    """How many jobs may run at once, in all sessions; `refusal` says why there is no place."""
 
-    def __init__(self, most: int) -> None:
-        self._most, self._running, self._lock = most, set[object](), threading.Lock()
+    def __init__(self, most: int, refusal: Text = BUSY) -> None:
+        self._most, self._refusal = most, refusal
+        self._running, self._lock = set[object](), threading.Lock()
 
     def take(self, job: object) -> None:
         """Take a place; RequestError where there is none."""
         with self._lock:
             if len(self._running) >= self._most:
-                raise RequestError(fill("Other simulations are running. Try again in some minutes."), TOO_MANY)
+                raise RequestError(self._refusal, TOO_MANY)
             self._running.add(job)
 
     def leave(self, job: object) -> None:

@@ -15,11 +15,22 @@ _FORBIDDEN = frozenset('<>:"/\\|?*')
 
 def make_safe(name: str) -> str:
     """Return the name of a workbook without folders, and without signs that file systems refuse."""
-    last = PureWindowsPath(PurePosixPath(name).name).name
-    shown = "".join(one for one in last if one not in _FORBIDDEN and unicodedata.category(one)[0] != "C").rstrip(". ")
+    shown = _take_last(name)
     stem, ending = (shown[:-5], shown[-5:]) if shown.lower().endswith(ENDINGS) else (shown, ENDINGS[0])
     stem = stem.strip(". ")[: LONGEST - len(ending)]
     return f"{stem}{ending}" if stem and not _RESERVED.match(stem) else f"workbook{ending}"
+
+
+def clean_name(name: str) -> str:
+    """Return the name of a file without folders, and without signs that file systems refuse, cut to `LONGEST`."""
+    shown = _take_last(name)
+    stem, dot, ending = shown.rpartition(".")
+    return f"{stem[: LONGEST - len(ending) - 1]}{dot}{ending}" if stem and len(ending) < LONGEST else shown[:LONGEST]
+
+
+def _take_last(name: str) -> str:
+    last = PureWindowsPath(PurePosixPath(name).name).name
+    return "".join(one for one in last if one not in _FORBIDDEN and unicodedata.category(one)[0] != "C").rstrip(". ")
 
 
 def check_name(name: object) -> str:

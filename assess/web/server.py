@@ -18,7 +18,7 @@ from assess.errors import InputError
 from assess.i18n import fill
 from assess.web.endpoints import build_application
 from assess.web.guard import Guard
-from assess.web.jobs import Slots
+from assess.web.jobs import READING, Slots
 from assess.web.keeping import Keeper
 from assess.web.rescue import keep_changes
 from assess.web.sessions import ENTRANCE, HOSTED, HostedKeys, Keys, Limits, LocalKeys, Session
@@ -117,7 +117,8 @@ class Server:
     def __init__(self, listening: socket.socket, place: Place, folder: Path, home: Path) -> None:
         self._listening, self._place, self._folder, self._home = listening, place, folder, home
         self.port = int(listening.getsockname()[1])
-        self._slots = Slots((HOSTED if place.is_hosted else Limits()).jobs)
+        most = (HOSTED if place.is_hosted else Limits()).jobs
+        self._slots, self._reading_slots = Slots(most), Slots(most, READING)
         self._keys: Keys = self._make_keys()
         self._keeper = Keeper(self._keys)
         application = build_application(self._keeper.note_edit)
@@ -137,8 +138,9 @@ class Server:
     def _make_session(self, user: str, limits: Limits, home: Path | None = None) -> Session:
         folder = Path(tempfile.mkdtemp(prefix="session-", dir=self._folder))
         return Session(
-            secrets.token_urlsafe(32), user, folder, home, limits, slots=self._slots, language=self._place.language
-        )
+            secrets.token_urlsafe(32), user, folder, home, limits, slots=self._slots,
+            reading_slots=self._reading_slots, language=self._place.language,
+        )  # fmt: skip
 
     def _list_hosts(self) -> list[str]:
         if self._place.is_hosted:

@@ -25,7 +25,9 @@ from assess.web.safe_names import make_safe
 
 if TYPE_CHECKING:
     from assess.web.book import Book
+    from assess.web.importing import Import, Routes
     from assess.web.live import LiveView
+    from assess.web.starting import Made
 
 ENTRANCE = "/enter"
 """The path to which the printed address leads."""
@@ -80,6 +82,8 @@ class Session:
         Where new workbooks are made: the folder in which the command was started; None: they are only held.
     language : str
         Code of the language of the page; blank: see `assess.web.texts.choose_language`.
+    reading, imported : Import, optional
+        The building model that was sent last, as long as it has not become a workbook, and that of the open workbook.
     """
 
     key: str
@@ -91,6 +95,9 @@ class Session:
     live: "LiveView | None" = None
     job: Job | None = None
     slots: Slots = field(default_factory=lambda: Slots(1))
+    reading: "Import | None" = None
+    imported: "Import | None" = None
+    reading_slots: Slots = field(default_factory=lambda: Slots(1))
     language: str = ""
     seen: float = field(default_factory=time.monotonic)
     looked: float = 0.0
@@ -147,16 +154,54 @@ class Session:
 
     def begin(self, body: Mapping[str, Any]) -> "Book":
         """Open a new workbook: in the folder of new workbooks where there is one, else held."""
-        from assess.web.book import Book
-        from assess.web.starting import build_workbook, place_files, place_workbook
+        from assess.web.starting import build_workbook
 
-        made = build_workbook(body)
+        return self._open_new(build_workbook(body))
+
+    def _open_new(self, made: "Made") -> "Book":
+        from assess.web.book import Book
+        from assess.web.starting import place_files, place_workbook
+
         if self.home is not None:
             return self.take(Book.open_disk(place_workbook(made, self.home)))
         self.check_room(len(made.data))
         folder = Path(tempfile.mkdtemp(prefix="files-", dir=self.folder))
         place_files(made, folder)
         return self.take(Book.hold(made.name, made.data, folder))
+
+    def make_import_folder(self) -> Path:
+        """Return a new folder for a building model that is sent."""
+        from assess.web.importing import FOLDER
+
+        return Path(tempfile.mkdtemp(prefix=FOLDER, dir=self.folder))
+
+    def read_model(self, folder: Path, name: str, routes: "Routes" = "none") -> None:
+        """Read a building model in such a folder; an earlier one that is not opened is dropped."""
+        from assess.web.importing import Import
+
+        with self.lock:
+            if self.reading is not None:
+                self.reading.close()
+            self.reading = None
+            self.reading = Import(folder, name, routes, self.reading_slots)
+
+    def cancel_import(self) -> None:
+        """End the reading of a building model, or drop what was read."""
+        with self.lock:
+            if self.reading is not None:
+                self.reading.close()
+                self.reading = self.reading if self.reading.state == "cancelled" else None
+
+    def open_imported(self, shaking: str) -> "Book":
+        """Open a new workbook of the building model that was read."""
+        with self.lock:
+            if self.reading is None:
+                raise RequestError(fill("No building model has been read."), NOT_FOUND)
+            found = self.reading
+            book = self._open_new(found.build(self.home or self.folder, shaking))
+            found.note_opened(book.opening)
+            self.reading, self.imported = None, found
+            return book
 
     def simulate(self, body: Mapping[str, Any]) -> Job:
         """Start a simulation of the open workbook; the results of an earlier one are removed."""
@@ -182,7 +227,7 @@ class Session:
         """End with the workbook and its job, and remove the files of one that was held."""
         if self.job is not None:
             self.job.close()
-        self.job = self.book = self.live = None
+        self.job = self.book = self.live = self.imported = None
         (self.folder / NOTE).unlink(missing_ok=True)
         for folder in self.folder.glob("files-*"):
             if folder.resolve() != kept:
@@ -192,6 +237,8 @@ class Session:
         """End its job and remove its folder."""
         with self.lock:
             self.drop_book()
+            if self.reading is not None:
+                self.reading.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
 

@@ -89,7 +89,7 @@ class Made:
 
     name: str
     data: bytes
-    files: Mapping[str, Path] = field(default_factory=dict)
+    files: Mapping[str, Path | bytes] = field(default_factory=dict)
 
 
 def build_workbook(request: Mapping[str, Any]) -> Made:
@@ -122,13 +122,18 @@ def _read(request: Mapping[str, Any]) -> Wanted:
         use=_choose(request, "use", ("", *USES)),
         building=_text(request, "building"),
         town=_text(request, "town"),
-        shaking=_choose(request, "shaking", ("", *SHAKINGS)),
+        shaking=choose_shaking(request),
         language=_choose(request, "language", LANGUAGES),
         units=cast(Units, units),
         floor=_text(request, "floor") or "1",
         room=_text(request, "room"),
         pieces=tuple(_list_pieces(request.get("pieces") or [])),
     )
+
+
+def choose_shaking(request: Mapping[str, Any]) -> str:
+    """Return the shaking that is chosen, blank where none is; RequestError where there is no such choice."""
+    return _choose(request, "shaking", ("", *SHAKINGS))
 
 
 def _text(request: Mapping[str, Any], name: str) -> str:
@@ -245,4 +250,4 @@ def place_files(made: Made, folder: Path) -> None:
         if not target.exists():
             target.parent.mkdir(parents=True, exist_ok=True)
             with target.open("xb") as file:
-                file.write(source.read_bytes())
+                file.write(source if isinstance(source, bytes) else source.read_bytes())

@@ -1,8 +1,11 @@
 """Raw bodies of requests, read up to a limit."""
 
 import json
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
+from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect, Request
 
 from assess.i18n import fill
@@ -28,9 +31,48 @@ async def read_body(request: Request, most: int) -> bytes:
                 parts.append(part)
     except ClientDisconnect:
         raise RequestError(fill("The request broke off."), BAD_REQUEST) from None
+    check_size(size, most)
+    return b"".join(parts)
+
+
+async def save_body(request: Request, path: Path, most: int) -> None:
+    """Write the body of a request to a new file, as it comes; what is too large is read to its end, as above.
+
+    Raises
+    ------
+    RequestError
+        If it has more than `most` bytes, or breaks off.
+    OSError
+        If it cannot be written.
+    """
+    size = 0
+    with path.open("xb") as file:
+        try:
+            async for part in request.stream():
+                size += len(part)
+                if size > MOST_SKIPPED:
+                    break
+                if size <= most:
+                    await run_in_threadpool(file.write, part)
+        except ClientDisconnect:
+            raise RequestError(fill("The request broke off."), BAD_REQUEST) from None
+    check_size(size, most)
+
+
+async def skip_body(request: Request) -> None:
+    """Read a body that is refused, so that the browser gets to the answer."""
+    size = 0
+    with suppress(ClientDisconnect):
+        async for part in request.stream():
+            size += len(part)
+            if size > MOST_SKIPPED:
+                return
+
+
+def check_size(size: int, most: int) -> None:
+    """Raise RequestError where so many bytes are more than `most`."""
     if size > most:
         raise RequestError(fill("It is larger than {most:.0f} MB.", most=most / 2**20), TOO_LARGE)
-    return b"".join(parts)
 
 
 def parse_body(data: bytes) -> dict[str, Any]:

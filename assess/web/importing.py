@@ -1,0 +1,307 @@
+"""A building model, a plan, a scan or a COBie file that becomes a new workbook: read aside, told as it goes, cancelled.
+
+What is read goes to a folder of its own, which is removed once it has been read, however that ended.
+"""
+
+import logging
+import secrets
+import shutil
+import threading
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextvars import copy_context
+from dataclasses import dataclass, replace
+from itertools import count
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from assess.errors import AssessError, CancelledError
+from assess.i18n import Text, fill, gettext
+from assess.progress import Progress, Report
+from assess.web.jobs import STAGES, Slots
+from assess.web.problem_answers import describe_fault
+from assess.web.request_errors import CONFLICT, NOT_FOUND, UNUSABLE, RequestError
+from assess.web.safe_names import ENDINGS, make_safe
+from assess.web.starting import Made
+
+if TYPE_CHECKING:
+    from assess.bim.import_workbook import ImportedBuilding
+
+FOLDER = "import-"
+SOURCE = "model"
+"""In its folder: what was sent, whatever it is called."""
+LEFT_AFTER = 90.0
+"""Time after which a reading ends whose page no longer asks how far it is [s]; browsers slow down hidden pages."""
+PATIENCE = 2.0
+"""Time that a cancelled reading has to end before it is no longer waited for [s]."""
+MOST_ROWS = 2000
+"""Rows of what was skipped that the page gets."""
+LOG = logging.getLogger("assess.web")
+
+Routes = Literal["none", "draft"]
+ROUTES: tuple[Routes, ...] = ("none", "draft")
+
+
+def choose_routes(text: str) -> Routes:
+    """Return what is asked for of routes; RequestError where there is no such choice."""
+    if (text or ROUTES[0]) not in ROUTES:
+        known = ", ".join(ROUTES)
+        raise RequestError(
+            fill("{name} is {value!r}, expected one of: {known}", name="routes", value=text[:40], known=known), UNUSABLE
+        )
+    return cast(Routes, text or ROUTES[0])
+
+
+def read(path: Path, name: str, progress: Progress, routes: Routes) -> "ImportedBuilding":
+    """Read what was sent, whatever it is: see `assess.bim.read_source`."""
+    from assess.bim.cobie import read_cobie
+
+    return read_cobie(path, name, progress)
+
+
+# ---------------------------------------------------------------- what came out
+
+
+_Rows = Sequence[tuple[str, int]]
+"""Types, and how many pieces of each."""
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """What was taken and what was skipped: all that is kept of a reading once its workbook is open."""
+
+    pieces: int
+    types: int
+    floors: int
+    rooms: int
+    routes: int
+    plans: int
+    skipped: Sequence[tuple[Text, bool, _Rows]]
+    warnings: Sequence[Text]
+    remarks: Sequence[Text]
+
+    def describe(self) -> dict[str, Any]:
+        """Return it as the page shows it, in the language in use."""
+        groups = list(_cut(self.skipped))
+        maybe = sum(number for _, is_furniture, rows in self.skipped for _, number in rows if is_furniture)
+        return {
+            **{name: getattr(self, name) for name in ("pieces", "types", "floors", "rooms", "routes", "plans")},
+            "of": self.pieces + maybe,
+            "skipped": [
+                {"reason": gettext(reason), "is_furniture": is_furniture, "count": total, "types": rows, "more": more}
+                for reason, is_furniture, total, rows, more in groups
+            ],
+            "warnings": [gettext(text) for text in self.warnings],
+            "remarks": [gettext(text) for text in self.remarks],
+        }
+
+
+def _cut(skipped: Sequence[tuple[Text, bool, _Rows]]) -> Iterator[tuple[Text, bool, int, _Rows, int]]:
+    """Yield the groups with as many rows as the page gets, each with its pieces and how many rows it lacks."""
+    left = MOST_ROWS
+    for reason, is_furniture, rows in skipped:
+        shown = rows[:left]
+        left -= len(shown)
+        yield reason, is_furniture, sum(number for _, number in rows), shown, len(rows) - len(shown)
+
+
+def summarise(found: "ImportedBuilding") -> Taken:
+    """Return what was taken of a building and what was skipped: what may be furniture first."""
+    from assess.bim.import_workbook import group_skipped
+
+    return Taken(
+        pieces=len(found.items),
+        types=len({row.get("type") for row in found.items}),
+        floors=len(found.floors),
+        rooms=sum(row.get("kind") == "room" for row in found.places),
+        routes=len({row.get("route") for row in found.routes}),
+        plans=len(found.files),
+        skipped=[
+            (reason, group[0].is_furniture, [(one.type, one.count) for one in group])
+            for reason, group in group_skipped(found.skipped)
+        ],
+        warnings=found.warnings,
+        remarks=found.remarks,
+    )
+
+
+# ---------------------------------------------------------------- reading
+
+
+class _Asked(threading.Event):
+    """Set where a reading is to stop: by hand, or as nobody asks how far it is any more."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.latest = time.monotonic()
+
+    def is_set(self) -> bool:
+        """Tell whether it is to stop."""
+        return super().is_set() or time.monotonic() - self.latest > LEFT_AFTER
+
+
+class Import:
+    """One file that is read.
+
+    Parameters
+    ----------
+    folder : Path
+        A folder that holds it as `SOURCE`; it is removed once it has been read.
+    name : str
+        How it is called.
+    routes : str
+        Whether routes are drafted.
+    slots : Slots
+        Places of all sessions.
+
+    Raises
+    ------
+    RequestError
+        If there is no place; the folder is removed then, too.
+    """
+
+    def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots) -> None:
+        self.id, self.name, self.state = secrets.token_hex(8), name, "running"
+        self._folder, self._routes, self._slots = folder, routes, slots
+        self._asked, self._lock = _Asked(), threading.RLock()
+        self._started, self._latest = time.monotonic(), Report("", 0.0, "", None)
+        self._error: Exception | None = None
+        self._found: ImportedBuilding | None = None
+        self.taken: Taken | None = None
+        self.book = ""
+        try:
+            slots.take(self)
+        except RequestError:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        self._thread = threading.Thread(target=copy_context().run, args=(self._run,), name="assess-import", daemon=True)
+        self._thread.start()
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it has not ended yet."""
+        return self.state == "running"
+
+    def _run(self) -> None:
+        """Read the file to its end, and remove it."""
+        state, found, error = "done", None, None
+        try:
+            found = read(self._folder / SOURCE, self.name, Progress(self._listen, self._asked), self._routes)
+        except CancelledError:
+            state = "cancelled"
+        except Exception as fault:
+            state, error = "failed", fault
+            if not isinstance(fault, AssessError | OSError):
+                LOG.exception("a building model could not be read")
+        shutil.rmtree(self._folder, ignore_errors=True)
+        self._slots.leave(self)
+        with self._lock:
+            if self.is_running:
+                self._found, self._error = found, error
+                self.taken = summarise(found) if found is not None else None
+                self.state = state
+
+    def _listen(self, report: Report) -> None:
+        self._latest = report
+
+    def cancel(self) -> None:
+        """End it at once; nothing of it is kept."""
+        with self._lock:
+            if self.is_running:
+                self.state = "cancelled"
+        self._asked.set()
+        self._thread.join(timeout=PATIENCE)
+
+    def close(self) -> None:
+        """End it, and forget what was read."""
+        self.cancel()
+        self._found = None
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    # ------------------------------------------------------------ what the page is told
+
+    def describe(self) -> dict[str, Any]:
+        """Return all that the page shows, in the language in use; notes that it was asked for."""
+        self._asked.latest = time.monotonic()
+        with self._lock:
+            now = self._latest
+            fault = describe_fault(self._error)[1] if self._error is not None else {}
+            return {
+                "id": self.id,
+                "state": self.state,
+                "name": self.name,
+                "label": gettext(STAGES.get(now.stage, STAGES["reading"])),
+                "share": now.share if self.is_running else 1.0,
+                "seconds": time.monotonic() - self._started,
+                "message": fault.get("message", ""),
+                "fix": fault.get("fix", ""),
+                "problems": fault.get("problems", []),
+                "found": self.taken.describe() if self.taken else None,
+                "workbook": name_workbook(self.name),
+                "book": self.book,
+            }
+
+    # ------------------------------------------------------------ the workbook of it
+
+    def build(self, folder: Path, shaking: str) -> Made:
+        """Return the new workbook, in the language in use, under names that the folder does not have yet.
+
+        Raises
+        ------
+        RequestError
+            If nothing was read, or its workbook was made already.
+        """
+        from assess.bim.import_workbook import build_workbook
+
+        with self._lock:
+            if self.book:
+                raise RequestError(fill("The workbook of {name} is open already.", name=self.name), CONFLICT)
+            if self._found is None:
+                raise RequestError(fill("No building model has been read."), NOT_FOUND)
+            found = _rename_files(self._found, folder)
+        if shaking:
+            found = replace(found, building={**found.building, "shaking": shaking})
+        return Made(find_free(name_workbook(self.name), folder), build_workbook(found), found.files)
+
+    def note_opened(self, book: str) -> None:
+        """Note which opening of a workbook holds it; what was read is forgotten, but for the list of it."""
+        self.book, self._found = book, None
+
+
+def name_workbook(name: str) -> str:
+    """Return how the workbook of a file is called: a COBie file is a workbook of that name itself."""
+    path = PurePosixPath(name)
+    stem = f"{path.stem}-inventory" if path.suffix.lower() in ENDINGS else path.stem
+    return make_safe(f"{stem}{ENDINGS[0]}")
+
+
+def find_free(name: str, folder: Path) -> str:
+    """Return a name that no file of a folder has: the name itself, else with a number."""
+    return next(one for one in _number(PurePosixPath(name)) if not _is_there(folder / one))
+
+
+def _number(path: PurePosixPath) -> Iterator[str]:
+    yield path.as_posix()
+    yield from (path.with_name(f"{path.stem}-{n}{path.suffix}").as_posix() for n in count(2))
+
+
+def _is_there(path: Path) -> bool:
+    return path.exists() or path.is_symlink()
+
+
+def _rename_files(found: "ImportedBuilding", folder: Path) -> "ImportedBuilding":
+    """Return a building whose plans have names that the folder does not have, but for the very same files."""
+    names = {name: _find_name(name, data, folder) for name, data in found.files.items()}
+    floors = [_rename(row, names) for row in found.floors]
+    return replace(found, floors=floors, files={names[name]: data for name, data in found.files.items()})
+
+
+def _find_name(name: str, data: bytes, folder: Path) -> str:
+    path = folder / name
+    is_same = path.is_file() and path.stat().st_size == len(data) and path.read_bytes() == data
+    return name if is_same else find_free(name, folder)
+
+
+def _rename(row: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Any]:
+    plan = row.get("plan", "")
+    return {**row, "plan": names.get(plan, plan)} if plan else dict(row)
