@@ -465,6 +465,10 @@ def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Fiel
         Field(
             key="source_row", read=attrgetter("item.row"), path=("source", "row"), kind="count", shows=DATA,
         ),
+        _of_item(
+            "source_id", fill("Source ID"), is_optional=True, shows=DATA,
+            help="Its identifier in the building model or handover file that it was imported from.",
+        ),
     )  # fmt: skip
 
 

@@ -528,10 +528,7 @@ class RouteTables:
 
 
 JSON_NAMES = {"from_place": "from", "to_place": "to", "segment_indices": "segments"}
-NOT_IN_JSON = frozenset(
-    ("item_index", "unevaluated_indices", "workbook_row", "start_x_m", "start_y_m", "end_x_m", "end_y_m",
-     "extends_start_m", "extends_end_m")
-)  # fmt: skip
+NOT_IN_JSON = frozenset(("item_index", "unevaluated_indices", "workbook_row", "extends_start_m", "extends_end_m"))
 
 
 def _plain(value: Any) -> Any:

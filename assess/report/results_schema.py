@@ -26,7 +26,7 @@ from assess.schedule_fields import ENTRY_FIELDS, STATE_FIELDS, WORK_FIELDS
 from assess.settings import MOST_SCALE, SCENARIOS, Settings
 from assess.workbook.schema import BUILDING, Column
 
-VERSION = "5.1"
+VERSION = "5.2"
 FILE = Path(__file__).with_name("results.schema.json")
 
 Schema = dict[str, Any]
@@ -259,8 +259,8 @@ def _number_in(row: type, name: str) -> Schema:
     """Return the schema of a number: a chance, an expected number or a width that cannot be negative, or any."""
     if row is rows.Chance:
         return SHARE
-    is_width = row is rows.SegmentRow and name.endswith("_m")
-    return {"type": "number", "minimum": 0} if is_width or name.endswith("_expected") else {"type": "number"}
+    is_size = row is rows.SegmentRow and name.endswith("_m") and not name.endswith(("_x_m", "_y_m"))
+    return {"type": "number", "minimum": 0} if is_size or name.endswith("_expected") else {"type": "number"}
 
 
 def _of_type(hint: Any, number: Schema) -> Schema:

@@ -35,7 +35,9 @@ def test_the_schema_describes_fields_of_rows_and_knows_their_limits():
                                      "description": chance["probability"]["description"]}  # fmt: skip
     assert chance["probability"]["description"].startswith("From the joint outcomes")
     assert {"from", "to"} <= set(segment)
-    assert not {"from_place", "workbook_row", "start_x_m"} & set(segment)
+    assert not {"from_place", "workbook_row", "extends_start_m"} & set(segment)
+    assert "minimum" in segment["length_m"]
+    assert "minimum" not in segment["start_x_m"]
     assert definitions["item"]["properties"]["friction"]["type"] == ["number", "null"]
     text = "Draws of an earthquake like this one and of the piece, a motion each, that it was simulated under."
     assert definitions["verification"]["properties"]["runs"] == {
@@ -68,7 +70,7 @@ def test_results_hold_what_was_assessed(results):
     assert first["methods"]["housner_monte_carlo"]["value"] is None
     assert {demand["ensemble"] for floor in found["floors"] for demand in floor["demands"]} == {None}
     settings = found["assess"]["settings"]
-    assert found["schema"] == "5.1"
+    assert found["schema"] == "5.2"
     assert found["assess"]["seed"] == settings["seed"] == 1
     assert (settings["verify"], settings["runs"], settings["scale_motions"]) == ("none", 200, False)
     assert found["assess"]["inputs"]["motions"] == {}
