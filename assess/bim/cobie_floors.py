@@ -82,14 +82,14 @@ def list_rows(
     """
     kept = [floor for floor in floors.values() if floor.is_storey or floor.name in used]
     kept.sort(key=lambda floor: floor.elevation or 0.0)
-    remarks = _note_datum([(floor.name, floor.elevation) for floor in kept if floor.elevation is not None])
+    remarks = note_datum([(floor.name, floor.elevation) for floor in kept if floor.elevation is not None])
     blank = [floor.name for floor in kept if floor.elevation is None]
     if blank:
         remarks.append(fill("No Elevation is given of: {floors}.", floors=", ".join(blank)))
     return [_list_row(floor) for floor in kept], _find_height(floors.values(), kept), remarks
 
 
-def _note_datum(known: Sequence[tuple[str, float]]) -> list[Text]:
+def note_datum(known: Sequence[tuple[str, float]]) -> list[Text]:
     """Return what has to be checked of the floors' names and elevations [m], from the lowest."""
     if not known or NEAR_GROUND[0] <= known[0][1] <= NEAR_GROUND[1]:
         return []

@@ -20,7 +20,7 @@ FURNITURE = ("IfcFurnishingElement", "IfcElectricAppliance", "IfcMedicalDevice")
 APPLIANCES = ("IfcElectricApplianceType", "IfcMedicalDeviceType")
 """Types by which an element is a piece in IFC2X3, where it has no class of its own."""
 OTHERS = (
-    "IfcBuildingElementProxy", "IfcElementAssembly", "IfcTransportElement", "IfcFlowTerminal", "IfcFlowStorageDevice",
+    "IfcBuildingElementProxy", "IfcTransportElement", "IfcFlowTerminal", "IfcFlowStorageDevice",
     "IfcFlowMovingDevice", "IfcFlowTreatmentDevice", "IfcEnergyConversionDevice", "IfcDistributionControlElement",
 )  # fmt: skip
 """Classes that may hold furniture or equipment, and mostly hold something else: they are listed, and taken by name."""

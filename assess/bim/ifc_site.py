@@ -9,7 +9,7 @@ from assess.bim.ifc_elements import Element
 from assess.errors import ModelError
 from assess.i18n import fill
 
-_PLACEHOLDERS = ("enter address here", "//", "default")
+_PLACEHOLDERS = ("enter address here", "//", "default", "<default>", "project number", "project name", "undefined")
 """What programs write where nobody has typed a name or an address."""
 _ARC = (1.0, 60.0, 3600.0, 3.6e9)
 """Parts of an IfcCompoundPlaneAngleMeasure in a degree: degrees, minutes, seconds, millionths of a second."""

@@ -1,76 +1,143 @@
-"""``assess import``: an inventory workbook out of a handover file of a building."""
+"""``assess import``: an inventory workbook out of a building model, a scan or a handover file of a building."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from assess.cli.console import count, show_progress
-from assess.cli.options import save_file
+from assess.cli.options import save_files
 from assess.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from assess.bim.import_workbook import ImportedBuilding
+    from assess.bim.update_workbook import Updated
 
 ORDER = 2
 EXAMPLES = (
+    "assess import model.ifc --out building.xlsx",
+    "assess import model.ifc --out building.xlsx --routes draft",
+    "assess import model.ifc --out building.xlsx --update",
     "assess import handover-cobie.xlsx --out building.xlsx",
-    "assess import handover-cobie.xlsx --out building.xlsx --force",
 )
-COBIE = (".xlsx", ".xlsm")
+MOST_CHANGES = 200
+"""Changes that are listed one by one."""
+
+
+class Routes(str, Enum):
+    """Whether evacuation routes are drafted."""
+
+    none = "none"
+    draft = "draft"
 
 
 def command(
-    source: Annotated[Path, typer.Argument(metavar="FILE", help="A COBie spreadsheet (.xlsx).", show_default=False)],
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="A building model (.ifc), a RoomPlan scan (.json), a Sweet Home 3D file (.sh3d) or a COBie spreadsheet "
+            "(.xlsx).",
+            show_default=False,
+        ),
+    ],
     out: Annotated[Path, typer.Option("--out", "-o", help="The workbook to write, an .xlsx.", show_default=False)],
+    routes: Annotated[
+        Routes, typer.Option("--routes", help="Draft evacuation routes from the rooms to stairs and exits.")
+    ] = Routes.none,
+    also: Annotated[
+        list[str] | None,
+        typer.Option("--also", metavar="CLASS", help="A further class of the model whose elements are furniture, such as "
+                     "IfcBuildingElementProxy; may be given several times.", show_default=False),
+    ] = None,
+    update: Annotated[
+        bool,
+        typer.Option("--update", help="Take new sizes, positions and pieces into the workbook, and keep all else in it."),
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing workbook.")] = False,
-) -> None:
-    """Make an inventory workbook from a COBie handover file.
+) -> None:  # fmt: skip
+    """Make an inventory workbook from a building model, a scan or a COBie handover file.
 
-    Moveable types with sizes become pieces, one row a component, with room, floor and the identifier of the file. What
-    is left out is listed by type with the reason. The workbook lacks only how the floors shake: choose Shaking in
-    Building, or fill in Floors. The exit status is 1 where furniture was left out, or none was found.
+    Furniture becomes rows with sizes, floor, room, position and the identifier of the file; rooms and doors become
+    Places, and a plan of each storey is written beside the workbook. What is left out is listed by type with the
+    reason. The workbook lacks only how the floors shake: choose Shaking in Building, or fill in Floors. The exit status
+    is 1 where furniture was left out, or none was found.
     """
-    _check_names(source, out, replaces=force)
-    from assess.bim.cobie import read_cobie
-    from assess.bim.import_workbook import build_workbook
+    _check_names(source, out, replaces=force, updates=update)
+    from assess.bim.read_source import read_source
 
     with show_progress() as progress, progress.stage("reading", source.name):
-        found = progress.wait_for(lambda: read_cobie(source, source.name, progress))
-        data = progress.wait_for(lambda: build_workbook(found))
-    save_file(data, out)
-    for line in describe_import(found):
+        found = read_source(source, source.name, progress, routes=routes.value, also=also or ())
+        plans = {out.parent / name: data for name, data in found.files.items()}
+        if update:
+            updated = progress.wait_for(lambda: _update(out, found))
+            data, lines = updated.data, list(describe_changes(updated))
+        else:
+            _check_plans(plans, replaces=force)
+            data, lines = progress.wait_for(lambda: _build(found)), []
+    save_files({out: data, **plans})
+    for line in (*describe_import(found), *lines):
         typer.echo(line)
-    typer.echo(
-        f"wrote {out}. Choose Shaking in Building or fill in Floors, then run: assess check {_quote(out)}", err=True
-    )
+    typer.echo(_describe_written(out, plans), err=True)
     if not found.is_complete:
         raise typer.Exit(1)
+
+
+def _build(found: "ImportedBuilding") -> bytes:
+    from assess.bim.import_workbook import build_workbook
+
+    return build_workbook(found)
+
+
+def _update(out: Path, found: "ImportedBuilding") -> "Updated":
+    from assess.bim.update_workbook import update_workbook
+
+    return update_workbook(out.read_bytes(), found, out.name)
+
+
+def _describe_written(out: Path, plans: Mapping[Path, bytes]) -> str:
+    beside = f" and {count(len(plans), 'plan')} beside it" if plans else ""
+    return f"wrote {out}{beside}. Choose Shaking in Building or fill in Floors, then run: assess check {_quote(out)}"
 
 
 def _quote(path: Path) -> str:
     return f'"{path}"' if " " in str(path) else str(path)
 
 
-def _check_names(source: Path, out: Path, *, replaces: bool) -> None:
-    """Raise unless a file of this kind is read and the workbook may be written, as far as is known before the work.
+def _check_names(source: Path, out: Path, *, replaces: bool, updates: bool) -> None:
+    """Raise unless the workbook may be written, as far as is known before the work.
 
     Raises
     ------
     InputError
-        If the file is of a kind that is not read, or the workbook is the file itself or does not end in .xlsx.
+        If the workbook is the file itself or does not end in .xlsx, or is to be updated and is not there.
     OutputError
-        If the workbook exists, and it was not asked for that it be replaced.
+        If the workbook exists, and it was not asked for that it be updated or replaced.
     """
-    if source.suffix.lower() not in COBIE:
-        raise InputError(f"{source} is of a kind that is not imported: name a COBie spreadsheet, which ends in .xlsx.")
     if out.suffix.lower() != ".xlsx":
         raise InputError(f"--out: {out} does not end in .xlsx: name it {out.stem or 'building'}.xlsx.")
     if out.resolve() == source.resolve() or (out.exists() and source.exists() and out.samefile(source)):
         raise InputError(f"--out: {out} is the file to import: name another file, so that the original stays as it is.")
-    if out.exists() and not replaces:
-        raise OutputError(f"{out} already exists: add --force to replace it, or choose another name.")
+    if updates and replaces:
+        raise InputError("--update keeps what is in the workbook, --force replaces it: give one of them.")
+    if updates and not out.exists():
+        raise InputError(f"--update: {out} does not exist: name the workbook of an earlier import, or leave it out.")
+    if out.exists() and not (replaces or updates):
+        raise OutputError(
+            f"{out} already exists: add --update to take the changes of the model into it, --force to replace it, or "
+            "choose another name."
+        )
+
+
+def _check_plans(plans: Mapping[Path, bytes], *, replaces: bool) -> None:
+    """Raise if a plan would replace a file; raises OutputError."""
+    there = next((path for path in plans if path.exists()), None)
+    if there is not None and not replaces:
+        raise OutputError(
+            f"{there} already exists: add --force to replace it, or write the workbook into another folder."
+        )
 
 
 def describe_import(found: "ImportedBuilding") -> Iterator[str]:
@@ -78,9 +145,22 @@ def describe_import(found: "ImportedBuilding") -> Iterator[str]:
     from assess.bim.import_workbook import MOST_NAMED, group_skipped, say_skipped
 
     kinds = {row["type"] for row in found.items}
-    taken = f"{count(len(found.items), 'piece')} of {count(len(kinds), 'type')} on {count(len(found.floors), 'floor')}"
-    yield f"{found.source}: {taken} taken."
+    where = f"of {count(len(kinds), 'type')} on {count(len(found.floors), 'floor')}"
+    left = sum(one.count for one in found.skipped if one.is_furniture)
+    pieces = count(len(found.items) + left, "piece")
+    yield f"{found.source}: {f'{len(found.items):,} of ' if left else ''}{pieces} {where} taken."
     if not found.items:
         yield "No furniture was found: fill in Items by hand."
     yield from (say_skipped(group, MOST_NAMED) for _, group in group_skipped(found.skipped))
     yield from (f"Check: {text}" for text in (*found.warnings, *found.remarks))
+
+
+def describe_changes(updated: "Updated") -> Iterator[str]:
+    """Yield what an update changed, added, kept or missed in the workbook."""
+    from assess.bim.update_workbook import describe
+
+    if not updated.changes:
+        yield "Nothing has changed since the workbook was written."
+    yield from (str(describe(change)) for change in updated.changes[:MOST_CHANGES])
+    if len(updated.changes) > MOST_CHANGES:
+        yield f"and {len(updated.changes) - MOST_CHANGES:,} changes more."

@@ -1,0 +1,106 @@
+"""The plan of a storey as an SVG: walls, windows, doors and rooms, in metres, to lie under the pieces of a report."""
+
+import math
+import re
+import unicodedata
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+from assess.bim.building_model import Area, BuildingModel, Door, Piece, Point, Storey
+
+MARGIN = 0.5
+"""Room round what is drawn [m]."""
+LONGEST_NAME = 60
+"""Characters of the name of a plan's file."""
+STYLE = (
+    ".wall{fill:#4d4d4d;stroke:#333}.window{fill:#cfe3ef;stroke:#4a7d9b}.room{fill:none;stroke:#bbb}"
+    ".door{fill:none;stroke:#8a5a00}"
+)
+LINE = 0.02
+"""Width of lines [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """A plan: its SVG, and where it lies: its left and bottom edge, and its width [m]."""
+
+    svg: bytes
+    left: float
+    bottom: float
+    width: float
+
+
+def draw_storey(model: BuildingModel, storey: Storey) -> Drawn | None:
+    """Return the plan of a storey, None where nothing of it is known."""
+    walls, windows = model.walls.get(storey.key, ()), model.windows.get(storey.key, ())
+    rooms = [one.area for one in model.spaces if one.storey == storey.key]
+    doors = [one for one in model.doors if one.storey == storey.key]
+    pieces = [one for one in model.pieces if one.storey == storey.key]
+    points = [*_list_corners(walls, windows, rooms), *(point for door in doors for point in _span(door))]
+    if not points:
+        return None
+    frame = _Frame.round([*points, *(corner for one in pieces for corner in _list_reach(one))])
+    parts = [
+        *(f'<path class="room" d="{frame.path(one[:1])}"/>' for one in rooms),
+        *(f'<path class="window" d="{frame.path(one)}"/>' for one in windows),
+        *(f'<path class="wall" fill-rule="evenodd" d="{frame.path(one)}"/>' for one in walls),
+        *(f'<path class="door" d="{frame.line(_span(one))}"/>' for one in doors),
+    ]
+    size = f"{frame.width:.3f} {frame.height:.3f}"
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size}"><style>{STYLE}</style>'
+    svg = f'{head}<g stroke-width="{LINE}">{"".join(parts)}</g></svg>\n'
+    return Drawn(svg.encode(), frame.left, frame.bottom, frame.width)
+
+
+def name_plan(source: str, storey: str) -> str:
+    """Return the name of a plan's file: of the model and its storey, in letters that every system takes."""
+    stem = re.sub(r"\.[^.]*$", "", source)
+    plain = unicodedata.normalize("NFKD", f"{stem} {storey}").encode("ascii", "ignore").decode()
+    return (re.sub(r"[^A-Za-z0-9]+", "-", plain).strip("-")[:LONGEST_NAME].strip("-") or "plan") + ".svg"
+
+
+def _list_corners(*groups: Sequence[Area]) -> Iterator[Point]:
+    for areas in groups:
+        for area in areas:
+            yield from area[0]
+
+
+def _span(door: Door) -> tuple[Point, Point]:
+    """Return the two jambs of a door: ends of the line across its opening."""
+    turn = math.radians(door.normal_deg + 90)
+    dx, dy = math.cos(turn) * door.width / 2, math.sin(turn) * door.width / 2
+    return (door.x - dx, door.y - dy), (door.x + dx, door.y + dy)
+
+
+def _list_reach(piece: Piece) -> Iterator[Point]:
+    reach = math.hypot(piece.breadth, piece.width) / 2
+    yield piece.x - reach, piece.y - reach
+    yield piece.x + reach, piece.y + reach
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """The box that is drawn [m]; Y of the SVG runs downwards from its top."""
+
+    left: float
+    bottom: float
+    width: float
+    height: float
+
+    @classmethod
+    def round(cls, points: Sequence[Point]) -> "_Frame":
+        """Return the box round points with its margin, to the centimetre."""
+        left, right = min(x for x, _ in points) - MARGIN, max(x for x, _ in points) + MARGIN
+        bottom, top = min(y for _, y in points) - MARGIN, max(y for _, y in points) + MARGIN
+        left, bottom = math.floor(100 * left) / 100, math.floor(100 * bottom) / 100
+        return cls(left, bottom, math.ceil(100 * (right - left)) / 100, math.ceil(100 * (top - bottom)) / 100)
+
+    def path(self, area: Area) -> str:
+        """Return an area as path data."""
+        return "".join(f"{self.line(ring)}Z" for ring in area)
+
+    def line(self, points: Sequence[Point]) -> str:
+        """Return a line as path data."""
+        numbers = chain.from_iterable((x - self.left, self.bottom + self.height - y) for x, y in points)
+        return "M" + " ".join(f"{number:.3f}".rstrip("0").rstrip(".") for number in numbers)

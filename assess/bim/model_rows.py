@@ -1,0 +1,293 @@
+"""A building model as the rows of an inventory, with a plan of each storey beside it.
+
+Breadth is the distance between the outer supports where that is less than the body's, as pieces rock about their
+supports; where the supports stand closest along the longer side, Breadth lies along that.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from assess.bim.building_model import Area, BuildingModel, Door, Piece, Space, Stair, Storey
+from assess.bim.cobie_floors import LOWEST_ROOF, note_datum
+from assess.bim.door_sides import find_kinds
+from assess.bim.draft_floor import find_room_points
+from assess.bim.floor_drawing import Drawn, draw_storey, name_plan
+from assess.bim.import_workbook import ImportedBuilding, Skipped, name_apart
+from assess.bim.model_names import Names, name_floors, name_items, name_places, sort_pieces
+from assess.bim.plan_shapes import to_polygon
+from assess.i18n import Text, fill, gettext
+from assess.workbook.outlines import MOST, OutlineError, parse_outline
+from assess.workbook.schema import ITEMS
+
+Drafts = Literal["none", "draft"]
+"""Whether evacuation routes are drafted."""
+CENTIMETRES = 100.0
+SAME = 0.005
+"""Difference up to which two sizes are the same [m]."""
+STAIRS = ("stair", "treppe", "scala", "scale")
+CORRIDORS = ("corridor", "hall", "passage", "lobby", "foyer", "flur", "gang", "diele", "corridoio", "atrio", "ingresso")
+"""Words with which names of stairs and corridors begin or end."""
+LOW, HIGH = ITEMS.column("breadth").low or 0.0, ITEMS.column("breadth").high or math.inf
+"""Sizes that a workbook takes [cm]."""
+FITTED = fill("fitted furniture, usually fixed: look at it, and fill in Anchored")
+
+
+def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuilding:
+    """Return what a model tells of a building as rows, plans, and what was left out.
+
+    Parameters
+    ----------
+    model : BuildingModel
+        From `assess.bim.ifc_model` and its like.
+    routes : "none" or "draft"
+        Whether evacuation routes are drafted from the rooms to the exits.
+    """
+    storeys = _keep_storeys(model)
+    floors = name_floors(storeys)
+    places = name_places(model, floors)
+    pieces, outside = _sort_by_size(sort_pieces(model.pieces, storeys, places))
+    drawn = {one.key: plan for one in storeys if (plan := draw_storey(model, one)) is not None}
+    files = dict(zip(drawn, name_apart(name_plan(model.source, floors[key]) for key in drawn), strict=True))
+    types = _name_types(pieces)
+    draft = _draft(model, places, routes)
+    return ImportedBuilding(
+        source=model.source,
+        building=_describe_building(model, storeys),
+        floors=[_list_floor(one, floors, drawn.get(one.key), files) for one in storeys],
+        items=list(_list_items(model, pieces, types, floors, places)),
+        places=[*_list_spaces(model, floors, places), *_list_points(model, floors, places), *draft.places],
+        routes=draft.routes,
+        types=list(_list_types(model, types)),
+        skipped=(*_list_skipped(model), *outside),
+        warnings=(*model.warnings, *note_datum([(floors[one.key], one.elevation) for one in storeys]), *draft.warnings),
+        remarks=(*model.remarks, *_note(model, storeys, pieces)),
+        files={files[key]: plan.svg for key, plan in drawn.items()},
+    )
+
+
+def _keep_storeys(model: BuildingModel) -> list[Storey]:
+    """Return the storeys that hold something; all of a model that shows walls alone."""
+    holders: Sequence[Piece | Space | Door | Stair] = (*model.pieces, *model.spaces, *model.doors, *model.stairs)
+    used = {one.storey for one in holders}
+    return [one for one in model.storeys if one.key in used] or list(model.storeys)
+
+
+# ---------------------------------------------------------------- sizes
+
+
+@dataclass(frozen=True, slots=True)
+class Sized:
+    """A piece with the sizes of its row [cm], the direction of Breadth [deg], and whether its supports stand inside."""
+
+    piece: Piece
+    breadth: float
+    width: float
+    height: float
+    angle_deg: float
+    is_inset: bool
+
+    @property
+    def sizes(self) -> dict[str, float]:
+        """Return the sizes by field [cm]."""
+        return {"breadth": self.breadth, "width": self.width, "height": self.height}
+
+
+def find_sizes(piece: Piece) -> Sized:
+    """Return the sizes with which a piece rocks."""
+    along = piece.support_breadth if piece.support_breadth < piece.breadth - SAME else piece.breadth
+    across = piece.support_width if piece.support_width < piece.width - SAME else piece.width
+    breadth, width, angle = along, piece.width, piece.angle_deg
+    if across < along - SAME:
+        breadth, width, angle = across, piece.breadth, piece.angle_deg + 90
+    breadth_cm, width_cm, height_cm = (round(CENTIMETRES * one, 1) for one in (breadth, width, piece.height))
+    return Sized(
+        piece,
+        breadth_cm,
+        width_cm,
+        height_cm,
+        angle_deg=round((angle + 90) % 180 - 90, 1),
+        is_inset=breadth < piece.breadth - SAME,
+    )
+
+
+def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
+    """Return the pieces whose sizes a workbook takes, and the others as left out."""
+    sized = [find_sizes(one) for one in pieces]
+    outside = [one for one in sized if not all(LOW <= size <= HIGH for size in one.sizes.values())]
+    reason = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
+    counts = Counter(one.piece.type for one in outside)
+    kept = [one for one in sized if one not in outside]
+    return kept, [Skipped(kind, number, reason) for kind, number in counts.items()]
+
+
+def _name_types(pieces: Sequence[Sized]) -> dict[tuple[str, float, float, float], str]:
+    """Return the name of each type by that of the model and its sizes, of which one type of the model may have many."""
+    found = dict.fromkeys(_type_key(one) for one in pieces)
+    return dict(zip(found, name_apart(one[0] for one in found), strict=True))
+
+
+def _type_key(one: Sized) -> tuple[str, float, float, float]:
+    return one.piece.type, one.breadth, one.width, one.height
+
+
+# ---------------------------------------------------------------- rows
+
+
+def _describe_building(model: BuildingModel, storeys: Sequence[Storey]) -> dict[str, Any]:
+    values = {
+        "building": model.name, "address": model.address, "latitude": model.latitude, "longitude": model.longitude,
+        "azimuth_deg": model.azimuth_deg, "height": _find_height(model, storeys),
+    }  # fmt: skip
+    return {name: value for name, value in values.items() if value not in (None, "")}
+
+
+def _find_height(model: BuildingModel, storeys: Sequence[Storey]) -> float | None:
+    """Return the height of the roof: the highest storey or ceiling; None where that is no more than the last floor."""
+    datum = {one.key: one.elevation - one.level for one in model.storeys}
+    tops = [one.elevation for one in model.storeys]
+    tops += [one.top + datum[one.storey] for one in model.spaces if one.storey in datum]
+    highest = max((one.elevation for one in storeys), default=0.0)
+    top = max(tops, default=0.0)
+    return round(top, 2) if top > max(highest, LOWEST_ROOF) else None
+
+
+def _list_floor(storey: Storey, floors: Names, plan: Drawn | None, files: Names) -> dict[str, Any]:
+    row: dict[str, Any] = {"floor": floors[storey.key], "elevation": round(storey.elevation, 3) + 0.0}
+    if plan is not None:
+        row |= {"plan": files[storey.key], "plan_left": plan.left, "plan_bottom": plan.bottom, "plan_width": plan.width}
+    return row
+
+
+def _list_items(
+    model: BuildingModel, pieces: Sequence[Sized], types: Mapping[Any, str], floors: Names, places: Names
+) -> Iterator[dict[str, Any]]:
+    spaces = {one.key: one for one in model.spaces}
+    names = name_items([one.piece for one in pieces], spaces, floors)
+    for name, one in zip(names, pieces, strict=True):
+        piece = one.piece
+        row = {
+            "item": name, "floor": floors[piece.storey], "room": places.get(piece.space, ""), "description": piece.type,
+            "type": types[_type_key(one)], **one.sizes, "x": round(piece.x, 3), "y": round(piece.y, 3),
+            "angle_deg": one.angle_deg, "anchored": "unknown" if piece.is_fitted else "", "source_id": piece.key,
+            "sizes_from": model.sizes_from, "notes": ". ".join(_list_notes(one)),
+        }  # fmt: skip
+        yield {field: value for field, value in row.items() if value != ""}
+
+
+def _list_notes(one: Sized) -> Iterator[str]:
+    piece = one.piece
+    if one.is_inset:
+        body = [f"{CENTIMETRES * size:.1f}" for size in (piece.breadth, piece.width, piece.height)]
+        yield gettext("body {body} cm, {support:g} cm between the outer supports", body=" x ".join(body),
+                      support=one.breadth)  # fmt: skip
+    if piece.is_fitted:
+        yield gettext(FITTED)
+    if piece.name and piece.name != piece.type:
+        yield gettext("in the model: {name}", name=piece.name)
+
+
+def _list_types(model: BuildingModel, types: Mapping[tuple[str, float, float, float], str]) -> Iterator[dict[str, Any]]:
+    source = gettext("shapes in {name}", name=model.source)
+    for (_, breadth, width, height), name in types.items():
+        yield {"type": name, "breadth": breadth, "width": width, "height": height, "source": source}
+
+
+def _list_spaces(model: BuildingModel, floors: Names, places: Names) -> Iterator[dict[str, Any]]:
+    points = find_room_points(model)
+    for one in model.spaces:
+        if one.storey in floors:
+            x, y = points[one.key]
+            row = {"place": places[one.key], "floor": floors[one.storey], "x": x, "y": y, "kind": find_kind(one)}
+            outline = _write_outline(one.area)
+            yield row | ({"outline": outline} if outline else {})
+
+
+def find_kind(space: Space) -> Literal["room", "corridor", "stair"]:
+    """Return what a room is by the words of its name."""
+    words = f"{space.name} {space.title}".casefold().split()
+    if any(word.startswith(STAIRS) for word in words):
+        return "stair"
+    return "corridor" if any(word.startswith(CORRIDORS) or word.endswith(CORRIDORS) for word in words) else "room"
+
+
+def _write_outline(area: Area) -> str:
+    """Return the outer ring of a room as a cell holds it, simplified where it has too many corners; "" if none."""
+    polygon, coarse = to_polygon(area), 0.0
+    corners = list(polygon.exterior.coords)[:-1]
+    while len(corners) > MOST:
+        coarse = 2 * coarse or 0.01
+        corners = list(polygon.exterior.simplify(coarse).coords)[:-1]
+    text = "; ".join(f"{x:g} {y:g}" for x, y in ((round(x, 3), round(y, 3)) for x, y in corners))
+    try:
+        parse_outline(text, 1.0)
+    except OutlineError:
+        return ""
+    return text
+
+
+def _list_points(model: BuildingModel, floors: Names, places: Names) -> Iterator[dict[str, Any]]:
+    kinds = find_kinds(model)
+    for door in model.doors:
+        if door.storey in floors:
+            kind = "exit" if kinds[door.key] == "exit" else "door"
+            row = {"place": places[door.key], "floor": floors[door.storey], "kind": kind}
+            yield row | {"x": round(door.x, 3), "y": round(door.y, 3)}
+    for stair in model.stairs:
+        if stair.storey in floors:
+            row = {"place": places[f"{stair.key} {stair.end}"], "floor": floors[stair.storey], "kind": "stair"}
+            yield row | {"x": round(stair.x, 3), "y": round(stair.y, 3)}
+
+
+# ---------------------------------------------------------------- routes
+
+
+@dataclass(frozen=True, slots=True)
+class _Draft:
+    places: Sequence[Mapping[str, Any]] = ()
+    routes: Sequence[Mapping[str, Any]] = ()
+    warnings: tuple[Text, ...] = ()
+
+
+def _draft(model: BuildingModel, places: Names, routes: Drafts) -> _Draft:
+    """Return the drafted routes, none unless they are asked for."""
+    if routes == "none":
+        return _Draft()
+    from assess.bim.draft_routes import draft_routes
+
+    drafted = draft_routes(model, places)
+    return _Draft(drafted.places, drafted.routes, tuple(drafted.remarks))
+
+
+# ---------------------------------------------------------------- what was left out, and what is to be checked
+
+
+def _list_skipped(model: BuildingModel) -> Iterator[Skipped]:
+    for one in model.left_out:
+        kind = one.type if one.ifc_class in ("", one.type) else f"{one.ifc_class} {one.type}"
+        yield Skipped(kind, one.count, one.reason, one.is_furniture)
+
+
+def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Sized]) -> Iterator[Text]:
+    """Yield what else is to be checked."""
+    fitted = sum(one.piece.is_fitted for one in pieces)
+    if fitted:
+        yield fill("{n:,} of the pieces are fitted furniture by their names: usually fixed, counted as free-standing "
+                   "until Anchored says so.", n=fitted)  # fmt: skip
+    inset = sum(one.is_inset for one in pieces)
+    if inset:
+        yield fill("{n:,} of the pieces stand on supports inside their body: Breadth is between these; Notes give the "
+                   "body's sizes.", n=inset)  # fmt: skip
+    if model.doors:
+        kinds = find_kinds(model)
+        out = sum(kind == "exit" for kind in kinds.values())
+        yield fill("{n:,} of {all:,} doors lead out of the ground storey (a room on one side only).", n=out,
+                   all=len(model.doors))  # fmt: skip
+    if model.latitude is not None:
+        yield fill("Latitude and Longitude are those of the model, {latitude:g} and {longitude:g}: programs fill in a "
+                   "default town.", latitude=model.latitude, longitude=model.longitude)  # fmt: skip
+    empty = [one.name for one in model.storeys if one not in storeys]
+    if empty:
+        yield fill("Storeys without furniture, rooms and doors were left out: {names}.", names=", ".join(empty[:20]))

@@ -1,0 +1,109 @@
+"""Files that an inventory is imported from: which reader takes one is told by its content, not by its name."""
+
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from assess.bim.apart import run_apart
+from assess.bim.building_model import BuildingModel
+from assess.bim.ifc_file import check_installed, check_model, is_model
+from assess.bim.import_workbook import ImportedBuilding
+from assess.bim.model_rows import Drafts, list_building
+from assess.errors import InputError, ModelError
+from assess.i18n import fill
+from assess.progress import SILENT, Progress
+
+KINDS = (".ifc", ".json", ".sh3d", ".xlsx", ".xlsm")
+"""Ends of names of files that are imported."""
+HOME, OLD_HOME = "Home.xml", "Home"
+"""Parts of a file of Sweet Home 3D."""
+_ZIP = b"PK\x03\x04"
+_BRACES = (b"{", b"[")
+_LOOKED_AT = 4096
+
+
+def read_source(
+    path: Path, name: str, progress: Progress = SILENT, *, routes: Drafts = "none", also: Sequence[str] = ()
+) -> ImportedBuilding:
+    """Read the furniture of a building from a building model (IFC), a scan (RoomPlan), a home, or a COBie file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    name : str
+        How messages and the workbook call it.
+    progress : Progress
+        Checked while it is read.
+    routes : "none" or "draft"
+        Whether evacuation routes are drafted; COBie files have no positions to draft them from.
+    also : sequence of str
+        Further classes of an IFC model whose elements are furniture.
+
+    Raises
+    ------
+    ModelError, WorkbookError
+        If it is none of these, is damaged, or beyond a limit; the message says how to fix it.
+    InputError
+        If it cannot be opened.
+    """
+    if not path.exists():
+        raise InputError(fill("{name} does not exist. Check the name and the folder.", name=name))
+    try:
+        with path.open("rb") as file:
+            start = file.read(_LOOKED_AT)
+    except OSError as error:
+        raise InputError(fill("{name} cannot be read: {why}.", name=name, why=error.strerror or str(error))) from None
+    text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if start.startswith(_ZIP):
+        return _read_packed(path, name, progress, routes)
+    if text.startswith(_BRACES):
+        from assess.bim.roomplan import read_roomplan
+
+        return list_building(progress.wait_for(lambda: read_roomplan(path.read_bytes(), name)), routes)
+    if not is_model(start) and path.suffix.lower() not in (".ifc", ""):
+        raise ModelError(
+            fill("{name} is of a kind that is not imported: name an IFC model (.ifc), a RoomPlan scan (.json), a Sweet "
+                 "Home 3D file (.sh3d) or a COBie spreadsheet (.xlsx).", name=name)
+        )  # fmt: skip
+    return list_building(read_ifc(path, name, progress, also), routes)
+
+
+def read_ifc(path: Path, name: str, progress: Progress = SILENT, also: Sequence[str] = ()) -> BuildingModel:
+    """Read a building model in IFC, in a process of its own with limits of time and memory.
+
+    Raises
+    ------
+    ModelError
+        As `assess.bim.ifc_model.read_model`; if the library that reads such models is not installed, crashes or reaches
+        a limit.
+    """
+    from assess.bim.ifc_model import read_model
+
+    check_model(path, name)
+    check_installed()
+    return run_apart(name, progress, read_model, path.resolve(), name, tuple(also))
+
+
+def _read_packed(path: Path, name: str, progress: Progress, routes: Drafts) -> ImportedBuilding:
+    """Read a file that is a zip: a spreadsheet, or a home."""
+    parts = _list_parts(path, name)
+    if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
+        check_model(path, name)
+    if HOME in parts or OLD_HOME in parts:
+        from assess.bim.sweet_home import read_sweet_home
+
+        return list_building(progress.wait_for(lambda: read_sweet_home(path.read_bytes(), name)), routes)
+    from assess.bim.cobie import read_cobie
+
+    if routes != "none":
+        raise ModelError(fill("{name} holds no positions, so that no routes can be drafted from it.", name=name))
+    return progress.wait_for(lambda: read_cobie(path, name, progress))
+
+
+def _list_parts(path: Path, name: str) -> list[str]:
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return archive.namelist()
+    except (OSError, zipfile.BadZipFile, NotImplementedError, ValueError):
+        raise ModelError(fill("{name} is damaged: it cannot be unpacked. Copy or save it again.", name=name)) from None
