@@ -1,0 +1,301 @@
+"""The plan of one storey for the drafting of routes: rooms, walls, furniture, and what joins rooms."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from assess.bim.building_model import BuildingModel, Door, Piece, Point, Space, Storey
+from assess.bim.door_sides import Sides, find_normal
+from assess.bim.plan_shapes import list_polygons, to_polygon
+
+ON_FLOOR = 0.15
+"""A piece whose lowest point is higher above the floor than this hangs: one passes below it or beside it [m]."""
+LOW = 0.1
+"""A piece that is no higher than this is stepped over [m]."""
+JAMB = 0.1
+"""What is kept free from either edge of a passage [m]."""
+NARROWEST = 0.2
+"""Least half width of a passage in which ways may run [m]."""
+FAR = 2.0
+"""A stair end is joined to rooms up to this far away [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """What joins two rooms, or leads out of one: a door, an opening without a door, or the end of a stair.
+
+    Attributes
+    ----------
+    name : str
+        Its key among all nodes of a draft.
+    at : Point
+        Its centre.
+    normal : Point
+        Direction of the normal of its wall, of length 1; (0, 0) for a stair, which is reached from any side.
+    width : float
+        Its width in the plan [m].
+    clear : float
+        Width that is taken to be clear [m]; 0 where nothing is known of it.
+    spaces : tuple of str
+        Keys of the spaces that it joins.
+    overall : float
+        Width of a door as the model states it, else that of its opening [m]; 0 where it is no door.
+    """
+
+    name: str
+    at: Point
+    normal: Point
+    width: float
+    clear: float
+    spaces: tuple[str, ...]
+    overall: float = 0.0
+
+
+@dataclass(frozen=True)
+class FloorPlan:
+    """The plan of one storey. `spaces` and `polygons` are in the same order, as are `pieces` and `footprints`."""
+
+    storey: Storey
+    spaces: tuple[Space, ...]
+    polygons: tuple[shapely.Polygon, ...]
+    solids: tuple[shapely.Polygon, ...]
+    footprints: tuple[shapely.Polygon, ...]
+
+    @cached_property
+    def tree(self) -> shapely.STRtree:
+        """Return the index of the polygons of spaces."""
+        return shapely.STRtree(self.polygons)
+
+    @cached_property
+    def _solid_tree(self) -> shapely.STRtree:
+        return shapely.STRtree(self.solids)
+
+    @cached_property
+    def _piece_tree(self) -> shapely.STRtree:
+        return shapely.STRtree(self.footprints)
+
+    def polygon(self, space: str) -> shapely.Polygon:
+        """Return the plan of a space by its key."""
+        return self._by_key[space]
+
+    @cached_property
+    def _by_key(self) -> dict[str, shapely.Polygon]:
+        return {space.key: polygon for space, polygon in zip(self.spaces, self.polygons, strict=True)}
+
+    def solids_near(self, shape: BaseGeometry) -> BaseGeometry:
+        """Return walls and windows that touch a shape, as one."""
+        return shapely.union_all([self.solids[at] for at in sorted(self._solid_tree.query(shape))])
+
+    def pieces_near(self, shape: BaseGeometry) -> BaseGeometry:
+        """Return the furniture that stands on the floor and touches a shape, as one."""
+        return shapely.union_all([self.footprints[at] for at in sorted(self._piece_tree.query(shape))])
+
+    def spaces_along(self, line: BaseGeometry, least: float) -> list[str]:
+        """Return the keys of the spaces in which more than `least` [m] of a line lies."""
+        near = sorted(self.tree.query(line))
+        return [self.spaces[at].key for at in near if self.polygons[at].intersection(line).length > least]
+
+
+def build_plan(model: BuildingModel, storey: Storey) -> FloorPlan:
+    """Return the plan of a storey; spaces without an area are left out."""
+    pairs = [(space, to_polygon(space.area)) for space in model.spaces if space.storey == storey.key]
+    pairs = [(space, polygon) for space, polygon in pairs if polygon.area > 0]
+    areas = (*model.walls.get(storey.key, ()), *model.windows.get(storey.key, ()))
+    return FloorPlan(
+        storey=storey,
+        spaces=tuple(space for space, _ in pairs),
+        polygons=tuple(polygon for _, polygon in pairs),
+        solids=tuple(polygon for area in areas if (polygon := to_polygon(area)).area > 0),
+        footprints=tuple(
+            _footprint(piece)
+            for piece in model.pieces
+            if piece.storey == storey.key and piece.bottom <= ON_FLOOR and piece.height > LOW
+        ),
+    )
+
+
+def _footprint(piece: Piece) -> shapely.Polygon:
+    turn = math.radians(piece.angle_deg)
+    return box_at((piece.x, piece.y), (math.cos(turn), math.sin(turn)), piece.breadth / 2, piece.width / 2)
+
+
+def box_at(at: Point, normal: Point, along: float, across: float, behind: float | None = None) -> shapely.Polygon:
+    """Return a rectangle: `along` a direction, `behind` against it (as far, if not given) and `across` each way [m]."""
+    (x, y), (u, v) = at, normal
+    back = -along if behind is None else -behind
+    corners = ((along, -across), (along, across), (back, across), (back, -across))
+    return shapely.Polygon([(x + a * u - b * v, y + a * v + b * u) for a, b in corners])
+
+
+# ---------------------------------------------------------------- doors and stairs
+
+
+DOOR_LESS = 0.1
+"""What frame and leaf take of the overall width of a door, assumed [m]."""
+
+
+def link_door(door: Door, sides: Sides) -> Link:
+    """Return a door as a link."""
+    overall = door.overall if door.overall > 0 else door.width
+    spaces = tuple(dict.fromkeys(key for key in sides if key))
+    at, clear = (door.x, door.y), max(overall - DOOR_LESS, 0.0)
+    return Link(f"door {door.key}", at, find_normal(door), door.width, clear, spaces, overall)
+
+
+def link_stairs(model: BuildingModel, plan: FloorPlan) -> list[Link]:
+    """Return the ends of stairs on a storey, each joined to the nearest space that no wall keeps from it."""
+    found = []
+    for stair in model.stairs:
+        if stair.storey == plan.storey.key and plan.spaces:
+            at = shapely.Point(stair.x, stair.y)
+            space = _find_space(plan, at)
+            if space is not None:
+                spaces = (plan.spaces[space].key,)
+                found.append(Link(f"stair {stair.key} {stair.end}", (stair.x, stair.y), (0.0, 0.0), 1.0, 0.0, spaces))
+    return found
+
+
+def _find_space(plan: FloorPlan, at: shapely.Point) -> int | None:
+    near = plan.tree.query(at, predicate="dwithin", distance=FAR).tolist()
+    sizes = [(plan.polygons[one].distance(at), plan.polygons[one].area, one) for one in near]
+    for _, _, one in sorted(sizes):
+        way = shapely.shortest_line(at, plan.polygons[one])
+        if plan.solids_near(way).intersection(way).length <= JAMB:
+            return int(one)
+    return None
+
+
+# ---------------------------------------------------------------- one room
+
+
+@dataclass(frozen=True)
+class Room:
+    """One space with what leads out of it: `area` is its plan, `floor` that less the walls, `free` less furniture."""
+
+    space: Space
+    area: shapely.Polygon
+    floor: BaseGeometry
+    free: BaseGeometry
+    links: tuple[Link, ...]
+
+    def passage(self, link: Link, depth: float) -> BaseGeometry:
+        """Return where ways may run through a link, up to `depth` [m] into the room."""
+        at = shapely.Point(link.at)
+        reach = self.floor.distance(at)
+        half = max(link.width / 2 - JAMB, NARROWEST)
+        if link.normal == (0.0, 0.0):
+            inner = self.floor.buffer(-depth)
+            way = shapely.shortest_line(at, self.floor if inner.is_empty else inner)
+            return way.buffer(NARROWEST).intersection(shapely.union_all([self.floor, way.buffer(NARROWEST / 2)]))
+        inward = self.inward(link)
+        through = box_at(link.at, inward, reach + JAMB / 2, half, JAMB / 2)
+        return shapely.union_all([
+            through, box_at(link.at, inward, reach + depth + JAMB, half, 0.0).intersection(self.floor)
+        ])  # fmt: skip
+
+    def inward(self, link: Link) -> Point:
+        """Return the direction of the normal of a link that points into the room."""
+        (x, y), (u, v) = link.at, link.normal
+        ways = [shapely.LineString([(x, y), (x + sign * u, y + sign * v)]) for sign in (1, -1)]
+        lengths = [self.floor.intersection(way).length for way in ways]
+        sign = 1 if lengths[0] >= lengths[1] else -1
+        return sign * u, sign * v
+
+
+def build_rooms(plan: FloorPlan, links: Iterable[Link]) -> dict[str, Room]:
+    """Return the rooms of a storey by the keys of their spaces."""
+    of_space: dict[str, list[Link]] = {space.key: [] for space in plan.spaces}
+    for link in links:
+        for key in link.spaces:
+            if key in of_space:
+                of_space[key].append(link)
+    rooms = {}
+    for space, polygon in zip(plan.spaces, plan.polygons, strict=True):
+        floor = _widest(polygon.difference(plan.solids_near(polygon)), polygon)
+        free = _widest(floor.difference(plan.pieces_near(polygon)), floor)
+        rooms[space.key] = Room(space, polygon, floor, free, tuple(of_space[space.key]))
+    return rooms
+
+
+def _widest(area: BaseGeometry, otherwise: BaseGeometry) -> BaseGeometry:
+    """Return what has an area of a geometry; `otherwise` where nothing has."""
+    polygons = list(list_polygons(area))
+    return shapely.MultiPolygon(polygons) if len(polygons) > 1 else polygons[0] if polygons else otherwise
+
+
+# ---------------------------------------------------------------- where rooms stand on the plan
+
+
+TOLERANCE = 0.1
+"""To this the middle of the free floor is found [m]; in large rooms to a share of their extent."""
+EXTENT_SHARE = 200
+APART = 0.3
+"""The place of a room is at least this far from doors and stairs, where there is room [m]."""
+
+
+def find_room_points(model: BuildingModel) -> dict[str, Point]:
+    """Return the position of the place of each space, by its key: the middle of its widest free floor [m].
+
+    Drafted routes begin there. A space without an area has its first corner.
+    """
+    found: dict[str, Point] = {}
+    for storey in model.storeys:
+        plan = build_plan(model, storey)
+        found |= place_rooms(model, plan, build_rooms(plan, ()))
+    return {space.key: found.get(space.key) or _first_corner(space) for space in model.spaces}
+
+
+def _first_corner(space: Space) -> Point:
+    return next((ring[0] for ring in space.area if ring), (0.0, 0.0))
+
+
+def place_rooms(model: BuildingModel, plan: FloorPlan, rooms: Mapping[str, Room]) -> dict[str, Point]:
+    """Return the same for the rooms of one storey."""
+    own = [(door.x, door.y) for door in model.doors if door.storey == plan.storey.key]
+    own += [(stair.x, stair.y) for stair in model.stairs if stair.storey == plan.storey.key]
+    taken = shapely.MultiPoint(own)
+    return {key: _find_middle(room.free, taken) for key, room in rooms.items()}
+
+
+def _find_middle(area: BaseGeometry, taken: BaseGeometry) -> Point:
+    """Return the middle of the widest part of an area, apart from points that are taken."""
+    polygon = max(list_polygons(area), key=lambda one: one.area)
+    near = taken.intersection(polygon.buffer(APART))
+    rest = max(list_polygons(polygon.difference(near.buffer(APART))), key=lambda one: one.area, default=polygon)
+    return _find_widest(rest)
+
+
+def _find_widest(polygon: shapely.Polygon) -> Point:
+    """Return the centre of the largest circle in a polygon, to the centimetre."""
+    from shapely.ops import polylabel
+
+    low_x, low_y, high_x, high_y = polygon.bounds
+    extent = math.hypot(high_x - low_x, high_y - low_y)
+    try:
+        middle = polylabel(polygon, max(min(TOLERANCE, polygon.area / extent / 4), extent / EXTENT_SHARE))
+    except shapely.errors.ShapelyError:
+        middle = polygon.representative_point()
+    return round(float(middle.x), 2), round(float(middle.y), 2)
+
+
+# ---------------------------------------------------------------- sight
+
+
+def measure(one: Point, other: Point) -> float:
+    """Return the distance between two points [m]."""
+    return math.hypot(other[0] - one[0], other[1] - one[1])
+
+
+def see(area: BaseGeometry, pairs: Sequence[tuple[Point, Point]]) -> list[bool]:
+    """Tell of each pair of points whether the straight line between them lies in an area."""
+    if not pairs:
+        return []
+    shapely.prepare(area)
+    lines: Any = shapely.linestrings(np.array(pairs))
+    return [bool(one) for one in shapely.covers(area, lines)]
