@@ -13,7 +13,7 @@ from typing import Any, Literal
 from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.methods import MethodInfo
-from assess.model import ANCHORED, AXES, IMPORTANCE
+from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM
 from assess.results import BASES, BRANCHES, CaseRow, ItemRow, MotionRow, Results, Simulation
 from assess.risk import RiskClass
 
@@ -468,6 +468,10 @@ def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Fiel
         _of_item(
             "source_id", fill("Source ID"), is_optional=True, shows=DATA,
             help="Its identifier in the building model or handover file that it was imported from.",
+        ),
+        _of_item(
+            "sizes_from", fill("Sizes from"), choices=SIZES_FROM, shows=DATA,
+            help="Where its sizes come from; base and height of a scan are drawn with a larger standard deviation.",
         ),
     )  # fmt: skip
 

@@ -27,6 +27,9 @@ Outline = tuple[tuple[float, float], ...]
 """Corners of a polygon on the plan of a floor [m], in order; the last one is joined to the first."""
 AXES: tuple[Axis, Axis] = ("X", "Y")
 ANCHORED = ("no", "yes", "partly", "unknown")
+SIZES_FROM = ("measured", "model", "scan")
+"""Where the sizes of a piece come from: of those of a scan base and height are drawn wider."""
+MEASURED, SCANNED = SIZES_FROM[0], SIZES_FROM[-1]
 IMPORTANCE = ("life safety", "function", "property")
 
 NEAR_AXIS = 15.0
@@ -38,7 +41,7 @@ ASSUMABLE = ("breadth", "width", "height", "weight", "centre_of_gravity", "axis"
 _FRAMED = (
     "item", "floor", "room", "description", "type", "quantity", "breadth", "width", "height", "centre_of_gravity",
     "axis", "angle_deg", "x", "y", "against_wall", "friction", "importance", "anchored", "route", "segment",
-    "edge_distance", "notes",
+    "edge_distance", "sizes_from", "notes",
 )  # fmt: skip
 """Fields in the order of `Inventory.frame`."""
 
@@ -266,7 +269,7 @@ class Item:
     `weight` is in kg, `bracket_height` in m above the floor, `bracket_capacity` in N; None where blank.
 
     `centre_of_gravity` is its height above the floor as a share of the piece's height [-]. `against_wall`: whether one
-    of its long sides stands against a wall, None where that is not known.
+    of its long sides stands against a wall, None where that is not known. `sizes_from` is one of `SIZES_FROM`.
     `assumed` names the fields that were blank in the workbook and were filled in: sizes, weight and centre of
     gravity from the catalogue, the axis from the angle. A blank `friction` is the building's: see `Inventory.complete`.
     `extra` holds what stood in columns that `assess` does not know; `more` the values of columns of the schema that
@@ -298,10 +301,16 @@ class Item:
     edge_distance: float | None = None
     importance: str = ""
     against_wall: bool | None = None
+    sizes_from: str = MEASURED
     notes: str = ""
     assumed: tuple[str, ...] = ()
     extra: tuple[str, ...] = ()
     more: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def is_scanned(self) -> bool:
+        """Whether its sizes were measured by a scan, and are less certain."""
+        return self.sizes_from == SCANNED
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

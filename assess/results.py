@@ -21,7 +21,7 @@ from assess.errors import InputError, Problem
 from assess.i18n import Text, count, fill, join, nfill
 from assess.methods import MethodInfo, Outcome
 from assess.methods._method import ALIKE
-from assess.model import Building, CatalogueType, Place
+from assess.model import MEASURED, Building, CatalogueType, Place
 from assess.motion.scenario import ROOF_FACTOR
 from assess.risk import RiskClass, classify
 from assess.rocking.draws import TRIED, Uncertainty
@@ -378,6 +378,7 @@ class ItemRow:
     against_wall: bool | None = None
     falls_toward_deg: float | None = None
     annual: AnnualRow | None = None
+    sizes_from: str = MEASURED
 
     def field(self, key: str) -> Any:
         """Return one field by its key, whether or not anything is computed with it: None where that is blank."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from assess.methods._method import NO_WALL, SIDE_UNKNOWN, BoolArray, Cases, FloatArray
 from assess.methods._simulate import draw_body
 from assess.progress import SILENT, Progress
-from assess.rocking.draws import STILL, Uncertainty
+from assess.rocking.draws import Uncertainty
 from assess.rocking.sliding import UNKNOWN, Branch, branch, is_outside_shenton, peak_slip
 from assess.settings import Settings
 from assess.units import LENGTH
@@ -50,7 +50,7 @@ def find_extended(cases: Cases) -> BoolArray:
 
 def may_slide(cases: Cases, settings: Settings) -> BoolArray:
     """Return where a piece slides under the strongest motion that may be drawn, whose peak may be above the PFA."""
-    strongest = cases.pfa * (1.0 if settings.ideal else cases.uncertainty.largest) / STILL
+    strongest = cases.pfa * (1.0 if settings.ideal else cases.uncertainty.largest) / cases.still
     found = branch(cases.breadth, cases.height, cases.friction, strongest, centre=cases.centre)
     return np.isin(found, SLIDING)
 

@@ -23,7 +23,7 @@ from assess.methods._info import (
 from assess.progress import SILENT, Progress
 from assess.risk import classify_all
 from assess.rocking.block import MIDDLE, stocky_limit, threshold
-from assess.rocking.draws import Earthquakes, Uncertainty
+from assess.rocking.draws import STILL, STILL_SCANNED, Earthquakes, Uncertainty
 from assess.settings import Settings
 
 __all__ = [
@@ -117,6 +117,8 @@ class Cases:
         Height of the centre of gravity as a share of the piece's [-].
     name : (n,) integer array
         The piece, from `assess.rocking.draws.name_number`: by it what is not known of it is drawn.
+    scanned : (n,) boolean array
+        Where the sizes were measured by a scan, so that they are less certain.
     slides_under : (n,) integer array
         Which of `ensembles` the slip of the piece is to be found under; -1 where it is not.
     wall : (n,) integer array
@@ -140,6 +142,7 @@ class Cases:
     ensemble: NDArray[np.intp]
     centre: FloatArray
     name: NDArray[np.int64]
+    scanned: BoolArray
     slides_under: NDArray[np.intp]
     wall: NDArray[np.int8]
     ensembles: Sequence[Ensemble] = ()
@@ -160,6 +163,7 @@ class Cases:
         ensemble: ArrayLike = -1,
         centre: ArrayLike = MIDDLE,
         name: ArrayLike = 0,
+        scanned: ArrayLike = False,
         slides_under: ArrayLike = -1,
         wall: ArrayLike = NO_WALL,
         ensembles: Sequence[Ensemble] = (),
@@ -168,13 +172,14 @@ class Cases:
         """Build a batch from numbers and arrays, brought to one length; what is left out is unknown."""
         given = np.broadcast_arrays(
             *np.atleast_1d(breadth, height, pfa, pfv, friction, restitution, centre, pfv_estimated, ensemble, name,
-                           slides_under, wall)
+                           slides_under, wall, scanned)
         )  # fmt: skip
         b, h, a, v, mu, eta, z = (np.array(values, dtype=np.float64) for values in given[:7])
         estimated, which = np.array(given[7], dtype=np.bool_), np.array(given[8], dtype=np.intp)
         names, slides = np.array(given[9], dtype=np.int64), np.array(given[10], dtype=np.intp)
-        walls, drawn = np.array(given[11], dtype=np.int8), uncertainty or Uncertainty()
-        return cls(b, h, a, v, mu, estimated, eta, which, z, names, slides, walls, ensembles, drawn)
+        walls, by_scan = np.array(given[11], dtype=np.int8), np.array(given[12], dtype=np.bool_)
+        drawn = uncertainty or Uncertainty()
+        return cls(b, h, a, v, mu, estimated, eta, which, z, names, by_scan, slides, walls, ensembles, drawn)
 
     @property
     def breadth_to_height(self) -> FloatArray:
@@ -185,6 +190,11 @@ class Cases:
     def threshold(self) -> FloatArray:
         """Acceleration at which rocking starts [g]: b/z, half base over height of the centre of gravity."""
         return np.asarray(threshold(self.breadth, self.height, self.centre))
+
+    @property
+    def still(self) -> FloatArray:
+        """Share of `threshold` below which a motion is taken not to start a piece, (n,) [-]: less of scanned sizes."""
+        return np.where(self.scanned, STILL_SCANNED, STILL)
 
     @property
     def is_stocky(self) -> BoolArray:

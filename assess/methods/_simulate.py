@@ -75,7 +75,7 @@ def draw_body(cases: Cases, own: NDArray[np.intp], seed: int, first: int, count:
     """Return the bodies of the cases `own` in each draw, (m, k) each: as given where pieces are not uncertain."""
     shape = cases.breadth[own], cases.height[own], cases.centre[own], cases.restitution[own]
     if cases.uncertainty.piece:
-        return draw_bodies(*shape, cases.name[own], seed=seed, first=first, count=count)
+        return draw_bodies(*shape, cases.name[own], seed=seed, first=first, count=count, scanned=cases.scanned[own])
     return DrawnBodies(*(np.repeat(one[:, None], count, axis=1) for one in shape))
 
 

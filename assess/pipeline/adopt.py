@@ -17,7 +17,6 @@ from assess.methods._method import ALIKE, BoolArray, FloatArray
 from assess.model import Inventory
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all
-from assess.rocking.draws import STILL
 from assess.route_results import DOUBTS
 from assess.routes.chances import Falls
 from assess.settings import Settings
@@ -65,9 +64,12 @@ class Adoption:
 
 
 def find_can_rock(cases: Cases, settings: Settings) -> BoolArray:
-    """Return where the strongest motion that may be drawn can start a piece rocking: PFA e^(3 beta) >= 0.85 g b/z."""
+    """Return where the strongest motion that may be drawn can start a piece rocking: PFA e^(3 beta) >= 0.85 g b/z.
+
+    0.64 takes the place of 0.85 where the sizes were measured by a scan.
+    """
     strongest = cases.pfa * (1.0 if settings.ideal else cases.uncertainty.largest)
-    return np.asarray(strongest >= STILL * GRAVITY * cases.threshold)
+    return np.asarray(strongest >= cases.still * GRAVITY * cases.threshold)
 
 
 def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> Adoption:

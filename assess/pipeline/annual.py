@@ -28,7 +28,7 @@ from assess.pipeline.levels import RockedLevels, rock_levels
 from assess.pipeline.verify import MOST_PAIRS, find_uncertainty
 from assess.progress import Progress
 from assess.rates import list_remarks
-from assess.rocking.draws import MOTION, STILL, Uncertainty
+from assess.rocking.draws import MOTION, Uncertainty
 from assess.routes.chances import Falls
 from assess.settings import AUTO, RUNS, Settings
 from assess.units import GRAVITY, ROUNDING
@@ -117,7 +117,7 @@ class _Annual:
         """Return rising levels, as ground PGA [m/s2]: from where about nothing rocks to beyond the end of the curve."""
         cases = self.cases
         rocked = cases.ensemble >= 0
-        start = STILL * GRAVITY * cases.threshold[rocked] / cases.pfa[rocked]
+        start = cases.still[rocked] * GRAVITY * cases.threshold[rocked] / cases.pfa[rocked]
         last = float(self.curve.pga[-1]) * cases.uncertainty.largest
         return space(float(np.clip(self.ground * start.min(), self.floor, last / STEP)), last)
 

@@ -50,6 +50,7 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
         pfa=np.array([np.nan if one is None else one.pfa for one in governing], dtype=np.float64),
         pfv=np.array([np.nan if one is None else one.pfv for one in governing], dtype=np.float64),
         centre=np.array([item.centre_of_gravity for item in inventory.items], dtype=np.float64),
+        scanned=np.array([item.is_scanned for item in inventory.items], dtype=np.bool_),
         uncertainty=find_uncertainty(inventory.building, demands),
     )
     outcomes = {method.key: method.evaluate(cases, settings) for method in LIVE_METHODS}

@@ -33,6 +33,7 @@ from assess.pipeline.levels import RockedLevels, find_factor, rock_levels
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.block import stocky_limit, threshold
+from assess.rocking.draws import STILL
 from assess.settings import AUTO
 from assess.units import GRAVITY
 from assess.workbook.names import key
@@ -402,7 +403,7 @@ class _Study:
         """Return the rungs of a group's lowest level, of its highest to begin with, and of its last."""
         own = np.isin(self.assessment.case_item, group)
         start = self.cases.threshold[own] * GRAVITY * self.peaks[own] / self.cases.pfa[own] / self.unit
-        low, high = float(start.min()), float(start.max())
+        low, high = float((start * self.cases.still[own] / STILL).min()), float(start.max())
         return _find_rung(LOWEST * low), _find_rung(HIGHEST * high) + 1, _find_rung(FARTHEST * high) + 1
 
     def _share(self, fallen: FloatArray) -> float:

@@ -342,6 +342,7 @@ def _cases(
         ensemble=np.full(len(items), -1, dtype=np.intp),
         centre=column([item.centre_of_gravity for item in items]),
         name=np.array([names[item.item] for item in items], dtype=np.int64),
+        scanned=np.array([item.is_scanned for item in items], dtype=np.bool_),
         slides_under=np.full(len(items), -1, dtype=np.intp),
         wall=_list_walls(inventory, case_item, case_demand),
         uncertainty=uncertainty,

@@ -243,6 +243,7 @@ def _item(
         axis_given=item.axis,
         angle_deg=item.angle_deg,
         against_wall=item.against_wall,
+        sizes_from=item.sizes_from,
         x_m=item.x,
         y_m=item.y,
         friction=item.friction,

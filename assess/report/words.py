@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.model import SCANNED
 from assess.results import ItemResult
 from assess.risk import LIMITS, RiskClass, classify
 
@@ -181,14 +182,20 @@ LEAST_SLIP = 1.0
 
 
 def list_beside(one: ItemResult) -> list[str]:
-    """Return what is said beside the class of a piece: how far it slides, falls from a wall, what its bracket does."""
-    sliding, one_sided, texts = one.governing.sliding, one.governing.one_sided, []
+    """Return what is said beside the class of a piece: a scan, how it slides, falls from a wall, its bracket."""
+    sliding, one_sided = one.governing.sliding, one.governing.one_sided
+    texts = [said] if (said := say_scanned(one)) else []
     if sliding is not None and sliding.slip_median_cm is not None and (sliding.slip_84_cm or 0.0) >= LEAST_SLIP:
         texts.append(_("slides up to {median} cm (median), {high} cm (84 %)",
                        median=fixed(sliding.slip_median_cm, 0), high=fixed(sliding.slip_84_cm, 0)))  # fmt: skip
     if one_sided is not None:
         texts.append(_("with the wall at its back {chance}", chance=percent(one_sided)))
     return [*texts, *filter(None, (say_bracket(one),))]
+
+
+def say_scanned(one: ItemResult) -> str:
+    """Return that the sizes of a piece were measured by a scan; "" of all others."""
+    return _("sizes measured by scan") if one.item.sizes_from == SCANNED else ""
 
 
 def say_bracket(one: ItemResult) -> str:

@@ -7,6 +7,10 @@ its base, height, centre of gravity and restitution. Draws come from the seed an
 nor their order nor the number of draws change them.
 
 The dispersions are assumed, not measured on furniture; normal distributions are cut at 3 standard deviations.
+
+Sizes by a phone's scan are less certain: base and height of such a piece are drawn with larger standard deviations. No
+accuracy of the boxes that phones put round furniture is published; these are assumed, too: each face of a box within
+about 5 cm, which is 0.10 of a base of 50 cm and 0.05 of a height of 1 m.
 """
 
 import hashlib
@@ -30,11 +34,16 @@ BASE = (0.97, 0.05)
 HEIGHT, CENTRE, RESTITUTION = 0.02, 0.05, 0.04
 """Standard deviations of the height over the nominal one, of the centre of gravity as a share of the height, and of
 the restitution [-], about their nominal values."""
+SCANNED_BASE, SCANNED_HEIGHT = (0.97, 0.10), 0.05
+"""`BASE` and `HEIGHT` of a piece whose sizes were measured by a phone's scan."""
 CUT = 3.0
 """Standard deviations beyond which nothing is drawn."""
 STILL = 0.85
 """Share of the acceleration at which rocking starts [-] below which a piece is taken not to start: the peak of a motion
 may be somewhat above the floor's PFA, and the piece more slender than given."""
+STILL_SCANNED = 0.64
+"""The same of a piece measured by a scan: `STILL` times how much more slender than another its slenderest draw is,
+(0.67 / 1.15) / (0.82 / 1.06)."""
 _EARTHQUAKE, _PIECE = 1, 2
 """Streams of random numbers of a seed; 3 is that of `assess.motion.spatial_field`."""
 _AT_ONCE = 256
@@ -66,6 +75,16 @@ class Uncertainty:
     def height(self) -> float:
         """Standard deviation of a drawn height over the nominal one [-]."""
         return HEIGHT
+
+    @property
+    def scanned_base(self) -> tuple[float, float]:
+        """Mean and standard deviation of the base of a piece measured by a scan [-]."""
+        return SCANNED_BASE
+
+    @property
+    def scanned_height(self) -> float:
+        """Standard deviation of the height of a piece measured by a scan [-]."""
+        return SCANNED_HEIGHT
 
     @property
     def centre(self) -> float:
@@ -153,6 +172,7 @@ def draw_bodies(
     seed: int,
     first: int,
     count: int,
+    scanned: NDArray[np.bool_] | None = None,
 ) -> DrawnBodies:
     """Draw the bodies of m pieces.
 
@@ -168,6 +188,8 @@ def draw_bodies(
         From `name_number`; pieces of one name draw alike.
     seed, first, count : int
         Draws `first` to `first + count - 1`.
+    scanned : (m,) boolean array, optional
+        Which sizes were measured by a scan; None: none. The draws of the others do not depend on it.
 
     Returns
     -------
@@ -177,12 +199,14 @@ def draw_bodies(
     every, which = np.unique(np.asarray(names), return_inverse=True)
     drawn = [_uniform([seed, _PIECE, int(one)], first, count, 4) for one in every]
     u = np.stack(drawn)[which.ravel()]  # (m, count, 4)
-    b = breadth[:, None] * (BASE[0] + BASE[1] * _normal(u[..., 0], -CUT, CUT))
-    h = height[:, None] * (1 + HEIGHT * _normal(u[..., 1], -CUT, CUT))
+    by_scan = np.zeros((len(names), 1), dtype=np.bool_) if scanned is None else scanned[:, None]
+    mean, deviation = (np.where(by_scan, one, other) for one, other in zip(SCANNED_BASE, BASE, strict=True))
+    b = breadth[:, None] * (mean + deviation * _normal(u[..., 0], -CUT, CUT))
+    h = height[:, None] * (1 + np.where(by_scan, SCANNED_HEIGHT, HEIGHT) * _normal(u[..., 1], -CUT, CUT))
     z = np.clip(centre[:, None] + CENTRE * _normal(u[..., 2], -CUT, CUT), 0.01, 0.99)
-    mean = np.where(np.isnan(restitution)[:, None], block.restitution(b, h, z), restitution[:, None])
-    low, high = np.maximum(-CUT, (0 - mean) / RESTITUTION), np.minimum(CUT, (1 - mean) / RESTITUTION)
-    eta = mean + RESTITUTION * _normal(u[..., 3], np.minimum(low, high), high)
+    given = np.where(np.isnan(restitution)[:, None], block.restitution(b, h, z), restitution[:, None])
+    low, high = np.maximum(-CUT, (0 - given) / RESTITUTION), np.minimum(CUT, (1 - given) / RESTITUTION)
+    eta = given + RESTITUTION * _normal(u[..., 3], np.minimum(low, high), high)
     return DrawnBodies(b, h, z, np.clip(eta, _TINY, 1 - _TINY))
 
 

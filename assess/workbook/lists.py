@@ -13,7 +13,7 @@ from typing import Any, Literal
 from xlsxwriter.utility import xl_col_to_name
 
 from assess.i18n import gettext
-from assess.model import ANCHORED
+from assess.model import ANCHORED, SCANNED, SIZES_FROM
 from assess.motion.scenario import HIGHEST_FLOOR_FREQUENCY, cap_pfv
 from assess.rocking.block import MIDDLE
 from assess.rocking.draws import CUT, Uncertainty
@@ -156,11 +156,19 @@ class ListsWriter:
         self._define("sizes_unit", at, row, gettext("unknown unit of a size"), formula, "")
         self._write_strongest(row + 1, at)
         self._write_largest_estimate(row + 2, at)
-        words = list_words(ANCHORED, YES)
-        self._define("anchored_words", at, row + 3, gettext("words for anchored"), f'="{words}"', words)
-        self._write_scenario(row + 4, at)
-        self._write_shaking(row + 4 + len(_SCENARIO_NAMES), at)
+        self._write_words(row + 3, at)
+        self._write_scenario(row + 5, at)
+        self._write_shaking(row + 5 + len(_SCENARIO_NAMES), at)
         return at + 2
+
+    def _write_words(self, row: int, at: int) -> None:
+        """Write how a piece can be said to be anchored, and its sizes to be by a scan."""
+        lists = ("anchored_words", gettext("words for anchored"), ANCHORED, YES), (
+            "scanned_words", gettext("words for sizes by a scan"), SIZES_FROM, SCANNED
+        )  # fmt: skip
+        for number, (name, label, choices, choice) in enumerate(lists):
+            words = list_words(choices, choice)
+            self._define(name, at, row + number, label, f'="{words}"', words)
 
     def _write_strongest(self, row: int, at: int) -> None:
         """Write the factor on a floor's motion that no drawn earthquake exceeds."""

@@ -7,7 +7,7 @@ from assess.i18n import gettext
 from assess.methods import Method, adopted_formula
 from assess.model import NEAR_AXIS
 from assess.rocking.block import MIDDLE
-from assess.rocking.draws import STILL
+from assess.rocking.draws import STILL, STILL_SCANNED
 from assess.settings import Settings
 from assess.workbook import formulas as live
 from assess.workbook.cell_texts import find_row, is_among, trim
@@ -73,9 +73,13 @@ class LiveRow:
         return f'IF(sizes_unit<>"",sizes_unit,IF(TRIM({own})="",{listed},{number}))'
 
     def _can_rock(self, ratio: str, pfa: str, kind: str) -> str:
-        """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 beta) >= 0.85 g b/z."""
+        """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 beta) >= 0.85 g b/z.
+
+        Where its sizes are by a scan the share is 0.64: it may be more slender.
+        """
+        still = f"IF({is_among(self._own('sizes_from'), 'scanned_words')},{STILL_SCANNED!r},{STILL!r})"
         units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
-        starts = f"{pfa}*strongest>={STILL!r}*{ratio}/(2*{self._centre(units[0], kind)})"
+        starts = f"{pfa}*strongest>={still}*{ratio}/(2*{self._centre(units[0], kind)})"
         unread = f"OR({','.join(f'ISTEXT({unit})' for unit in units)})"
         fault = f"IF({unread},{_say(NO_UNIT)},IF(ISTEXT(strongest),strongest,{_say(WRONG)}))"
         return f"IFERROR(IF({starts},{_say(YES)},{_say(NO)}),{fault})"

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from assess.details import DETAILS
 from assess.intensity import SHAKINGS
-from assess.model import ANCHORED, AXES, IMPORTANCE
+from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM
 from assess.settings import SCENARIOS
 from assess.units import QUANTITIES
 
@@ -283,6 +283,9 @@ ITEMS = Sheet(
                "to fix.", width=16),
         Column("source_id", "Source ID", "text", "Of the piece in the building model or handover file that it was imported "
                "from.", width=24),
+        Column("sizes_from", "Sizes from", "choice", "Where Breadth, Width and Height come from. scan: a phone or "
+               "tablet scanned the room, so they are less certain, and the simulation varies them more.",
+               choices=SIZES_FROM, default="measured", width=10),
         Column("notes", "Notes", "text", "Anything else.", width=30),
     ),
 )  # fmt: skip

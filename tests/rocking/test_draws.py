@@ -17,6 +17,10 @@ from assess.rocking.draws import (
     CUT,
     HEIGHT,
     RESTITUTION,
+    SCANNED_BASE,
+    SCANNED_HEIGHT,
+    STILL,
+    STILL_SCANNED,
     Earthquakes,
     Uncertainty,
     draw_bodies,
@@ -60,6 +64,36 @@ def test_sizes_scatter_about_what_is_given():
     ):
         assert np.abs(found - mean).max() <= CUT * deviation * (1 + 1e-12)
         assert kstest((found - mean) / deviation, cut_normal().cdf).pvalue > 0.01
+
+
+def test_sizes_by_a_scan_scatter_more_and_the_rest_alike():
+    drawn, usual = draw(scanned=np.array([True])), draw(scanned=np.array([False]))
+    for found, mean, deviation in (
+        (drawn.breadth[0] / 0.40, *SCANNED_BASE),
+        (drawn.height[0] / 1.90, 1.0, SCANNED_HEIGHT),
+    ):
+        assert np.abs(found - mean).max() <= CUT * deviation * (1 + 1e-12)
+        assert kstest((found - mean) / deviation, cut_normal().cdf).pvalue > 0.01
+    np.testing.assert_array_equal(drawn.centre, usual.centre)
+
+
+def test_no_draw_depends_on_which_others_were_scanned():
+    sizes = [np.repeat(one, 3) for one in RACK]
+    mixed = draw_bodies(*sizes, [7, 8, 9], seed=1, first=0, count=50, scanned=np.array([False, True, False]))
+    plain = draw_bodies(*sizes, [7, 8, 9], seed=1, first=0, count=50)
+    for one, other in zip(arrays(mixed), arrays(plain), strict=True):
+        np.testing.assert_array_equal(one[[0, 2]], other[[0, 2]])
+    assert not np.array_equal(mixed.breadth[1], plain.breadth[1])
+
+
+def test_a_scanned_piece_is_taken_not_to_start_at_as_low_a_motion_as_its_draws_ask_for():
+    """Its slenderest draw against the slenderest of another: by that much earlier may it start."""
+
+    def slenderest(base, height):
+        return (base[0] - CUT * base[1]) / (1 + CUT * height)
+
+    earlier = slenderest(SCANNED_BASE, SCANNED_HEIGHT) / slenderest(BASE, HEIGHT)
+    assert 0.99 * STILL * earlier < STILL_SCANNED <= STILL * earlier
 
 
 def test_restitution_scatters_about_that_of_the_drawn_body():

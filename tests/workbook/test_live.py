@@ -480,6 +480,9 @@ ROCKING = [  # PFA e^(3 beta) against 0.85 g b/z
     ({"breadth": 150, "type": "plain"}, {"motion_uncertainty": 0.1}, "no"),
     ({"breadth": 106}, {"motion_uncertainty": 0}, "no"), ({"breadth": 105}, {"motion_uncertainty": 0}, "yes"),
     ({}, {"motion_uncertainty": "much"}, "check"), ({"centre_of_gravity": "top"}, {}, "check"),
+    ({"breadth": 141, "sizes_from": "scan"}, {"motion_uncertainty": 0}, "no"),
+    *(({"breadth": 139, "sizes_from": one}, {"motion_uncertainty": 0}, "yes") for one in ("scan", " Scan", "S")),
+    *(({"breadth": 139, "sizes_from": one}, {"motion_uncertainty": 0}, "no") for one in ("model", "measured", "lidar")),
 ]  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from assess.natural import natural_key
 from assess.report import words
 from assess.report.findings.earthquake_draws import list_draw_assumptions, say_draws
 from assess.report.findings.motions import describe_suite, say_signs
-from assess.report.findings.uncertain import say_source
+from assess.report.findings.uncertain import count_scanned, say_source
 from assess.report.findings.verified import Verified, name_some
 from assess.results import EnsembleRow, ItemResult, MotionRow, Results, SuiteInfo
 from assess.settings import AUTO
@@ -139,9 +139,23 @@ def _describe_draws(results: Results) -> str:
             mean=number(uncertainty.base[0]), base=number(uncertainty.base[1]), height=number(uncertainty.height),
             centre=number(uncertainty.centre), restitution=number(uncertainty.restitution),
         ))  # fmt: skip
+        parts += _describe_scanned(results)
     if parts:
         parts.append(_("Normal numbers are cut at {cut:g} standard deviations.", cut=uncertainty.cut))
     return " ".join([*parts, _("“If exactly this motion recurred” is the chance without either uncertainty.")])
+
+
+def _describe_scanned(results: Results) -> list[str]:
+    """Return what is drawn of pieces that were measured by a scan; nothing where there are none."""
+    uncertainty = results.provenance.uncertainty
+    if not count_scanned(results):
+        return []
+    return [_(
+        "A piece whose sizes were measured by a scan draws its base × N({mean}, {base}) and its height × N(1, "
+        "{height}), as assumed: no accuracy of such sizes is published.",
+        mean=number(uncertainty.scanned_base[0]), base=number(uncertainty.scanned_base[1]),
+        height=number(uncertainty.scanned_height),
+    )]  # fmt: skip
 
 
 def _restitution(results: Results) -> str:

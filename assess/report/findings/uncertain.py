@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from assess.i18n import gettext as _
 from assess.i18n import ngettext, number
+from assess.model import SCANNED
 from assess.report import words
 from assess.report.findings.ground_source import name_source, say_dispersion
 from assess.results import ItemResult, Results, Simulation
@@ -91,9 +92,33 @@ def say_source(results: Results) -> str:
 
 
 def _say_piece(results: Results) -> str:
+    scanned = count_scanned(results)
     if not results.provenance.uncertainty.piece:
-        return _("Sizes, centre of gravity and restitution are exactly as given.")
-    return _("Sizes, centre of gravity and restitution of each piece are varied.")
+        given = _("Sizes, centre of gravity and restitution are exactly as given.")
+        return given if not scanned else f"{given} {_say_scanned_as_given(scanned)}"
+    varied = _("Sizes, centre of gravity and restitution of each piece are varied.")
+    return varied if not scanned else f"{varied} {_say_scanned(scanned)}"
+
+
+def count_scanned(results: Results) -> int:
+    """Return how many pieces have sizes that were measured by a scan."""
+    return sum(one.item.quantity for one in results if one.item.sizes_from == SCANNED)
+
+
+def _say_scanned(scanned: int) -> str:
+    return ngettext(
+        "Those of {n:,} piece were measured by a scan, which is less accurate: its sizes are varied more.",
+        "Those of {n:,} pieces were measured by a scan, which is less accurate: their sizes are varied more.",
+        scanned,
+    )
+
+
+def _say_scanned_as_given(scanned: int) -> str:
+    return ngettext(
+        "Those of {n:,} piece were measured by a scan, which is less accurate: its chance may be higher or lower.",
+        "Those of {n:,} pieces were measured by a scan, which is less accurate: their chances may be higher or lower.",
+        scanned,
+    )
 
 
 def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:

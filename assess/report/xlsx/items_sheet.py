@@ -201,7 +201,7 @@ def _as_run(method: "MethodInfo") -> Column:
 
 def _marks(one: ItemResult) -> str:
     texts = [_(flag.replace("_", " ")) for flag in one.adopted.flags]
-    return ", ".join([*texts, *filter(None, (words.say_bracket(one),))])
+    return ", ".join([*texts, *filter(None, (words.say_scanned(one), words.say_bracket(one)))])
 
 
 def _own(results: Results, taken: set[str]) -> Iterator[Column]:
