@@ -67,11 +67,17 @@ def read_run(path: Path) -> past.PastRun:
         If there is none, it cannot be read, is cut off, was written by another program or by a version of this one
         with another major version of the schema, or a value in it is not what it may be.
     """
+    return read_record(path)[0]
+
+
+def read_record(path: Path) -> tuple[past.PastRun, Mapping[str, Any], "Reader"]:
+    """Read the results of a run, and return its record as well, with what reads further values of it."""
     file = path / DATA if path.is_dir() else path
     data, written = _load(path, file)
     record = _parse(file, data)
     _check_origin(file, record)
-    return _Reader(file).run(record, hashlib.sha256(data).hexdigest(), written)
+    reader = Reader(file)
+    return reader.run(record, hashlib.sha256(data).hexdigest(), written), record, reader
 
 
 def _load(path: Path, file: Path) -> tuple[bytes, datetime.datetime]:
@@ -182,7 +188,7 @@ def _describe_version(file: Path, schema: str, *, is_earlier: bool) -> Text:
     )
 
 
-class _Reader:
+class Reader:
     """Turns the parts of a record into rows; `file` is named where a value is not what it may be."""
 
     def __init__(self, file: Path) -> None:
