@@ -461,6 +461,13 @@ def arrange_item_fields(methods: Sequence[MethodInfo], sheet: str) -> tuple[Fiel
             key="assumed", read=lambda one: list(one.item.assumed), label=fill("Assumed"), kind="list", width=28,
             help="Fields that were blank in the workbook and were filled in.",
         ),
+        *_origin_fields(sheet),
+    )  # fmt: skip
+
+
+def _origin_fields(sheet: str) -> tuple[Field, ...]:
+    """Return where a row of furniture and its sizes come from; `sheet` is the workbook's name of the sheet Items."""
+    return (
         Field(key="source_sheet", read=lambda one: sheet, path=("source", "sheet"), shows=DATA),
         Field(
             key="source_row", read=attrgetter("item.row"), path=("source", "row"), kind="count", shows=DATA,
