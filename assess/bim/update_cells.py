@@ -1,0 +1,231 @@
+"""Cells of one sheet that follow a building model: compared in the unit of their header, set or kept, and listed."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from assess.bim.update_changes import Change, Kind
+from assess.i18n import Text, fill
+from assess.units import QUANTITIES
+from assess.workbook.held import HeldCells, Place
+from assess.workbook.names import key, say_choices
+from assess.workbook.number_formats import Percent
+from assess.workbook.open import UNSAVED
+from assess.workbook.outlines import OutlineError, parse_outline
+from assess.workbook.parse import Row, Table
+from assess.workbook.patch import Value
+from assess.workbook.places import split_range
+from assess.workbook.plain_rows import column_letters
+from assess.workbook.schema import NO, YES, Column
+from assess.workbook.values import is_blank, read_text
+
+TOLERANCE = {"length": 5e-4, "angle": 0.05}
+"""Differences up to which two numbers are the same, by quantity [m, deg]."""
+TURN, HALF_TURN = 360.0, 180.0
+"""After so many degrees an angle is the same again; that of a piece, whose sides have no front, after half of them."""
+DECIMALS = {"mm": 1, "cm": 2, "m": 4, "in": 3, "ft": 4}
+"""Decimals that a converted length keeps, by unit: no more than 0.05 mm are rounded away."""
+_DIGITS = 9
+
+
+@dataclass(slots=True)
+class SheetUpdate:
+    """One sheet of a workbook while it is updated.
+
+    Attributes
+    ----------
+    table : Table
+        As it was read.
+    cells : HeldCells
+        Its cells; they stay as they were.
+    changes : list of Change
+        Where all that happens is noted; sheets share one.
+    values : dict of str to value
+        What is to be written, by address.
+    """
+
+    table: Table
+    cells: HeldCells
+    changes: list[Change]
+    values: dict[str, Value] = field(default_factory=dict)
+
+    def can_hold(self, name: str) -> bool:
+        """Tell whether the sheet has a column, or a line, for a field, in a unit that is known."""
+        return name in self.table.places and name not in self.table.blind
+
+    def label(self, name: str) -> str:
+        """Return the header of a field as the workbook has it, with its unit."""
+        unit = self.table.units.get(name)
+        return f"{self.table.label(name)} [{unit}]" if unit else self.table.label(name)
+
+    def address(self, name: str, row: Row) -> str:
+        """Return the cell of a field of a row."""
+        return self.table.cell(name, row.number)
+
+    def place(self, name: str, row: Row) -> Place:
+        """Return row and column of a cell."""
+        at = self.table.places[name]
+        return (at, 1) if self.table.sheet.layout == "form" else (row.number, at)
+
+    def raw(self, name: str, row: Row) -> Any:
+        """Return what a cell holds, unread; None where it is blank."""
+        value = self.cells.value(self.place(name, row))
+        return None if is_blank(value) else value
+
+    def to_cell(self, name: str, wanted: Any) -> Value:
+        """Return what a cell has to hold for a value in the unit of SI headers; None where nothing can be written."""
+        return _to_cell(self.table.sheet.column(name), self.table.units.get(name, ""), wanted)
+
+    # ------------------------------------------------------------ one cell
+
+    def replace(self, row: Row, name: str, wanted: Any) -> None:
+        """Set a cell that the model owns, unless it holds the same but for rounding; nothing never clears a cell."""
+        if not self._differs(row, name, wanted):
+            return
+        why = self._find_lock(self.place(name, row))
+        if why:
+            self._note("kept", row, name, wanted, why)
+            return
+        self._note("changed", row, name, wanted)
+        self.values[self.address(name, row)] = self.to_cell(name, wanted)
+
+    def fill_blank(self, row: Row, name: str, wanted: Any) -> None:
+        """Set a cell if it is blank; note where it holds something else than the model has."""
+        if self.can_hold(name) and self.raw(name, row) is None:
+            self.replace(row, name, wanted)
+        else:
+            self.keep(row, name, wanted)
+
+    def keep(self, row: Row, name: str, wanted: Any, reason: Text | str = "") -> None:
+        """Note that a cell stays, if it holds something else than the model has."""
+        if self._differs(row, name, wanted):
+            self._note("kept", row, name, wanted, reason)
+
+    def _differs(self, row: Row, name: str, wanted: Any) -> bool:
+        if wanted is None or wanted == "" or not self.can_hold(name):
+            return False
+        value, raw = self.to_cell(name, wanted), self.raw(name, row)
+        if value is None or (raw == value and isinstance(raw, bool) == isinstance(value, bool)):
+            return False
+        read = row.get(name)
+        return read is None or not _is_same(self.table.sheet.column(name), read, wanted)
+
+    def _find_lock(self, place: Place) -> Text | str:
+        """Return why a cell is left as it is, "" where it can be set; one of an array formula stops the update."""
+        row, at = place
+        areas = (area for area, _ in self.cells.marks.locked)
+        if place in self.cells.marks.formulas and not any(_is_inside(place, area) for area in areas):
+            return fill("the cell holds a formula")
+        merged = (span for one in self.cells.merged if (span := split_range(one)))
+        if any(_is_inside(place, area) and (at + 1, row) != (area[0], area[2]) for area in merged):
+            return fill("merged cells cover the cell")
+        return ""
+
+    def _note(self, kind: Kind, row: Row, name: str, wanted: Any, reason: Text | str = "") -> None:
+        cell, item = self.address(name, row), self.name_of(row)
+        was, now = _show(self.raw(name, row)), self.to_cell(name, wanted)
+        self.changes.append(Change(kind, self.cells.title, cell, item, self.label(name), was, now, reason))
+
+    # ------------------------------------------------------------ rows
+
+    def name_of(self, row: Row) -> str:
+        """Return the name of a row, that in the first column of its table; "" for a form."""
+        if self.table.sheet.layout == "form":
+            return ""
+        return str(row.get(self.table.sheet.columns[0].name) or "")
+
+    def note_row(self, kind: Kind, row: Row, reason: Text | str = "") -> None:
+        """Note something of a row as a whole."""
+        cell = self.address(self.table.sheet.columns[0].name, row)
+        self.changes.append(Change(kind, self.cells.title, cell, self.name_of(row), reason=reason))
+
+    def note_columns(self, names: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> None:
+        """Note the fields of a model's rows that have no column here."""
+        filled = {name for row in rows for name, value in row.items() if value not in (None, "")}
+        for name in names:
+            if name in filled and not self.can_hold(name):
+                why = fill("the sheet has no such column")
+                if name in self.table.blind:
+                    why = fill("its header gives no known unit")
+                label = self.table.label(name)
+                self.changes.append(Change("left_out", self.cells.title, "", label=label, reason=why))
+
+    def write_row(self, number: int, row: Mapping[str, Any]) -> None:
+        """Fill in a row that is free."""
+        for name, wanted in row.items():
+            if self.can_hold(name) and wanted not in (None, ""):
+                self.values[f"{column_letters(self.table.places[name])}{number}"] = self.to_cell(name, wanted)
+        first = self.table.sheet.columns[0].name
+        cell = f"{column_letters(self.table.places[first])}{number}"
+        self.changes.append(Change("added", self.cells.title, cell, str(row[first])))
+
+
+# ---------------------------------------------------------------- values
+
+
+def _to_cell(column: Column, unit: str, wanted: Any) -> Value:
+    if isinstance(wanted, bool):
+        wanted = YES if wanted else NO
+    if column.kind == "outline":
+        return _write_outline(column, unit, str(wanted))
+    if isinstance(wanted, str):
+        if wanted in column.choices:
+            return say_choices(column.choices, column.language)[column.choices.index(wanted)]
+        return str(wanted)
+    return _convert(column, unit, wanted)
+
+
+def _convert(column: Column, unit: str, number: float) -> float:
+    if not column.quantity or unit == column.unit:
+        return number
+    return round(number * column.factor / QUANTITIES[column.quantity][unit], DECIMALS.get(unit, _DIGITS))
+
+
+def _write_outline(column: Column, unit: str, text: str) -> str | None:
+    """Return an outline in another unit, None for one that has to be converted and cannot be read."""
+    if unit == column.unit:
+        return text
+    try:
+        corners = parse_outline(text, 1.0)
+    except OutlineError:
+        return None
+    return "; ".join(f"{_convert(column, unit, x):.10g} {_convert(column, unit, y):.10g}" for x, y in corners)
+
+
+def _is_same(column: Column, read: Any, wanted: Any) -> bool:
+    """Tell whether a value as it was read, in SI, is that of the model but for rounding and spelling."""
+    if column.kind == "outline":
+        return _is_same_outline(column, read, str(wanted))
+    if isinstance(wanted, str):
+        return key(str(read)) == key(wanted)
+    difference = abs(float(read) - wanted * column.factor)
+    if column.quantity == "angle":
+        period = HALF_TURN if column.name == "angle_deg" else TURN
+        difference = min(difference % period, -difference % period)
+    return bool(difference <= TOLERANCE.get(column.quantity, 1e-9 * abs(wanted * column.factor)))
+
+
+def _is_same_outline(column: Column, read: Any, wanted: str) -> bool:
+    try:
+        corners = parse_outline(wanted, column.factor)
+    except OutlineError:
+        return False
+    close = TOLERANCE["length"]
+    return len(corners) == len(read) and all(
+        abs(one[0] - other[0]) <= close and abs(one[1] - other[1]) <= close
+        for one, other in zip(corners, read, strict=True)
+    )
+
+
+def _is_inside(place: Place, area: tuple[int, int, int, int]) -> bool:
+    left, right, top, bottom = area
+    return left <= place[1] + 1 <= right and top <= place[0] <= bottom
+
+
+def _show(value: Any) -> Value:
+    """Return what a cell held as a change tells it."""
+    if value is None or value is UNSAVED:
+        return None
+    if isinstance(value, Percent):
+        return float(value)
+    return value if isinstance(value, bool | int | float | str) else read_text(value)

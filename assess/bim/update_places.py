@@ -1,0 +1,76 @@
+"""Places of a workbook that follow a building model: rooms, doors, stairs and exits, which have no identifier there."""
+
+from collections.abc import Callable, Sequence
+from math import hypot
+from typing import Any
+
+from assess.bim.import_workbook import name_apart
+from assess.bim.update_cells import SheetUpdate
+from assess.bim.update_changes import RENAMED
+from assess.bim.update_names import Named, match_alike
+from assess.bim.update_rows import BookUpdate, Rows
+from assess.workbook.names import key
+from assess.workbook.parse import Row
+
+FOLLOWED = ("x", "y", "outline")
+"""Fields that the model owns."""
+NEAR = 0.05
+"""Distance up to which two places are at one position [m]."""
+
+
+def update_places(
+    book: BookUpdate, rows: Rows, find_floor: Callable[[str], str], find_room: Callable[[str, str], str]
+) -> None:
+    """Move the places that both have, and add those of the model alone.
+
+    Parameters
+    ----------
+    book : BookUpdate
+        The workbook.
+    rows : sequence of mapping
+        The places of the model.
+    find_floor, find_room : callable
+        What people call a floor of the model, and a room of it on such a floor.
+    """
+    sheet = book.sheets.get("Places")
+    own = sheet.table.with_all("place") if sheet else []
+    named = {key(row.get("place")) for row in own}
+    model = [{**row, "floor": find_floor(row["floor"])} for row in rows]
+    for row in model:
+        renamed = find_room(row["floor"], row["place"])
+        row["place"] = renamed if key(renamed) in named else row["place"]
+    found = match_alike(
+        [_describe_model(row) for row in model], [_describe(row) for row in own], _is_near, by_content=True
+    )
+    if sheet:
+        sheet.note_columns(FOLLOWED, rows)
+        for at, other in found.items():
+            _update_place(sheet, own[other], model[at])
+    new = [row for at, row in enumerate(model) if at not in found]
+    taken = [str(row.get("place")) for row in own]
+    names = name_apart([*taken, *(row["place"] for row in new)])[len(taken) :]
+    book.add("Places", [{**row, "place": name} for name, row in zip(names, new, strict=True)])
+
+
+def _update_place(sheet: SheetUpdate, row: Row, model: dict[str, Any]) -> None:
+    """Move a place, unless people have put it on another floor; its name stays."""
+    if key(row.get("floor") or "") != key(model["floor"]):
+        sheet.keep(row, "floor", model["floor"])
+        return
+    sheet.keep(row, "place", model["place"], RENAMED)
+    for name in FOLLOWED:
+        sheet.replace(row, name, model.get(name))
+
+
+def _describe_model(row: dict[str, Any]) -> Named:
+    return Named(row["place"], (key(row["floor"]), row.get("x"), row.get("y")))
+
+
+def _describe(row: Row) -> Named:
+    return Named(row.get("place"), (key(row.get("floor") or ""), row.get("x"), row.get("y")))
+
+
+def _is_near(one: Sequence[Any], other: Sequence[Any]) -> bool:
+    if one[0] != other[0] or None in (*one, *other):
+        return False
+    return hypot(one[1] - other[1], one[2] - other[2]) <= NEAR

@@ -1,0 +1,369 @@
+"""A building model imported again: what it tells goes into a workbook that people have filled in since, and no more.
+
+A workbook does not remember what the last import wrote, so a value that people changed cannot be told from an old one
+of the model. The model therefore owns what it alone measures: floor, room, sizes and position of the pieces whose
+Source ID it has, positions and outlines of places, sizes of its types. These follow it wherever they differ by more
+than rounding, and each old value is listed; sizes that are marked as measured stay. All else is what people typed, and
+stays: type and description, weights, fixings, notes, routes, costs, names of floors and rooms, and every row that the
+model does not know. Nothing is ever cleared or deleted.
+
+Cells are set in the bytes of the sheets; the stored results of the live formulas follow, as where cells are corrected.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from assess.bim.floor_drawing import name_plan
+from assess.bim.import_workbook import ImportedBuilding, list_rows, name_apart
+from assess.bim.update_cells import SheetUpdate
+from assess.bim.update_changes import RENAMED, Change, describe
+from assess.bim.update_names import match_floors, match_rooms
+from assess.bim.update_places import update_places
+from assess.bim.update_rows import BookUpdate, Rows
+from assess.bim.update_types import SIZES, TypeUpdate
+from assess.errors import InputError, Problem, WorkbookError
+from assess.i18n import fill
+from assess.model import MEASURED
+from assess.pipeline.corrected import find_results
+from assess.progress import SILENT, Progress
+from assess.workbook.names import key
+from assess.workbook.parse import Row, Table
+from assess.workbook.patch import patch_workbook
+from assess.workbook.read import hold_sheets, parse_held, read_inventory
+from assess.workbook.values import read_text
+
+__all__ = ["Change", "Updated", "describe", "update_workbook"]
+
+POSITION = ("x", "y", "angle_deg")
+SITE = ("latitude", "longitude", "azimuth_deg")
+"""Lines of Building that are filled in where they are blank."""
+PLAN = ("plan", "plan_left", "plan_bottom", "plan_width", "plan_turn")
+_IDLE = frozenset({"Places"})
+"""Sheets on which no live formula rests."""
+_Row = TypeVar("_Row", Row, Mapping[str, Any])
+
+
+@dataclass(frozen=True, slots=True)
+class Updated:
+    """A workbook after an update.
+
+    Attributes
+    ----------
+    data : bytes
+        The workbook; the very bytes from before where no cell was to change.
+    changes : tuple of Change
+        All that was done, and all that was not: see `assess.bim.update_changes.Change`.
+    problems : tuple of Problem
+        Why new rows could not be added, as warnings.
+    """
+
+    data: bytes
+    changes: tuple[Change, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether any cell was changed."""
+        return any(one.kind in ("changed", "added") for one in self.changes)
+
+
+def update_workbook(
+    data: bytes,
+    imported: ImportedBuilding,
+    name: str,
+    progress: Progress = SILENT,
+    *,
+    records: Path | Mapping[str, bytes] | None = None,
+) -> Updated:
+    """Bring a workbook up to date with the building model that it was imported from.
+
+    Parameters
+    ----------
+    data : bytes
+        The .xlsx or .xlsm, as people have filled it in: in any language, units and order of columns.
+    imported : ImportedBuilding
+        What the model tells now; pieces without a Source ID are not used.
+    name : str
+        How messages call the workbook.
+    progress : Progress
+        Checked while it works.
+    records : Path or mapping of str to bytes, optional
+        Folder, or files, that the workbook names, on which the stored results of its live formulas may rest.
+
+    Returns
+    -------
+    Updated
+        Importing the same model again changes nothing more.
+
+    Raises
+    ------
+    InputError
+        If the model has no furniture, or the workbook has no Source ID of it.
+    WorkbookError
+        If the workbook cannot be opened, or something in it cannot be changed with certainty.
+    """
+    held = hold_sheets(data, name, progress)
+    tables, problems = parse_held(held)
+    changes: list[Change] = []
+    sheets = {one: SheetUpdate(tables[one], held.cells[one], changes) for one in held.cells}
+    if "Items" not in sheets or not tables["Items"].header:
+        raise WorkbookError(problems, held.language)
+    book = BookUpdate(sheets, changes)
+    _BuildingUpdate(imported, name, book).run()
+    written = {sheet: one for sheet, one in sheets.items() if one.values}
+    if written:
+        patches = {one.cells.title: one.values for one in written.values()}
+        data = patch_workbook(data, patches, name=name, progress=progress).data
+        if not written.keys() <= _IDLE:
+            data = _store_results(data, name, progress, records)
+    return Updated(data, tuple(changes), tuple(book.problems))
+
+
+def _store_results(data: bytes, name: str, progress: Progress, records: Path | Mapping[str, bytes] | None) -> bytes:
+    """Return a workbook whose live formulas have stored what they show now, or nothing where that is not known."""
+    inventory = read_inventory(data, records=records, strict=False, progress=progress)
+    return patch_workbook(data, {}, find_results(data, inventory), name=name, progress=progress).data
+
+
+# ---------------------------------------------------------------- the building
+
+
+_Pair = tuple[Mapping[str, Any], Row]
+"""A row of the model, and that of the workbook that was imported from it."""
+
+
+class _BuildingUpdate:
+    """One update: it works out everything that is to be written."""
+
+    def __init__(self, imported: ImportedBuilding, name: str, book: BookUpdate) -> None:
+        self.imported, self.name, self.book = imported, name, book
+        self.items = book.sheets["Items"]
+        self.rows = list_rows(imported)
+        self.types = TypeUpdate(book, self.rows["Catalogue"][: len(imported.types)])
+        self.floors: dict[str, str] = {}
+        self.rooms: dict[tuple[str, str], str] = {}
+        self.sources = set(_list_sources(book, Path(imported.source).suffix))
+
+    def run(self) -> None:
+        """Update every sheet; floors first, as what is new stands on them."""
+        pairs, new = self._match_items()
+        self._match_floors(pairs)
+        stayed = [
+            (one, row) for one, row in pairs if key(self._find_floor(one["floor"])) == key(row.get("floor") or "")
+        ]
+        self._match_rooms(stayed)
+        self.types.match((one["type"], row.get("type")) for one, row in pairs if one.get("type") and row.get("type"))
+        self._update_building()
+        self._update_floors()
+        self.items.note_columns(("room", *SIZES, *POSITION), self.rows["Items"])
+        self._note_renamed(stayed)
+        for model, row in pairs:
+            self._update_item(model, row)
+        self.book.add("Items", self._name_new(new))
+        self._note_missing()
+        update_places(self.book, self.rows["Places"], self._find_floor, self._find_room)
+        self.types.update()
+
+    # ------------------------------------------------------------ who is who
+
+    def _match_items(self) -> tuple[list[_Pair], list[Mapping[str, Any]]]:
+        """Return the pieces that both have, and those of the model that the workbook lacks.
+
+        Raises
+        ------
+        InputError
+            If there are none that both have.
+        """
+        if not self.rows["Items"]:
+            message = fill("{source} holds no furniture that can be imported; {name} stays as it is.",
+                           source=self.imported.source, name=self.name)  # fmt: skip
+            raise InputError(message)
+        own, model = _by_id(self.items.table.rows), _by_id(self.rows["Items"])
+        if not own.keys() & model.keys():
+            raise self._no_match()
+        for one in (one for one in own if one in model):
+            self._note_duplicates(own[one], model[one])
+        pairs = [(rows[0], own[one][0]) for one, rows in model.items() if len(rows) == 1 == len(own.get(one, ()))]
+        return pairs, [row for one, rows in model.items() if one not in own for row in rows]
+
+    def _no_match(self) -> InputError:
+        values = {"name": self.name, "source": self.imported.source, "label": self.items.table.label("source_id")}
+        if "source_id" not in self.items.table.places:
+            return InputError(
+                fill("{name} has no column {label} in Items, by which its rows are found again in {source}. "
+                     "Import into a new workbook under another name.", **values)
+            )  # fmt: skip
+        return InputError(
+            fill("{name} does not seem to be a workbook of {source}: it has no {label} of that model. Name the "
+                 "workbook that was imported from it, or import into a new one under another name.", **values)
+        )  # fmt: skip
+
+    def _note_duplicates(self, rows: Sequence[Row], models: Sequence[Mapping[str, Any]]) -> None:
+        """List a Source ID of several rows, or of several pieces: which is which cannot be told."""
+        if len(rows) > 1:
+            cells = ", ".join(self.items.address("source_id", row) for row in rows)
+            self.items.note_row("kept", rows[0], fill("its Source ID stands in several rows ({cells})", cells=cells))
+        elif len(models) > 1:
+            why = fill("the model has {n} pieces of its Source ID", n=len(models))
+            self.items.note_row("kept", rows[0], why)
+
+    def _match_floors(self, pairs: Sequence[_Pair]) -> None:
+        own = _by_floor(self.book.sheets["Floors"].table) if "Floors" in self.book.sheets else {}
+        found = match_floors(
+            {key(row["floor"]): row.get("elevation") for row in self.rows["Floors"]},
+            {one: row.get("elevation") for one, row in own.items()},
+            ((key(one["floor"]), key(row.get("floor"))) for one, row in pairs if row.get("floor")),
+        )
+        self.floors = {one: own[name].get("floor") for one, name in found.items()}
+
+    def _match_rooms(self, stayed: Sequence[_Pair]) -> None:
+        """Find out which rooms people have renamed, by the pieces that are still on their floor."""
+        known = {key(row["room"]) for row in self.rows["Items"] if row.get("room")}
+        known |= {key(row["place"]) for row in self.rows["Places"]}
+        trios = (
+            (key(row.get("floor")), one["room"], row.get("room"))
+            for one, row in stayed
+            if one.get("room") and row.get("room")
+        )
+        self.rooms = match_rooms(trios, known)
+
+    def _find_floor(self, name: str) -> str:
+        """Return what the workbook calls a floor of the model; a new one as the model does."""
+        return self.floors.get(key(name), name)
+
+    def _find_room(self, floor: str, room: str) -> str:
+        """Return what people call a room of the model on a floor of the workbook."""
+        return self.rooms.get((key(floor), key(room)), room)
+
+    def _note_renamed(self, pairs: Sequence[_Pair]) -> None:
+        """List each room, and each type, that keeps the name that people gave to it."""
+        rooms, types = dict(self.rooms), dict(self.types.renamed)
+        for model, row in pairs:
+            room, kind = (key(row.get("floor")), key(model.get("room") or "")), key(model.get("type") or "")
+            if room in rooms and key(rooms[room]) == key(row.get("room") or ""):
+                self.items.keep(row, "room", model["room"], RENAMED)
+                del rooms[room]
+            if kind in types and key(types[kind]) == key(row.get("type") or ""):
+                self.items.keep(row, "type", model["type"], RENAMED)
+                del types[kind]
+
+    # ------------------------------------------------------------ the building and its floors
+
+    def _update_building(self) -> None:
+        sheet = self.book.sheets.get("Building")
+        if sheet is None:
+            return
+        for row in sheet.table.rows:
+            for name in SITE:
+                sheet.fill_blank(row, name, self.imported.building.get(name))
+
+    def _update_floors(self) -> None:
+        """Update the floors that both have, and add those of the model alone.
+
+        Raises
+        ------
+        WorkbookError
+            If floors cannot be added: pieces would stand on floors that are not there.
+        """
+        new = [row for row in self.rows["Floors"] if key(row["floor"]) not in self.floors]
+        if not self.book.add("Floors", new):
+            faults = [replace(one, severity="error") for one in self.book.problems]
+            raise WorkbookError(faults or [Problem("error", "Floors", "", fill("the sheet is missing."))])
+        sheet = self.book.sheets.get("Floors")
+        if sheet is None:
+            return
+        sheet.note_columns(PLAN, self.rows["Floors"])
+        own, uses = _by_floor(sheet.table), Counter(map(key, self.floors.values()))
+        for model in self.rows["Floors"]:
+            row = own.get(key(self._find_floor(model["floor"])))
+            if row is not None:
+                sheet.keep(row, "floor", model["floor"], RENAMED)
+                if uses[key(row.get("floor"))] == 1:
+                    self._update_floor(sheet, model, row)
+
+    def _update_floor(self, sheet: SheetUpdate, model: Mapping[str, Any], row: Row) -> None:
+        sheet.fill_blank(row, "elevation", model.get("elevation"))
+        if not model.get("plan"):
+            return
+        own = row.get("plan")
+        if own is None or self._is_imported(own, model):
+            for name in PLAN:
+                sheet.replace(row, name, model.get(name))
+        else:
+            sheet.keep(row, "plan", model["plan"], fill("it is not a plan of the import"))
+
+    def _is_imported(self, plan: str, model: Mapping[str, Any]) -> bool:
+        """Tell whether a plan is one that an import writes, of this model or of one of an earlier name."""
+        written = {*self.imported.files, model["plan"], *(name_plan(one, model["floor"]) for one in self.sources)}
+        return key(plan) in map(key, written)
+
+    # ------------------------------------------------------------ pieces
+
+    def _update_item(self, model: Mapping[str, Any], row: Row) -> None:
+        sheet = self.items
+        floor = self._find_floor(model["floor"])
+        sheet.replace(row, "floor", floor)
+        sheet.replace(row, "room", self._find_room(floor, model.get("room") or ""))
+        self._update_sizes(model, row)
+        number = row.get("quantity") or 1
+        for name in POSITION:
+            if number == 1:
+                sheet.replace(row, name, model.get(name))
+            elif name == "x":
+                sheet.keep(row, name, model.get(name), fill("the row stands for {n} pieces", n=number))
+        if row.get("type"):
+            sheet.keep(row, "type", self.types.find(model.get("type") or ""))
+
+    def _update_sizes(self, model: Mapping[str, Any], row: Row) -> None:
+        """Update the sizes, unless people have measured them."""
+        sheet, origin = self.items, model.get("sizes_from")
+        is_measured = row.get("sizes_from") == MEASURED != origin
+        for name in SIZES:
+            if is_measured:
+                sheet.keep(row, name, model.get(name), fill("it was measured"))
+            else:
+                sheet.replace(row, name, model.get(name))
+        if not is_measured:
+            sheet.replace(row, "sizes_from", origin)
+
+    def _name_new(self, new: Rows) -> list[dict[str, Any]]:
+        """Return the rows of new pieces, with names that no other row has, and floors and rooms as people call them."""
+        taken = [str(row.get("item")) for row in self.items.table.with_all("item")]
+        names = name_apart([*taken, *(row["item"] for row in new)])[len(taken) :]
+        found = []
+        for name, row in zip(names, new, strict=True):
+            floor = self._find_floor(row["floor"])
+            room, kind = self._find_room(floor, row.get("room") or ""), self.types.find(row.get("type") or "")
+            found.append({**row, "item": name, "floor": floor, "room": room, "type": kind})
+        return found
+
+    def _note_missing(self) -> None:
+        known = _by_id(self.rows["Items"])
+        for one, rows in _by_id(self.items.table.rows).items():
+            for row in rows if one not in known else ():
+                self.items.note_row("missing", row)
+
+
+def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:
+    """Return rows by their Source ID, without those that have none."""
+    found: dict[str, list[_Row]] = {}
+    for row in rows:
+        if one := read_text(row.get("source_id") or ""):
+            found.setdefault(one, []).append(row)
+    return found
+
+
+def _list_sources(book: BookUpdate, suffix: str) -> Iterator[str]:
+    """Yield what may be the name of a model that types came from: the ends of sources such as "shapes in A 1.ifc"."""
+    rows = book.sheets["Catalogue"].table.with_all("source") if "Catalogue" in book.sheets else ()
+    for text in {row.get("source") for row in rows}:
+        words = text.split(" ") if suffix and text.endswith(suffix) else ()
+        yield from (" ".join(words[at:]) for at in range(len(words)))
+
+
+def _by_floor(table: Table) -> dict[str, Row]:
+    """Return the floors of a workbook by their names as names are compared; of two alike the first."""
+    return {key(row.get("floor")): row for row in reversed(table.with_all("floor"))}
