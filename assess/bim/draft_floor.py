@@ -235,6 +235,8 @@ def _widest(area: BaseGeometry, otherwise: BaseGeometry) -> BaseGeometry:
 TOLERANCE = 0.1
 """To this the middle of the free floor is found [m]; in large rooms to a share of their extent."""
 EXTENT_SHARE = 200
+MIDWAY = 0.1
+"""A point that is this near to the middle between two walls is moved there [m]."""
 APART = 0.3
 """The place of a room is at least this far from doors and stairs, where there is room [m]."""
 
@@ -281,7 +283,20 @@ def _find_widest(polygon: shapely.Polygon) -> Point:
         middle = polylabel(polygon, max(min(TOLERANCE, polygon.area / extent / 4), extent / EXTENT_SHARE))
     except shapely.errors.ShapelyError:
         middle = polygon.representative_point()
-    return round(float(middle.x), 2), round(float(middle.y), 2)
+    x, y = _centre(polygon, middle)
+    return round(x, 2), round(y, 2)
+
+
+def _centre(polygon: shapely.Polygon, middle: shapely.Point) -> Point:
+    """Move a point that is nearly midway between two walls to exactly there, so that it is in line with others."""
+    (x, y), wall = (middle.x, middle.y), shapely.shortest_line(middle, polygon.boundary)
+    near = wall.length
+    if near < MIDWAY:
+        return x, y
+    u, v = ((one - other) / near for one, other in zip((x, y), wall.coords[1], strict=True))
+    far = middle.distance(shapely.LineString([(x, y), (x + 2 * near * u, y + 2 * near * v)]) & polygon.boundary)
+    move = (far - near) / 2 if near < far < near + 2 * MIDWAY else 0.0
+    return x + move * u, y + move * v
 
 
 # ---------------------------------------------------------------- sight

@@ -52,7 +52,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     drawn = {one.key: plan for one in storeys if (plan := draw_storey(model, one)) is not None}
     files = dict(zip(drawn, name_apart(name_plan(model.source, floors[key]) for key in drawn), strict=True))
     types = _name_types(pieces)
-    draft = _draft(model, places, routes)
+    draft = _draft(model, {**places, **floors}, routes)
     return ImportedBuilding(
         source=model.source,
         building=_describe_building(model, storeys),

@@ -1,0 +1,160 @@
+"""Openings without doors between rooms: stretches of the edge of a room from which another is near, without a wall.
+
+A model has no element for them. Along the edges of each room rays lead outward every `STEP`; where rays next to each
+other reach the same room over at least `NARROWEST_OPENING`, and meet no wall, window or door, there is an opening: in
+the part without furniture where that is wide enough.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from assess.bim.building_model import Door, Point
+from assess.bim.door_sides import find_normal
+from assess.bim.draft_floor import FloorPlan, Link, box_at, measure
+from assess.bim.plan_shapes import list_polygons
+
+NARROWEST_OPENING = 0.6
+"""Least width of an opening that a person walks through [m]."""
+STEP = 0.1
+WIDEST_GAP = 0.55
+"""Two rooms that are farther apart than this are not joined without a door [m]."""
+INSIDE = 0.05
+"""Rays begin this far inside a room, so that a wall drawn on its edge is met [m]."""
+NEXT_TO_DOOR = 0.15
+"""Up to this far from a door no opening is looked for: the wall is cut away there [m]."""
+SAME = 1.0
+"""Two openings between the same rooms that are nearer than this are one [m]."""
+MOST_RAYS = 200_000
+"""So many rays are followed on a storey; rooms with more edges than that are left out."""
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class _Rays:
+    """Rays from the edges of the rooms of a storey: where each begins, on the edge, and its direction; (n, 2) arrays.
+
+    `room` and `edge` (n,) are the number of the room, and of the edge among all edges.
+    """
+
+    at: FloatArray
+    outward: FloatArray
+    room: NDArray[np.intp]
+    edge: NDArray[np.intp]
+
+
+def find_openings(plan: FloorPlan, doors: Sequence[Door]) -> list[Link]:
+    """Return the openings between the rooms of a storey; none where the storey has no walls to see them by."""
+    if len(plan.spaces) < 2 or not plan.solids:
+        return []
+    rays = _cast(plan)
+    if not rays.room.size:
+        return []
+    reached, full = _find_reached(plan, rays, doors)
+    found: dict[frozenset[str], list[Link]] = {}
+    for stretch in (*_group(rays, reached, full), *_group(rays, reached, None)):
+        link = _link(plan, stretch, rays)
+        pair = found.setdefault(frozenset(link.spaces), [])
+        is_new = not pair or (stretch.is_free and all(measure(one.at, link.at) >= SAME for one in pair))
+        if is_new and link.width >= NARROWEST_OPENING - STEP / 2:
+            pair.append(link)
+    return [link for pair in found.values() for link in pair]
+
+
+def _cast(plan: FloorPlan) -> _Rays:
+    """Return the rays from all edges of all rooms."""
+    at, outward, room, edge = [np.empty((0, 2))], [np.empty((0, 2))], list[int](), list[int]()
+    count = 0
+    for number, polygon in enumerate(plan.polygons):
+        for start, end in _list_edges(polygon):
+            length = measure(start, end)
+            n = int((length + 1e-6) // STEP)
+            if n * STEP < NARROWEST_OPENING - STEP or len(room) + n > MOST_RAYS:
+                continue
+            along = np.subtract(end, start) / length
+            places = (length - n * STEP) / 2 + STEP * (np.arange(n) + 0.5)
+            at.append(np.array(start) + places[:, None] * along)
+            outward.append(np.tile([along[1], -along[0]], (n, 1)))
+            room += [number] * n
+            edge += [count] * n
+            count += 1
+    return _Rays(np.vstack(at), np.vstack(outward), np.array(room, np.intp), np.array(edge, np.intp))
+
+
+def _list_edges(polygon: shapely.Polygon) -> Iterator[tuple[Point, Point]]:
+    """Yield the edges of a polygon, its inside to the left of each."""
+    simple = polygon.simplify(STEP / 5)
+    for one in list_polygons(simple if simple.is_valid else polygon):
+        oriented = shapely.geometry.polygon.orient(one)
+        for ring in (oriented.exterior, *oriented.interiors):
+            yield from pairwise([(float(x), float(y)) for x, y, *_ in ring.coords])
+
+
+def _find_reached(plan: FloorPlan, rays: _Rays, doors: Sequence[Door]) -> tuple[list[int], list[bool]]:
+    """Return for each ray the number of the room that it reaches first, and whether it meets furniture.
+
+    The number is -1 where it meets a wall, a window or a door, or no room.
+    """
+    ends = np.stack([rays.at - INSIDE * rays.outward, rays.at + WIDEST_GAP * rays.outward], axis=1)
+    lines: Any = shapely.linestrings(ends)
+    shut, full = np.zeros(len(lines), dtype=np.bool_), np.zeros(len(lines), dtype=np.bool_)
+    zones = [_door_zone(door) for door in doors]
+    for shapes, met in ((plan.solids, shut), (zones, shut), (plan.footprints, full)):
+        if shapes:
+            met[np.unique(shapely.STRtree(shapes).query(lines, predicate="intersects")[0])] = True
+    hits, rooms = plan.tree.query(lines, predicate="intersects")
+    near = np.array([*shapely.distance(shapely.points(rays.at[hits]), np.array(plan.polygons)[rooms])])
+    found = [-1] * len(lines)
+    for at in np.lexsort((rooms, near))[::-1]:  # the nearest last, which stays
+        ray = int(hits[at])
+        if not shut[ray] and rooms[at] != rays.room[ray]:
+            found[ray] = int(rooms[at])
+    return found, full.tolist()
+
+
+def _door_zone(door: Door) -> shapely.Polygon:
+    along = door.thickness / 2 + WIDEST_GAP
+    return box_at((door.x, door.y), find_normal(door), along, door.width / 2 + NEXT_TO_DOOR)
+
+
+@dataclass(frozen=True, slots=True)
+class _Stretch:
+    """Rays next to each other that lead from a room to another; `is_free` where none of them meets furniture."""
+
+    room: int
+    other: int
+    rays: list[int]
+    is_free: bool
+
+
+def _group(rays: _Rays, reached: Sequence[int], full: Sequence[bool] | None) -> Iterator[_Stretch]:
+    """Yield the stretches, the widest first: those free of furniture, or all where it is not told (`full`)."""
+    edges, rooms = rays.edge.tolist(), rays.room.tolist()
+    found = []
+    for (_, other), group in groupby(range(len(edges)), key=lambda ray: (edges[ray], _leads(ray, reached, full))):
+        if other >= 0:
+            own = list(group)
+            found.append(_Stretch(rooms[own[0]], other, own, is_free=full is not None))
+    yield from sorted(found, key=lambda one: (-len(one.rays), one.rays[0]))
+
+
+def _leads(ray: int, reached: Sequence[int], full: Sequence[bool] | None) -> int:
+    return -1 if full is not None and full[ray] else reached[ray]
+
+
+def _link(plan: FloorPlan, stretch: _Stretch, rays: _Rays) -> Link:
+    """Return the opening that the rays of a stretch pass through."""
+    first, last = stretch.rays[0], stretch.rays[-1]
+    middle = rays.at[[first, last]].mean(axis=0)
+    u, v = rays.outward[first].tolist()
+    gap = float(plan.polygons[stretch.other].distance(shapely.Point(middle)))
+    at = float(middle[0]) + gap / 2 * u, float(middle[1]) + gap / 2 * v
+    spaces = tuple(plan.spaces[room].key for room in (stretch.room, stretch.other))
+    width = len(stretch.rays) * STEP
+    return Link(f"opening {spaces[0]} {spaces[1]} {first}", at, (u, v), width, width, spaces)
