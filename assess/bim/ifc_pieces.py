@@ -31,6 +31,8 @@ FITTED = (
     "kueche", "cucina", "incasso",
 )  # fmt: skip
 """Words in names of fitted furniture, which is usually fixed."""
+MOST_PIECES = 20_000
+"""Pieces of a model that are read."""
 NOT_ON_FLOOR = fill("not on the floor: its lowest point is more than 15 cm above it")
 NO_SHAPE = fill("no geometry")
 NO_PIECE = fill("its class is not furniture; it can be imported by the name of its class")
@@ -62,13 +64,18 @@ def find_pieces(
     Raises
     ------
     ModelError
-        If `also` names a class that the schema of the model does not have.
+        If `also` names a class that the schema of the model does not have, or there are over `MOST_PIECES` pieces.
     """
     found = FoundPieces()
     _check_classes(model, also)
     wanted = {one.id() for one in list_elements(model, (*FURNITURE, *also))}
     every = list_outer(list_elements(model, (*FURNITURE, *OTHERS, *also)))
     pieces = {one.id(): one for one in every if one.id() in wanted or _is_appliance(one)}
+    if len(pieces) > MOST_PIECES:
+        raise ModelError(
+            fill("The model holds {n:,} pieces of furniture, more than {most:,}. Export fewer storeys.", n=len(pieces),
+                 most=MOST_PIECES)
+        )  # fmt: skip
     for one in every:
         if one.id() not in pieces:
             found.leave_out(one, NO_PIECE, is_furniture=False)

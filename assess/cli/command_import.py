@@ -38,8 +38,8 @@ def command(
         Path,
         typer.Argument(
             metavar="FILE",
-            help="A building model (.ifc), a RoomPlan scan (.json), a Sweet Home 3D file (.sh3d) or a COBie spreadsheet "
-            "(.xlsx).",
+            help="A building model (.ifc), a RoomPlan scan (.json), a Sweet Home 3D file (.sh3d) or a COBie "
+            "spreadsheet (.xlsx).",
             show_default=False,
         ),
     ],
@@ -49,12 +49,12 @@ def command(
     ] = Routes.none,
     also: Annotated[
         list[str] | None,
-        typer.Option("--also", metavar="CLASS", help="A further class of the model whose elements are furniture, such as "
-                     "IfcBuildingElementProxy; may be given several times.", show_default=False),
+        typer.Option("--also", metavar="CLASS", help="A further class of the model whose elements are furniture, "
+                     "such as IfcBuildingElementProxy; may be given several times.", show_default=False),
     ] = None,
     update: Annotated[
         bool,
-        typer.Option("--update", help="Take new sizes, positions and pieces into the workbook, and keep all else in it."),
+        typer.Option("--update", help="Take new sizes, positions and pieces into the workbook; all else in it stays."),
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing workbook.")] = False,
 ) -> None:  # fmt: skip

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from assess.details import AT_BASE, AT_WALL, DETAILS, find_detail
 from assess.errors import ElevationGap, Gap, Problem
 from assess.i18n import Text, fill, join, nfill
-from assess.model import AXES
+from assess.model import AXES, MEASURED
 from assess.motion.storeys import find_storey
 from assess.units import ROUNDING
 from assess.workbook.ground_files import SHAKEN
@@ -331,7 +331,8 @@ def _check_plan_sides(table: Table, row: Row, breadth: float | None, width: floa
 def _check_sizes(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Problem]:
     breadth, height = sizes.get("breadth"), sizes.get("height")
     yield from _check_plan_sides(table, row, breadth, sizes.get("width"))
-    if breadth is not None and height is not None and breadth > height * (1 + ROUNDING):
+    is_typed = row.get("sizes_from") in (None, MEASURED)  # nobody exchanges the sizes of shapes
+    if is_typed and breadth is not None and height is not None and breadth > height * (1 + ROUNDING):
         values = {"breadth": breadth * 100, "height": height * 100}
         message = fill("Breadth {breadth:g} cm is greater than Height {height:g} cm.", **values)
         yield table.habit("breadth", row, message, fill("Are the two exchanged?"), "warning")
