@@ -29,7 +29,7 @@ def test_it_raises_what_the_work_raises_with_all_that_it_holds():
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signals of this kind")
 def test_a_crash_is_told_in_words():
-    with pytest.raises(ModelError, match="a.ifc could not be read: the library .* stopped"):
+    with pytest.raises(ModelError, match=r"a\.ifc could not be read: the library .* stopped"):
         run_apart("a.ifc", SILENT, signal.raise_signal, signal.SIGSEGV)
 
 

@@ -1,0 +1,317 @@
+"""Building models in IFC: what is read of two published ones, of small ones in each unit and schema, of bad ones."""
+
+import math
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from assess.bim.building_model import BuildingModel
+from assess.bim.ifc_model import read_model
+from assess.errors import ModelError
+from tests.bim.ifc_files import ModelWriter, one_room
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+SHELF = (0, 0, 0, 0.4, 0.8, 1.9)
+
+
+@pytest.fixture(scope="module")
+def duplex() -> BuildingModel:
+    return read_model(MODELS / "duplex.ifc", "duplex.ifc")
+
+
+@pytest.fixture(scope="module")
+def large() -> BuildingModel:
+    return read_model(MODELS / "LargeBuilding.ifc", "LargeBuilding.ifc")
+
+
+def count(model: BuildingModel, what: str) -> dict[str, int]:
+    names = {one.key: one.name for one in model.storeys}
+    return dict(Counter(names[one.storey] for one in getattr(model, what)))
+
+
+# ---------------------------------------------------------------- published models
+
+
+def test_duplex_its_storeys_rooms_and_doors(duplex):
+    assert (duplex.schema, duplex.name, duplex.azimuth_deg) == ("IFC2X3", "Duplex Apartment", None)
+    assert [(one.name, round(one.elevation, 3)) for one in duplex.storeys] == [
+        ("T/FDN", -1.25), ("Level 1", 0.0), ("Level 2", 3.1), ("Roof", 6.0),
+    ]  # fmt: skip
+    assert count(duplex, "spaces") == {"Level 1": 10, "Level 2": 10, "Roof": 1}
+    assert count(duplex, "doors") == {"Level 1": 6, "Level 2": 8}
+    assert Counter(one.end for one in duplex.stairs) == {"foot": 2, "head": 2}
+    assert (duplex.latitude, duplex.longitude) == pytest.approx((41.8744, -87.6394), abs=1e-4)
+
+
+def test_duplex_47_of_61_pieces_stand_on_the_floor(duplex):
+    left = [one for one in duplex.left_out if one.is_furniture]
+    assert (len(duplex.pieces), sum(one.count for one in left)) == (47, 14)
+    assert {str(one.reason) for one in left} == {"not on the floor: its lowest point is more than 15 cm above it"}
+    cabinets, tops = ([one for one in left if word in one.type] for word in ("Upper Cabinet", "Counter Top"))
+    assert (sum(one.count for one in cabinets), sum(one.count for one in tops)) == (8, 6)
+
+
+def test_duplex_8_wardrobes_with_their_supports(duplex):
+    found = [one for one in duplex.pieces if "Tall Cabinet" in one.type]
+    assert len(found) == 8
+    for one in found:
+        sizes = (one.breadth, one.width, one.height, one.support_breadth, one.support_width)
+        assert sizes == pytest.approx((0.545, 0.8, 2.0, 0.485, 0.8), abs=1e-3)
+        assert one.type == "M_Tall Cabinet-Single Door(2) 800 mm"
+        assert one.space
+    assert {one.key for one in duplex.pieces if one.is_fitted} == {
+        one.key for one in duplex.pieces if "Base Cabinet" in one.type or "Vanity" in one.type
+    }
+
+
+def test_large_building_in_millimetres(large):
+    assert len(large.pieces) == 14
+    for one in large.pieces:
+        assert (one.breadth, one.width, one.height) == pytest.approx((0.819, 1.563, 0.762), abs=1e-3)
+    assert count(large, "spaces") == {"Level 1": 8}
+    assert count(large, "doors") == {"Level 1": 18}
+    assert large.azimuth_deg == pytest.approx(90)
+    assert {one.overall for one in large.doors} >= {0.915}
+
+
+def test_large_building_proxies_are_named_as_left_out(large):
+    proxies = [one for one in large.left_out if one.ifc_class == "IfcBuildingElementProxy"]
+    assert Counter({one.type: one.count for one in proxies}) == {
+        "M_RPC Tree - Deciduous Siberian Crab Apple - 6.1 Meters": 11, "Model Text 600mm Arial": 2,
+    }  # fmt: skip
+    assert not any(one.is_furniture for one in proxies)
+
+
+def test_proxies_are_taken_by_name():
+    found = read_model(MODELS / "LargeBuilding.ifc", "a.ifc", ("IfcBuildingElementProxy",))
+    assert sum(one.ifc_class == "IfcBuildingElementProxy" for one in found.pieces) > 0
+    with pytest.raises(ModelError, match=r"IfcTable2 is no class of IFC2X3\. Classes have names such as IfcBuilding"):
+        read_model(MODELS / "LargeBuilding.ifc", "a.ifc", ("IfcTable2",))
+
+
+def test_walls_are_cut_above_the_floor(duplex):
+    level = next(one for one in duplex.storeys if one.name == "Level 1")
+    corners = [corner for area in duplex.walls[level.key] for corner in area[0]]
+    assert min(x for x, _ in corners) == pytest.approx(0, abs=0.01)
+    assert max(x for x, _ in corners) == pytest.approx(8.8, abs=0.1)
+    assert duplex.windows[level.key]
+
+
+# ---------------------------------------------------------------- units, schemas, axes
+
+
+@pytest.mark.parametrize("schema", ["IFC2X3", "IFC4", "IFC4X3"])
+@pytest.mark.parametrize(("units", "scale"), [("METRE", 1.0), ("MILLI", 1000.0), ("FOOT", 1 / 0.3048)])
+def test_every_schema_and_unit_gives_metres(tmp_path, schema, units, scale):
+    model, _, room = one_room(schema, units, scale)
+    model.piece("Shelf", tuple(scale * one for one in SHELF), within=room, at=(2 * scale, scale, 0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    (piece,) = found.pieces
+    assert (piece.breadth, piece.width, piece.height) == pytest.approx((0.4, 0.8, 1.9), abs=1e-4)
+    assert (piece.x, piece.y, piece.bottom) == pytest.approx((2, 1, 0), abs=1e-4)
+    (space,) = found.spaces
+    assert (space.key, space.name, space.title, space.top) == (piece.space, "101", "Office", pytest.approx(3, abs=1e-4))
+    corners = sorted((round(x, 2), round(y, 2)) for x, y in space.area[0])
+    assert corners == [(0, 0), (0, 4), (6, 0), (6, 4)]
+    assert found.schema.startswith(schema)
+
+
+@pytest.mark.parametrize("angle", [0, 30, 75, 90, 120, 200, 315])
+def test_a_turned_piece_keeps_its_sizes_and_tells_its_angle(tmp_path, angle):
+    model, _, room = one_room()
+    turn = math.radians(angle)
+    model.piece("Shelf", SHELF, within=room, at=(3, 2, 0), x=(math.cos(turn), math.sin(turn), 0))
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert (piece.breadth, piece.width) == pytest.approx((0.4, 0.8), abs=1e-4)
+    assert (piece.angle_deg - angle) % 180 == pytest.approx(0, abs=0.01) or (piece.angle_deg - angle) % 180 > 179.99
+    assert -90 <= piece.angle_deg < 90
+
+
+def test_a_piece_drawn_askew_in_its_own_axes_has_the_smallest_rectangle(tmp_path):
+    """A ladder of boxes along a diagonal: in its own axes it would be as deep as it is wide."""
+    model, _, room = one_room()
+    boxes = [(at, at, 0, 0.1, 0.1, 1.0) for at in (0, 0.25, 0.5, 0.75, 1.0)]
+    model.piece("Screen", *boxes, within=room, at=(2, 1, 0))
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert piece.width == pytest.approx(math.sqrt(2) * 1.1, abs=1e-3)
+    assert piece.breadth == pytest.approx(math.sqrt(2) * 0.1, abs=1e-3)
+    assert piece.angle_deg == pytest.approx(-45, abs=0.1)
+
+
+def test_a_tilted_placement_has_the_smallest_rectangle(tmp_path):
+    model, _, room = one_room()
+    model.piece("Board", (0, 0, 0, 2.0, 0.05, 1.0), within=room, at=(3, 2, 0), up=(0, 0.2, 1))
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert piece.width == pytest.approx(2.0, abs=1e-3)
+    assert 0.2 < piece.breadth < 0.3
+
+
+def test_supports_are_what_touches_the_floor(tmp_path):
+    """A table on two feet: 40 cm apart along its breadth of 90 cm."""
+    model, _, room = one_room()
+    top = (0, 0, 0.7, 0.9, 1.6, 0.03)
+    feet = [(side * 0.17, end * 0.7, 0, 0.06, 0.06, 0.7) for side in (-1, 1) for end in (-1, 1)]
+    model.piece("Table", top, *feet, within=room, at=(3, 2, 0))
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert (piece.breadth, piece.width, piece.height) == pytest.approx((0.9, 1.6, 0.73), abs=1e-4)
+    assert (piece.support_breadth, piece.support_width) == pytest.approx((0.40, 1.46), abs=1e-4)
+
+
+def test_an_assembly_is_one_piece_with_its_parts(tmp_path):
+    model, _, room = one_room()
+    whole = model.piece("Desk", within=room, at=(3, 2, 0))
+    boxes = ((0, 0, 0.7, 0.8, 1.6, 0.04), (0, 0.7, 0, 0.7, 0.05, 0.7), (0, -0.7, 0, 0.7, 0.05, 0.7))
+    parts = [model.piece(f"Part {number}", box, at=(3, 2, 0)) for number, box in enumerate(boxes)]
+    model.aggregate(whole, *parts)
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert piece.name == "Desk"
+    assert (piece.breadth, piece.width, piece.height) == pytest.approx((0.8, 1.6, 0.74), abs=1e-4)
+    assert piece.support_breadth == pytest.approx(0.7, abs=1e-4)
+
+
+def test_true_north_tells_the_direction_of_x(tmp_path):
+    """True north along -X: X points south."""
+    model, _, room = one_room(north=(-1.0, 0.0))
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
+    assert read_model(model.write(tmp_path / "a.ifc"), "a.ifc").azimuth_deg == pytest.approx(180)
+
+
+def test_a_model_far_from_its_origin_is_brought_near(tmp_path):
+    model = ModelWriter()
+    storey = model.storey()
+    room = model.space(storey, (412_003, 5_654_002, 0, 6, 4, 3))
+    model.piece("Shelf", SHELF, within=room, at=(412_002, 5_654_001, 0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert found.shift == (412_000, 5_653_900) or found.shift == (412_000, 5_654_000)
+    (piece,) = found.pieces
+    assert (piece.x + found.shift[0], piece.y + found.shift[1]) == pytest.approx((412_002, 5_654_001), abs=1e-3)
+    assert min(x for x, _ in found.spaces[0].area[0]) == pytest.approx(0, abs=1e-3)
+    assert any("stands far from its origin" in text for text in found.remarks)
+
+
+# ---------------------------------------------------------------- what is a piece
+
+
+def test_what_is_no_piece_is_left_out_with_the_reason(tmp_path):
+    model, storey, room = one_room()
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
+    model.piece("Wall unit", SHELF, within=room, at=(3, 1, 1.2))
+    model.piece("Idea", within=room)
+    model.element("IfcBuildingElementProxy", "Tree", SHELF, within=storey, at=(9, 9, 0))
+    model.element("IfcTransportElement", "Lift", SHELF, within=storey, at=(5, 1, 0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert [one.name for one in found.pieces] == ["Shelf"]
+    assert {(one.type, str(one.reason).split(":")[0].split(";")[0], one.is_furniture) for one in found.left_out} == {
+        ("Wall unit", "not on the floor", True), ("Idea", "no geometry", True),
+        ("Tree", "its class is not furniture", False), ("Lift", "its class is not furniture", False),
+    }  # fmt: skip
+
+
+def test_in_ifc2x3_an_appliance_is_known_by_its_type(tmp_path):
+    model, _, room = one_room("IFC2X3")
+    fridge = model.element("IfcFlowTerminal", "Fridge:1", SHELF, within=room, at=(2, 1, 0))
+    model.element("IfcFlowTerminal", "Mirror", SHELF, within=room, at=(3, 1, 0))
+    model.typed("IfcElectricApplianceType", "Fridge", fridge)
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert [one.name for one in found.pieces] == ["Fridge:1"]
+    assert [one.type for one in found.left_out] == ["Mirror"]
+
+
+def test_types_are_named_as_programs_show_them(tmp_path):
+    model, _, room = one_room()
+    plain = model.piece("Stuhl-017", SHELF, within=room, at=(1, 1, 0))
+    model.typed("IfcFurnitureType", "Stuhl 4", plain)
+    model.piece("M_Desk:1525 x 762mm:355965", SHELF, within=room, at=(2, 1, 0), Tag="355965")
+    model.piece("M_Bed:Queen:Queen:99", SHELF, within=room, at=(3, 1, 0))
+    model.piece("  Two\n lines ", SHELF, within=room, at=(4, 1, 0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert {one.type for one in found.pieces} == {"Stuhl 4", "M_Desk 1525 x 762mm", "M_Bed Queen", "Two lines"}
+
+
+def test_the_room_is_that_which_holds_a_piece_else_where_it_stands(tmp_path):
+    model, storey, room = one_room()
+    other = model.space(storey, (9, 2, 0, 6, 4, 3), "102")
+    model.piece("Held", SHELF, within=room, at=(9, 2, 0))
+    model.piece("Standing", SHELF, within=storey, at=(9, 1, 0))
+    model.piece("Outside", SHELF, within=storey, at=(30, 1, 0))
+    found = {one.name: one for one in read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces}
+    assert found["Held"].space == room.GlobalId
+    assert found["Standing"].space == other.GlobalId
+    assert found["Outside"].space == ""
+
+
+def test_a_raised_floor_of_a_room_counts(tmp_path):
+    """A platform 60 cm above the storey: what stands on it stands on the floor."""
+    model = ModelWriter()
+    storey = model.storey()
+    room = model.space(storey, (3, 2, 0.6, 6, 4, 3))
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0.6))
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert piece.bottom == pytest.approx(0, abs=1e-6)
+
+
+# ---------------------------------------------------------------- models that lack something
+
+
+def test_without_rooms_the_storey_is_the_floor(tmp_path):
+    model = ModelWriter()
+    storey = model.storey("Level 3", 6.0)
+    model.piece("Shelf", SHELF, within=storey, at=(2, 1, 6.0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert (len(found.pieces), found.pieces[0].space) == (1, "")
+    assert [str(text) for text in found.remarks] == [
+        "The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys."
+    ]
+
+
+def test_without_storeys_all_is_on_one_floor_with_a_warning(tmp_path):
+    model = ModelWriter()
+    room = model.space(model.building, (3, 2, 0, 6, 4, 3))
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert [(one.key, one.name) for one in found.storeys] == [("", "1")]
+    assert (len(found.pieces), len(found.spaces)) == (1, 1)
+    assert [str(text) for text in found.warnings] == [
+        "The model has no storeys: all of it was put on one floor, 1. Check Floor in Items."
+    ]
+
+
+def test_without_a_storey_a_piece_stands_on_the_next_below(tmp_path):
+    model = ModelWriter()
+    model.storey("Level 1", 0.0)
+    upper = model.storey("Level 2", 3.0)
+    model.piece("Shelf", SHELF, within=model.building, at=(2, 1, 3.0))
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert piece.storey == upper.GlobalId
+
+
+def test_a_storey_without_elevation_lies_where_it_is_placed(tmp_path):
+    model = ModelWriter()
+    model.storey("Level 2", None, 3.5)
+    (storey,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").storeys
+    assert (storey.elevation, storey.level) == (3.5, 3.5)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda model: None, "holds neither storeys nor rooms, furniture or walls with a shape"),
+        (lambda model: setattr(model.file.by_type("IfcProject")[0], "UnitsInContext", None), "names no unit of length"),
+    ],
+)
+def test_what_cannot_be_used_at_all(tmp_path, make, message):
+    model = ModelWriter()
+    make(model)
+    with pytest.raises(ModelError, match=f"a.ifc {message}"):
+        read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+
+
+def test_shapes_with_no_breadth_and_numbers_beyond_bounds_end_in_words(tmp_path):
+    model, _, room = one_room()
+    model.piece("Sheet", (0, 0, 0, 1e-9, 1.0, 1.0), within=room, at=(2, 1, 0))
+    model.piece("Mountain", (0, 0, 0, 1e7, 1e7, 1e7), within=room, at=(2, 1, 0))
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert "Shelf" in {one.name for one in found.pieces}
+    assert all(math.isfinite(one.x + one.y + one.breadth + one.width + one.height) for one in found.pieces)
