@@ -1,0 +1,137 @@
+"""The results of a run brought back to the building model that its workbook was imported from."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from assess.bim.apart import run_apart
+from assess.bim.export_model import PROPERTY_SET, ModelElement, ModelPart, read_elements
+from assess.bim.export_properties import add_properties
+from assess.bim.export_results import ExportPiece, ExportRun
+from assess.bim.export_topics import Topics, list_entries, write_topics
+from assess.bim.export_views import Pair
+from assess.bim.ifc_file import check_installed, check_model
+from assess.errors import ModelError
+from assess.i18n import fill
+from assess.progress import Progress
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """What came out of an export.
+
+    Attributes
+    ----------
+    model : bytes, optional
+        The model with a property set on each piece; None where that was not asked for.
+    topics : Topics, optional
+        What to fix; None where that was not asked for.
+    written : int
+        Pieces that were found in the model.
+    without_id, repeated, missing : tuple of str
+        Names of the pieces that have no Source ID, share theirs with another piece, or have one that no element of the
+        model has: nothing is written for them.
+    """
+
+    model: bytes | None
+    topics: Topics | None
+    written: int
+    without_id: tuple[str, ...]
+    repeated: tuple[str, ...]
+    missing: tuple[str, ...]
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every piece was found."""
+        return not (self.without_id or self.repeated or self.missing)
+
+
+def build_export(
+    found: ExportRun, model: Path, progress: Progress, *, with_properties: bool, with_topics: bool
+) -> Export:
+    """Bring results back to a building model.
+
+    Parameters
+    ----------
+    found : ExportRun
+        The results.
+    model : Path
+        The model.
+    progress : Progress
+        Checked while the model is read.
+    with_properties, with_topics : bool
+        Whether the model with property sets is made, and whether topics are.
+
+    Returns
+    -------
+    Export
+        What is to be written, and what could not be.
+
+    Raises
+    ------
+    ModelError
+        If the model cannot be read, ifcopenshell is not installed, no piece is in the model, or a piece has such a
+        property set already.
+    """
+    check_installed()
+    check_model(model, model.name)
+    known, repeated = _list_unique(found.pieces)
+    part = _read(found, model, progress, known, with_topics=with_topics)
+    elements = {one.key: one for one in part.elements}
+    pairs = [(piece, elements[key]) for key, piece in known.items() if key in elements]
+    _check_pairs(found, model, pairs, with_properties=with_properties)
+    return Export(
+        model=add_properties(_read_bytes(model), model.name, part, found, pairs) if with_properties else None,
+        topics=write_topics(model.name, part, found, pairs) if with_topics else None,
+        written=len(pairs),
+        without_id=tuple(one.past.item for one in found.pieces if not one.source_id),
+        repeated=repeated,
+        missing=tuple(piece.past.item for key, piece in known.items() if key not in elements),
+    )
+
+
+def _list_unique(pieces: Sequence[ExportPiece]) -> tuple[dict[str, ExportPiece], tuple[str, ...]]:
+    """Return the pieces by their Source ID, and the names of those that share theirs with another piece."""
+    counts = Counter(one.source_id for one in pieces if one.source_id)
+    known = {one.source_id: one for one in pieces if counts[one.source_id] == 1}
+    return known, tuple(one.past.item for one in pieces if counts[one.source_id] > 1)
+
+
+def _read(
+    found: ExportRun, model: Path, progress: Progress, known: Mapping[str, ExportPiece], *, with_topics: bool
+) -> ModelPart:
+    """Return what the export needs to know of the model: for topics also the places of the pieces to fix."""
+    placed = None
+    if with_topics:
+        keys = {piece.past.item: key for key, piece in known.items()}
+        placed = [keys[item] for entry in list_entries(found, keys) for item in entry.items if item in keys]
+    return run_apart(model.name, progress, read_elements, model, model.name, list(known), placed)
+
+
+def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_properties: bool) -> None:
+    """Raise ModelError where no piece is in the model, or one has such a property set already."""
+    if not pairs:
+        raise ModelError(
+            fill("None of the Source IDs in {results} is that of an element of {model}. Name the model that the "
+                 "workbook was imported from.", results=found.run.path, model=model.name)
+        )  # fmt: skip
+    done = [_name(element) for _, element in pairs if element.has_set]
+    if done and with_properties:
+        raise ModelError(
+            fill("{model} holds {set} already, on {n:,} of the pieces (the first is {name}): it was exported before. "
+                 "Name the model without it, as it was before that export.",
+                 model=model.name, set=PROPERTY_SET, n=len(done), name=done[0])
+        )  # fmt: skip
+
+
+def _name(element: ModelElement) -> str:
+    return element.name or element.key
+
+
+def _read_bytes(model: Path) -> bytes:
+    try:
+        return model.read_bytes()
+    except OSError as error:
+        why = error.strerror or str(error)
+        raise ModelError(fill("{name} cannot be read: {why}.", name=model.name, why=why)) from None

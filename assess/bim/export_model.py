@@ -1,0 +1,191 @@
+"""What an export needs to know of a building model, as plain data; call `read_elements` in a process of its own."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from assess.bim.ifc_file import check_model, open_model
+
+PROPERTY_SET = "Assess_OverturningRisk"
+"""Name of the set; the prefix Pset_ is that of buildingSMART."""
+Place = tuple[float, float, float]
+Box = tuple[Place, Place]
+
+
+@dataclass(frozen=True, slots=True)
+class ModelElement:
+    """An element of the model.
+
+    Attributes
+    ----------
+    key : str
+        Its GlobalId.
+    number : int
+        Its number in the file.
+    owner : int
+        That of the OwnerHistory for what is added to it, 0 for none.
+    ifc_class, name : str
+        Its class and name.
+    has_set : bool
+        Whether it has a property set `PROPERTY_SET` already.
+    low, high : Place, optional
+        Corners of the box around it in the axes of the model [m]; None where that was not asked for.
+    room : tuple of float, optional
+        Middle of the plan of the room that it stands in [m]; None where there is none, or that was not asked for.
+    """
+
+    key: str
+    number: int
+    owner: int
+    ifc_class: str
+    name: str
+    has_set: bool
+    low: Place | None = None
+    high: Place | None = None
+    room: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ModelDoor:
+    """A door: two points of its opening in plan, and the height of its sill [m]."""
+
+    key: str
+    name: str
+    points: tuple[tuple[float, float], ...]
+    bottom: float
+
+
+@dataclass(frozen=True, slots=True)
+class ModelPart:
+    """What was found of a model: its schema, the GlobalId of its project, its highest number, elements and doors."""
+
+    schema: str
+    project: str
+    last_number: int
+    elements: tuple[ModelElement, ...]
+    doors: tuple[ModelDoor, ...] = ()
+
+
+def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
+    """Find elements in a building model by their GlobalIds.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    name : str
+        How messages call it.
+    keys : sequence of str
+        GlobalIds; those that no element has are left out of what is returned.
+    placed : sequence of str, optional
+        Those of which the place is needed, and with them the doors; None where no place is.
+
+    Raises
+    ------
+    ModelError
+        If it is no whole building model.
+    """
+    check_model(path, name)
+    model = open_model(path, name)
+    found = {key: one for key in keys if (one := _find(model, key)) is not None}
+    elements = [_describe(model, key, one) for key, one in found.items()]
+    if placed is not None:
+        boxes = _find_boxes(model, [found[key] for key in placed if key in found])
+        elements = _place(elements, boxes, _find_boxes(model, model.by_type("IfcSpace")) if boxes else {})
+    projects = model.by_type("IfcProject")
+    return ModelPart(
+        schema=str(model.schema),
+        project=str(projects[0].GlobalId) if projects else "",
+        last_number=max((one.id() for one in model), default=0),
+        elements=tuple(elements),
+        doors=() if placed is None else tuple(_list_doors(model)),
+    )
+
+
+def _find(model: Any, key: str) -> Any:
+    """Return the element of a GlobalId, None where there is none."""
+    try:
+        one = model.by_guid(key)
+    except RuntimeError:
+        return None
+    return one if one.is_a("IfcElement") else None
+
+
+def _find_owner(model: Any, one: Any) -> int:
+    """Return the number of the OwnerHistory for what is added to an element; IFC2X3 demands one."""
+    if one.OwnerHistory:
+        return int(one.OwnerHistory.id())
+    others = model.by_type("IfcOwnerHistory") if model.schema == "IFC2X3" else ()
+    return int(others[0].id()) if others else 0
+
+
+def _describe(model: Any, key: str, one: Any) -> ModelElement:
+    from ifcopenshell.util.element import get_psets
+
+    has_set = PROPERTY_SET in get_psets(one, psets_only=True, should_inherit=False)
+    return ModelElement(key, one.id(), _find_owner(model, one), str(one.is_a()), str(one.Name or ""), has_set)
+
+
+def _place(elements: Sequence[ModelElement], boxes: Mapping[int, Box], rooms: Mapping[int, Box]) -> list[ModelElement]:
+    """Return elements with the boxes around them, and the middles of the rooms that they stand in."""
+    return [
+        replace(one, low=box[0], high=box[1], room=_find_room(find_middle(box), rooms.values()))
+        if (box := boxes.get(one.number)) is not None
+        else one
+        for one in elements
+    ]
+
+
+def _find_room(point: Place, rooms: Iterable[Box]) -> tuple[float, float] | None:
+    """Return the middle of the smallest room whose box holds a point."""
+    around = [(low, high) for low, high in rooms if all(low[at] <= point[at] <= high[at] for at in range(3))]
+    smallest = min(around, key=lambda box: math.prod(box[1][at] - box[0][at] for at in range(3)), default=None)
+    return None if smallest is None else find_middle(smallest)[:2]
+
+
+def find_middle(box: Box) -> Place:
+    """Return the middle of a box."""
+    x, y, z = ((low + high) / 2 for low, high in zip(*box, strict=True))
+    return x, y, z
+
+
+def _find_boxes(model: Any, elements: Sequence[Any]) -> dict[int, Box]:
+    """Return the boxes around elements by their numbers; of one without a shape its origin, twice."""
+    from assess.bim.ifc_elements import join_parts
+
+    unit = _find_unit(model)
+    boxes = {one.id(): (place, place) for one in elements if (place := _find_origin(one, unit)) is not None}
+    for number, shape in join_parts(model, elements):
+        low, high = shape.points.min(axis=0).tolist(), shape.points.max(axis=0).tolist()
+        boxes[number] = ((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    return boxes
+
+
+def _find_unit(model: Any) -> float:
+    from ifcopenshell.util.unit import calculate_unit_scale
+
+    return float(calculate_unit_scale(model))
+
+
+def _find_origin(one: Any, unit: float, along: float = 0.0) -> Place | None:
+    """Return the origin of an element [m], or the point at a distance [m] `along` its X axis."""
+    from ifcopenshell.util.placement import get_local_placement
+
+    if one.ObjectPlacement is None:
+        return None
+    matrix = get_local_placement(one.ObjectPlacement)
+    x, y, z = (float(matrix[axis][3]) * unit + along * float(matrix[axis][0]) for axis in range(3))
+    return x, y, z
+
+
+def _list_doors(model: Any) -> Iterator[ModelDoor]:
+    """Yield the doors: a door's origin is at one of its jambs, its opening lies along X."""
+    unit = _find_unit(model)
+    for one in model.by_type("IfcDoor"):
+        middle = float(one.OverallWidth or 0.0) * unit / 2
+        places = [place for along in (0.0, middle) if (place := _find_origin(one, unit, along)) is not None]
+        if places:
+            points = tuple((x, y) for x, y, _ in places)
+            yield ModelDoor(str(one.GlobalId), str(one.Name or ""), points, places[0][2])

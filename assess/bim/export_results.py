@@ -1,0 +1,248 @@
+"""What an export takes from results.json: its pieces with their identifiers, its schedule, and what obstructs routes.
+
+The file is read and checked as `assess compare` does it, and further values by the same reader.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from assess.compare.past_run import PastPiece, PastRun
+from assess.compare.read_results import Reader, read_record
+from assess.details import DETAILS
+from assess.errors import InputError
+from assess.i18n import fill
+from assess.report.ranking import RouteStep
+from assess.risk import RiskClass
+from assess.route_results import RouteState
+from assess.workbook.names import key
+
+_CLASSES = {risk.word: risk for risk in RiskClass}
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportPiece:
+    """A piece of the results.
+
+    Attributes
+    ----------
+    past : PastPiece
+        What `assess compare` reads of it.
+    source_id : str
+        Its identifier in the model, "" where it has none.
+    upper : RiskClass
+        Its class, upper estimate.
+    importance : str
+        "" where none is given.
+    pfa_source : str
+        Where its PFA comes from.
+    place : Point, optional
+        Centre of its plan in the axes of the workbook [m].
+    faces : float, optional
+        Direction in which it falls, or may fall, anticlockwise from X [deg].
+    falls_one_way : bool
+        Whether it falls in that direction alone, away from a wall.
+    """
+
+    past: PastPiece
+    source_id: str
+    upper: RiskClass
+    importance: str
+    pfa_source: str
+    place: Point | None
+    faces: float | None
+    falls_one_way: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportWork:
+    """Alike pieces of the schedule that are fixed in the same way; fields as in `assess.schedule_results.WorkRow`."""
+
+    items: tuple[str, ...]
+    pieces: int
+    detail: str
+    tension_kn: float
+    tension_high_kn: float
+    tension_code_kn: float | None
+    shear_kn: float
+    fixings: int
+    is_least: bool
+    weights_assumed: int
+    heights_assumed: int
+    is_per_metre: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportEntry:
+    """One entry of the schedule; fields as in `assess.schedule_results.ScheduleRow`."""
+
+    place: int
+    floor: str
+    room: str
+    pieces: int
+    is_together: bool
+    works: tuple[ExportWork, ...]
+
+    @property
+    def items(self) -> tuple[str, ...]:
+        """Names of its pieces, the most urgent first."""
+        return tuple(name for work in self.works for name in work.items)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportSegment:
+    """A segment of a route that is not open, or would be blocked by one piece alone.
+
+    `ends` are those of its centre line on the plan [m], None where they are not known; `items` are the pieces that
+    reach into it.
+    """
+
+    route: str
+    ends: tuple[Point, Point] | None
+    items: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportRun:
+    """The results of a run; `steps` are what to fix for its routes, `item_index` of which is a place in `pieces`."""
+
+    run: PastRun
+    pieces: tuple[ExportPiece, ...]
+    entries: tuple[ExportEntry, ...]
+    segments: tuple[ExportSegment, ...]
+    steps: tuple[RouteStep, ...]
+
+
+def read_export(path: Path) -> ExportRun:
+    """Read results.json for an export.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read (see `assess.compare.read_results.read_run`), or holds no identifier of any piece.
+    """
+    run, record, reader = read_record(path)
+    rows = reader.rows(record, "items", "")
+    pieces = tuple(
+        _read_piece(reader, row, past, f"items[{at}]")
+        for at, (row, past) in enumerate(zip(rows, run.pieces, strict=True))
+    )
+    if not any(one.source_id for one in pieces):
+        raise InputError(
+            fill("{path} holds no Source ID, by which a piece is found in the model. Import the workbook from the "
+                 "model, or fill in Source ID in Items with GlobalIds, and run assess again.", path=run.path)
+        )  # fmt: skip
+    routes = reader.part(record, "routes", "")
+    schedule = reader.part(record, "schedule", "")
+    return ExportRun(
+        run=run,
+        pieces=pieces,
+        entries=_read_entries(reader, schedule, {one.past.item for one in pieces}),
+        segments=tuple(_read_segments(reader, routes)),
+        steps=tuple(_read_steps(reader, routes, pieces)),
+    )
+
+
+def _read_piece(reader: Reader, row: Mapping[str, Any], past: PastPiece, place: str) -> ExportPiece:
+    adopted, inside = reader.part(row, "adopted", place), f"{place}.adopted"
+    toward, breadth = _number(row, "falls_toward_deg"), _number(row, "angle_deg")
+    x, y = _number(row, "x_m"), _number(row, "y_m")
+    return ExportPiece(
+        past=past,
+        source_id=_text(reader, row, "source_id", place).strip(),
+        upper=_CLASSES[reader.choice(adopted, "class_upper", inside, tuple(_CLASSES))],
+        importance=_text(reader, row, "importance", place),
+        pfa_source=_text(reader, row, "pfa_source", place),
+        place=None if x is None or y is None else (x, y),
+        faces=breadth if toward is None else toward,
+        falls_one_way=toward is not None,
+    )
+
+
+def _text(reader: Reader, row: Mapping[str, Any], name: str, place: str) -> str:
+    return "" if row.get(name) is None else reader.text(row, name, place)
+
+
+def _number(row: Mapping[str, Any], name: str) -> float | None:
+    """Return a number of any sign, None for what is none."""
+    value = row.get(name)
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return float(value) if is_number and abs(value) < 1e9 else None  # type: ignore[arg-type]
+
+
+def _read_entries(reader: Reader, schedule: Mapping[str, Any], known: set[str]) -> tuple[ExportEntry, ...]:
+    return tuple(
+        _read_entry(reader, row, f"schedule.entries[{at}]", known)
+        for at, row in enumerate(reader.rows(schedule, "entries", "schedule"))
+    )
+
+
+def _read_entry(reader: Reader, row: Mapping[str, Any], place: str, known: set[str]) -> ExportEntry:
+    works = reader.rows(row, "works", place)
+    return ExportEntry(
+        place=reader.count(row, "place", place),
+        floor=reader.text(row, "floor", place),
+        room=reader.text(row, "room", place),
+        pieces=reader.count(row, "pieces", place),
+        is_together=row.get("only_together") is True,
+        works=tuple(_read_work(reader, work, f"{place}.works[{at}]", known) for at, work in enumerate(works)),
+    )
+
+
+def _read_work(reader: Reader, row: Mapping[str, Any], place: str, known: set[str]) -> ExportWork:
+    has_code = row.get("tension_code_kn") is not None
+    return ExportWork(
+        items=tuple(one for one in reader.list_texts(row, "items", place) if one in known),
+        pieces=reader.count(row, "pieces", place),
+        detail=reader.choice(row, "detail", place, tuple(DETAILS)),
+        tension_kn=reader.number(row, "tension_kn", place),
+        tension_high_kn=reader.number(row, "tension_high_kn", place),
+        tension_code_kn=reader.number(row, "tension_code_kn", place) if has_code else None,
+        shear_kn=reader.number(row, "shear_kn", place),
+        fixings=reader.count(row, "fixings", place),
+        is_least=row.get("fixings_are_least") is True,
+        weights_assumed=reader.count(row, "weights_assumed", place),
+        heights_assumed=reader.count(row, "heights_assumed", place),
+        is_per_metre=row.get("is_per_metre") is True,
+    )
+
+
+def _read_segments(reader: Reader, routes: Mapping[str, Any]) -> Sequence[ExportSegment]:
+    found = []
+    for at, row in enumerate(reader.rows(routes, "segments", "routes")):
+        place = f"routes.segments[{at}]"
+        is_open = reader.text(row, "state", place) == RouteState.OPEN
+        beside = reader.rows(row, "pieces", place)
+        items = frozenset(
+            reader.text(one, "item", f"{place}.pieces[{number}]")
+            for number, one in enumerate(beside)
+            if not is_open or one.get("blocks_alone") is True
+        )
+        if items:
+            found.append(ExportSegment(route=reader.text(row, "route", place), ends=_read_ends(row), items=items))
+    return found
+
+
+def _read_ends(row: Mapping[str, Any]) -> tuple[Point, Point] | None:
+    x1, y1, x2, y2 = (_number(row, name) for name in ("start_x_m", "start_y_m", "end_x_m", "end_y_m"))
+    return None if x1 is None or y1 is None or x2 is None or y2 is None else ((x1, y1), (x2, y2))
+
+
+def _read_steps(reader: Reader, routes: Mapping[str, Any], pieces: Sequence[ExportPiece]) -> Sequence[RouteStep]:
+    """Return what to fix for every route, as `assess.report.ranking.list_steps` does of results."""
+    index = {key(one.past.item): at for at, one in enumerate(pieces)}
+    found = []
+    for at, row in enumerate(reader.rows(routes, "routes", "routes")):
+        place = f"routes.routes[{at}]"
+        route, fixes = reader.text(row, "route", place), reader.rows(row, "fixes", place)
+        left = [reader.share(one, "left", f"{place}.fixes[{number}]") for number, one in enumerate(fixes)]
+        for number, one in enumerate(fixes):
+            inside = f"{place}.fixes[{number}]"
+            known = index.get(key(reader.text(one, "item", inside)))
+            if known is not None:
+                before = left[number] + reader.share(one, "gain", inside)
+                is_bound = row.get("blocked_if_unconfirmed_fall") is not None
+                found.append(RouteStep(route, known, number + 1, len(fixes), before, left[number], left[-1], is_bound))
+    return found

@@ -1,0 +1,249 @@
+"""What to fix as topics of the BIM Collaboration Format, one for each entry of the schedule: a BCF 2.1 file.
+
+Topics carry no snapshot: a picture needs a viewer of the model, which makes its own from the viewpoint.
+
+Reference
+---------
+buildingSMART International. BIM Collaboration Format 2.1: markup.xsd, visinfo.xsd, version.xsd, and the documentation
+of BCF-XML, release 2.1 (a folder entry for every topic, forward slashes).
+"""
+
+import datetime
+import io
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from xml.etree import ElementTree
+
+from assess.bim.export_model import ModelDoor, ModelElement, ModelPart, Place
+from assess.bim.export_results import ExportEntry, ExportRun
+from assess.bim.export_step import make_uuid
+from assess.bim.export_views import (
+    FIELD_OF_VIEW,
+    Camera,
+    Pair,
+    find_camera,
+    find_centre,
+    find_doors,
+    find_shift,
+)
+from assess.bim.export_words import list_lines, list_routes, say_program, say_title
+from assess.compare.past_run import PastRun
+from assess.environment import find_source_date
+from assess.i18n import gettext as _
+from assess.plain_text import plain_text
+from assess.report import words
+from assess.risk import RiskClass
+
+MOST = 200
+"""Topics in a file; the rest are counted."""
+TYPE, STATUS = "Issue", "Open"
+PRIORITIES = {
+    RiskClass.VERY_HIGH: "Critical", RiskClass.HIGH: "Major", RiskClass.MEDIUM: "Normal", RiskClass.LOW: "Minor",
+}  # fmt: skip
+"""Priority by the class, upper estimate: words that programs for BCF know."""
+VERSION = (
+    '<?xml version="1.0" encoding="UTF-8"?>\n<Version VersionId="2.1" '
+    'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="version.xsd">\n'
+    "  <DetailedVersion>2.1</DetailedVersion>\n</Version>\n"
+)
+_Element = ElementTree.Element
+
+
+@dataclass(frozen=True, slots=True)
+class Topics:
+    """A file of topics: its bytes, how many there are, and how many entries of the schedule it leaves out.
+
+    `unplaced` have no piece in the model; `beyond` are more than a file holds. `doors` counts topics that select a
+    door. `is_shifted` tells whether the positions of workbook and model agree, so that doors could be found.
+    """
+
+    data: bytes
+    count: int
+    unplaced: int
+    beyond: int
+    doors: int
+    is_placed: bool
+
+
+def list_entries(found: ExportRun, keys: Mapping[str, str]) -> list[ExportEntry]:
+    """Return the entries of the schedule that have a piece in the model, `MOST` at most.
+
+    `keys` are the GlobalIds of the pieces in the model by their names.
+    """
+    return [one for one in found.entries if any(item in keys for item in one.items)][:MOST]
+
+
+def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[Pair]) -> Topics:
+    """Return the topics of a schedule.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model's file.
+    part : ModelPart
+        What was found of it, with the boxes of the pieces in the schedule.
+    found : ExportRun
+        The results.
+    pairs : sequence of (ExportPiece, ModelElement)
+        The pieces in the model.
+    """
+    by_item = {piece.past.item: (piece, element) for piece, element in pairs}
+    entries = list_entries(found, {item: element.key for item, (_piece, element) in by_item.items()})
+    shift = find_shift(pairs)
+    centre = find_centre({element.key: element for _piece, element in pairs})
+    files: dict[str, bytes] = {"bcf.version": VERSION.encode()}
+    with_door = 0
+    for entry in entries:
+        own = [by_item[item] for item in entry.items if item in by_item]
+        doors = find_doors(own, found.segments, part.doors, shift)
+        with_door += bool(doors)
+        files |= _write_topic(name, part, found, Topic(entry, own, doors, find_camera(own, centre)))
+    all_placed = sum(any(item in by_item for item in one.items) for one in found.entries)
+    return Topics(
+        _pack(files), len(entries), len(found.entries) - all_placed, all_placed - len(entries), with_door,
+        shift is not None,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """An entry of the schedule with its pieces in the model, the doors that they obstruct, and its camera."""
+
+    entry: ExportEntry
+    pairs: Sequence[Pair]
+    doors: Sequence[ModelDoor]
+    camera: Camera | None
+
+    @property
+    def elements(self) -> list[ModelElement]:
+        """The elements of its pieces, the most urgent first."""
+        return [element for _piece, element in self.pairs]
+
+    @property
+    def guid(self) -> str:
+        """Its identifier: that of its pieces, so that a later export of theirs is the same topic."""
+        return str(make_uuid("topic", *sorted(one.key for one in self.elements)))
+
+
+def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: Topic) -> dict[str, bytes]:
+    """Return the files of a topic by their names, its folder first."""
+    view = _build_view(topic)
+    key = str(make_uuid("viewpoint", topic.guid, _dump(view).decode()))
+    view.set("Guid", key)
+    markup = _Element("Markup")
+    header = _add(_add(markup, "Header"), "File", isExternal="true")
+    if part.project:
+        header.set("IfcProject", part.project)
+    _add(header, "Filename", name)
+    markup.append(_build_topic(found, topic))
+    link = _add(markup, "Viewpoints", Guid=key)
+    _add(link, "Viewpoint", "viewpoint.bcfv")
+    folder = f"{topic.guid}/"
+    return {folder: b"", f"{folder}markup.bcf": _dump(markup), f"{folder}viewpoint.bcfv": _dump(view)}
+
+
+def _build_topic(found: ExportRun, topic: Topic) -> _Element:
+    """Return the element Topic; its parts are in the order of the schema."""
+    entry, run = topic.entry, found.run
+    pieces = [piece for piece, _element in topic.pairs]
+    upper = max(one.upper for one in pieces)
+    one = _Element("Topic", Guid=topic.guid, TopicType=TYPE, TopicStatus=STATUS)
+    _add(one, "Title", say_title(found, entry, pieces))
+    _add(one, "Priority", PRIORITIES[upper])
+    _add(one, "Index", str(entry.place))
+    for label in _list_labels(found, topic):
+        _add(one, "Labels", label)
+    _add(one, "CreationDate", find_date(run).strftime("%Y-%m-%dT%H:%M:%SZ"))
+    _add(one, "CreationAuthor", str(run.building.get("prepared_by") or "") or say_program(run))
+    _add(one, "Description", "\n".join((*list_lines(found, entry, pieces), *_list_selected(topic))))
+    return one
+
+
+def _list_labels(found: ExportRun, topic: Topic) -> list[str]:
+    """Return the labels of a topic, by which programs group them."""
+    piece = topic.pairs[0][0]
+    labels = [_("earthquake"), words.risk_word(piece.past.risk)]
+    if piece.past.basis != found.run.main_basis:
+        labels.append(_("unconfirmed") if piece.past.basis == "unconfirmed" else _("by formula only"))
+    if list_routes(found, topic.entry.items):
+        labels.append(_("evacuation route"))
+    importance = dict.fromkeys(one.importance for one, _element in topic.pairs if one.importance)
+    return [*labels, *(_(text) for text in importance)]
+
+
+def _list_selected(topic: Topic) -> list[str]:
+    """Return lines that name the doors that are selected, and the pieces that could not be."""
+    lines = [
+        _("Selected with it: door {name} ({key}), on the route that it may block.", name=one.name, key=one.key)
+        for one in topic.doors
+    ]
+    known = {piece.past.item for piece, _element in topic.pairs}
+    missing = [item for item in topic.entry.items if item not in known]
+    if missing:
+        lines.append(_("Not in this model: {names}.", names=words.name_first(missing, 8)))
+    return lines
+
+
+def find_date(run: PastRun) -> datetime.datetime:
+    """Return the time of a run: the date of its report, else SOURCE_DATE_EPOCH, else when its results were written."""
+    try:
+        day = datetime.date.fromisoformat(str(run.building.get("report_date") or ""))
+    except ValueError:
+        return find_source_date() or run.written
+    return datetime.datetime(day.year, day.month, day.day, tzinfo=datetime.UTC)
+
+
+# ---------------------------------------------------------------- viewpoints
+
+
+def _build_view(topic: Topic) -> _Element:
+    """Return a viewpoint without its identifier: what is selected, with all else in sight, and the camera."""
+    view = _Element("VisualizationInfo")
+    components = _add(view, "Components")
+    selection = _add(components, "Selection")
+    for key in dict.fromkeys((*(one.key for one in topic.elements), *(one.key for one in topic.doors))):
+        _add(selection, "Component", IfcGuid=key)
+    _add(components, "Visibility", DefaultVisibility="true")
+    if topic.camera is not None:
+        camera = _add(view, "PerspectiveCamera")
+        _add_place(camera, "CameraViewPoint", topic.camera.point)
+        _add_place(camera, "CameraDirection", topic.camera.direction)
+        _add_place(camera, "CameraUpVector", topic.camera.up)
+        _add(camera, "FieldOfView", f"{FIELD_OF_VIEW:g}")
+    return view
+
+
+def _add_place(parent: _Element, name: str, place: Place) -> None:
+    one = _add(parent, name)
+    for axis, value in zip("XYZ", place, strict=True):
+        _add(one, axis, f"{value:.6f}")
+
+
+# ---------------------------------------------------------------- XML and zip
+
+
+def _add(parent: _Element, name: str, text: str | None = None, **attributes: str) -> _Element:
+    one = ElementTree.SubElement(parent, name, attributes)
+    one.text = None if text is None else plain_text(text)
+    return one
+
+
+def _dump(root: _Element) -> bytes:
+    ElementTree.indent(root)
+    data: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return data + b"\n"
+
+
+def _pack(files: Mapping[str, bytes]) -> bytes:
+    """Return a zip file of files by their names; of the same files always the same bytes."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            is_folder = name.endswith("/")
+            entry.create_system = 3  # wherever it is written
+            entry.external_attr = (0o40755 << 16 | 0x10) if is_folder else 0o100644 << 16
+            entry.compress_type = zipfile.ZIP_STORED if is_folder else zipfile.ZIP_DEFLATED
+            archive.writestr(entry, data)
+    return packed.getvalue()

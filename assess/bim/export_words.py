@@ -1,0 +1,205 @@
+"""What an export says of a piece and of an entry of the schedule, in the language in use and in the report's words."""
+
+from collections.abc import Iterator, Sequence
+
+from assess.bim.export_results import ExportEntry, ExportPiece, ExportRun, ExportWork
+from assess.compare.past_run import UNCONFIRMED, PastRun
+from assess.details import DETAILS
+from assess.i18n import fill, ngettext
+from assess.i18n import gettext as _
+from assess.report import words
+from assess.report.findings.schedule_words import (
+    NAMED,
+    join_names,
+    say_checks,
+    say_force,
+    say_held,
+    shorten_names,
+)
+from assess.report.ranking import RouteStep, say_effect
+from assess.risk import classify
+
+BASES = {"simulated": fill("simulated"), "formula": fill("formula"), "unconfirmed": fill("unconfirmed")}
+LONGEST = 60
+"""Characters of a description that a title shows."""
+MOST_CHANCES = 20
+"""Pieces of a topic whose chances its description lists; the Excel report holds all."""
+
+
+# ---------------------------------------------------------------- a piece
+
+
+def say_standing(run: PastRun, one: ExportPiece) -> str:
+    """Return the class of a piece in words; of one outside the classes of the run, on what it rests or depends."""
+    past, word = one.past, words.risk_word(one.past.risk)
+    if past.basis == UNCONFIRMED:
+        word = _("unconfirmed (formula: {risk})", risk=word)
+    elif past.basis != run.main_basis:
+        word = _("{risk} by formula only", risk=word)
+    return _("depends on its anchor (free-standing: {risk})", risk=word) if past.is_held else word
+
+
+def say_risk(run: PastRun, one: ExportPiece) -> str:
+    """Return the class of a piece in words, with what it could be."""
+    notes = [say_standing(run, one)]
+    if classify(one.past.chance.probability) != one.past.risk:
+        notes.append(_("as it overturns under the record itself"))
+    if one.upper != one.past.risk:
+        notes.append(words.could_be(words.risk_word(one.upper)))
+    return ", ".join(notes)
+
+
+def say_chance(one: ExportPiece) -> str:
+    """Return the chance of overturning with its interval, and what it rests on."""
+    chance = one.past.chance
+    text = words.percent(chance.probability)
+    if chance.low is not None and chance.high is not None:
+        interval = _("({low} to {high} %)", low=words.in_percent(chance.low), high=words.in_percent(chance.high))
+        text = f"{text} {interval}"
+    return f"{text}, {_(BASES[one.past.basis])}"
+
+
+def describe(one: ExportPiece) -> str:
+    """Return what a piece is."""
+    return one.past.description or str(one.past.inputs.get("type") or "") or _("no description")
+
+
+def list_routes(found: ExportRun, items: Sequence[str]) -> list[str]:
+    """Return the routes that any of some pieces may block."""
+    wanted = set(items)
+    return list(dict.fromkeys(one.route for one in found.segments if one.items & wanted))
+
+
+# ---------------------------------------------------------------- a run
+
+
+def say_scenario(run: PastRun) -> str:
+    """Return the earthquake in words, and where the floor motion comes from."""
+    building, settings = run.building, run.settings
+    kind = str(settings.get("scenario") or building.get("scenario_kind") or "")
+    parts = [str(building.get("scenario") or ""), run.shaking, run.site_ground, kind]
+    scale = settings.get("scale")
+    if isinstance(scale, int | float) and scale != 1:
+        parts.append(_("motions times {scale:g}", scale=scale))
+    return "; ".join(dict.fromkeys(part for part in parts if part))
+
+
+def say_report(run: PastRun) -> str:
+    """Return what names the report: building, revision, date, and the hash of its results."""
+    building = run.building
+    parts = [run.name, run.workbook]
+    if building.get("revision"):
+        parts.append(_("revision {revision}", revision=building["revision"]))
+    parts += [str(building.get("report_date") or ""), f"{run.path.name} SHA-256 {run.sha256[:16]}"]
+    return ", ".join(part for part in parts if part)
+
+
+def say_program(run: PastRun) -> str:
+    """Return the program that assessed it, with its version."""
+    return f"assess {run.version}"
+
+
+# ---------------------------------------------------------------- an entry
+
+
+def say_title(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
+    """Return the title of the topic of an entry: class, pieces, and why they are to be fixed."""
+    routes = list_routes(found, entry.items)
+    values = {"risk": say_risk(found.run, pieces[0]), "names": _name_with_kind(entry, pieces)}
+    if routes:
+        text = ngettext(
+            "{risk}: {names} may overturn and block route {routes}",
+            "{risk}: {names} may overturn and block routes {routes}",
+            len(routes), routes=words.name_first([words.cut(one, 30) for one in routes], NAMED), **values,
+        )  # fmt: skip
+    else:
+        text = _("{risk}: {names} may overturn", **values)
+    return ", ".join((text, *(_(one) for one in _list_importance(pieces))))
+
+
+def say_names(entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
+    """Return the names of the pieces of an entry in short."""
+    named = join_names(shorten_names(one.past.item for one in pieces))
+    return _("{names} together", names=named) if entry.is_together else named
+
+
+def _name_with_kind(entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
+    names, kind = say_names(entry, pieces), words.cut(describe(pieces[0]), LONGEST)
+    return names if kind == names else f"{names} ({kind})"
+
+
+def _list_importance(pieces: Sequence[ExportPiece]) -> list[str]:
+    return list(dict.fromkeys(one.importance for one in pieces if one.importance))
+
+
+def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> Iterator[str]:
+    """Yield the lines of the description of a topic: where, how likely, why, how to fix it, with what force."""
+    first, run = pieces[0], found.run
+    where = _("Floor {floor}, room {room}.", floor=entry.floor, room=entry.room or words.DASH)
+    yield f"{_name_with_kind(entry, pieces)}: {words.plural(entry.pieces, 'piece')}. {where}"
+    yield _("Risk of overturning: {risk}.", risk=say_risk(run, first))
+    for one in pieces[:MOST_CHANCES]:
+        pfa = one.past.inputs.get("pfa_g")
+        peak = words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH
+        yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).", item=one.past.item,
+                chance=say_chance(one), pfa=peak, source=one.pfa_source or words.DASH)  # fmt: skip
+    yield _("Earthquake: {scenario}. The chance is that in this earthquake, not that in a year.",
+            scenario=say_scenario(run) or words.DASH)  # fmt: skip
+    reason = say_reason(found, entry, pieces)
+    if reason:
+        yield _("Why it comes here: {reason}.", reason=reason)
+    if entry.is_together:
+        yield _("These pieces only help together: fixing some of them opens no route.")
+    for work in entry.works:
+        yield from _list_work(work, is_only=len(entry.works) == 1)
+    yield say_checks()
+    yield _("Entry {place:,} of {n:,} of the schedule. {report}; {program}.", place=entry.place,
+            n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
+
+
+def say_reason(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
+    """Return why an entry comes where it does: its importance, its routes and the effect of fixing it on them."""
+    places = {one.past.item: at for at, one in enumerate(found.pieces)}
+    own = {places[item] for item in entry.items}
+    steps: dict[str, list[RouteStep]] = {}
+    for step in sorted(found.steps, key=lambda step: (step.route, step.place)):
+        if step.item_index in own:
+            steps.setdefault(step.route, []).append(step)
+    others = [words.cut(one, 30) for one in list_routes(found, entry.items) if one not in steps]
+    beside = ngettext("route {routes}", "routes {routes}", len(others), routes=words.name_first(others, NAMED))
+    return ", ".join(
+        [*map(_, _list_importance(pieces)), *map(say_effect, steps.values()), *([beside] if others else [])]
+    )
+
+
+def _list_work(work: ExportWork, *, is_only: bool) -> Iterator[str]:
+    """Yield how alike pieces may be fixed, and the forces on their fixings."""
+    detail = DETAILS[work.detail]
+    title, what = _(detail.title), _(detail.what)
+    named = "" if is_only else f"{join_names(shorten_names(work.items))}: "
+    yield _("{names}How to fix: {title}: {what}.", names=named, title=title, what=what)
+    least = _("at least {n}, as no capacity is printed", n=work.fixings) if work.is_least else f"{work.fixings:,}"
+    yield _("Fixings of each piece: {fixings}. One is: {fixing}.", fixings=least, fixing=_(detail.fixing))
+    force = _("Force on the fixings of each piece: tension {pfa} kN at PFA, {high} kN at 84 % of PFA; shear at the "
+              "base {shear} kN.", pfa=say_force(work.tension_kn), high=say_force(work.tension_high_kn),
+              shear=say_force(work.shear_kn))  # fmt: skip
+    yield " ".join((force, *_list_remarks(work)))
+    yield _("Known against it: {weakness} ({source}).", weakness=_(detail.weakness), source=_(detail.source))
+
+
+def _list_remarks(work: ExportWork) -> Iterator[str]:
+    """Yield what is to be known of the forces."""
+    if work.tension_code_kn is not None:
+        yield _("Tension by the code: {code} kN.", code=say_force(work.tension_code_kn))
+    if work.tension_high_kn == 0:
+        yield f"{_capital(say_held())}."
+    if work.is_per_metre:
+        yield _("Forces and fixings are those of one metre of the width, which is not known.")
+    if work.weights_assumed:
+        yield _("The weight is assumed.")
+    if work.heights_assumed:
+        yield _("The height of the bracket is assumed: 0.9 of the piece's height.")
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -1,0 +1,132 @@
+"""``assess export``: risk classes back into the building model, and what to fix as topics for it."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from assess.cli.console import count, show_progress
+from assess.cli.options import check_file, save_files
+from assess.errors import InputError
+
+if TYPE_CHECKING:
+    from assess.bim.export_files import Export
+    from assess.bim.export_results import ExportRun
+    from assess.bim.export_topics import Topics
+
+ORDER = 2
+EXAMPLES = (
+    "assess export report/results.json --ifc building.ifc -o building-risk.ifc",
+    "assess export report/results.json --ifc building.ifc --bcf to-fix.bcfzip",
+    "assess export report --ifc building.ifc -o building-risk.ifc --bcf to-fix.bcfzip --force",
+)
+TOPICS = (".bcfzip", ".bcf")
+MOST_NAMED = 50
+"""Pieces that a line names; the rest are counted."""
+
+
+def command(
+    results: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RESULTS", help="A results.json of assess run, or its folder.", show_default=False
+        ),
+    ],
+    ifc: Annotated[
+        Path, typer.Option("--ifc", help="The model that the workbook was imported from (.ifc).", show_default=False)
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="The model to write: a copy with a property set on each piece.",
+                     show_default=False),
+    ] = None,
+    bcf: Annotated[
+        Path | None,
+        typer.Option("--bcf", help="The topics to write: what to fix, in order (BCF 2.1: .bcfzip or .bcf).",
+                     show_default=False),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
+) -> None:  # fmt: skip
+    """Bring the results back to the building model: risk classes as properties, what to fix as topics.
+
+    Pieces are found by Source ID. Each gets a property set Assess_OverturningRisk; nothing else in the model changes. A
+    topic is an entry of the schedule: it selects its pieces, and the door on a route that they may block, if one is
+    found. Texts are in the language of the workbook. The exit status is 1 where a piece is not in the model.
+    """
+    _check_names({"--out": out, "--bcf": bcf}, {ifc, results}, replaces=force)
+    from assess.bim.export_files import build_export
+    from assess.bim.export_results import read_export
+    from assess.i18n import load_catalogue, speaking
+
+    with show_progress() as progress, progress.stage("reading", ifc.name):
+        found = progress.wait_for(lambda: read_export(results))
+        with speaking(load_catalogue(_find_own_language(found))):
+            export = build_export(found, ifc, progress, with_properties=out is not None, with_topics=bcf is not None)
+    files = {out: export.model, bcf: export.topics.data if export.topics else None}
+    save_files({path: data for path, data in files.items() if path is not None and data is not None})
+    for line in describe_export(export, ifc.name):
+        typer.echo(line)
+    for path in filter(None, (out, bcf)):
+        typer.echo(f"wrote {path}", err=True)
+    if not export.is_complete:
+        raise typer.Exit(1)
+
+
+def _find_own_language(found: "ExportRun") -> str:
+    """Return the language of the workbook, English where the results name none that is known."""
+    from assess.i18n import LANGUAGES, find_language
+
+    try:
+        return find_language(str(found.run.building.get("language") or LANGUAGES[0]))
+    except InputError:
+        return LANGUAGES[0]
+
+
+def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replaces: bool) -> None:
+    """Raise InputError unless the files may be written, as far as is known before the work."""
+    wanted = {option: path for option, path in files.items() if path is not None}
+    if not wanted:
+        raise InputError("nothing is to be written: add --out MODEL.ifc, --bcf TOPICS.bcfzip or both.")
+    if len(set(map(Path.resolve, wanted.values()))) < len(wanted):
+        raise InputError("--out and --bcf name the same file: name two.")
+    for option, path in wanted.items():
+        endings = TOPICS if option == "--bcf" else (".ifc",)
+        check_file(path, "topics" if option == "--bcf" else "model", endings)
+        if any(_is_same(path, source) for source in sources):
+            raise InputError(f"{option}: {path} is read for this: name another file, so that it stays as it is.")
+        if path.exists() and not replaces:
+            raise InputError(f"{path} already exists: add --force to replace it, or choose another name.")
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    return path.resolve() == other.resolve() or (path.exists() and other.exists() and path.samefile(other))
+
+
+def describe_export(export: "Export", model: str) -> Iterator[str]:
+    """Yield what was written, and which pieces could not be."""
+    if export.model is not None:
+        yield f"{model}: a property set Assess_OverturningRisk on {count(export.written, 'piece')}."
+    if export.topics is not None:
+        yield from _describe_topics(export.topics, model)
+    groups = {
+        "without a Source ID": export.without_id,
+        f"with a Source ID that is not in {model}": export.missing,
+        "with the Source ID of another piece": export.repeated,
+    }
+    for why, names in groups.items():
+        if names:
+            more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
+            yield f"Not written, {count(len(names), 'piece')} {why}: {', '.join(names[:MOST_NAMED])}{more}."
+
+
+def _describe_topics(topics: "Topics", model: str) -> Iterator[str]:
+    """Yield how many topics there are, and what they leave out."""
+    doors = f", {topics.doors:,} of them with a door" if topics.doors else ""
+    yield f"{count(topics.count, 'topic')}: what to fix, in the order of the schedule{doors}."
+    if topics.beyond:
+        yield f"Less urgent entries of the schedule that are no topics: {topics.beyond:,}."
+    if topics.unplaced:
+        yield f"Entries of the schedule that are no topics, as none of their pieces is in {model}: {topics.unplaced:,}."
+    if topics.count and not topics.is_placed:
+        yield "No doors were sought: the positions of the workbook are not those of the model."
