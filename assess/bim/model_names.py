@@ -52,7 +52,7 @@ def _name_spaces(spaces: Iterable[Space], short: Names) -> Iterator[str]:
 def _name_doors(model: BuildingModel, doors: Iterable[Door], short: Names, floors: Names) -> Iterator[str]:
     sides, kinds = find_sides(model), find_kinds(model)
     for one in doors:
-        rooms = " / ".join(dict.fromkeys(short[side] for side in sides[one.key] if side in short))
+        rooms = " / ".join(sorted({short[side] for side in sides[one.key] if side in short}, key=natural_key))
         yield _name_door(kinds[one.key], rooms or floors[one.storey])
 
 

@@ -1,0 +1,184 @@
+"""Rows of an inventory out of a building model: names, sizes with which a piece rocks, places, plans."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from assess.bim.building_model import BuildingModel, Door, Piece, Space, Storey
+from assess.bim.floor_drawing import name_plan
+from assess.bim.ifc_model import read_model
+from assess.bim.model_rows import find_kind, find_sizes, list_building
+from assess.plans import read_plan
+from assess.workbook.outlines import parse_outline
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+STOREY = Storey("s", "Level 1", 0.0, 0.0)
+ROOM = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
+SPACE = Space("r", "s", "101", "Office", (ROOM,), 0.0, 3.0)
+PIECE = Piece("p", "s", "r", "IfcFurniture", "Shelf", "Shelf", 2.0, 1.0, 0.4, 0.8, 1.9, 30.0, 0.4, 0.8, 0.0)
+
+
+def model(**more: object) -> BuildingModel:
+    values = {"source": "a.ifc", "schema": "IFC4", "storeys": (STOREY,), "spaces": (SPACE,), "pieces": (PIECE,)}
+    return BuildingModel(**{**values, **more})
+
+
+# ---------------------------------------------------------------- sizes
+
+
+@pytest.mark.parametrize(
+    ("supports", "sizes", "angle", "is_inset"),
+    [
+        ((0.4, 0.8), (40.0, 80.0), 30.0, False),
+        ((0.397, 0.8), (40.0, 80.0), 30.0, False),
+        ((0.3, 0.8), (30.0, 80.0), 30.0, True),
+        ((0.3, 0.35), (30.0, 80.0), 30.0, True),
+        ((0.4, 0.25), (25.0, 40.0), -60.0, True),
+        ((0.38, 0.25), (25.0, 40.0), -60.0, True),
+    ],
+)
+def test_breadth_is_the_shortest_distance_between_outer_supports(supports, sizes, angle, is_inset):
+    found = find_sizes(replace(PIECE, support_breadth=supports[0], support_width=supports[1]))
+    assert ((found.breadth, found.width), found.height) == (sizes, 190.0)
+    assert (found.angle_deg, found.is_inset) == (angle, is_inset)
+    assert found.breadth <= found.width
+
+
+def test_the_body_of_a_piece_on_supports_stands_in_its_notes():
+    found = list_building(model(pieces=(replace(PIECE, support_breadth=0.3, name="Shelf:1"),)))
+    (row,) = found.items
+    assert row["notes"] == "body 40.0 x 80.0 x 190.0 cm, 30 cm between the outer supports. in the model: Shelf:1"
+    assert any("1 of the pieces stand on supports inside their body" in text for text in found.remarks)
+
+
+def test_sizes_that_a_workbook_does_not_take_are_left_out():
+    tall, thin = (
+        replace(PIECE, key="q", type="Mast", height=9.0),
+        replace(PIECE, key="t", type="Leg", support_breadth=0.02),
+    )
+    found = list_building(model(pieces=(PIECE, tall, thin)))
+    assert [row["source_id"] for row in found.items] == ["p"]
+    assert {(one.type, str(one.reason)) for one in found.skipped} == {
+        ("Mast", "a size outside 5 to 600 cm"), ("Leg", "a size outside 5 to 600 cm"),
+    }  # fmt: skip
+    assert not found.is_complete
+
+
+# ---------------------------------------------------------------- names
+
+
+def test_an_item_is_named_by_its_room_and_a_number():
+    pieces = tuple(replace(PIECE, key=f"p{n}", x=float(n)) for n in range(3))
+    found = list_building(model(pieces=(*pieces, replace(PIECE, key="q", space=""))))
+    assert [(row["item"], row.get("room")) for row in found.items] == [
+        ("101-01", "101 Office"), ("101-02", "101 Office"), ("101-03", "101 Office"), ("Level 1-01", None),
+    ]  # fmt: skip
+
+
+def test_rooms_of_one_name_on_two_floors_are_told_apart():
+    upper = Storey("u", "Level 2", 3.0, 3.0)
+    above = replace(SPACE, key="r2", storey="u", bottom=3.0, top=6.0)
+    pieces = (PIECE, replace(PIECE, key="q", storey="u", space="r2"))
+    found = list_building(model(storeys=(STOREY, upper), spaces=(SPACE, above), pieces=pieces))
+    assert [row["place"] for row in found.places] == ["Level 1 101 Office", "Level 2 101 Office"]
+    assert [(row["item"], row["room"]) for row in found.items] == [
+        ("Level 1-01", "Level 1 101 Office"), ("Level 2-01", "Level 2 101 Office"),
+    ]  # fmt: skip
+
+
+def test_a_type_of_several_sizes_becomes_several_types():
+    found = list_building(model(pieces=(PIECE, replace(PIECE, key="q", height=1.0))))
+    assert [(row["type"], row["height"]) for row in found.types] == [("Shelf", 190.0), ("Shelf (2)", 100.0)]
+    heights = {row["type"]: row["height"] for row in found.types}
+    assert all(heights[row["type"]] == row["height"] for row in found.items)
+
+
+@pytest.mark.parametrize(
+    ("title", "kind"),
+    [
+        ("Office", "room"), ("Corridor", "corridor"), ("Flur EG", "corridor"), ("Scala A", "stair"),
+        ("Hallway", "corridor"), ("Treppenhaus", "stair"), ("Eingangshalle", "room"), ("Stair 2", "stair"), ("Upstairs office", "room"),
+    ],
+)  # fmt: skip
+def test_kinds_of_rooms_by_their_names(title, kind):
+    assert find_kind(replace(SPACE, title=title)) == kind
+
+
+def test_fitted_furniture_is_of_unknown_fixing_and_says_so():
+    found = list_building(model(pieces=(replace(PIECE, is_fitted=True),)))
+    (row,) = found.items
+    assert row["anchored"] == "unknown"
+    assert "fitted furniture, usually fixed: look at it, and fill in Anchored" in row["notes"]
+    assert "anchored" not in list_building(model()).items[0]
+
+
+# ---------------------------------------------------------------- places and plans
+
+
+def test_doors_become_places_and_those_that_lead_out_exits():
+    inner = Door("d1", "s", "", 6.0, 2.0, 0.0, 0.9, 0.2, 0.9)
+    outer = Door("d2", "s", "", 0.0, 2.0, 0.0, 1.0, 0.2, 1.0)
+    other = replace(SPACE, key="r2", name="102", area=(tuple((x + 6.2, y) for x, y in ROOM),))
+    found = list_building(model(spaces=(SPACE, other), doors=(replace(inner, x=6.1), replace(outer, x=-0.1))))
+    rows = {row["place"]: row for row in found.places}
+    assert set(rows) == {"101 Office", "102 Office", "Door 101 / 102", "Exit 101"}
+    assert (rows["Exit 101"]["kind"], rows["Door 101 / 102"]["kind"]) == ("exit", "door")
+    assert "1 of 2 doors lead out of the ground storey (a room on one side only)." in found.remarks
+
+
+def test_an_outline_is_read_back_as_the_room():
+    (row,) = list_building(model()).places
+    assert set(parse_outline(row["outline"], 1.0)) == set(ROOM)
+
+
+def test_a_round_room_of_many_corners_is_simplified_to_what_a_cell_takes():
+    from shapely import Point
+
+    ring = tuple((float(x), float(y)) for x, y in list(Point(5, 5).buffer(4, quad_segs=200).exterior.coords)[:-1])
+    (row,) = list_building(model(spaces=(replace(SPACE, area=(ring,)),), pieces=())).places
+    assert len(parse_outline(row["outline"], 1.0)) <= 200
+
+
+def test_the_roof_is_the_highest_storey_or_ceiling():
+    assert list_building(model()).building["height"] == 3.0
+    roof = Storey("t", "Roof", 7.5, 7.5)
+    assert list_building(model(storeys=(STOREY, roof))).building["height"] == 7.5
+
+
+@pytest.mark.parametrize("name", ["duplex.ifc", "LargeBuilding.ifc"])
+def test_plans_of_published_models_are_read_as_reports_read_them(name):
+    found = list_building(read_model(MODELS / name, name))
+    floors = [row for row in found.floors if "plan" in row]
+    assert {row["plan"] for row in floors} == set(found.files)
+    for row in floors:
+        data = found.files[row["plan"]]
+        assert len(data) < 20_000
+        plan = read_plan(data, row["plan_width"])
+        assert plan.is_lines
+        assert plan.left_out == ()
+        box = [float(one) for one in re.search(rb'viewBox="0 0 ([\d.]+) ([\d.]+)"', data).groups()]
+        assert box[0] == pytest.approx(row["plan_width"])
+        assert plan.aspect == pytest.approx(box[1] / box[0], abs=1e-3)
+        for item in (one for one in found.items if one["floor"] == row["floor"]):
+            assert row["plan_left"] < item["x"] < row["plan_left"] + box[0]
+            assert row["plan_bottom"] < item["y"] < row["plan_bottom"] + box[1]
+
+
+@pytest.mark.parametrize(
+    ("source", "storey", "name"),
+    [
+        ("duplex.ifc", "Level 1", "duplex-Level-1.svg"), ("a b.ifc", "Erdgeschoß / Süd", "a-b-Erdgescho-Sud.svg"),
+        ("模型.ifc", "一階", "plan.svg"), ("x" * 200, "y", "x" * 60 + ".svg"), ("../../a.ifc", "..", "a.svg"),
+    ],
+)  # fmt: skip
+def test_names_of_plans_are_plain(source, storey, name):
+    assert name_plan(source, storey) == name
+
+
+def test_a_model_of_walls_alone_keeps_its_storeys():
+    upper = Storey("u", "Level 2", 3.0, 3.0)
+    found = list_building(model(storeys=(STOREY, upper), spaces=(), pieces=(), walls={"s": ((ROOM,),)}))
+    assert [row["floor"] for row in found.floors] == ["Level 1", "Level 2"]
+    assert not found.is_complete
