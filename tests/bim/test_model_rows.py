@@ -99,7 +99,8 @@ def test_a_type_of_several_sizes_becomes_several_types():
     ("title", "kind"),
     [
         ("Office", "room"), ("Corridor", "corridor"), ("Flur EG", "corridor"), ("Scala A", "stair"),
-        ("Hallway", "corridor"), ("Treppenhaus", "stair"), ("Eingangshalle", "room"), ("Stair 2", "stair"), ("Upstairs office", "room"),
+        ("Hallway", "corridor"), ("Treppenhaus", "stair"), ("Eingangshalle", "room"), ("Stair 2", "stair"),
+        ("Upstairs office", "room"),
     ],
 )  # fmt: skip
 def test_kinds_of_rooms_by_their_names(title, kind):
