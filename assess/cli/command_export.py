@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from assess.bim.export_results import ExportRun
     from assess.bim.export_topics import Topics
 
-ORDER = 2
+ORDER = 4
 EXAMPLES = (
     "assess export report/results.json --ifc building.ifc -o building-risk.ifc",
     "assess export report/results.json --ifc building.ifc --bcf to-fix.bcfzip",
-    "assess export report --ifc building.ifc -o building-risk.ifc --bcf to-fix.bcfzip --force",
+    "assess export report --ifc building.ifc --out building-risk.ifc --bcf to-fix.bcfzip --force",
 )
 TOPICS = (".bcfzip", ".bcf")
 MOST_NAMED = 50

@@ -33,6 +33,7 @@ COMMANDS = [
     "run",
     "portfolio",
     "compare",
+    "export",
     "fragility",
     "routes",
     "rock",
