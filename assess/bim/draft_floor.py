@@ -59,7 +59,10 @@ class Link:
 
 @dataclass(frozen=True)
 class FloorPlan:
-    """The plan of one storey. `spaces` and `polygons` are in the same order, as are `pieces` and `footprints`."""
+    """The plan of one storey. `spaces` and `polygons` are in the same order.
+
+    `solids` are walls and windows, `footprints` those of the furniture that stands on the floor.
+    """
 
     storey: Storey
     spaces: tuple[Space, ...]
@@ -100,6 +103,16 @@ class FloorPlan:
         """Return the keys of the spaces in which more than `least` [m] of a line lies."""
         near = sorted(self.tree.query(line))
         return [self.spaces[at].key for at in near if self.polygons[at].intersection(line).length > least]
+
+    def hides(self, line: BaseGeometry, space: str, within: float) -> bool:
+        """Tell whether furniture of a space is within some distance [m] of a line, with a wall between."""
+        near = self._piece_tree.query(line, predicate="dwithin", distance=within).tolist()
+        ways = [
+            shapely.shortest_line(line, self.footprints[at])
+            for at in near
+            if self.polygon(space).intersects(self.footprints[at])
+        ]
+        return any(self.solids_near(way).intersection(way).length > 0 for way in ways)
 
 
 def build_plan(model: BuildingModel, storey: Storey) -> FloorPlan:
@@ -188,7 +201,7 @@ class Room:
         """Return where ways may run through a link, up to `depth` [m] into the room."""
         at = shapely.Point(link.at)
         reach = self.floor.distance(at)
-        half = max(link.width / 2 - JAMB, NARROWEST)
+        half = max(link.width / 2 - JAMB, NARROWEST) if link.overall > 0 else max(link.width / 2 - depth, JAMB / 2)
         if link.normal == (0.0, 0.0):
             inner = self.floor.buffer(-depth)
             way = shapely.shortest_line(at, self.floor if inner.is_empty else inner)

@@ -15,10 +15,10 @@ from shapely.geometry.base import BaseGeometry
 
 from assess.bim.building_model import Point
 from assess.bim.draft_corridors import Axis, Spot, find_axes, find_spots, is_corridor, measure_width
-from assess.bim.draft_floor import Room, measure, see
+from assess.bim.draft_floor import Link, Room, measure, see
 from assess.bim.plan_shapes import list_polygons
 
-TRIES = ((0.45, True, 1.0), (0.3, True, 1.5), (0.2, False, 3.0), (0.05, False, 5.0))
+TRIES = ((0.48, True, 1.0), (0.35, True, 1.5), (0.2, False, 3.0), (0.05, False, 5.0))
 """What is tried in this order: the distance kept [m], whether ways go round furniture, and the cost of a metre [-]."""
 BEND = 0.5
 """What a segment costs beyond its length, so that a way has few of them [m]."""
@@ -110,7 +110,7 @@ def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None
     """Add the ways that keep a distance [m] from what bounds a floor."""
     room = ways.room
     inner = floor.buffer(-distance, join_style="mitre")
-    passages = [room.passage(link, distance) for link in room.links]
+    passages = [_clear(room, link, distance, floor) for link in room.links]
     reached = [_reach(room, inner, point) for point in ways.ends.values()]
     area = shapely.union_all([inner, *passages, *reached]).buffer(TIGHT)
     before = [
@@ -123,6 +123,12 @@ def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None
     corners = _choose(ways, [*before, *_list_corners(inner)])
     names = ways.add(corners)
     ways.join(_pair(list(ways.ends), names, corners), area, cost)
+
+
+def _clear(room: Room, link: Link, distance: float, floor: BaseGeometry) -> BaseGeometry:
+    """Return where ways may run through a link, apart from furniture that they go round."""
+    passage, around = room.passage(link, distance), min(max(link.clear / 2, SHORTEST), distance)
+    return passage if floor is room.floor else passage.difference(room.floor.difference(floor).buffer(around))
 
 
 def _reach(room: Room, inner: BaseGeometry, point: Point) -> BaseGeometry:
@@ -202,14 +208,20 @@ def _add_axis(ways: Ways, axis: Axis, spots: Sequence[Spot], own: dict[str, list
     """Add the places on an axis, and note in `own` which nodes are joined to each; return their names."""
     names = []
     for spot in spots:
-        room = next((name for name in spot.joined if name.startswith("room ")), None)
-        name = room if room and axis.find(ways.ends[room])[1] < SHORTEST else ways.add([axis.point(spot.along)])[0]
+        on_axis = (name for name in spot.joined if name in ways.ends and _is_on(axis, ways.ends[name]))
+        name = next(on_axis, "") or ways.add([axis.point(spot.along)])[0]
         names.append(name)
         for joined in spot.joined:
             own.setdefault(joined, []).append(name)
     for end, name in ((0, names[0]), (1, names[-1])):
         own.setdefault(f"from end {number} {end}", []).append(name)
     return names
+
+
+def _is_on(axis: Axis, point: Point) -> bool:
+    """Tell whether a point lies on the part of an axis along which ways run."""
+    along, away = axis.find(point)
+    return away < SHORTEST and axis.inset <= along <= axis.length - axis.inset
 
 
 def _along(ways: Ways, axis: Axis, names: Sequence[str]) -> Iterator[Way]:

@@ -33,6 +33,8 @@ IN_ROOM = 0.3
 """A segment runs through a room if it is longer than this there [m]."""
 FALLS_OVER = 3.0
 """A piece of the next room may fall through an opening that is no farther from a segment than this [m]."""
+BEHIND_WALL = 1.0
+"""A piece of the next room that is so near to a segment, but behind a wall, would seem to stand in it [m]."""
 MOST_NAMED = 10
 SHORT = 40
 """Characters that are kept of a long name which a number tells apart."""
@@ -167,12 +169,16 @@ class _Sheet:
         return {name: value for name, value in row.items() if value not in ("", None)}
 
     def _list_rooms(self, ends: tuple[Node, Node], space: str) -> str:
-        """Return the names of the rooms that a segment runs through, and of those that are open to it next to it."""
+        """Return the names of the rooms that a segment runs through, and of those that are open to it there.
+
+        Not where a piece of the other room is next to the segment behind a wall: Room cannot tell the two apart.
+        """
         line = shapely.LineString([ends[0].at, ends[1].at])
-        found = [space, *self.network.plans[ends[0].storey].spaces_along(line, IN_ROOM)]
+        plan = self.network.plans[ends[0].storey]
+        found = [space, *plan.spaces_along(line, IN_ROOM)]
         for opening in self.network.openings:
             if space in opening.spaces and line.distance(shapely.Point(opening.at)) <= FALLS_OVER:
-                found += opening.spaces
+                found += [one for one in opening.spaces if not plan.hides(line, one, BEHIND_WALL)]
         rooms = [self.names[one] for one in dict.fromkeys(found)]
         return "" if any(";" in room for room in rooms) else "; ".join(rooms)
 

@@ -75,7 +75,7 @@ def _check_clear_width(table: Table, places: Table) -> Iterator[Problem]:
     }
     if "clear_width" in table.places:
         rows = (row for row in table.rows if row.number in lack)
-        yield from (table.problem("clear_width", row, lack[row.number], fix, "warning") for row in rows)
+        yield from (table.habit("clear_width", row, lack[row.number], fix, "warning") for row in rows)
         return
     yield from (table.problem_at_top(message, fix, "warning") for message in dict.fromkeys(lack.values()))
 
