@@ -54,9 +54,9 @@ def choose_routes(text: str) -> Routes:
 
 def read(path: Path, name: str, progress: Progress, routes: Routes) -> "ImportedBuilding":
     """Read what was sent, whatever it is: see `assess.bim.read_source`."""
-    from assess.bim.cobie import read_cobie
+    from assess.bim.read_source import read_source
 
-    return read_cobie(path, name, progress)
+    return read_source(path, name, progress, routes=routes)
 
 
 # ---------------------------------------------------------------- what came out
@@ -112,7 +112,7 @@ def summarise(found: "ImportedBuilding") -> Taken:
     return Taken(
         pieces=len(found.items),
         types=len({row.get("type") for row in found.items}),
-        floors=len(found.floors),
+        floors=len({row.get("floor") for row in found.items}),
         rooms=sum(row.get("kind") == "room" for row in found.places),
         routes=len({row.get("route") for row in found.routes}),
         plans=len(found.files),
@@ -297,9 +297,14 @@ def _rename_files(found: "ImportedBuilding", folder: Path) -> "ImportedBuilding"
 
 
 def _find_name(name: str, data: bytes, folder: Path) -> str:
-    path = folder / name
-    is_same = path.is_file() and path.stat().st_size == len(data) and path.read_bytes() == data
-    return name if is_same else find_free(name, folder)
+    """Return the first name that no file of the folder has, or that very file."""
+    return next(
+        one for one in _number(PurePosixPath(name)) if not _is_there(folder / one) or _holds(folder / one, data)
+    )
+
+
+def _holds(path: Path, data: bytes) -> bool:
+    return path.is_file() and path.stat().st_size == len(data) and path.read_bytes() == data
 
 
 def _rename(row: Mapping[str, Any], names: Mapping[str, str]) -> dict[str, Any]:

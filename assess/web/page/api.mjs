@@ -48,7 +48,12 @@ export function post(path, body = {}, signal) {
 }
 
 /** Send the bytes of a file. */
-export function send(path, blob) {
+export function send(path, blob, signal) {
   const headers = { ...HEADERS, "Content-Type": "application/octet-stream" };
-  return request(path, { method: "POST", headers, body: blob });
+  return request(path, { method: "POST", headers, body: blob, signal });
+}
+
+/** Ask for something as the page is left: nobody waits for the answer. */
+export function leave(path) {
+  fetch(path, { method: "POST", headers: HEADERS, credentials: "same-origin", keepalive: true }).catch(() => {});
 }

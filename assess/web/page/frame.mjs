@@ -3,6 +3,7 @@
 import { countBadges } from "./classes.mjs";
 import { choose, clear, el } from "./elements.mjs";
 import { countSimulated, jobs } from "./job.mjs";
+import { imports } from "./import_job.mjs";
 import { acceptDrops } from "./open_file.mjs";
 import { showFiles } from "./files_view.mjs";
 import { Tabs } from "./tabs.mjs";
@@ -45,11 +46,12 @@ class Frame {
     addEventListener("keydown", (event) => this.#onKey(event));
     addEventListener("beforeunload", (event) => this.#onLeaving(event));
     this.watch.addEventListener("job", (event) => jobs.compare(event.detail));
+    imports.addEventListener("change", () => this.#showImported());
     acceptDrops(store);
   }
 
   async start() {
-    await this.#store.load();
+    await Promise.all([this.#store.load(), imports.attach(this.#store)]);
     jobs.attach(this.#store);
     this.tabs.update();
     this.watch.start();
@@ -73,11 +75,12 @@ class Frame {
     p.download = el("a", { class: "button", href: "/api/download", text: t("Download"), download: "" });
     p.download.addEventListener("click", (event) => this.#onDownload(event));
     p.open = el("a", { class: "button editing-only", href: "#start", text: t("New or open…"), title: t("Make a new workbook, or open another") });
+    p.imported = el("a", { class: "button", href: "#import", text: t("Imported"), title: t("What was imported, and what was skipped"), hidden: true });
     p.more = button(t("Menu"), "☰", () => this.#toggleMenu(), { class: "more", "aria-expanded": "false", "aria-controls": "menu" });
     return el("header", { class: "top" },
       el("div", { class: "book-name" }, p.name, el("div", { class: "save-line" }, p.state, undoneLine(this.#store))), p.more, p.counts,
       el("div", { id: "menu", class: "menu" },
-        (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.open, p.download)),
+        (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.imported, p.open, p.download)),
         el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch())));
   }
 
@@ -145,6 +148,11 @@ class Frame {
     this.#parts.counts.hidden = !book;
     this.#parts.download.textContent = book?.mode === "disk" ? t("Download a copy") : t("Download");
     this.tabs.update();
+  }
+
+  #showImported() {
+    const { opened } = imports;
+    this.#parts.imported.hidden = !opened || opened.book !== this.#store.state.server;
   }
 
   #showState() {

@@ -1,26 +1,54 @@
-// Opens workbooks and takes files: chosen, or dropped anywhere on the page.
+// Opens workbooks, has building models read, and takes files: chosen, or dropped anywhere on the page.
 
 import { send } from "./api.mjs";
 import { el } from "./elements.mjs";
 import { addFiles } from "./files_view.mjs";
+import { imports } from "./import_job.mjs";
 import { ask, notice } from "./messages.mjs";
 import { t } from "./texts.mjs";
 
 const WORKBOOK = /\.xls[xm]$/i;
 const OLD = /\.(xls|ods|numbers|csv)$/i;
 
+const MODEL = /\.(ifc|ifczip|ifcxml|json|sh3d)$/i;
+
 /** Have the browser's dialog choose a workbook, and open it. */
-export function chooseWorkbook(store) {
-  const input = el("input", { type: "file", accept: ".xlsx,.xlsm" });
-  input.addEventListener("change", () => input.files[0] && openWorkbook(store, input.files[0]));
+export const chooseWorkbook = (store) => choose(".xlsx,.xlsm", (file) => openWorkbook(store, file));
+
+/** Have the browser's dialog choose a building model, and read it. */
+export const chooseModel = (store) =>
+  choose(".ifc,.xlsx,.xlsm,.json,.sh3d", (file) => (WORKBOOK.test(file.name) ? openWorkbook(store, file) : readModel(store, file)));
+
+function choose(accept, take) {
+  const input = el("input", { type: "file", accept });
+  input.addEventListener("change", () => input.files[0] && take(input.files[0]));
   input.click();
+}
+
+/** Have a building model be read into a new workbook; asks first where a workbook is open and the choice of routes is not seen. */
+async function readModel(store, file) {
+  const { name } = file;
+  if (store.book && location.hash !== "#start") {
+    const question = t("{name} is read into a new workbook. {old} stays as it is.", { name, old: store.book.name });
+    const answer = await ask(question, [[t("Read it"), "none"], [t("Read it, and draft evacuation routes"), "draft"], [t("Cancel"), null]]);
+    if (answer === null) return;
+    imports.drafts = answer === "draft";
+    location.hash = "#start";
+  }
+  await imports.begin(file);
 }
 
 /** Open a workbook in place of the present one; asks first where changes would be lost. Returns whether it was opened. */
 export async function openWorkbook(store, file) {
   if (!(await canLeave(store, file.name))) return false;
   try {
-    store.replaceBook(await send(`/api/upload?name=${encodeURIComponent(file.name)}`, file));
+    const answer = await send(`/api/upload?name=${encodeURIComponent(file.name)}`, file);
+    if (answer.import) { // a COBie file, which is no inventory yet
+      location.hash = "#start";
+      imports.follow(answer);
+      return false;
+    }
+    store.replaceBook(answer);
   } catch (error) {
     explain(error, file.name);
     return false;
@@ -55,7 +83,7 @@ export function acceptDrops(store) {
     if (!hasFiles(event)) return;
     event.preventDefault();
     if (sign) return;
-    sign = el("div", { id: "dropping", "aria-hidden": "true", text: t("Drop a workbook, or files that it names") });
+    sign = el("div", { id: "dropping", "aria-hidden": "true", text: t("Drop a workbook, a building model, or files that the workbook names") });
     (document.querySelector("dialog[open]") ?? document.body).append(sign);
   });
   addEventListener("dragleave", (event) => event.relatedTarget === null && end());
@@ -71,8 +99,13 @@ async function take(store, files) {
   const book = files.find((file) => WORKBOOK.test(file.name));
   const others = files.filter((file) => file !== book);
   if (book && !(await openWorkbook(store, book))) return;
+  const model = others.find((file) => MODEL.test(file.name) && !isMissing(store, file.name));
+  if (model && !book) {
+    await readModel(store, model);
+    return;
+  }
   if (!others.length) return;
-  const old = others.find((file) => OLD.test(file.name) && !store.book?.missing?.some((one) => one.name === file.name));
+  const old = others.find((file) => OLD.test(file.name) && !isMissing(store, file.name));
   if (old && !book) {
     const text = t("{name} cannot be opened. Save it as an Excel workbook (.xlsx) first, in Excel or LibreOffice.", { name: old.name });
     notice(text, { kind: "error" });
@@ -81,3 +114,6 @@ async function take(store, files) {
   if (!store.book) notice(t("Open a workbook first, then drop the files that it names."), { kind: "error" });
   else await addFiles(store, others);
 }
+
+/** Whether the workbook names a file that it lacks. */
+const isMissing = (store, name) => Boolean(store.book?.missing?.some((one) => one.name === name));

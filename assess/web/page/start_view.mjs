@@ -1,9 +1,10 @@
-// The empty state: the worked example, a workbook that there is, or a new one in three short steps.
+// The empty state: a workbook that there is, a building model, the worked example, or a new one in three short steps.
 
 import { get, post } from "./api.mjs";
 import { clear, el } from "./elements.mjs";
+import { ImportCard } from "./import_card.mjs";
 import { notice } from "./messages.mjs";
-import { canLeave, chooseWorkbook } from "./open_file.mjs";
+import { canLeave, chooseModel, chooseWorkbook } from "./open_file.mjs";
 import { StartForm } from "./start_form.mjs";
 import { t } from "./texts.mjs";
 
@@ -19,6 +20,7 @@ class StartView {
   constructor(root, store) {
     this.#root = root;
     this.#store = store;
+    this.card = new ImportCard(() => chooseModel(store));
   }
 
   async show() {
@@ -38,7 +40,7 @@ class StartView {
       el("h2", { text: t("Which furniture overturns in an earthquake, and what to fix first") }),
       el("p", { class: "muted", text: t("You list the furniture of a building in an Excel workbook, as a sheet and on a plan. Risk classes show while you type.") }),
       this.#store.book && back,
-      el("div", { class: "ways" }, this.#openCard(), this.#exampleCard(offers)),
+      el("div", { class: "ways" }, this.#openCard(), this.card.node, this.#exampleCard(offers)),
       el("section", { class: "card" }, el("h3", { text: t("Make a new workbook") }), place(offers), this.form.node),
       el("p", { class: "hint", text: t("Nothing leaves this machine, unless the page was opened at the address of another one.") })));
   }

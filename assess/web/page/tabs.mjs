@@ -1,6 +1,7 @@
 // The tabs of the page: which there are, which is shown, and their views, made when they are first asked for.
 
 import { clear, el } from "./elements.mjs";
+import { imports } from "./import_job.mjs";
 import { t } from "./texts.mjs";
 
 /** Key, label and module of every tab; each module exports createView(root, store) -> {show, hide}. */
@@ -10,6 +11,7 @@ const TABS = [
   ["what-if", () => t("What if"), () => import("./what_if_view.mjs")],
   ["simulate", () => t("Simulate and report"), () => import("./simulate_view.mjs")],
 ];
+const IMPORT = ["import", () => t("What was imported"), () => import("./import_view.mjs")];
 const START = ["start", () => t("Start"), () => import("./start_view.mjs")];
 
 export class Tabs {
@@ -26,11 +28,12 @@ export class Tabs {
     addEventListener("hashchange", () => this.update());
   }
 
-  /** Show the tab of the address, or the start where no workbook is open. */
+  /** Show the tab of the address, or the start where no workbook is open; what was imported only where there is something. */
   update() {
     const wanted = location.hash.slice(1);
     const found = TABS.find(([key]) => key === wanted) ?? TABS[0];
-    const tab = !this.#store.book || wanted === "start" ? START : found;
+    const isImport = wanted === "import" && imports.shown;
+    const tab = isImport ? IMPORT : !this.#store.book || wanted === "start" ? START : found;
     this.nav.hidden = !this.#store.book;
     for (const link of this.nav.children) {
       if (link.dataset.tab === tab[0]) link.setAttribute("aria-current", "page");

@@ -1,0 +1,243 @@
+"""Building models that are sent: read, cancelled, refused, opened as new workbooks."""
+
+import socket
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+
+import assess
+from assess.bim.import_workbook import ImportedBuilding
+from assess.web import importing
+from assess.web.guard import MOST_MODEL
+from assess.web.importing import Import, find_free, name_workbook
+from assess.web.jobs import READING, Slots
+from assess.web.request_errors import RequestError
+from assess.web.safe_names import clean_name
+from assess.workbook.read import read_tables
+from tests.bim.cobie_files import write_cobie
+from tests.web.serving import wait_until
+from tests.web.test_sessions import OPTIONS, _come
+from tests.workbooks import write
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+DUPLEX, LARGE = MODELS / "duplex.ifc", MODELS / "LargeBuilding.ifc"
+PLANS = ["duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg"]
+
+
+def _read(client, name, data, query=""):
+    """Send a model, and return what came out once it has been read."""
+    reply = client.request("POST", f"/api/import?name={name}{query}", data)
+    assert reply.status == 200, reply.data
+    answer = wait_until(lambda: client.get("/api/import").json(), lambda found: found["import"]["state"] != "running")
+    return answer["import"]
+
+
+def _list_left(tmp_path):
+    """Return the folders of models below the folders of the server."""
+    return [path.name for path in (tmp_path / "tmp").rglob("import-*")]
+
+
+def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
+    server = served()
+    found = _read(server.client, "duplex.ifc", DUPLEX.read_bytes())
+    taken = found["found"]
+    assert (found["state"], found["name"], found["workbook"]) == ("done", "duplex.ifc", "duplex.xlsx")
+    assert (taken["pieces"], taken["of"], taken["floors"], taken["routes"]) == (47, 61, 2, 0)
+    (group,) = [one for one in taken["skipped"] if one["is_furniture"]]
+    assert (group["count"], sum(number for _, number in group["types"])) == (14, 14)
+    assert taken["remarks"]
+    assert _list_left(tmp_path) == []
+    assert list(server.folder.iterdir()) == []  # nothing is written before it is opened
+
+    book = server.client.post("/api/import/open", {"shaking": "MMI VIII, severe"}).json()
+    assert (book["name"], book["mode"], book["missing"]) == ("duplex.xlsx", "disk", [])
+    assert sorted(one.name for one in server.folder.iterdir()) == [*PLANS, "duplex.xlsx"]
+    live = server.client.get("/api/live").json()
+    assert (live["error"], len(live["items"]["class"]), "" in live["items"]["class"]) == ("", 47, False)
+    assert len(assess.read_inventory(server.folder / "duplex.xlsx").items) == 47
+    answer = server.client.get("/api/import").json()
+    assert answer["import"] is None
+    assert answer["opened"]["book"] == book["state"]["server"]
+    assert answer["opened"]["found"] == taken  # the list can be looked at again
+    assert server.client.post("/api/import/open").status == 404
+
+
+def test_a_second_workbook_of_a_model_replaces_no_file(served):
+    server = served()
+    (server.folder / PLANS[0]).write_bytes(b"mine")
+    for name in ("duplex.xlsx", "duplex-2.xlsx"):
+        assert _read(server.client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+        book = server.client.post("/api/import/open").json()
+        assert (book["name"], book["missing"]) == (name, [])
+    assert (server.folder / PLANS[0]).read_bytes() == b"mine"
+    tables, _ = read_tables((server.folder / "duplex.xlsx").read_bytes(), "duplex.xlsx")
+    named = [row.get("plan") for row in tables["Floors"].rows]
+    assert named == ["duplex-Level-1-2.svg", *PLANS[1:]]
+
+
+def test_another_workbook_ends_the_list_of_what_was_imported(served, tmp_path):
+    server = served(write(tmp_path / "office.xlsx"))
+    before = (tmp_path / "office.xlsx").read_bytes()
+    assert _read(server.client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+    assert server.client.get("/api/book").json()["name"] == "office.xlsx"  # it stays open meanwhile
+    assert server.client.post("/api/import/open").json()["name"] == "duplex.xlsx"
+    assert (tmp_path / "office.xlsx").read_bytes() == before
+    server.client.post("/api/start", {"kind": "blank", "name": "other"})
+    assert server.client.get("/api/import").json()["opened"] is None
+
+
+def test_routes_are_drafted_where_they_are_asked_for(served):
+    client = served().client
+    assert _read(client, "duplex.ifc", DUPLEX.read_bytes(), "&routes=draft")["found"]["routes"] > 0
+    assert client.request("POST", "/api/import?name=a.ifc&routes=all", b"x").status == 422
+    assert client.request("POST", "/api/import?routes=none", b"x").status == 422
+
+
+def test_a_cobie_file_is_recognised_where_a_workbook_is_opened(served, tmp_path):
+    server = served()
+    path = write_cobie(tmp_path / "handover.xlsx")
+    begun = server.client.send("/api/upload", "handover.xlsx", path.read_bytes()).json()
+    found = wait_until(lambda: server.client.get("/api/import").json()["import"], lambda one: one["state"] != "running")
+    assert (found["id"], found["state"], found["workbook"]) == (
+        begun["import"]["id"],
+        "done",
+        "handover-inventory.xlsx",
+    )
+    assert (found["found"]["pieces"], found["found"]["skipped"][0]["types"]) == (2, [["Door B", 1]])
+    assert server.client.post("/api/import/open").json()["name"] == "handover-inventory.xlsx"
+    office = write(tmp_path / "office.xlsx")
+    assert server.client.send("/api/upload", "office.xlsx", office.read_bytes()).json()["name"] == "office.xlsx"
+
+
+def test_what_cannot_be_read_is_said_and_not_kept_and_a_second_try_works(served, tmp_path):
+    server = served()
+    cut = DUPLEX.read_bytes()[: DUPLEX.stat().st_size // 2]
+    for name, data, why in (
+        ("cut.ifc", cut, "END-ISO-10303-21"), ("empty.ifc", b"", "empty.ifc"), ("note.txt", b"Dear all", "note.txt"),
+        ("broken.xlsx", b"PK\x03\x04" + b"\0" * 40, "broken.xlsx"),
+    ):  # fmt: skip
+        found = _read(server.client, f"..%2F{name}", data)
+        said = " ".join([found["message"], *(one["message"] for one in found["problems"])])
+        assert (found["state"], found["found"], found["name"]) == ("failed", None, name)
+        assert why in said, name
+        assert str(tmp_path) not in said
+        assert _list_left(tmp_path) == []
+        assert server.client.post("/api/import/open").status == 404
+    assert _read(server.client, "duplex.ifc", DUPLEX.read_bytes())["found"]["pieces"] == 47
+    assert list(server.folder.iterdir()) == []
+
+
+def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp_path):
+    server = served()
+    client = server.client
+    assert (
+        client.request("POST", "/api/import?name=large.ifc", LARGE.read_bytes()).json()["import"]["state"] == "running"
+    )
+    assert client.get("/api/start").status == 200
+    assert client.post("/api/import/cancel").json()["import"]["state"] == "cancelled"
+    wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
+    wait_until(lambda: list((tmp_path / "tmp").rglob("assess-model-*")), lambda left: left == [])
+    assert client.post("/api/import/open").status == 404
+    assert _read(client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+    assert client.post("/api/import/cancel").json()["import"] is None  # what was read is dropped
+
+
+def test_the_server_ends_while_a_model_is_read(served, tmp_path):
+    server = served()
+    server.client.request("POST", "/api/import?name=large.ifc", LARGE.read_bytes())
+    assert server.stop()[::2] == (0, "Stopped.\n")
+    assert list((tmp_path / "tmp").iterdir()) == []
+
+
+def test_a_client_that_goes_away_while_it_sends_leaves_nothing(served, tmp_path):
+    client = served().client
+    head = "".join(f"{name}: {value}\r\n" for name, value in client.headers.items())
+    parts = urlsplit(client.base)
+    with socket.create_connection((parts.hostname, parts.port)) as line:
+        text = f"POST /api/import?name=a.ifc HTTP/1.1\r\nHost: {parts.netloc}\r\n{head}Content-Length: 100000\r\n\r\n"
+        line.sendall(text.encode() + b"x" * 1000)
+        wait_until(lambda: _list_left(tmp_path), len)
+    wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
+    assert client.get("/api/import").json()["import"] is None
+
+
+@pytest.mark.slow
+def test_what_is_too_large_is_refused_however_it_is_sent(served, tmp_path):
+    client = served().client
+    part = b"x" * 2**20
+    for headers in ({"Content-Length": str(MOST_MODEL + 2**20)}, {}):
+        body = (part for _ in range(MOST_MODEL // 2**20 + 1))
+        assert client.request("POST", "/api/import?name=a.ifc", body, headers).status == 413
+        assert _list_left(tmp_path) == []
+    assert client.request("POST", "/api/upload?name=a.xlsx", b"x" * (65 * 2**20)).status == 413
+    assert client.get("/api/import").json() == {"import": None, "opened": None, "most": MOST_MODEL}
+
+
+def test_models_come_from_the_page_alone(served):
+    client = served().client
+    for headers in ({"Origin": "https://example.org"}, {"X-Assess": None}, {"Sec-Fetch-Site": "cross-site"}):
+        for path in ("/api/import?name=a.ifc", "/api/import/cancel", "/api/import/open"):
+            assert client.request("POST", path, b"", headers).status == 403
+    assert client.request("POST", "/api/import?name=a.ifc", b"", {"Cookie": None}).status == 401
+    assert client.post("/api/import/open", {"shaking": "strong"}).status == 422
+
+
+def test_on_a_server_for_several_it_is_held_with_its_plans_for_its_user_alone(served):
+    server = served(None, *OPTIONS)
+    ann, _ = _come(server, "ann")
+    ben, _ = _come(server, "ben")
+    assert _read(ann, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
+    assert ben.get("/api/import").json()["import"] is None
+    book = ann.post("/api/import/open").json()
+    assert (book["name"], book["mode"], book["missing"]) == ("duplex.xlsx", "held", [])
+    assert ann.get("/api/picture?floor=Level%201").status == 200
+    assert list(server.folder.iterdir()) == []
+
+
+# ---------------------------------------------------------------- without a server
+
+
+def _begin(tmp_path, slots, data=b"x"):
+    folder = tmp_path / "import-1"
+    folder.mkdir()
+    (folder / importing.SOURCE).write_bytes(data)
+    return Import(folder, "duplex.ifc", "none", slots)
+
+
+def test_a_reading_for_which_nobody_asks_ends(tmp_path, monkeypatch):
+    monkeypatch.setattr(importing, "LEFT_AFTER", -1.0)
+    found = _begin(tmp_path, Slots(1), DUPLEX.read_bytes())
+    wait_until(lambda: found.state, lambda state: state != "running")
+    assert (found.state, list(tmp_path.iterdir())) == ("cancelled", [])
+
+
+def test_without_a_place_nothing_is_kept(tmp_path):
+    slots = Slots(1, READING)
+    slots.take(object())
+    with pytest.raises(RequestError, match="Other building models are being read"):
+        _begin(tmp_path, slots)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_plans_get_names_that_no_other_file_has(tmp_path):
+    (tmp_path / "a.svg").write_bytes(b"mine")
+    (tmp_path / "a-2.svg").write_bytes(b"a")  # of an earlier import of the same model
+    (tmp_path / "b.svg").write_bytes(b"b")
+    floors = [{"floor": "1", "plan": "a.svg"}, {"floor": "2", "plan": "b.svg"}, {"floor": "3"}]
+    found = ImportedBuilding(source="m.ifc", floors=floors, files={"a.svg": b"a", "b.svg": b"b"})
+    renamed = importing._rename_files(found, tmp_path)
+    assert [row.get("plan") for row in renamed.floors] == ["a-2.svg", "b.svg", None]
+    assert renamed.files == {"a-2.svg": b"a", "b.svg": b"b"}
+
+
+def test_names_of_new_workbooks_and_of_models(tmp_path):
+    assert name_workbook("duplex.ifc") == "duplex.xlsx"
+    assert name_workbook("hand.over.XLSX") == "hand.over-inventory.xlsx"
+    assert name_workbook("con.ifc") == "workbook.xlsx"
+    assert find_free("a.xlsx", tmp_path) == "a.xlsx"
+    (tmp_path / "a.xlsx").touch()
+    assert find_free("a.xlsx", tmp_path) == "a-2.xlsx"
+    assert clean_name("C:\\x\\../../b\u202e<1>.ifc") == "b1.ifc"
+    assert (len(clean_name("a" * 300 + ".ifc")), clean_name("a" * 300 + ".ifc")[-5:]) == (120, "a.ifc")
+    assert clean_name("..") == ""

@@ -1,0 +1,142 @@
+"""A building model on the page: dropped or chosen, read, what was skipped, and the new workbook."""
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.bim.cobie_files import write_cobie
+from tests.web.looking import examine
+from tests.web.sheet_page import CLASS, SheetPage
+from tests.web.test_page_phone import HEIGHT, OVER_THE_EDGE, WIDTH
+from tests.web.test_page_shell import drop
+from tests.workbooks import write
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+DUPLEX, LARGE = MODELS / "duplex.ifc", MODELS / "LargeBuilding.ifc"
+READ = 120_000
+"""Time that a model may take to be read here [ms]."""
+
+
+def _choose(page, *files):
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Choose a model").press("Enter")
+    chooser.value.set_files(*files)
+
+
+def _see_list(page, name="duplex.ifc"):
+    expect(page.get_by_role("heading", name=f"What was taken from {name}")).to_be_visible(timeout=READ)
+    return page.locator("#view-import")
+
+
+def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, served):
+    server = served()
+    found = page(server)
+    expect(found.get_by_label("Draft evacuation routes")).not_to_be_checked()
+    drop(found, "duplex.ifc", DUPLEX.read_bytes())
+    expect(found.locator(".import-card [role=status]")).to_have_text(re.compile("(Sending|Reading) duplex.ifc"))
+    shown = _see_list(found)
+    expect(found.get_by_role("heading", name="What was taken")).to_be_focused()
+    expect(shown).to_contain_text("47 of 61 pieces on 2 floors")
+    expect(shown).to_contain_text("14 pieces skipped that may be furniture")
+    table = shown.get_by_role("table").first
+    expect(table.get_by_role("rowheader", name="Not on the floor")).to_be_visible()
+    rows = table.locator("tr:not(.reason) td.num").all_inner_texts()
+    assert sum(map(int, rows)) == 14
+    expect(shown.get_by_role("heading", name="What to check")).to_be_visible()
+    assert examine(found) == []
+    found.reload()
+    _see_list(found)
+    shown.get_by_label("Shaking of the ground").select_option(label="MMI VIII, severe")
+    shown.get_by_role("button", name="Open the workbook").click()
+    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible(timeout=READ)
+    expect(SheetPage(found, server).cell(CLASS, 2)).to_contain_text(re.compile("low|medium|high"))
+    assert (server.folder / "duplex.xlsx").is_file()
+    found.get_by_role("link", name="Imported").click()
+    _see_list(found)
+    found.get_by_role("link", name="Back to duplex.xlsx").click()
+    expect(found.locator("#view-sheet")).to_be_visible()
+
+
+def test_the_list_of_what_was_skipped_is_copied(page, served):
+    found = page(served(), permissions=["clipboard-read", "clipboard-write"])
+    _choose(found, DUPLEX)
+    _see_list(found).get_by_role("button", name="Copy the list").click()
+    expect(found.locator(".notice")).to_contain_text("The list was copied")
+    lines = found.evaluate("() => navigator.clipboard.readText()").splitlines()
+    assert lines[0].split("\t") == ["Reason", "Type", "Number"]
+    assert sum(int(line.split("\t")[2]) for line in lines[1:]) == 14
+    found.get_by_role("button", name="Discard").click()
+    expect(found.get_by_role("heading", name="Start from a building model")).to_be_visible()
+
+
+def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try_works(page, served, tmp_path):
+    server = served()
+    found = page(server)
+    cut = tmp_path / "cut.ifc"
+    cut.write_bytes(DUPLEX.read_bytes()[:200_000])
+    _choose(found, cut)
+    fault = found.locator(".import-card [role=alert]")
+    expect(fault).to_contain_text("cut.ifc", timeout=READ)
+    expect(fault).to_contain_text("END-ISO-10303-21")
+    expect(found.get_by_role("button", name="Choose a model")).to_be_focused()
+    assert examine(found) == []
+    assert list(server.folder.iterdir()) == []
+    _choose(found, DUPLEX)
+    _see_list(found)
+
+
+def test_a_reading_is_cancelled(page, served):
+    found = page(served())
+    _choose(found, LARGE)
+    found.get_by_role("button", name="Cancel").click()
+    expect(found.locator(".import-card .fault")).to_contain_text("was cancelled. Nothing of it was kept.")
+    expect(found.get_by_role("button", name="Choose a model")).to_be_focused()
+
+
+def test_a_model_dropped_on_an_open_workbook_becomes_another(page, served, tmp_path):
+    server = served(write(tmp_path / "office.xlsx"))
+    before = (tmp_path / "office.xlsx").read_bytes()
+    found = page(server)
+    expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
+    drop(found, "duplex.ifc", DUPLEX.read_bytes())
+    asked = found.get_by_role("dialog")
+    expect(asked).to_contain_text("duplex.ifc is read into a new workbook. office.xlsx stays as it is.")
+    asked.get_by_role("button", name="Cancel").click()
+    expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
+    drop(found, "duplex.ifc", DUPLEX.read_bytes())
+    asked.get_by_role("button", name="Read it", exact=True).click()
+    shown = _see_list(found)
+    expect(found.get_by_role("link", name="Imported")).to_be_hidden()  # office.xlsx was not
+    shown.get_by_role("button", name="Open the workbook").click()
+    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible(timeout=READ)
+    expect(found.locator(".notice")).to_contain_text("choose Shaking in Building")
+    found.locator(".notice").get_by_role("button", name="Choose the shaking").click()
+    expect(found.locator(".sheet-tabs [data-sheet=Building]")).to_have_attribute("aria-selected", "true")
+    assert (tmp_path / "office.xlsx").read_bytes() == before
+
+
+def test_a_cobie_file_is_read_and_an_inventory_opened(page, served, tmp_path):
+    server = served()
+    found = page(server)
+    _choose(found, write_cobie(tmp_path / "handover.xlsx"))
+    shown = _see_list(found, "handover.xlsx")
+    expect(shown).to_contain_text("2 pieces on 2 floors")
+    shown.get_by_text("1 element that is no furniture").click()
+    expect(shown.get_by_role("row", name="Door B 1")).to_be_visible()
+    drop(found, "office.xlsx", write(tmp_path / "office.xlsx").read_bytes())
+    expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_on_a_phone(page, served, theme):
+    found = page(served(), width=WIDTH, height=HEIGHT, color_scheme=theme, has_touch=True)
+    for show in (lambda: None, lambda: (_choose(found, DUPLEX), _see_list(found))):
+        show()
+        assert found.evaluate(OVER_THE_EDGE, WIDTH) == []
+        assert examine(found) == []
+    found.get_by_role("button", name="Open the workbook").click()
+    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible(timeout=READ)
