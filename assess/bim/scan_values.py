@@ -336,5 +336,5 @@ def read_word(value: object) -> str:
 
 def say_word(word: str) -> str:
     """Return a word of the file as people write it: ``washerDryer`` is "Washer dryer"."""
-    parts = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", word.replace("_", " ")).lower()
+    parts = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", word.replace("_", " ")).lower()
     return parts[:1].upper() + parts[1:]

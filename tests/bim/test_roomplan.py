@@ -1,0 +1,296 @@
+"""Scans of RoomPlan, made by hand after its Swift types: pieces, rooms, doors and walls, and what is not taken."""
+
+import copy
+import json
+import math
+from pathlib import Path
+
+import openpyxl
+import pytest
+import shapely
+
+import assess
+from assess.bim.import_workbook import build_workbook
+from assess.bim.model_rows import list_building
+from assess.bim.plan_shapes import to_polygon
+from assess.bim.read_source import read_source
+from assess.bim.roomplan import EXITS, EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, read_roomplan
+from tests.bim.scan_files import element, identify, lie, office, place, wall, write
+
+NAME = "office.json"
+
+
+def read(document):
+    return read_roomplan(write(document), NAME)
+
+
+def pieces_of(model):
+    return {one.key: one for one in model.pieces}
+
+
+def piece(model, name):
+    return pieces_of(model)[identify(name)]
+
+
+# --- pieces ---
+
+
+def test_pieces_have_sizes_positions_and_directions():
+    model = read(office())
+    assert (model.source, model.schema, model.sizes_from) == (NAME, "RoomPlan", "scan")
+    assert [one.type for one in model.pieces] == ["Storage", "Storage", "Table", "Chair"]
+    bookcase, cabinet = piece(model, "bookcase"), piece(model, "cabinet")
+    assert (bookcase.breadth, bookcase.width, bookcase.height) == (0.3, 0.9, 2.0)
+    assert (bookcase.x, bookcase.y) == pytest.approx((0.5, 1.85))
+    assert abs(bookcase.angle_deg) == pytest.approx(90), "its depth runs along Y"
+    assert (cabinet.x, cabinet.y, cabinet.breadth) == pytest.approx((2.275, -0.6, 0.45))
+    assert cabinet.angle_deg == pytest.approx(0, abs=1e-6)
+    assert piece(model, "chair").angle_deg in (pytest.approx(30), pytest.approx(-60)), "it is square"
+    assert [one.bottom for one in model.pieces] == pytest.approx([0] * len(model.pieces), abs=1e-9)
+    assert {one.space for one in model.pieces} == {identify("floor")}
+
+
+def test_texts_for_categories_and_lists_of_columns_mean_the_same():
+    other = office()
+    for kind in ("objects", "walls", "doors", "windows", "floors"):
+        for one in other[kind]:
+            one["category"], one["confidence"] = next(iter(one["category"])), "high"
+            one["transform"] = [one["transform"][at : at + 4] for at in range(0, 16, 4)]
+    assert read(other) == read(office())
+
+
+def test_a_file_of_ios_16_has_neither_floors_nor_storeys():
+    old = office()
+    del old["floors"], old["sections"], old["story"]
+    for kind in ("objects", "walls", "doors", "windows"):
+        for one in old[kind]:
+            del one["story"]
+    model, new = read(old), read(office())
+    assert pieces_of(model).keys() == pieces_of(new).keys()
+    (room,) = model.spaces
+    assert (room.name, to_polygon(room.area).area) == ("Room 1", pytest.approx(20, abs=0.01))
+    assert [one.level for one in model.storeys] == [pytest.approx(0)]
+
+
+@pytest.mark.parametrize("turn", [17.0, -31.0, 44.0])
+def test_a_scan_that_began_askew_is_turned_along_its_walls(turn):
+    """All of it turned about the vertical axis: the plan comes out as before, or a quarter turn from it."""
+    askew, c, s = office(), math.cos(math.radians(turn)), math.sin(math.radians(turn))
+    for kind in ("objects", "walls", "doors", "windows", "floors"):
+        for one in askew[kind]:
+            columns = [one["transform"][at : at + 3] for at in range(0, 16, 4)]
+            one["transform"] = [
+                value
+                for (x, y, z), last in zip(columns, (0, 0, 0, 1), strict=True)
+                for value in (c * x + s * z, y, -s * x + c * z, last)
+            ]
+    model = read(askew)
+    for one in read(office()).pieces:
+        found = pieces_of(model)[one.key]
+        assert (found.x, found.y) == pytest.approx((one.x, one.y), abs=1e-9)
+        assert math.cos(math.radians(2 * (found.angle_deg - one.angle_deg))) == pytest.approx(1)
+    assert shapely.union_all([to_polygon(one) for one in model.walls["0"]]).bounds == pytest.approx(
+        (-2.55, -2.05, 2.55, 2.05), abs=2e-3
+    )
+
+
+def test_what_is_no_piece_is_listed_with_its_reason():
+    scan = office()
+    cabinet = scan["objects"][1]["identifier"]
+    scan["objects"] += [
+        *(
+            element(kind, kind, (0.6, 0.8, 0.6), place(-2, 0.4, 1))
+            for kind in ("sink", "toilet", "bathtub", "fireplace")
+        ),
+        element("oven", "oven", (0.6, 0.6, 0.55), place(2, 0.3, 1), parentIdentifier=cabinet),
+        element("television", "television", (1.2, 0.7, 0.1), place(0, 1.1, 1.9)),
+        element("bed", "tilted", (1, 2, 0.5), lie(0, 0.2, 0)),
+        element("stairs", "stairs", (1, 2.8, 4), place(1, 1.4, 1)),
+    ]
+    model = read(scan)
+    assert pieces_of(model).keys() == pieces_of(read(office())).keys()
+    found = {(one.type, str(one.reason), one.count, one.is_furniture) for one in model.left_out}
+    hanging = "not on the floor: its base is more than 15 cm above it"
+    assert found == {
+        *((kind, "fixed to the building", 1, False) for kind in ("Sink", "Toilet", "Bathtub", "Fireplace", "Stairs")),
+        ("Oven", "built into a cabinet, which is taken", 1, False), ("Bed", "not upright", 1, True),
+        ("Storage", hanging, 1, True), ("Television", hanging, 1, True),
+    }  # fmt: skip
+    assert [(one.storey, one.end) for one in model.stairs] == [("0", "foot")]
+
+
+def test_a_free_standing_oven_and_an_unknown_category_are_taken():
+    scan = office()
+    scan["objects"] += [element("oven", "oven", (0.6, 0.9, 0.6), place(-2, 0.45, 1)),
+                        element("washerDryer", "washer", (0.6, 0.85, 0.6), place(-2, 0.43, 0)),
+                        element("plantPot2D", "pot", (0.4, 0.6, 0.4), place(2, 0.3, 1.5))]  # fmt: skip
+    model = read(scan)
+    assert {one.type: one.is_fitted for one in model.pieces[-3:]} == {
+        "Oven": True, "Washer dryer": False, "Plant pot2d": False,
+    }  # fmt: skip
+
+
+def test_low_confidence_is_taken_and_remarked():
+    scan = office()
+    scan["objects"][0]["confidence"] = {"low": {}}
+    scan["objects"][3]["confidence"] = {"low": {}}
+    assert [str(one) for one in read(scan).remarks] == [
+        "2 pieces were recognised with low confidence: check what they are: Storage (1), Chair (1)."
+    ]
+    assert read(office()).remarks == ()
+
+
+def test_warnings_say_what_a_scan_does_not_know():
+    assert read(office()).warnings == (EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, EXITS)
+    assert "experimentally" in EXPERIMENTAL
+    assert SCANNED_SIZES.startswith("Sizes were measured by scan")
+    assert EXITS not in read(office(doors=[])).warnings
+
+
+@pytest.mark.parametrize("document", [office(objects=[]), office(objects=None)])
+def test_a_scan_without_objects_is_a_remark(document):
+    model = read(document)
+    assert not model.pieces
+    assert [str(one) for one in model.remarks] == ["The scan holds no objects: fill in Items by hand."]
+    assert len(model.spaces) == 1
+
+
+# --- rooms, walls, doors ---
+
+
+def test_rooms_have_outlines_and_names():
+    (room,) = read(office()).spaces
+    assert (room.key, room.storey, room.name) == (identify("floor"), "0", "Living room")
+    assert to_polygon(room.area).bounds == pytest.approx((-2.5, -2, 2.5, 2))
+
+
+def test_a_floor_without_outline_is_a_rectangle():
+    for sizes, at in (((5, 4, 0), lie(0, 0, 0)), ((5, 0, 4), place(0, 0, 0))):
+        (room,) = read(office(floors=[element("floor", "floor", sizes, at)])).spaces
+        assert to_polygon(room.area).bounds == pytest.approx((-2.5, -2, 2.5, 2))
+
+
+def test_walls_that_close_no_room_make_none():
+    scan = office(floors=[])
+    assert len(read(scan).spaces) == 1
+    del scan["walls"][0]
+    model = read(scan)
+    assert not model.spaces
+    assert {one.space for one in model.pieces} == {""}
+
+
+def test_a_room_with_several_uses_has_all_their_names():
+    labels = [{"label": {"kitchen": {}}, "center": [-1, 0, 0]}, {"label": "diningRoom", "center": [1, 0, 0]},
+              {"label": "unidentified", "center": [1, 0, 1]}]  # fmt: skip
+    assert [one.name for one in read(office(sections=labels)).spaces] == ["Kitchen / Dining room"]
+
+
+def test_walls_have_gaps_at_doors_and_windows():
+    model = read(office())
+    walls = shapely.union_all([to_polygon(one) for one in model.walls["0"]])
+    assert not walls.intersects(shapely.Point(-1.5, -2)), "the door"
+    assert not walls.intersects(shapely.Point(1, 2)), "the window"
+    assert walls.covers(shapely.Point(0, -2))
+    (window,) = model.windows["0"]
+    assert to_polygon(window).bounds == pytest.approx((0.4, 1.95, 1.6, 2.05))
+
+
+def test_doors_and_low_openings_are_doors():
+    scan = office()
+    scan["openings"] = [element("opening", "way", (1.2, 2.1, 0), place(2.5, 1.05, -1, 90)),
+                        element("opening", "hatch", (0.8, 0.8, 0), place(2.5, 1.4, 1, 90))]  # fmt: skip
+    door, way = read(scan).doors
+    assert (door.key, door.x, door.y, door.width, door.overall) == (identify("door"), -1.5, -2, 0.9, 0.9)
+    assert math.cos(math.radians(2 * door.normal_deg)) == pytest.approx(-1), "along Y"
+    assert (way.key, way.x, way.y, way.width, way.overall) == (identify("way"), 2.5, 1, 1.2, 0)
+    assert math.cos(math.radians(2 * way.normal_deg)) == pytest.approx(1), "along X"
+
+
+def test_a_curved_wall_is_not_drawn():
+    scan = office()
+    before = read(scan)
+    scan["walls"].append(wall("bay", 0, -3, 4, curve={"radius": 2.0}))
+    model = read(scan)
+    assert model.walls == before.walls
+    assert [str(one) for one in model.remarks] == ["1 curved wall is not drawn."]
+
+
+# --- several rooms and storeys ---
+
+
+def structure():
+    """Two rooms side by side below, one above at 2.8 m with a stair, merged; its rooms lie in axes of their own."""
+    below, beside, above = (office(identifier=identify(name)) for name in ("a", "b", "c"))
+    merged = {"identifier": identify("structure"), "version": 2, "rooms": [below, beside, above]}
+    for number, (room, (x, y, story)) in enumerate(
+        zip((below, beside, above), ((0, 0, 0), (5.1, 0, 0), (0, 2.8, 1)), strict=True)
+    ):
+        for kind in ("walls", "doors", "windows", "openings", "floors", "objects"):
+            moved = copy.deepcopy(room[kind])
+            for one in moved:
+                one["identifier"], one["story"], one["parentIdentifier"] = f"{one['identifier']} {number}", story, None
+                one["transform"][12] += x
+                one["transform"][13] += y
+            merged[kind] = [*merged.get(kind, ()), *moved]
+    merged["sections"] = [
+        {"label": "livingRoom", "center": [0, 0, 0], "story": 0}, {"label": "kitchen", "center": [5, 0, 0], "story": 0},
+        {"label": "bedroom", "center": [0, 2.8, 0], "story": 1},
+    ]  # fmt: skip
+    merged["objects"].append(element("stairs", "stairs", (1, 2.8, 3), place(1.9, 1.4, 0)))
+    return merged
+
+
+def test_a_structure_has_storeys_and_named_rooms():
+    model = read(structure())
+    assert [(one.key, one.name, one.elevation) for one in model.storeys] == [
+        ("0", "Storey 0", 0), ("1", "Storey 1", pytest.approx(2.8)),
+    ]  # fmt: skip
+    assert [(one.storey, one.name) for one in model.spaces] == [
+        ("0", "Living room"), ("0", "Kitchen"), ("1", "Bedroom"),
+    ]  # fmt: skip
+    rooms = {one.key: one.name for one in model.spaces}
+    assert [rooms[one.space] for one in model.pieces if one.type == "Table"] == ["Living room", "Kitchen", "Bedroom"]
+    assert [one.bottom for one in model.pieces] == pytest.approx([0] * len(model.pieces), abs=1e-9)
+    assert [(one.storey, one.end) for one in model.stairs] == [("0", "foot"), ("1", "head")]
+
+
+def test_rooms_that_were_not_merged_are_taken_with_a_warning():
+    both = [office(), office(identifier=identify("b"))]
+    for one in both[1]["objects"]:
+        one["identifier"] += " b"
+    listed, named = read(both), read({"rooms": both})
+    assert listed == named
+    assert len(listed.pieces) == 8
+    assert any("The 2 rooms were scanned one by one" in str(one) for one in listed.warnings)
+    assert not any("one by one" in str(one) for one in read(structure()).warnings)
+
+
+# --- as a workbook ---
+
+
+def test_a_scan_becomes_a_workbook_that_is_read(tmp_path):
+    found = list_building(read(structure()))
+    assert {row["sizes_from"] for row in found.items} == {"scan"}
+    assert [row["floor"] for row in found.floors] == ["Storey 0", "Storey 1"]
+    assert set(found.files) == {row["plan"] for row in found.floors}
+    assert "height" not in found.building, "a ceiling is no roof"
+    (tmp_path / "w.xlsx").write_bytes(build_workbook(found))
+    for name, data in found.files.items():
+        (tmp_path / name).write_bytes(data)
+    book = openpyxl.load_workbook(tmp_path / "w.xlsx")
+    letters = {str(cell.value): cell.column_letter for cell in book["Floors"][1]}
+    for row in (2, 3):
+        book["Floors"][f"{letters['PFA X [g]']}{row}"] = 0.4
+    book.save(tmp_path / "w.xlsx")
+    inventory = assess.read_inventory(tmp_path / "w.xlsx")
+    assert [one.is_scanned for one in inventory.items] == [True] * len(found.items)
+    assert {one.room for one in inventory.items} <= {one.place for one in inventory.places}
+    assert all(floor.plan for floor in inventory.floors)
+
+
+def test_the_reader_of_files_knows_it(tmp_path):
+    path = tmp_path / "scan.json"
+    path.write_bytes(b"\xef\xbb\xbf" + json.dumps(office(), indent=1).encode())
+    found = read_source(Path(path), "scan.json")
+    assert len(found.items) == 4
+    assert [row["type"] for row in found.items]
