@@ -140,9 +140,13 @@ def _footprint(piece: Piece) -> shapely.Polygon:
 
 def box_at(at: Point, normal: Point, along: float, across: float, behind: float | None = None) -> shapely.Polygon:
     """Return a rectangle: `along` a direction, `behind` against it (as far, if not given) and `across` each way [m]."""
-    (x, y), (u, v) = at, normal
     back = -along if behind is None else -behind
-    corners = ((along, -across), (along, across), (back, across), (back, -across))
+    return place_at(at, normal, ((along, -across), (along, across), (back, across), (back, -across)))
+
+
+def place_at(at: Point, normal: Point, corners: Sequence[Point]) -> shapely.Polygon:
+    """Return a polygon whose corners are given along a direction and to the left of it, from a point [m]."""
+    (x, y), (u, v) = at, normal
     return shapely.Polygon([(x + a * u - b * v, y + a * v + b * u) for a, b in corners])
 
 
@@ -198,19 +202,22 @@ class Room:
     links: tuple[Link, ...]
 
     def passage(self, link: Link, depth: float) -> BaseGeometry:
-        """Return where ways may run through a link, up to `depth` [m] into the room."""
+        """Return where ways may run through a link, up to `depth` [m] into the room; before a door they may fan out."""
         at = shapely.Point(link.at)
         reach = self.floor.distance(at)
-        half = max(link.width / 2 - JAMB, NARROWEST) if link.overall > 0 else max(link.width / 2 - depth, JAMB / 2)
         if link.normal == (0.0, 0.0):
             inner = self.floor.buffer(-depth)
             way = shapely.shortest_line(at, self.floor if inner.is_empty else inner)
             return way.buffer(NARROWEST).intersection(shapely.union_all([self.floor, way.buffer(NARROWEST / 2)]))
-        inward = self.inward(link)
+        inward, far = self.inward(link), reach + depth + JAMB
+        if link.overall <= 0:
+            half = max(link.width / 2 - depth, JAMB / 2)
+            before = box_at(link.at, inward, far, half, 0.0)
+        else:
+            half = max(link.width / 2 - JAMB, NARROWEST)
+            before = place_at(link.at, inward, ((0.0, half), (far, half + far), (far, -half - far), (0.0, -half)))
         through = box_at(link.at, inward, reach + JAMB / 2, half, JAMB / 2)
-        return shapely.union_all([
-            through, box_at(link.at, inward, reach + depth + JAMB, half, 0.0).intersection(self.floor)
-        ])  # fmt: skip
+        return shapely.union_all([through, before.intersection(self.floor)])
 
     def inward(self, link: Link) -> Point:
         """Return the direction of the normal of a link that points into the room."""

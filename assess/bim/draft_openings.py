@@ -32,6 +32,8 @@ SAME = 1.0
 """Two openings between the same rooms that are nearer than this are one [m]."""
 MOST_RAYS = 200_000
 """So many rays are followed on a storey; rooms with more edges than that are left out."""
+AT_ONCE, MOST_HITS = 5_000, 1_000_000
+"""Rays that are followed at once, and hits of rooms after which no more are: rooms that lie in each other have many."""
 
 FloatArray = NDArray[np.float64]
 
@@ -101,21 +103,28 @@ def _find_reached(plan: FloorPlan, rays: _Rays, doors: Sequence[Door]) -> tuple[
 
     The number is -1 where it meets a wall, a window or a door, or no room.
     """
-    ends = np.stack([rays.at - INSIDE * rays.outward, rays.at + WIDEST_GAP * rays.outward], axis=1)
-    lines: Any = shapely.linestrings(ends)
+    lines = _draw(rays)
     shut, full = np.zeros(len(lines), dtype=np.bool_), np.zeros(len(lines), dtype=np.bool_)
     zones = [_door_zone(door) for door in doors]
     for shapes, met in ((plan.solids, shut), (zones, shut), (plan.footprints, full)):
         if shapes:
             met[np.unique(shapely.STRtree(shapes).query(lines, predicate="intersects")[0])] = True
-    hits, rooms = plan.tree.query(lines, predicate="intersects")
-    near = np.array([*shapely.distance(shapely.points(rays.at[hits]), np.array(plan.polygons)[rooms])])
-    found = [-1] * len(lines)
-    for at in np.lexsort((rooms, near))[::-1]:  # the nearest last, which stays
-        ray = int(hits[at])
-        if not shut[ray] and rooms[at] != rays.room[ray]:
-            found[ray] = int(rooms[at])
-    return found, full.tolist()
+    found, polygons, budget = np.full(len(lines), -1), np.array(plan.polygons), MOST_HITS
+    for chosen in np.array_split(np.flatnonzero(~shut), max(1, len(lines) // AT_ONCE)):
+        hits, rooms = plan.tree.query(lines[chosen], predicate="intersects")
+        hits, rooms = (one[rooms != rays.room[chosen[hits]]] for one in (chosen[hits], rooms))
+        near = shapely.distance(shapely.points(rays.at[hits]), polygons[rooms])
+        order = np.lexsort((rooms, near))[::-1]  # the nearest last, which stays
+        found[hits[order]] = rooms[order]
+        budget -= len(hits)
+        if budget < 0:
+            break
+    return found.tolist(), full.tolist()
+
+
+def _draw(rays: _Rays) -> Any:
+    """Return the rays as lines, (n,)."""
+    return shapely.linestrings(np.stack([rays.at - INSIDE * rays.outward, rays.at + WIDEST_GAP * rays.outward], axis=1))
 
 
 def _door_zone(door: Door) -> shapely.Polygon:

@@ -6,7 +6,7 @@ distance is reduced, then furniture is walked through: what stands in a way is f
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import pairwise, product
 
 import networkx as nx
 import numpy as np
@@ -29,7 +29,7 @@ SHORTEST = 0.05
 TIGHT = 0.01
 """What rounding may take of the floor [m]."""
 MOST_CORNERS, NEAREST = 100, 20
-"""In a room with more corners than this each is joined to so many of its nearest only."""
+"""In a room with more corners, or more doors, than this each is joined to so many of its nearest only."""
 MOST_OF_ROOM = 1500
 """Corners of one room that are used; of more, those are left out that are far from its doors."""
 
@@ -57,14 +57,12 @@ class Ways:
         """Return where a node is."""
         return self.ends[name] if name in self.ends else self.points[name]
 
-    def add(self, points: Iterable[Point]) -> list[str]:
-        """Add nodes, but for those that are where there is one already; return their names."""
-        names = []
-        for point in points:
-            name = f"point {self.room.space.key} {len(self.points)}"
-            self.points[name] = point
-            names.append(name)
-        return names
+    def add(self, points: Iterable[Point]) -> dict[str, Point]:
+        """Add nodes; return them by name."""
+        start = len(self.points)
+        added = {f"point {self.room.space.key} {start + at}": point for at, point in enumerate(points)}
+        self.points |= added
+        return added
 
     def join(self, pairs: Sequence[tuple[str, str]], area: BaseGeometry, cost: float) -> None:
         """Join nodes that see each other in an area."""
@@ -120,9 +118,8 @@ def _walk(ways: Ways, distance: float, floor: BaseGeometry, cost: float) -> None
         for x, y in (room.inward(link),)
         for far in (room.floor.distance(shapely.Point(link.at)) + distance + TIGHT,)
     ]
-    corners = _choose(ways, [*before, *_list_corners(inner)])
-    names = ways.add(corners)
-    ways.join(_pair(list(ways.ends), names, corners), area, cost)
+    corners = ways.add(_choose(ways, [*before, *_list_corners(inner)]))
+    ways.join(_pair(ways.ends, corners), area, cost)
 
 
 def _clear(room: Room, link: Link, distance: float, floor: BaseGeometry) -> BaseGeometry:
@@ -163,18 +160,21 @@ def _choose(ways: Ways, points: Iterable[Point]) -> list[Point]:
     return list(grid.values())
 
 
-def _pair(ends: Sequence[str], names: Sequence[str], corners: Sequence[Point]) -> list[tuple[str, str]]:
-    """Return the nodes that may see each other: each end and all others, and corners with each other, or near ones."""
-    pairs = [*combinations(ends, 2), *((end, name) for end in ends for name in names)]
-    if len(names) <= MOST_CORNERS:
-        return pairs + list(combinations(names, 2))
-    places = np.array(corners)
-    near = {
-        (min(at, int(other)), max(at, int(other)))
-        for at in range(len(names))
-        for other in np.argsort(((places - places[at]) ** 2).sum(axis=1), kind="stable")[1 : NEAREST + 1]
-    }
-    return pairs + [(names[one], names[other]) for one, other in sorted(near)]
+def _pair(ends: Mapping[str, Point], corners: Mapping[str, Point]) -> list[tuple[str, str]]:
+    """Return the nodes of two groups that may see each other: all, or where there are many, those that are near."""
+    near = {tuple(sorted(pair)) for pair in (*_near(ends, ends), *_near(ends, corners), *_near(corners, corners))}
+    return sorted((one, other) for one, other in near if one != other)
+
+
+def _near(own: Mapping[str, Point], others: Mapping[str, Point]) -> Iterator[tuple[str, str]]:
+    """Yield each of some nodes with each of others, or with its nearest where they are many."""
+    if max(len(own), len(others)) <= MOST_CORNERS:
+        yield from product(own, others)
+        return
+    names, places = list(others), np.array([*others.values()])
+    for name, at in own.items():
+        far = ((places - at) ** 2).sum(axis=1)
+        yield from ((name, names[one]) for one in np.argsort(far, kind="stable")[: NEAREST + 1].tolist())
 
 
 # ---------------------------------------------------------------- corridors
@@ -195,8 +195,7 @@ def _follow_axes(ways: Ways) -> None:
     pairs = {(name, spot) for name, spots in own.items() for spot in spots if name in ways.ends and name != spot}
     pairs |= {(one, other) for at in range(len(joints)) for one in own.get(f"from {joints[at][0]}", ())
               for other in own.get(joints[at][0], ()) if one != other}  # fmt: skip
-    loose = [name for name in ways.ends if name not in own]
-    pairs |= {(name, spot) for name in loose for spot in ways.points}
+    pairs |= {*_near({name: at for name, at in ways.ends.items() if name not in own}, ways.points)}
     ways.join(sorted(pairs), area, 1.0)
 
 
@@ -209,7 +208,7 @@ def _add_axis(ways: Ways, axis: Axis, spots: Sequence[Spot], own: dict[str, list
     names = []
     for spot in spots:
         on_axis = (name for name in spot.joined if name in ways.ends and _is_on(axis, ways.ends[name]))
-        name = next(on_axis, "") or ways.add([axis.point(spot.along)])[0]
+        name = next(on_axis, "") or next(iter(ways.add([axis.point(spot.along)])))
         names.append(name)
         for joined in spot.joined:
             own.setdefault(joined, []).append(name)

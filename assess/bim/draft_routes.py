@@ -103,10 +103,14 @@ class _Sheet:
     places: list[dict[str, Any]] = field(default_factory=list)
     _named: dict[str, str] = field(default_factory=dict)
     _taken: set[str] = field(default_factory=set)
+    _openings: dict[str, list[Link]] = field(default_factory=dict)
 
     def list_routes(self) -> Iterator[dict[str, Any]]:
         """Yield the rows of Routes: by storey, and from the farthest room to the end of each route."""
         self._taken = {key(name) for name in self.names.values()}
+        for opening in self.network.openings:
+            for space in opening.spaces:
+                self._openings.setdefault(space, []).append(opening)
         of_target: dict[str, list[Step]] = {}
         for step in self.steps.values():
             of_target.setdefault(step.target, []).append(step)
@@ -176,8 +180,8 @@ class _Sheet:
         line = shapely.LineString([ends[0].at, ends[1].at])
         plan = self.network.plans[ends[0].storey]
         found = [space, *plan.spaces_along(line, IN_ROOM)]
-        for opening in self.network.openings:
-            if space in opening.spaces and line.distance(shapely.Point(opening.at)) <= FALLS_OVER:
+        for opening in self._openings.get(space, ()):
+            if line.distance(shapely.Point(opening.at)) <= FALLS_OVER:
                 found += [one for one in opening.spaces if not plan.hides(line, one, BEHIND_WALL)]
         rooms = [self.names[one] for one in dict.fromkeys(found)]
         return "" if any(";" in room for room in rooms) else "; ".join(rooms)

@@ -1,0 +1,122 @@
+"""What lies on either side of doors, which of them lead out, and which storey is the ground."""
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from assess.bim.building_model import BuildingModel, Space, Storey
+from assess.bim.door_sides import find_ground, find_kinds, find_sides
+from assess.bim.ifc_model import read_model
+from tests.bim.office_models import door, rectangle
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+
+
+def room(key: str, *corners: float, storey: str = "0") -> Space:
+    return Space(key, storey, key, "", rectangle(*corners), 0.0, 3.0)
+
+
+TWO = room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4)
+
+
+def model(*doors, spaces=TWO, elevations=(0.0,)) -> BuildingModel:
+    storeys = tuple(Storey(str(at), f"Level {at}", z, z) for at, z in enumerate(elevations))
+    return BuildingModel(source="a.ifc", schema="IFC4", storeys=storeys, spaces=spaces, doors=doors)
+
+
+def count(found: BuildingModel) -> dict[str, Counter[str]]:
+    kinds, names = find_kinds(found), {one.key: one.name for one in found.storeys}
+    counts: dict[str, Counter[str]] = {}
+    for one in found.doors:
+        counts.setdefault(names[one.storey], Counter())[kinds[one.key]] += 1
+    return counts
+
+
+# ---------------------------------------------------------------- published models
+
+
+def test_large_building_10_of_18_doors_lead_out():
+    found = read_model(MODELS / "LargeBuilding.ifc", "LargeBuilding.ifc")
+    assert count(found) == {"Level 1": {"exit": 10, "inside": 8}}
+
+
+def test_duplex_4_of_6_doors_of_its_ground_storey_lead_out():
+    found = read_model(MODELS / "duplex.ifc", "duplex.ifc")
+    assert count(found) == {"Level 1": {"exit": 4, "inside": 2}, "Level 2": {"inside": 8}}
+    assert find_ground(found).name == "Level 1"
+
+
+# ---------------------------------------------------------------- sides
+
+
+@pytest.mark.parametrize(
+    ("at", "kind", "sides"),
+    [
+        ((4.05, 2.0, 0.0), "inside", ("b", "a")),
+        ((4.05, 2.0, 180.0), "inside", ("a", "b")),
+        ((-0.05, 2.0, 0.0), "exit", ("a", "")),
+        ((-0.05, 2.0, 180.0), "exit", ("", "a")),
+        ((2.0, 2.0, 37.0), "same room", ("a", "a")),
+        ((20.0, 2.0, 0.0), "no room", ("", "")),
+    ],
+)
+def test_each_side_has_a_space_or_none(at, kind, sides):
+    found = model(door("d", *at))
+    assert (find_sides(found), find_kinds(found)) == ({"d": sides}, {"d": kind})
+
+
+def test_of_spaces_in_each_other_the_smallest_counts():
+    """Some programs export a whole storey as a space, too."""
+    zone = room("zone", -1, -1, 9, 5)
+    found = model(door("d", 4.05, 2.0, 0.0), spaces=(zone, room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4)))
+    assert find_sides(found) == {"d": ("b", "a")}
+
+
+def test_a_room_is_found_behind_a_thick_finish():
+    found = model(replace(door("d", 4.25, 2.0, 0.0), thickness=0.1),
+                  spaces=(room("a", 0, 0, 4, 4), room("b", 4.7, 0, 8, 4)))  # fmt: skip
+    assert find_sides(found) == {"d": ("b", "a")}
+
+
+def test_spaces_of_other_storeys_are_on_no_side():
+    found = model(door("d", 4.05, 2.0, 0.0), spaces=(room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4, storey="1")),
+                  elevations=(0.0, 3.0))  # fmt: skip
+    assert find_sides(found) == {"d": ("", "a")}
+
+
+# ---------------------------------------------------------------- the ground storey
+
+
+@pytest.mark.parametrize(
+    ("elevations", "ground"),
+    [
+        ((0.0, 3.0, 6.0), "Level 0"),
+        ((-3.0, 0.0, 3.0), "Level 1"),
+        ((-6.0, -3.0, -0.4), "Level 2"),  # a few steps down
+        ((-9.0, -6.0, -3.0), "Level 2"),  # all below: the highest
+        ((1.2, 4.0, 7.0), "Level 0"),
+        ((520.0, 523.0, 526.0), "Level 0"),  # elevations above the sea
+    ],
+)
+def test_the_ground_is_the_lowest_storey_with_doors_that_is_no_basement(elevations, ground):
+    keys = ("0", "1", "2")
+    found = model(
+        *(door(f"d{key}", -0.05, 2.0, 0.0, key) for key in keys),
+        spaces=tuple(room(f"r{key}", 0, 0, 4, 4, storey=key) for key in keys),
+        elevations=elevations,
+    )
+    assert find_ground(found).name == ground
+    kinds = find_kinds(found)
+    assert {key: kinds[f"d{key}"] for key in keys} == {
+        key: "exit" if f"Level {key}" == ground else "outside" for key in keys
+    }
+
+
+def test_a_storey_without_rooms_or_doors_is_not_the_ground():
+    foundation_and_slab = model(door("d", -0.05, 2.0, 0.0, "2"), spaces=(room("a", 0, 0, 4, 4, storey="2"),),
+                                elevations=(-0.5, -0.1, 0.0))  # fmt: skip
+    assert find_ground(foundation_and_slab).name == "Level 2"
+    assert find_ground(model(spaces=())) is None
+    assert find_ground(model()) is None

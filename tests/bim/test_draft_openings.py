@@ -1,0 +1,101 @@
+"""Openings without doors: where two rooms are next to each other with no wall between."""
+
+from dataclasses import replace
+
+import pytest
+
+from assess.bim.building_model import BuildingModel, Space, Storey
+from assess.bim.draft_floor import build_plan
+from assess.bim.draft_openings import find_openings
+from tests.bim.office_models import door, piece, rectangle
+
+FAR_WALL = rectangle(-1, -1, -0.9, 5)
+"""A storey has walls, at least somewhere."""
+
+
+def room(key: str, *corners: float) -> Space:
+    return Space(key, "0", key, "", rectangle(*corners), 0.0, 3.0)
+
+
+TWO = room("a", 0, 0, 4, 4), room("b", 4.2, 0, 8, 4)
+
+
+def model(*walls, spaces=TWO, **more) -> BuildingModel:
+    return BuildingModel(source="a.ifc", schema="IFC4", storeys=(Storey("0", "Level 0", 0.0, 0.0),), spaces=spaces,
+                         walls={"0": (FAR_WALL, *walls)}, **more)  # fmt: skip
+
+
+def find(found: BuildingModel) -> list[tuple[set[str], float, float, float]]:
+    """Return the rooms of each opening, its centre and its width [m], to 10 cm."""
+    links = find_openings(build_plan(found, found.storeys[0]), found.doors)
+    return [(set(one.spaces), round(one.at[0], 1), round(one.at[1], 1), round(one.width, 1)) for one in links]
+
+
+def walls_but(low: float, high: float, x: float = 4.0) -> list[object]:
+    """Return a wall with a gap in it."""
+    return [rectangle(x, -0.1, x + 0.2, low), rectangle(x, high, x + 0.2, 4.1)]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "found"),
+    [
+        (0.0, 4.0, [({"a", "b"}, 4.1, 2.0, 4.0)]),
+        (1.0, 2.0, [({"a", "b"}, 4.1, 1.5, 1.0)]),
+        (1.0, 1.7, [({"a", "b"}, 4.1, 1.4, 0.7)]),
+        (1.0, 1.4, []),
+        (4.0, 4.0, []),
+    ],
+)
+def test_a_gap_in_a_wall_is_an_opening_where_a_person_can_pass(low, high, found):
+    assert find(model(*walls_but(low, high))) == found
+
+
+def test_rooms_that_touch_or_overlap_are_open_to_each_other():
+    touching = room("a", 0, 0, 4, 4), room("b", 4, 0, 8, 4)
+    overlapping = room("a", 0, 0, 4.3, 4), room("b", 4, 0, 8, 4)
+    assert find(model(spaces=touching)) == [({"a", "b"}, 4.0, 2.0, 4.0)]
+    assert [one[0] for one in find(model(spaces=overlapping))] == [{"a", "b"}]
+
+
+def test_rooms_drawn_to_the_middle_of_a_wall_are_not():
+    spaces = room("a", 0, 0, 4.1, 4), room("b", 4.1, 0, 8, 4)
+    assert find(model(rectangle(4.0, -0.1, 4.2, 4.1), spaces=spaces)) == []
+
+
+def test_a_thin_wall_inside_the_gap_shuts_it():
+    assert find(model(rectangle(4.08, -0.1, 4.12, 4.1))) == []
+
+
+def test_a_window_shuts_a_gap():
+    shut = model(*walls_but(1.0, 2.0), windows={"0": (rectangle(4.05, 1.0, 4.15, 2.0),)})
+    assert find(shut) == []
+
+
+def test_a_door_is_no_opening_besides():
+    assert find(model(*walls_but(1.05, 1.95), doors=(door("d", 4.1, 1.5, 0.0),))) == []
+
+
+def test_rooms_far_apart_are_not_joined():
+    assert find(model(spaces=(room("a", 0, 0, 4, 4), room("b", 4.8, 0, 8, 4)))) == []
+
+
+def test_without_walls_nothing_is_known():
+    assert find(replace(model(), walls={})) == []
+
+
+def test_the_part_without_furniture_is_passed():
+    counter = piece("counter", 4.1, 1.2, breadth=0.6, width=2.4, height=0.9, angle_deg=0.0)
+    assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, 3.2, 1.6)]
+
+
+def test_an_opening_full_of_furniture_is_one_still():
+    """Whether it can be passed is for the person who walks the draft to say."""
+    counter = piece("counter", 4.1, 2.0, breadth=0.6, width=4.2, height=0.9, angle_deg=0.0)
+    assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, 2.0, 4.0)]
+
+
+def test_a_room_in_a_corner_is_entered_from_both_sides():
+    """The edge between two rooms bends: each straight part is one."""
+    hall = Space("a", "0", "a", "", (((0, 0), (8, 0), (8, 4), (4, 4), (4, 2), (0, 2)),), 0.0, 3.0)
+    found = find(model(spaces=(hall, room("b", 0, 2, 4, 4))))
+    assert {one[1:3] for one in found} == {(2.0, 2.0), (4.0, 3.0)}

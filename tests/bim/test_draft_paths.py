@@ -1,0 +1,160 @@
+"""Ways inside one room: round walls and furniture, along the middle of corridors."""
+
+import networkx as nx
+import pytest
+from shapely import LineString, MultiPolygon, Polygon, box
+
+from assess.bim.building_model import Space, Storey
+from assess.bim.draft_corridors import find_axes, find_spots, find_width, is_corridor, measure_width
+from assess.bim.draft_floor import FloorPlan, Link, Room, build_rooms
+from assess.bim.draft_paths import Ways, find_ways
+
+STOREY = Storey("0", "Level 0", 0.0, 0.0)
+
+
+def link(name: str, x: float, y: float, normal: tuple[float, float] = (0.0, 1.0)) -> Link:
+    return Link(name, (x, y), normal, 0.9, 0.8, ("a",), 0.9)
+
+
+def build(area: Polygon, *links: Link, solids: tuple[Polygon, ...] = (), pieces: tuple[Polygon, ...] = ()) -> Room:
+    plan = FloorPlan(STOREY, (Space("a", "0", "a", "", (), 0.0, 3.0),), (area,), solids, pieces)
+    return build_rooms(plan, links)["a"]
+
+
+def follow(ways: Ways, start: str, end: str) -> LineString:
+    """Return the cheapest way between two nodes."""
+    graph = nx.Graph([(one.start, one.end, {"cost": one.cost}) for one in ways.found])
+    return LineString([ways.at(name) for name in nx.dijkstra_path(graph, start, end, weight="cost")])
+
+
+# ---------------------------------------------------------------- rooms
+
+
+def test_a_way_is_straight_where_nothing_is_in_it():
+    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 5.0, 5.05))
+    way = follow(find_ways(room, "room a", (3.0, 2.5)), "one", "two")
+    assert list(way.coords) == [(1.0, -0.05), (5.0, 5.05)]
+
+
+def test_a_way_goes_round_furniture_so_that_a_standing_piece_does_not_narrow_it():
+    table = box(1.5, 2, 4.5, 3)
+    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=(table,))
+    way = follow(find_ways(room, "room a", (0.8, 1.0)), "one", "two")
+    assert way.distance(table) >= 0.45
+    assert 5.1 < way.length < 8
+
+
+def test_a_way_goes_closer_to_furniture_where_it_must():
+    tables = box(0, 2, 2.6, 3), box(3.4, 2, 6, 3)  # 0.8 m between them
+    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=tables)
+    way = follow(find_ways(room, "room a", (1.0, 1.0)), "one", "two")
+    assert 0.35 <= way.distance(MultiPolygon(tables)) < 0.45
+
+
+def test_a_way_goes_through_furniture_where_there_is_no_other():
+    """What stands in the way is for the assessment to find."""
+    barrier = box(0, 2, 6, 3)
+    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=(barrier,))
+    way = follow(find_ways(room, "room a", (1.0, 1.0)), "one", "two")
+    assert way.intersects(barrier)
+
+
+def test_a_way_goes_round_walls_inside_a_room():
+    wall = box(0, 2.4, 4.5, 2.6)
+    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(wall,))
+    way = follow(find_ways(room, "room a", (3.0, 1.0)), "one", "two")
+    assert way.distance(wall) >= 0.45
+
+
+def test_parts_of_a_room_that_a_wall_divides_are_not_joined():
+    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(box(-1, 2.4, 7, 2.6),))
+    ways = find_ways(room, "room a", (3.0, 1.0))
+    graph = nx.Graph([(one.start, one.end) for one in ways.found])
+    assert nx.has_path(graph, "one", "room a")
+    assert "two" not in graph or not nx.has_path(graph, "one", "two")
+
+
+def test_a_way_through_a_door_does_not_cut_the_wall():
+    """A door close to a corner, in a thick wall: the way bends in front of it."""
+    room = build(box(0, 0, 8, 5), link("one", 0.6, -0.2), link("two", 7.4, -0.2))
+    way = follow(find_ways(room, "room a", (4.0, 2.5)), "one", "two")
+    openings = [box(x - 0.45, -0.4, x + 0.45, 0) for x in (0.6, 7.4)]
+    assert MultiPolygon([box(0, 0, 8, 5), *openings]).buffer(0.01).covers(way)
+
+
+@pytest.mark.parametrize("count", [40, 400])
+def test_a_large_room_full_of_desks_is_crossed_between_them(count):
+    desks = tuple(box(x, y, x + 1.6, y + 0.8) for x in range(2, 40, 3) for y in range(2, 40, 2))[:count]
+    room = build(box(0, 0, 42, 42), link("one", 1.0, -0.05), link("two", 41.0, 42.05), pieces=desks)
+    way = follow(find_ways(room, "room a", (1.0, 41.0)), "one", "two")
+    assert way.distance(MultiPolygon(desks)) >= 0.35
+    assert way.length < 1.3 * 58
+
+
+# ---------------------------------------------------------------- corridors
+
+
+BAR, ELL = box(0, 0, 20, 1.8), box(0, 0, 20, 1.8).union(box(18.2, 0, 20, 12))
+TEE = box(0, 0, 20, 1.8).union(box(9.1, 1.8, 10.9, 12))
+RING = box(0, 0, 20, 16).difference(box(1.8, 1.8, 18.2, 14.2))
+
+
+@pytest.mark.parametrize(
+    ("area", "width"),
+    [
+        (BAR, 1.8), (ELL, 1.8), (TEE, 1.8), (box(0, 0, 30, 4), 4.0), (box(0, 0, 60, 2).union(box(30, 2, 31, 2.4)), 2.0),
+        (box(0, 0, 6, 4), 0.0), (box(0, 0, 9, 4), 0.0), (box(0, 0, 12, 6), 0.0), (box(0, 0, 12, 0.4), 0.0),
+        (box(0, 0, 90, 8), 0.0),
+    ],
+)  # fmt: skip
+def test_corridors_are_long_and_narrow(area, width):
+    assert find_width(area) == pytest.approx(width, abs=0.12)
+
+
+def test_a_narrow_store_with_one_door_is_no_corridor():
+    door, other = link("one", 1.0, -0.05), link("two", 19.0, -0.05)
+    assert not is_corridor(build(BAR, door))
+    assert is_corridor(build(BAR, door, other))
+
+
+@pytest.mark.parametrize(
+    ("area", "axes"), [(BAR, [20.0]), (ELL, [18.2, 10.2]), (TEE, [9.1, 9.1, 10.2]), (RING, [16.4, 16.4, 12.4, 12.4])]
+)
+def test_the_middle_lines_between_facing_walls(area, axes):
+    found = find_axes(build(area))
+    assert sorted(one.length for one in found) == pytest.approx(sorted(axes), abs=0.1)
+    for one in found:
+        assert one.width == pytest.approx(1.8, abs=0.01)
+        assert LineString([one.start, one.end]).buffer(0.85, cap_style="flat").difference(area).area < 0.01
+
+
+@pytest.mark.parametrize("area", [BAR, ELL, TEE, RING], ids=["straight", "bent", "branching", "round"])
+def test_ways_in_a_corridor_run_in_its_middle(area):
+    doors = [link(f"door {x}", x, -0.05) for x in (2.0, 5.0, 8.0, 13.0, 16.0)]
+    ways = find_ways(build(area, *doors), "room a", (10.0, 0.9))
+    way = follow(ways, "door 2.0", "door 16.0")
+    assert {round(y, 2) for _, y in way.coords} == {-0.05, 0.9}
+    assert any(one.width == pytest.approx(1.8) for one in ways.found)
+
+
+def test_a_branch_and_both_arms_are_joined():
+    doors = link("left", -0.05, 0.9, (1.0, 0.0)), link("right", 20.05, 0.9, (1.0, 0.0)), link("stem", 10.0, 12.05)
+    ways = find_ways(build(TEE, *doors), "room a", (10.0, 6.0))
+    for start, end, most in (("left", "right", 21.0), ("left", "stem", 21.5), ("right", "stem", 21.5)):
+        way = follow(ways, start, end)
+        assert TEE.buffer(0.06).covers(way)
+        assert way.length < most
+
+
+def test_doors_that_face_each_other_share_a_place_on_the_middle_line():
+    doors = link("one", 5.0, -0.05), link("two", 5.3, 1.85), link("three", 12.0, 1.85)
+    axis = find_axes(build(BAR, *doors))[0]
+    spots = find_spots(axis, [(one.name, one.at) for one in doors])
+    assert sorted(sorted(one.joined) for one in spots if one.joined) == [["one", "two"], ["three"]]
+
+
+def test_columns_and_niches_change_the_free_width():
+    column = box(9.8, 0, 10.2, 0.3)
+    floor = BAR.difference(column).union(box(4, 1.8, 5, 2.4))
+    assert measure_width(1.8, ((8.0, 0.9), (12.0, 0.9)), floor) == pytest.approx(1.2, abs=0.01)
+    assert measure_width(1.8, ((2.0, 0.9), (8.0, 0.9)), floor) == pytest.approx(1.8, abs=0.01)

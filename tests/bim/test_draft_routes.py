@@ -1,0 +1,413 @@
+"""Routes drafted from building models: every room is joined to a way out, through doors and not through walls."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import networkx as nx
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shapely import LineString, Point, union_all
+
+from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
+from assess.bim.door_sides import find_kinds, find_normal
+from assess.bim.draft_floor import FAR, box_at, build_plan, find_room_points
+from assess.bim.draft_routes import DraftRoutes, draft_routes
+from assess.bim.ifc_model import read_model
+from assess.bim.plan_shapes import to_polygon
+from assess.i18n import load_catalogue, speaking
+from assess.workbook.draft_names import LONGEST, is_draft
+from assess.workbook.names import key
+from assess.workbook.schema import DEFAULT_WIDTH
+from tests.bim.office_models import build_office, door, name_all, piece, rectangle
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+BESIDE = 0.05
+"""By so much a segment may leave rooms and doors [m]."""
+
+
+@pytest.fixture(scope="module")
+def duplex() -> BuildingModel:
+    return read_model(MODELS / "duplex.ifc", "duplex.ifc")
+
+
+@pytest.fixture(scope="module")
+def large() -> BuildingModel:
+    return read_model(MODELS / "LargeBuilding.ifc", "LargeBuilding.ifc")
+
+
+OFFICES = {
+    "one storey": build_office(2, 4),
+    "two storeys": build_office(1, 4, storeys=2),
+    "bare": build_office(1, 5, storeys=3, furnished=False),
+}
+
+
+@pytest.fixture(params=["duplex", "large", *OFFICES])
+def model(request) -> BuildingModel:
+    return OFFICES[request.param] if request.param in OFFICES else request.getfixturevalue(request.param)
+
+
+# ---------------------------------------------------------------- what is looked at
+
+
+def find_places(model: BuildingModel, draft: DraftRoutes) -> dict[str, tuple[float, float]]:
+    """Return the positions of all places by name."""
+    names, rooms = name_all(model), find_room_points(model)
+    found = {names[one.key]: rooms[one.key] for one in model.spaces}
+    found |= {names[one.key]: (one.x, one.y) for one in model.doors}
+    found |= {names[f"{one.key} {one.end}"]: (one.x, one.y) for one in model.stairs}
+    return found | {one["place"]: (one["x"], one["y"]) for one in draft.places}
+
+
+def list_lines(model: BuildingModel, draft: DraftRoutes) -> Iterator[tuple[Mapping[str, Any], LineString, str]]:
+    """Yield the segments on storeys with their lines and the keys of their storeys."""
+    places, storeys = find_places(model, draft), {one.name: one.key for one in model.storeys}
+    for row in draft.routes:
+        if "floor" in row:
+            yield row, LineString([places[row["start"]], places[row["end"]]]), storeys[row["floor"]]
+
+
+def build_graph(draft: DraftRoutes) -> "nx.Graph[str]":
+    return nx.Graph([(row["start"], row["end"]) for row in draft.routes])
+
+
+# ---------------------------------------------------------------- geometry
+
+
+def test_every_segment_lies_in_its_rooms_and_their_doors(model):
+    draft = draft_routes(model, name_all(model))
+    rooms = {name_all(model)[one.key]: to_polygon(one.area) for one in model.spaces}
+    stairs = {name_all(model)[f"{one.key} {one.end}"] for one in model.stairs}
+    for row, line, storey in list_lines(model, draft):
+        doors = [box_at((one.x, one.y), find_normal(one), one.thickness / 2 + BESIDE, one.width / 2)
+                 for one in model.doors if one.storey == storey]  # fmt: skip
+        area = union_all([*(rooms[name] for name in row["room"].split("; ")), *doors]).buffer(BESIDE)
+        outside = line.difference(area)
+        if {row["start"], row["end"]} & stairs:  # a stair may stand in a void next to its room
+            assert outside.length < FAR, row
+        else:
+            assert outside.is_empty, (row, outside.wkt)
+
+
+def test_no_segment_crosses_a_wall_or_a_window(model):
+    draft = draft_routes(model, name_all(model))
+    plans = {one.key: build_plan(model, one) for one in model.storeys}
+    for row, line, storey in list_lines(model, draft):
+        assert line.intersection(plans[storey].solids_near(line)).length <= BESIDE, row
+
+
+def test_segments_have_a_length(model):
+    draft = draft_routes(model, name_all(model))
+    assert all(line.length >= 0.04 for _, line, _ in list_lines(model, draft))
+
+
+def test_every_room_is_joined_to_an_exit(model):
+    """Over stairs, too: a row of the route to a stair is its flight."""
+    names = name_all(model)
+    draft = draft_routes(model, names)
+    graph, kinds = build_graph(draft), find_kinds(model)
+    exits = {names[one] for one, kind in kinds.items() if kind == "exit"}
+    lost = {names[one.key] for one in model.spaces if one.title == "Roof"}
+    for space in model.spaces:
+        name = names[space.key]
+        is_out = name in graph and not exits.isdisjoint(nx.node_connected_component(graph, name))
+        assert is_out != (name in lost), name
+    assert set(draft.unreached) == lost
+
+
+# ---------------------------------------------------------------- routes
+
+
+def test_the_rooms_of_published_models(duplex, large):
+    for model, rooms, lost in ((duplex, 20, 1), (large, 8, 0)):
+        draft = draft_routes(model, name_all(model))
+        assert len(model.spaces) - len(draft.unreached) == rooms
+        assert len(draft.unreached) == lost
+
+
+def test_one_route_for_each_exit_and_stair(duplex):
+    draft = draft_routes(duplex, name_all(duplex))
+    routes = dict.fromkeys(row["route"] for row in draft.routes)
+    assert len(routes) == 6  # four exits and two stairs
+    pairs = [frozenset((row["start"], row["end"])) for row in draft.routes]
+    assert len(pairs) == len(set(pairs))
+    assert len(pairs) < 4 * len(duplex.spaces)
+
+
+def test_rows_grow_with_the_rooms_not_with_their_ways():
+    draft = draft_routes(model := build_office(5, 15), name_all(model))
+    assert (len(model.spaces), draft.unreached) == (155, ())
+    assert len(draft.routes) < 3 * len(model.spaces)
+
+
+def test_a_route_to_a_stair_ends_with_its_flight():
+    draft = draft_routes(model := build_office(1, 3, storeys=2), name_all(model))
+    flights = [row for row in draft.routes if "floor" not in row]
+    (flight,) = flights
+    assert (flight["route"], flight["start"], flight["end"]) == (
+        "To Stair 1 s0, head (draft)", "Stair 1 s0, head", "Stair 1 s0, foot",
+    )  # fmt: skip
+    assert flight["notes"] == "Stair: fill in Clear width."
+    assert "clear_width" not in flight
+    starts = {row["start"] for row in draft.routes if row["route"].startswith("To Door")}
+    assert "Stair 1 s0, foot" in starts  # from where the route of the ground storey goes on
+
+
+def test_rooms_of_a_basement_go_up():
+    """Two storeys below the ground and one above."""
+    office = build_office(1, 3, storeys=3)
+    lowered = replace(office, storeys=tuple(replace(one, elevation=one.elevation - 3.5) for one in office.storeys))
+    out = [door("way out", -0.05, 6.1, 0.0, "1")]
+    walls = {key: tuple(one for one in own if one[0][0] != (-0.1, 0.0) or one[0][1][0] > 0.1) for key, own in
+             lowered.walls.items()}  # fmt: skip
+    model = replace(
+        lowered, doors=tuple(one for one in lowered.doors if "exit" not in one.key) + tuple(out), walls=walls
+    )
+    draft = draft_routes(model, name_all(model))
+    assert draft.unreached == ()
+    flights = {(row["start"], row["end"]) for row in draft.routes if "floor" not in row}
+    assert flights == {("Stair 1 s0, foot", "Stair 1 s0, head"), ("Stair 2 s0, head", "Stair 2 s0, foot")}
+
+
+def test_rooms_that_reach_a_stair_alone_are_drafted_to_it():
+    office = build_office(1, 3, storeys=2, exits=False)
+    draft = draft_routes(office, name_all(office))
+    assert draft.unreached == ()
+    assert {row["route"] for row in draft.routes} >= {"To Stair 1 s0, foot (draft)"}
+
+
+def test_the_nearest_exit_is_taken():
+    draft = draft_routes(model := build_office(1, 8), name_all(model))
+    route = {row["start"]: row["route"] for row in draft.routes}
+    assert route["Room 0 c0 r00"] == "To Door 0 c0 exit0 (draft)"
+    assert route["Room 0 c0 r07"] == "To Door 0 c0 exit1 (draft)"
+
+
+def test_each_step_leads_on_to_the_next():
+    draft = draft_routes(model := build_office(1, 4, storeys=2), name_all(model))
+    starts = [row["start"] for row in draft.routes]
+    assert len(starts) == len(set(starts))
+    ends = {row["end"] for row in draft.routes} - set(starts)
+    assert ends == {"Door 0 c0 exit0", "Door 0 c0 exit1"}
+
+
+# ---------------------------------------------------------------- widths, rooms, names
+
+
+def test_widths_are_known_at_doors_and_in_corridors_alone():
+    draft = draft_routes(model := build_office(1, 4), name_all(model))
+    for row in draft.routes:
+        is_door = any(row[end].startswith("Door") for end in ("start", "end"))
+        if is_door:
+            assert (row["clear_width"], row["required_width"]) == (0.8, 0.8)
+            assert row["notes"] == (
+                "Clear width: the door's 0.90 m in the model less 0.1 m for frame and leaf, assumed. Required width: the "
+                "same, as that is less than 0.9 m."
+            )
+        elif row["room"] == "Room 0 c0":
+            assert (row["clear_width"], row.get("required_width")) == (2.0, None)
+            assert row["notes"] == "Clear width: between the walls of the model."
+        else:
+            assert row.keys().isdisjoint({"clear_width", "required_width", "notes"})
+
+
+def test_a_door_that_states_no_width_is_as_wide_as_its_opening(duplex):
+    office = build_office(1, 3)
+    bare = replace(office, doors=tuple(replace(one, overall=0.0, width=1.2) for one in office.doors))
+    widths = {row.get("clear_width") for row in draft_routes(bare, name_all(bare)).routes}
+    assert widths <= {1.1, 2.0, None}
+    assert 1.1 in widths
+
+
+def test_a_room_open_to_another_names_both(duplex):
+    """Furniture of either may fall into the segment."""
+    names = name_all(duplex)
+    by_name = {one.name: names[one.key] for one in duplex.spaces}
+    draft = draft_routes(duplex, names)
+    kitchen = next(row for row in draft.routes if row["start"] == by_name["A103"])
+    assert set(kitchen["room"].split("; ")) >= {by_name["A103"], by_name["A102"]}
+    bath = next(row for row in draft.routes if row["start"] == by_name["A104"])
+    assert bath["room"] == by_name["A104"]
+
+
+def test_names_with_a_semicolon_leave_the_room_blank():
+    """It would split the name in two."""
+    office = build_office(1, 3)
+    names = {one: name.replace("r00", "r;0") for one, name in name_all(office).items()}
+    rooms = [row.get("room") for row in draft_routes(office, names).routes if row["start"] == "Room 0 c0 r;0"]
+    assert rooms == [None]
+
+
+def test_names_are_each_their_own():
+    office = build_office(1, 4)
+    names = name_all(office)
+    names["0 c0 r00"] = "Level 0 POINT 1"
+    draft = draft_routes(office, names)
+    added = [one["place"] for one in draft.places]
+    assert len({key(name) for name in (*names.values(), *added)}) == len(names) + len(added)
+    assert "Level 0 point 2" in added
+
+
+def test_floors_may_have_names_of_their_own():
+    office = build_office(1, 3)
+    draft = draft_routes(office, name_all(office) | {"0": "Ground"})
+    assert {row["floor"] for row in (*draft.places, *draft.routes)} == {"Ground"}
+    assert draft.places[0]["place"].startswith("Ground point")
+
+
+def test_every_route_is_marked_and_short(duplex):
+    names = {one: f"{name}, " + "a very long name indeed " * 5 for one, name in name_all(duplex).items()}
+    routes = {row["route"] for row in draft_routes(duplex, names).routes}
+    assert len(routes) == 6
+    assert all(is_draft(name) and len(name) <= LONGEST for name in routes)
+
+
+def test_routes_of_names_that_are_alike_where_they_are_cut():
+    office = build_office(1, 4)
+    names = {one: f"{'x' * 70} {name}" for one, name in name_all(office).items()}
+    routes = {row["route"] for row in draft_routes(office, names).routes}
+    assert len(routes) == 2
+    assert all(is_draft(name) for name in routes)
+
+
+def test_the_draft_speaks_the_language_in_use():
+    office = build_office(1, 3)
+    with speaking(load_catalogue("it")):
+        routes = {row["route"] for row in draft_routes(office, name_all(office)).routes}
+    assert all(is_draft(name) for name in routes)
+
+
+def test_the_same_model_gives_the_same_draft(duplex):
+    assert draft_routes(duplex, name_all(duplex)) == draft_routes(duplex, name_all(duplex))
+
+
+# ---------------------------------------------------------------- remarks
+
+
+def say(model: BuildingModel) -> list[str]:
+    return [str(one) for one in draft_routes(model, name_all(model)).remarks]
+
+
+def test_remarks_tell_what_is_assumed(duplex):
+    assert say(duplex)[:2] == [
+        "6 evacuation routes were drafted from the rooms and doors of the model: walk them, correct them, and take "
+        "'(draft)' off their names.",
+        "Level 1 is taken as the ground storey: doors there with a room on one side only count as exits.",
+    ]
+    assert say(duplex)[2].endswith(
+        "drafted segments at doors or in passages are narrower than 0.9 m: their Required width is their Clear width. "
+        "Fill in the width that must stay free."
+    )
+    roof = name_all(duplex)[next(one.key for one in duplex.spaces if one.title == "Roof")]
+    assert say(duplex)[3] == f"No way out of 1 room was found in the model: {roof}."
+
+
+def test_balconies_are_no_exits():
+    office = build_office(1, 3, storeys=2)
+    upstairs = replace(office, doors=(*office.doors, door("balcony", 16.0, 18.0, 0.0, "1"),
+                                      door("terrace", -0.05, 6.1, 0.0, "1")))  # fmt: skip
+    assert "1 door of other storeys has a room on one side only: it does not count as an exit." in say(upstairs)
+
+
+def test_storeys_without_walls_are_named():
+    office = replace(build_office(1, 3), walls={})
+    assert draft_routes(office, name_all(office)).unreached == ()
+    assert "No walls on Level 0: openings without doors, of 0.6 m and more, are not found there." in say(office)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"spaces": ()}, "the model has no rooms."),
+        ({"storeys": ()}, "the model has no rooms."),
+        ({"doors": ()}, "the model has no doors and no stairs."),
+        ({"doors": (door("inside", 2.0, 5.05),)}, "no way leads from a room to a door with a room on one side only, or "
+                                                  "to a stair."),
+    ],
+    ids=["no rooms", "no storeys", "no doors", "no exits"],
+)  # fmt: skip
+def test_without_rooms_or_ways_out_there_is_no_draft(change, said):
+    model = replace(build_office(1, 2), **change)
+    draft = draft_routes(model, name_all(model))
+    assert (draft.places, draft.routes) == ([], [])
+    assert str(draft.remarks[0]) == f"No evacuation routes were drafted: {said}"
+
+
+# ---------------------------------------------------------------- any model
+
+NUMBER = st.floats(-10, 10).map(lambda x: round(x, 1))
+POINT = st.tuples(NUMBER, NUMBER)
+RING = st.lists(POINT, min_size=3, max_size=7).map(tuple)
+BOX = st.builds(
+    lambda at, u, v: rectangle(*at, at[0] + u, at[1] + v), POINT, *[st.sampled_from([0.1, 1.0, 2.0, 5.0])] * 2
+)
+AREA = st.one_of(BOX, BOX, st.builds(lambda outer, hole: (outer, hole), RING, RING), RING.map(lambda ring: (ring,)))
+SIZE = st.sampled_from([0.0, 0.001, 0.1, 0.9, 3.0])
+STOREY = st.sampled_from(["0", "1"])
+STOREYS = (Storey("0", "Level 0", 0.0, 0.0), Storey("1", "Level 1", 3.0, 3.0))
+
+
+@st.composite
+def hostile_models(draw) -> BuildingModel:
+    """Rooms that cross themselves and each other, doors anywhere, furniture of no size, walls through all."""
+    spaces = [Space(f"r{at}", draw(STOREY), "", "", draw(AREA), 0.0, 3.0) for at in range(draw(st.integers(0, 6)))]
+    doors = [
+        Door(f"d{at}", draw(STOREY), "", *draw(POINT), draw(st.floats(-360, 360)), draw(SIZE), draw(SIZE), draw(SIZE))
+        for at in range(draw(st.integers(0, 8)))
+    ]
+    stairs = [
+        Stair(f"s{at % 2}", draw(STOREY), "", end, *draw(POINT))
+        for at, end in enumerate(draw(st.permutations(["foot", "head", "foot", "head"])))
+    ]
+    pieces: list[Piece] = [
+        piece(f"p{at}", *draw(POINT), storey=draw(STOREY), breadth=draw(SIZE), width=draw(SIZE), height=draw(SIZE))
+        for at in range(draw(st.integers(0, 4)))
+    ]
+    walls = {"0": tuple(draw(st.lists(AREA, max_size=4))), "1": tuple(draw(st.lists(BOX, max_size=2)))}
+    return BuildingModel(source="any.ifc", schema="IFC4", storeys=STOREYS, spaces=tuple(spaces), doors=tuple(doors),
+                         stairs=tuple({(one.key, one.end): one for one in stairs}.values()), pieces=tuple(pieces),
+                         walls=walls)  # fmt: skip
+
+
+@settings(max_examples=150, deadline=None)
+@given(hostile_models())
+def test_any_model_gives_a_draft_that_holds_together(model):
+    names = name_all(model)
+    draft = draft_routes(model, names)
+    known = {*names.values(), *(one["place"] for one in draft.places)}
+    assert len(known) == len(names) + len(draft.places)
+    rooms = {names[one.key] for one in model.spaces}
+    joined = {row["start"] for row in draft.routes}
+    assert joined | {row["end"] for row in draft.routes} <= known
+    assert rooms - joined == set(draft.unreached)
+    for row in draft.routes:
+        assert is_draft(row["route"])
+        assert row.get("clear_width", 1.0) >= 0.1
+        assert row.get("required_width", 0.1) < DEFAULT_WIDTH
+    for _, line, _ in list_lines(model, draft):
+        assert line.length > 0.01
+
+
+@pytest.mark.parametrize("count", [60, 300])
+def test_rooms_that_lie_in_each_other_are_bounded(count):
+    """So are many doors at one place."""
+    spaces = tuple(Space(f"r{at}", "0", "", "", rectangle(0, 0, 20 + at * 0.01, 20), 0.0, 3.0) for at in range(count))
+    doors = tuple(door(f"d{at}", 20.0, at * 20 / count, 0.0) for at in range(count))
+    model = BuildingModel(source="many.ifc", schema="IFC4", storeys=STOREYS, spaces=spaces, doors=doors,
+                          walls={"0": (rectangle(-1, -1, -0.9, 5),)})  # fmt: skip
+    draft = draft_routes(model, name_all(model))
+    assert len(draft.routes) <= 10 * count
+
+
+def test_a_room_with_many_corners_is_bounded():
+    teeth = [(x / 10, y) for at, x in enumerate(range(4000)) for y in ([0.0, 4.0] if at % 2 else [4.0, 0.0])]
+    comb = Space("r", "0", "", "", ((*teeth, (400.0, 9.0), (0.0, 9.0)),), 0.0, 3.0)
+    model = BuildingModel(source="comb.ifc", schema="IFC4", storeys=STOREYS, spaces=(comb,),
+                          doors=(door("d", 200.0, 9.05), door("e", 399.0, 9.05)))  # fmt: skip
+    draft = draft_routes(model, name_all(model))
+    assert draft.unreached == ()
+    at = find_room_points(model)["r"]
+    assert to_polygon(comb.area).buffer(0.02).covers(Point(at))
