@@ -230,7 +230,7 @@ class Import:
                 "id": self.id,
                 "state": self.state,
                 "name": self.name,
-                "label": gettext(STAGES.get(now.stage, STAGES["reading"])),
+                "label": gettext(STAGES.get(now.stage or "reading", STAGES["reading"])),
                 "share": now.share if self.is_running else 1.0,
                 "seconds": time.monotonic() - self._started,
                 "message": fault.get("message", ""),

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
+from assess.web.guard import MOST_MODEL
 from tests.bim.cobie_files import write_cobie
 from tests.web.looking import examine
 from tests.web.sheet_page import CLASS, SheetPage
@@ -84,6 +85,11 @@ def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try
     expect(fault).to_contain_text("END-ISO-10303-21")
     expect(found.get_by_role("button", name="Choose a model")).to_be_focused()
     assert examine(found) == []
+    huge = tmp_path / "huge.ifc"
+    with huge.open("wb") as file:
+        file.truncate(MOST_MODEL + 1)
+    _choose(found, huge)
+    expect(fault).to_contain_text("huge.ifc is larger than 256 MB.")
     assert list(server.folder.iterdir()) == []
     _choose(found, DUPLEX)
     _see_list(found)

@@ -2,10 +2,11 @@
 
 import { get, leave, post, send } from "./api.mjs";
 import { notice } from "./messages.mjs";
-import { bytes, t, tn } from "./texts.mjs";
+import { t, tn } from "./texts.mjs";
 
 const EVERY_MS = 400;
 const MOST_PROBLEMS = 5;
+const MEGABYTE = 2 ** 20;
 
 /** Tells `change` with every step. */
 class Imports extends EventTarget {
@@ -25,6 +26,7 @@ class Imports extends EventTarget {
   #most = Infinity;
   #begun = "";
   #timer = 0;
+  #asked = 0;
   #ending = null;
 
   /** Look what there is, and follow it from now on. */
@@ -50,17 +52,20 @@ class Imports extends EventTarget {
 
   async refresh() {
     clearTimeout(this.#timer);
+    const asked = (this.#asked += 1);
     try {
-      this.#take(await get("/api/import"));
+      const answer = await get("/api/import");
+      if (asked === this.#asked) this.#take(answer);
     } catch {
       // the watch of the server tells that it is gone
     }
-    if (this.isRunning) this.#timer = setTimeout(() => this.refresh(), EVERY_MS);
+    if (asked === this.#asked && this.isRunning) this.#timer = setTimeout(() => this.refresh(), EVERY_MS);
   }
 
   /** Send a file, and have it read. */
   async begin(file) {
-    if (file.size > this.#most) return this.#fail(t("{name} has {size}; models of up to {most} are read. Export fewer storeys, or furniture, spaces, doors and walls only.", { name: file.name, size: bytes(file.size), most: bytes(this.#most) }));
+    if (this.isBusy) return notice(t("Another model is being read: cancel that first, or wait for it."), { kind: "error" });
+    if (file.size > this.#most) return this.#fail(t("{name} is larger than {n} MB. Export fewer storeys, or furniture, spaces, doors and walls only.", { name: file.name, n: Math.round(this.#most / MEGABYTE) }));
     this.sending = file.name;
     this.fault = "";
     this.#ending = new AbortController();
@@ -78,6 +83,7 @@ class Imports extends EventTarget {
 
   /** Follow what the server has begun to read. */
   follow(answer) {
+    this.#asked += 1; // an answer that is under way tells of the one before
     this.sending = this.fault = "";
     this.isCancelled = false;
     this.#begun = answer.import.id;
@@ -87,14 +93,16 @@ class Imports extends EventTarget {
 
   /** End the reading, or drop what was read. */
   async cancel() {
-    if (this.sending) this.#ending?.abort();
-    if (!this.current) return;
+    if (this.sending) return this.#ending.abort();
+    if (!this.current) return null;
+    this.#asked += 1;
     clearTimeout(this.#timer);
     try {
       this.#take(await post("/api/import/cancel"));
     } catch (error) {
       this.#fail(error.message || t("The server does not answer."));
     }
+    return null;
   }
 
   /** Have the new workbook be made and opened; rejects with ApiError. */

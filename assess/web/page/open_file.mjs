@@ -101,6 +101,7 @@ async function take(store, files) {
   if (book && !(await openWorkbook(store, book))) return;
   const model = others.find((file) => MODEL.test(file.name) && !isMissing(store, file.name));
   if (model && !book) {
+    if (others.length > 1) notice(t("One building model is read at a time: {name}. The other files were not taken.", { name: model.name }));
     await readModel(store, model);
     return;
   }
