@@ -109,7 +109,8 @@ def update_workbook(
     tables, problems = parse_held(held)
     changes: list[Change] = []
     sheets = {one: SheetUpdate(tables[one], held.cells[one], changes) for one in held.cells}
-    if "Items" not in sheets or not tables["Items"].header:
+    items = tables["Items"]
+    if not items.rows and any(one.severity == "error" and one.sheet == items.sheet.name for one in problems):
         raise WorkbookError(problems, held.language)
     book = BookUpdate(sheets, changes)
     _BuildingUpdate(imported, name, book).run()

@@ -61,7 +61,7 @@ def test_a_new_piece_goes_into_the_next_prepared_row(book: bytes) -> None:
     assert texts(found) == ["Items A8 B201-07 was added"]
     one = inventory(found.data).items[-1]
     assert (one.row, one.item, one.floor, one.room, one.type) == (8, "B201-07", "Level 2", "B201 Office", "Wardrobe 80")
-    assert (one.breadth, one.x, one.y, one.angle_deg) == (pytest.approx(0.445), 7, 1.5, 90)
+    assert [one.breadth, one.x, one.y, one.angle_deg] == pytest.approx([0.445, 7, 1.5, 90])
     assert one.more["source_id"] == NEW["source_id"]
 
 
@@ -188,13 +188,11 @@ def test_imperial_headers_in_any_language(tmp_path: Path, language: str) -> None
     assert (breadth.now, x.now) == (23.622, 13.1234)
     assert (breadth.label.endswith("[in]"), x.label) == (True, "X [ft]")
     read = inventory(found.data)
-    assert (read.items[2].breadth, read.items[2].x) == (pytest.approx(0.6, abs=5e-5), pytest.approx(4.0, abs=5e-5))
+    assert [read.items[2].breadth, read.items[2].x] == pytest.approx([0.6, 4.0], abs=5e-5)
     assert read.items[-1].breadth == pytest.approx(0.445, abs=5e-5)
     place = read.places[-1]
-    assert (place.kind, [pytest.approx(one, abs=1e-4) for one in place.outline]) == (
-        "exit",
-        [(6, 0), (12.5, 0), (12.5, 4)],
-    )
+    assert place.kind == "exit"
+    assert [one for corner in place.outline for one in corner] == pytest.approx([6, 0, 12.5, 0, 12.5, 4], abs=1e-4)
     word = openpyxl.load_workbook(io.BytesIO(found.data)).worksheets[4][address("kind", 6, "Places")].value
     assert word == {"en": "exit", "it": "uscita"}[language]
 
@@ -246,7 +244,7 @@ def test_columns_in_another_order_and_other_units(tmp_path: Path, is_table: bool
         "Items G10 B201-07 was added",
     ]
     one = inventory(found.data).items[-1]
-    assert (one.breadth, one.height, one.x, one.y) == (pytest.approx(0.445), 2.0, 7.0, 1.5)
+    assert [one.breadth, one.height, one.x, one.y] == pytest.approx([0.445, 2.0, 7.0, 1.5])
     values = {
         cell.coordinate: cell.value for line in openpyxl.load_workbook(io.BytesIO(found.data))["Items"] for cell in line
     }
@@ -265,7 +263,7 @@ def test_a_table_of_excel_with_a_row_of_totals(tmp_path: Path) -> None:
         page["B10"] = "Total"
         page["I10"] = "=SUBTOTAL(109,I4:I9)"
         area = ExcelTable(displayName="Furniture", ref="B3:J10")
-        area._initialise_columns()
+        area._initialise_columns()  # type: ignore[attr-defined]
         for column, value in zip(area.tableColumns, page["B3:J3"][0], strict=True):
             column.name = value.value
         area.totalsRowCount = 1
@@ -295,7 +293,7 @@ def test_headings_blank_rows_and_typed_units(tmp_path: Path) -> None:
         rows += [[], ["UPPER FLOOR"]] if at == 4 else []
         rows.append([f"W-{at}", f"{one['floor']} ", one["room"], f"{one['breadth']} cm".replace(".", ","), one["width"],
                      f"{one['height'] / 100:g} m", "N", one["x"], one["y"], f" {one['source_id']}"])  # fmt: skip
-    floors = [["Floor", "Elevation [m]"], ["Level 1", "0,0"], ["Level 2", 3.1]]
+    floors: list[list[Any]] = [["Floor", "Elevation [m]"], ["Level 1", "0,0"], ["Level 2", 3.1]]
     data = write_book(tmp_path / "book.xlsx", {"Items": rows, "Floors": floors}).read_bytes()
     model = building(items=[*changed(p2={"height": 80.0}).items, NEW], places=[], types=[], floors=[])
     found = update(data, model)

@@ -15,6 +15,7 @@ from assess.bim.update_workbook import describe, update_workbook
 from assess.errors import InputError, WorkbookError
 from assess.i18n import load_catalogue, speaking
 from assess.progress import Progress
+from assess.workbook.patch import patch_workbook
 from tests.bim.cobie_files import write_cobie
 from tests.bim.update_books import (
     FLOORS,
@@ -258,7 +259,7 @@ def test_a_formula_of_people_stays_and_is_listed(book: bytes, tmp_path: Path) ->
     ]
 
 
-@settings(max_examples=25)
+@settings(max_examples=10)
 @given(st.dictionaries(st.integers(0, 5), st.fixed_dictionaries({}, optional={
     **dict.fromkeys(("breadth", "width", "height"), st.integers(50, 6000).map(lambda one: one / 10)),
     **dict.fromkeys(("x", "y"), st.integers(-10**6, 10**6).map(lambda one: one / 1000)),
@@ -329,6 +330,12 @@ def test_a_workbook_without_items_says_what_it_lacks(tmp_path: Path) -> None:
     path = write_book(tmp_path / "book.xlsx", {"Floors": [["Floor"], ["1"]], "Things": [["a"]]})
     with pytest.raises(WorkbookError, match="Items: the sheet is missing"):
         update_workbook(path.read_bytes(), building(), "book.xlsx")
+
+
+def test_a_value_far_below_the_table_is_named(book: bytes) -> None:
+    data = patch_workbook(book, {"Items": {"A200001": "stray"}}).data
+    with pytest.raises(WorkbookError, match="Items!A200001: a value far below the table"):
+        update_workbook(data, building(), "house.xlsx")
 
 
 def test_a_signed_workbook_is_refused(book: bytes, tmp_path: Path) -> None:
