@@ -1,0 +1,88 @@
+"""Results of runs whose pieces stand in the building models of samples/models, and what an export makes of them."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import assess
+from assess.bim.export_files import Export, build_export
+from assess.bim.export_results import read_export
+from assess.bim.import_workbook import ImportedBuilding, build_workbook
+from assess.progress import SILENT
+from assess.report.data import write_json
+from assess.settings import Settings
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+DUPLEX, OFFICE = MODELS / "duplex.ifc", MODELS / "LargeBuilding.ifc"
+SIMULATED = Settings(verify="all", runs=20)
+"""Twenty draws tell 0 of 20 from 19 of 20."""
+FORMULA = Settings(verify="none")
+
+CUPBOARD_1, CUPBOARD_2 = "0wkEuT1wr1kOyafLY4vyu$", "0wkEuT1wr1kOyafLY4vy_8"
+HELD, SOFA = "0wkEuT1wr1kOyafLY4vy3H", "2OBrcmyk58NupXoVOHUshs"
+DOOR_B202 = "2OBrcmyk58NupXoVOHUuXp"
+"""The door of room B202 to the hall, at 1.85, -11.55 of Level 2."""
+DESKS = {"Desk 1": ("2cXV28XOjE6f6irgi0COSH", -13.35, 8.96), "Desk 2": ("2cXV28XOjE6f6irgi0COUq", -10.98, 8.96)}
+
+
+def piece(item: str, floor: str, key: str | None, x: float, y: float, **more: Any) -> dict[str, Any]:
+    row = {"item": item, "floor": floor, "type": "Cupboard", "breadth": 54.5, "width": 80.0, "height": 200.0}
+    return {**row, "x": x, "y": y, "angle_deg": 90.0, "source_id": key, **more}
+
+
+CUPBOARDS = [
+    piece("Armadio è 1", "2", CUPBOARD_1, 2.91, -11.41, room="B202", description="Armadio d'angolo \\ 2 m"),
+    piece("Armadio è 2", "2", CUPBOARD_2, 3.71, -11.41, room="B202", importance="life safety"),
+    piece("Held", "2", HELD, 5.08, -11.41, room="A203", anchored="yes"),
+    piece("Sofa", "1", SOFA, 7.98, -2.30, room="B102", breadth=66.0, width=183.0, height=81.0, angle_deg=0.0),
+]
+"""Of Duplex: two that surely fall, one that is anchored, and one that only the formula has at medium."""
+FLOORS = [
+    {"floor": "1", "elevation": 0.0, "pfa_x": 0.3, "pfa_y": 0.3},
+    {"floor": "2", "elevation": 3.1, "pfa_x": 1.2, "pfa_y": 1.2},
+]
+BUILDING = {"building": "Palazzo Duè", "revision": "B", "report_date": "2026-05-04", "prepared_by": "Ing. Rossi",
+            "scenario": "Forte – 475 anni 🏢"}  # fmt: skip
+PLACES = [
+    {"place": "B202", "floor": "2", "x": 3.3, "y": -13.5, "kind": "room"},
+    {"place": "door", "floor": "2", "x": 1.85, "y": -11.55, "kind": "door"},
+    {"place": "out", "floor": "2", "x": 1.85, "y": -10.5, "kind": "exit"},
+]
+ROUTES = [
+    {"route": "Scala", "segment": "a", "floor": "2", "start": "B202", "end": "door"},
+    {"route": "Scala", "segment": "b", "floor": "2", "start": "door", "end": "out"},
+]
+"""A way out of B202 that both cupboards there block when they fall."""
+
+
+def write_results(
+    folder: Path,
+    items: Sequence[dict[str, Any]] = CUPBOARDS,
+    floors: Sequence[dict[str, Any]] = FLOORS,
+    settings: Settings = FORMULA,
+    *,
+    building: dict[str, Any] = BUILDING,
+    places: Sequence[dict[str, Any]] = (),
+    routes: Sequence[dict[str, Any]] = (),
+) -> Path:
+    """Write the workbook of an import, assess it, and return its results.json."""
+    folder.mkdir(parents=True, exist_ok=True)
+    imported = ImportedBuilding(
+        source="model.ifc", building=building, floors=floors, items=items, places=places, routes=routes
+    )
+    book = folder / "building.xlsx"
+    book.write_bytes(build_workbook(imported))
+    out = folder / "results.json"
+    write_json(assess.run(assess.read_inventory(book), settings), out)
+    return out
+
+
+def export(results: Path, model: Path, **wanted: bool) -> Export:
+    wanted = {"with_properties": True, "with_topics": True, **wanted}
+    return build_export(read_export(results), model, SILENT, **wanted)
+
+
+def read_rows(results: Path) -> dict[str, dict[str, Any]]:
+    """Return the rows of the items of a results.json by their names."""
+    return {one["item"]: one for one in json.loads(results.read_text(encoding="utf-8"))["items"]}

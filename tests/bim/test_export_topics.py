@@ -1,0 +1,301 @@
+"""What to fix as BCF topics: by buildingSMART's schemas, with the right elements, as a coordinator reads them."""
+
+import io
+import json
+import math
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import ifcopenshell
+import pytest
+from lxml import etree
+
+from assess.bim import export_topics
+from assess.bim.export_topics import PRIORITIES, find_date
+from assess.i18n import load_catalogue, speaking
+from assess.risk import RiskClass
+from tests.bim.export_runs import (
+    BUILDING,
+    CUPBOARD_1,
+    CUPBOARD_2,
+    CUPBOARDS,
+    DOOR_B202,
+    DUPLEX,
+    FLOORS,
+    PLACES,
+    ROUTES,
+    SIMULATED,
+    SOFA,
+    export,
+    piece,
+    write_results,
+)
+
+SCHEMAS = Path(__file__).parents[1] / "data" / "bcf"
+BOTH = {CUPBOARD_1, CUPBOARD_2}
+
+
+class Bcf:
+    """A BCF file: its files, and the topics in the order of Index."""
+
+    def __init__(self, data: bytes) -> None:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            self.names = archive.namelist()
+            self.files = {name: archive.read(name) for name in self.names}
+        folders = [name for name in self.names if name.endswith("/")]
+        markups = {folder: etree.fromstring(self.files[f"{folder}markup.bcf"]) for folder in folders}
+        self.topics = sorted((Read(self, folder, one) for folder, one in markups.items()), key=lambda one: one.index)
+
+
+class Read:
+    """One topic."""
+
+    def __init__(self, bcf: Bcf, folder: str, markup: Any) -> None:
+        self.folder, self.markup = folder, markup
+        self.view = etree.fromstring(bcf.files[f"{folder}viewpoint.bcfv"])
+        self.index = int(self.text("Index"))
+
+    def text(self, name: str) -> str:
+        return str(self.markup.findtext(f"Topic/{name}"))
+
+    @property
+    def labels(self) -> list[str]:
+        return [one.text for one in self.markup.iterfind("Topic/Labels")]
+
+    @property
+    def selected(self) -> list[str]:
+        return [one.get("IfcGuid") for one in self.view.iterfind("Components/Selection/Component")]
+
+    def point(self, name: str) -> tuple[float, ...]:
+        return tuple(float(one.text) for one in self.view.find(f"PerspectiveCamera/{name}"))
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Return the results of the cupboards, which block the way out of their room together."""
+    folder = tmp_path_factory.mktemp("topics")
+    return write_results(folder, settings=SIMULATED, places=PLACES, routes=ROUTES)
+
+
+@pytest.fixture(scope="module")
+def made(results):
+    return export(results, DUPLEX, with_properties=False).topics
+
+
+@pytest.fixture(scope="module")
+def bcf(made):
+    return Bcf(made.data)
+
+
+def find(bcf: Bcf, key: str) -> Read:
+    return next(one for one in bcf.topics if key in one.selected)
+
+
+@pytest.mark.parametrize(
+    ("end", "schema"), [("markup.bcf", "markup"), (".bcfv", "visinfo"), ("bcf.version", "version")]
+)
+def test_every_file_is_valid_by_its_schema(bcf, end, schema):
+    rules = etree.XMLSchema(etree.parse(str(SCHEMAS / f"{schema}.xsd")))
+    files = {name: data for name, data in bcf.files.items() if name.endswith(end)}
+    assert len(files) == (1 if schema == "version" else len(bcf.topics))
+    for data in files.values():
+        rules.assertValid(etree.fromstring(data))
+
+
+def test_the_file_is_laid_out_as_the_documentation_asks(bcf):
+    assert bcf.names[0] == "bcf.version"
+    assert len(bcf.names) == 1 + 3 * len(bcf.topics)
+    for topic in bcf.topics:
+        own = topic.markup.find("Topic").get("Guid")
+        assert topic.folder == f"{own}/"
+        link = topic.markup.find("Viewpoints")
+        assert (link.findtext("Viewpoint"), link.get("Guid")) == ("viewpoint.bcfv", topic.view.get("Guid"))
+
+
+def test_there_is_a_topic_for_each_entry_of_the_schedule(results, bcf, made):
+    entries = json.loads(results.read_text(encoding="utf-8"))["schedule"]["entries"]
+    assert [one.index for one in bcf.topics] == [one["place"] for one in entries]
+    assert (made.count, made.unplaced, made.beyond) == (len(entries), 0, 0)
+
+
+def test_a_topic_selects_its_pieces_and_the_door_that_they_obstruct(bcf, made):
+    topic = find(bcf, CUPBOARD_1)
+    assert topic.selected[-1] == DOOR_B202
+    assert set(topic.selected[:-1]) <= BOTH
+    assert find(bcf, SOFA).selected == [SOFA]
+    assert (made.is_placed, made.doors) == (True, sum(DOOR_B202 in one.selected for one in bcf.topics))
+
+
+def test_a_coordinator_reads_what_is_to_be_done(bcf):
+    topic = find(bcf, CUPBOARD_2)
+    title, text = topic.text("Title"), topic.text("Description")
+    assert title.startswith("very high")
+    for words in ("Armadio è 2", "may overturn and block route Scala", "life safety"):
+        assert words in title
+    for words in (
+        "Floor 2, room B202.",
+        "Risk of overturning: very high",
+        "Armadio è 2: chance of overturning ",
+        ", simulated; PFA 1.200 g (given).",
+        "Earthquake: Forte – 475 anni 🏢",
+        "Why it comes here: life safety, route Scala: ",
+        "How to fix: L-bracket to studs: steel L-brackets near the top",
+        "Force on the fixings of each piece: tension ",
+        "The height of the bracket is assumed: 0.9 of the piece's height.",
+        "Forces are for screening, not design",
+        "Palazzo Duè, building.xlsx, revision B, 2026-05-04, results.json SHA-256 ",
+        f"({DOOR_B202}), on the route that it may block.",
+    ):
+        assert words in text
+    assert topic.labels[:2] == ["earthquake", "very high"]
+    assert {"evacuation route", "life safety"} <= set(topic.labels)
+    assert (topic.text("CreationDate"), topic.text("CreationAuthor")) == ("2026-05-04T00:00:00Z", "Ing. Rossi")
+    kind = topic.markup.find("Topic")
+    assert (kind.get("TopicType"), kind.get("TopicStatus"), topic.text("Priority")) == ("Issue", "Open", "Critical")
+    file = topic.markup.find("Header/File")
+    assert (file.findtext("Filename"), file.get("IfcProject")) == ("duplex.ifc", "1xS3BCk291UvhgP2a6eflL")
+
+
+def test_an_unconfirmed_piece_is_no_class_in_its_title(bcf):
+    topic = find(bcf, SOFA)
+    assert topic.text("Title").startswith("unconfirmed (formula: medium)")
+    assert "unconfirmed" in topic.labels
+    assert "may overturn" in topic.text("Title")
+    assert "block" not in topic.text("Title")
+
+
+def test_priorities_follow_the_upper_class():
+    assert [PRIORITIES[risk] for risk in RiskClass] == ["Minor", "Normal", "Major", "Critical"]
+
+
+def test_the_camera_looks_down_at_the_piece_from_inside_its_room(bcf):
+    topic = find(bcf, CUPBOARD_1)
+    point, direction, up = (topic.point(f"Camera{name}") for name in ("ViewPoint", "Direction", "UpVector"))
+    assert math.hypot(*direction) == pytest.approx(1, abs=1e-5)
+    assert math.hypot(*up) == pytest.approx(1, abs=1e-5)
+    assert sum(one * other for one, other in zip(direction, up, strict=True)) == pytest.approx(0, abs=1e-5)
+    assert direction[2] < 0 < up[2]
+    assert 3.1 < point[2] < 3.1 + 2.5, "between floor and ceiling of Level 2"
+    assert -17.4 < point[1] < -11.6, "in room B202, which lies south of the cupboards"
+    target = [at + 3.5 * to for at, to in zip(point, direction, strict=True)]
+    assert math.dist(target, (3.3, -11.41, 4.1)) < 1.0
+    assert 45 <= float(topic.view.findtext("PerspectiveCamera/FieldOfView")) <= 60
+
+
+def test_the_same_export_gives_the_same_bytes(results, made):
+    assert export(results, DUPLEX, with_properties=False).topics.data == made.data
+
+
+def test_a_later_run_of_the_same_pieces_has_the_same_topics(bcf, tmp_path):
+    """So that a program for BCF brings a topic up to date, and keeps what was answered to it."""
+    later = write_results(tmp_path, settings=SIMULATED, places=PLACES, routes=ROUTES,
+                          building=BUILDING | {"revision": "C"})  # fmt: skip
+    again = Bcf(export(later, DUPLEX, with_properties=False).topics.data)
+    assert {one.folder for one in again.topics} == {one.folder for one in bcf.topics}
+    assert "revision C" in again.topics[0].text("Description")
+
+
+def test_topics_are_in_the_language_in_use(results):
+    with speaking(load_catalogue("it")):
+        found = Bcf(export(results, DUPLEX, with_properties=False).topics.data)
+    assert "molto alto" in find(found, CUPBOARD_1).labels
+
+
+def test_beyond_the_most_topics_the_entries_are_counted(results, monkeypatch):
+    monkeypatch.setattr(export_topics, "MOST", 1)
+    found = export(results, DUPLEX, with_properties=False).topics
+    assert (found.count, found.beyond > 0) == (1, True)
+    assert [one.index for one in Bcf(found.data).topics] == [1]
+
+
+def test_entries_without_a_piece_in_the_model_are_counted(tmp_path):
+    items = [CUPBOARDS[0], piece("Loose", "2", None, 3, -14, height=210.0)]
+    found = export(write_results(tmp_path, items), DUPLEX, with_properties=False).topics
+    assert (found.count, found.unplaced) == (1, 1)
+
+
+def test_of_an_entry_that_is_partly_in_the_model_the_rest_is_named(tmp_path):
+    items = [CUPBOARDS[0] | {"item": "C1"}, CUPBOARDS[0] | {"item": "C2", "source_id": None, "x": 3.71}]
+    (topic,) = Bcf(export(write_results(tmp_path, items), DUPLEX, with_properties=False).topics.data).topics
+    assert topic.selected == [CUPBOARD_1]
+    assert "Not in this model: C2." in topic.text("Description")
+    assert topic.text("Title").startswith("very high: C1 (")
+
+
+def test_pieces_that_only_help_together_are_one_topic(tmp_path):
+    """Each cupboard blocks the way out by itself, and both surely fall: only fixing both opens it."""
+    items = [CUPBOARDS[0] | {"description": "Armadio"}, CUPBOARDS[1] | {"description": "Libreria"}]
+    floors = [{"floor": "2", "elevation": 3.1, "pfa_x": 2.5, "pfa_y": 2.5}]
+    results = write_results(tmp_path, items, floors, SIMULATED, places=PLACES, routes=ROUTES)
+    (entry,) = json.loads(results.read_text(encoding="utf-8"))["schedule"]["entries"]
+    assert (entry["only_together"], len(entry["works"])) == (True, 2)
+    (topic,) = Bcf(export(results, DUPLEX, with_properties=False).topics.data).topics
+    assert set(topic.selected) == {*BOTH, DOOR_B202}
+    assert "Armadio è 1 and Armadio è 2 together" in topic.text("Title")
+    assert "fixing some of them opens no route" in topic.text("Description")
+    assert topic.text("Description").count("How to fix:") == 2
+
+
+# ---------------------------------------------------------------- positions
+
+
+def move(rows: list[dict[str, Any]], by: float) -> list[dict[str, Any]]:
+    return [one | {"x": one["x"] + by, "y": one["y"] - by} for one in rows]
+
+
+def test_a_workbook_that_is_shifted_by_whole_metres_still_finds_its_door(tmp_path):
+    """As one of a model that lies far from its origin is."""
+    results = write_results(tmp_path, move(CUPBOARDS, 1200), settings=SIMULATED, places=move(PLACES, 1200),
+                            routes=ROUTES)  # fmt: skip
+    found = export(results, DUPLEX, with_properties=False).topics
+    assert found.is_placed
+    assert DOOR_B202 in find(Bcf(found.data), CUPBOARD_1).selected
+
+
+def test_a_door_that_a_segment_passes_is_found(tmp_path):
+    """There is no place at the door: the segment leads from the middle of the room to the hall."""
+    places = [PLACES[0] | {"x": 1.9, "y": -13.5}, PLACES[2] | {"x": 1.0, "y": -10.3}]
+    routes = [{"route": "Scala", "segment": "a", "floor": "2", "start": "B202", "end": "out"}]
+    items = [CUPBOARDS[0] | {"edge_distance": 0.0, "route": "Scala"}]
+    results = write_results(tmp_path, items, places=places, routes=routes)
+    found = Bcf(export(results, DUPLEX, with_properties=False).topics.data)
+    assert find(found, CUPBOARD_1).selected == [CUPBOARD_1, DOOR_B202]
+
+
+def test_where_positions_do_not_agree_no_door_is_taken(tmp_path):
+    items = [CUPBOARDS[0], CUPBOARDS[1] | {"x": 9.0, "y": 4.0}, CUPBOARDS[3] | {"x": 1.0, "y": 30.0}]
+    results = write_results(tmp_path, items, places=PLACES, routes=ROUTES)
+    found = export(results, DUPLEX, with_properties=False).topics
+    assert (found.is_placed, found.doors) == (False, 0)
+    assert find(Bcf(found.data), CUPBOARD_1).point("CameraViewPoint")
+
+
+def test_a_piece_moved_in_the_workbook_does_not_shift_the_others(tmp_path):
+    items = [CUPBOARDS[0], CUPBOARDS[1], CUPBOARDS[3] | {"x": 1.0, "y": 30.0}]
+    results = write_results(tmp_path, items, places=PLACES, routes=ROUTES)
+    found = Bcf(export(results, DUPLEX, with_properties=False).topics.data)
+    assert DOOR_B202 in find(found, CUPBOARD_1).selected
+
+
+def test_pieces_without_shapes_are_seen_at_their_origin(tmp_path):
+    model = ifcopenshell.open(str(DUPLEX))
+    model.by_guid(CUPBOARD_1).Representation = None
+    bare = tmp_path / "bare.ifc"
+    model.write(str(bare))
+    (topic,) = Bcf(export(write_results(tmp_path, CUPBOARDS[:1]), bare, with_properties=False).topics.data).topics
+    assert math.dist(topic.point("CameraViewPoint")[:2], (2.91, -11.41)) < 4.5
+
+
+# ---------------------------------------------------------------- dates
+
+
+def test_without_a_date_of_the_report_the_topics_have_that_of_the_results(tmp_path, monkeypatch):
+    from assess.bim.export_results import read_export
+
+    items = CUPBOARDS[:1]
+    results = write_results(tmp_path, items, FLOORS, building=BUILDING | {"report_date": None})
+    run = read_export(results).run
+    assert find_date(run) == run.written
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
+    assert find_date(run).isoformat() == "1970-01-02T00:00:00+00:00"
