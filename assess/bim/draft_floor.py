@@ -238,7 +238,8 @@ def build_rooms(plan: FloorPlan, links: Iterable[Link]) -> dict[str, Room]:
     rooms = {}
     for space, polygon in zip(plan.spaces, plan.polygons, strict=True):
         floor = _widest(polygon.difference(plan.solids_near(polygon)), polygon)
-        free = _widest(floor.difference(plan.pieces_near(polygon)), floor)
+        pieces = plan.pieces_near(polygon)
+        free = floor if pieces.is_empty else _widest(floor.difference(pieces), floor)
         rooms[space.key] = Room(space, polygon, floor, free, tuple(of_space[space.key]))
     return rooms
 

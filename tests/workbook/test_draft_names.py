@@ -1,0 +1,58 @@
+"""The mark of drafted routes: known in every language, warned of once a workbook, and gone when it is taken off."""
+
+from pathlib import Path
+
+import pytest
+
+from assess.i18n import LANGUAGES, load_catalogue, speaking
+from assess.workbook.draft_names import DRAFT, LONGEST, is_draft, mark_draft
+from assess.workbook.read import read_inventory
+from tests.workbook.books import Sheet, write
+
+FLOORS = [["Floor", "PFA X [g]"], ["1", 0.5]]
+ITEMS = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Route"], ["A1", "1", 40, 180, None]]
+PLACES = [["Place", "Floor", "X [m]", "Y [m]", "Kind"], ["Door", "1", 0, 0, "exit"], ["Hall", "1", 9, 0, "room"]]
+
+
+def told(folder: Path, *routes: str) -> list[str]:
+    rows: Sheet = [["Route", "Segment", "Floor", "From", "To", "Clear width [m]"]]
+    rows += [[route, str(at), "1", "Hall", "Door", 1.2] for at, route in enumerate(routes)]
+    found = read_inventory(write(folder, ITEMS, FLOORS, Places=PLACES, Routes=rows))
+    return [f"{one.severity} {one}" for one in found.problems if "drafted" in one.message]
+
+
+def test_one_route_is_warned_of(tmp_path):
+    assert told(tmp_path, "To Exit A (draft)") == [
+        "warning Routes!A2: Route 'To Exit A (draft)' was drafted from a building model. "
+        "Walk it, correct it, and take '(draft)' off its name."
+    ]
+
+
+def test_several_are_warned_of_once(tmp_path):
+    """Each route has many segments."""
+    assert told(tmp_path, "Old", "To A (draft)", "To A (draft)", "to a (DRAFT)", "To B (draft)") == [
+        "warning Routes!A3: 2 routes were drafted from a building model, such as 'To A (draft)'. "
+        "Walk them, correct them, and take '(draft)' off their names."
+    ]
+
+
+@pytest.mark.parametrize("name", ["To A", "(draft) To A", "To A (draft) seen", "To A draft", "Draft"])
+def test_without_the_mark_at_the_end_a_route_is_reviewed(tmp_path, name):
+    assert not is_draft(name)
+    assert told(tmp_path, name) == []
+
+
+@pytest.mark.parametrize("code", LANGUAGES)
+def test_the_mark_is_known_in_every_language(tmp_path, code):
+    catalogue = load_catalogue(code)
+    with speaking(catalogue):
+        name = mark_draft("To the street")
+    assert name == f"To the street {catalogue.find(DRAFT)}"
+    assert is_draft(name)
+    assert len(told(tmp_path, name)) == 1
+
+
+def test_a_long_name_keeps_the_mark():
+    name = mark_draft("word " * 40)
+    assert len(name) <= LONGEST
+    assert name.endswith("word wo (draft)")
