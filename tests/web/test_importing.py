@@ -16,6 +16,7 @@ from assess.web.request_errors import RequestError
 from assess.web.safe_names import clean_name
 from assess.workbook.read import read_tables
 from tests.bim.cobie_files import write_cobie
+from tests.web.model_reader import hold_reader, is_gone, linux
 from tests.web.serving import wait_until
 from tests.web.test_sessions import OPTIONS, _come
 from tests.workbooks import write
@@ -63,6 +64,7 @@ def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
     assert server.client.post("/api/import/open").status == 404
 
 
+@pytest.mark.slow
 def test_a_second_workbook_of_a_model_replaces_no_file(served):
     server = served()
     (server.folder / PLANS[0]).write_bytes(b"mine")
@@ -76,6 +78,7 @@ def test_a_second_workbook_of_a_model_replaces_no_file(served):
     assert named == ["duplex-Level-1-2.svg", *PLANS[1:]]
 
 
+@pytest.mark.slow
 def test_another_workbook_ends_the_list_of_what_was_imported(served, tmp_path):
     server = served(write(tmp_path / "office.xlsx"))
     before = (tmp_path / "office.xlsx").read_bytes()
@@ -87,6 +90,7 @@ def test_another_workbook_ends_the_list_of_what_was_imported(served, tmp_path):
     assert server.client.get("/api/import").json()["opened"] is None
 
 
+@pytest.mark.slow
 def test_routes_are_drafted_where_they_are_asked_for(served):
     client = served().client
     assert _read(client, "duplex.ifc", DUPLEX.read_bytes(), "&routes=draft")["found"]["routes"] > 0
@@ -128,14 +132,17 @@ def test_what_cannot_be_read_is_said_and_not_kept_and_a_second_try_works(served,
     assert list(server.folder.iterdir()) == []
 
 
+@linux
 def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp_path):
     server = served()
     client = server.client
-    assert (
-        client.request("POST", "/api/import?name=large.ifc", LARGE.read_bytes()).json()["import"]["state"] == "running"
-    )
+    assert client.request("POST", "/api/import?name=duplex.ifc", DUPLEX.read_bytes()).status == 200
+    reader = hold_reader(server)
     assert client.get("/api/start").status == 200
+    assert client.get("/api/import").json()["import"]["state"] == "running"
+    assert client.post("/api/import/open").status == 404
     assert client.post("/api/import/cancel").json()["import"]["state"] == "cancelled"
+    wait_until(lambda: is_gone(reader), bool)
     wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
     wait_until(lambda: list((tmp_path / "tmp").rglob("assess-model-*")), lambda left: left == [])
     assert client.post("/api/import/open").status == 404
@@ -143,10 +150,23 @@ def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp
     assert client.post("/api/import/cancel").json()["import"] is None  # what was read is dropped
 
 
-def test_the_server_ends_while_a_model_is_read(served, tmp_path):
+@linux
+@pytest.mark.slow
+def test_another_model_takes_the_place_of_one_that_is_being_read(served):
     server = served()
     server.client.request("POST", "/api/import?name=large.ifc", LARGE.read_bytes())
+    reader = hold_reader(server)
+    found = _read(server.client, "duplex.ifc", DUPLEX.read_bytes())
+    assert (found["state"], found["name"], is_gone(reader)) == ("done", "duplex.ifc", True)
+
+
+@linux
+def test_the_server_ends_while_a_model_is_read(served, tmp_path):
+    server = served()
+    server.client.request("POST", "/api/import?name=duplex.ifc", DUPLEX.read_bytes())
+    reader = hold_reader(server)
     assert server.stop()[::2] == (0, "Stopped.\n")
+    assert is_gone(reader)
     assert list((tmp_path / "tmp").iterdir()) == []
 
 
@@ -183,6 +203,7 @@ def test_models_come_from_the_page_alone(served):
     assert client.post("/api/import/open", {"shaking": "strong"}).status == 422
 
 
+@pytest.mark.slow
 def test_on_a_server_for_several_it_is_held_with_its_plans_for_its_user_alone(served):
     server = served(None, *OPTIONS)
     ann, _ = _come(server, "ann")
