@@ -1,0 +1,195 @@
+"""``assess export``: what users see of it, and what they find in the folder."""
+
+import os
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import ifcopenshell
+import pytest
+from ifcopenshell.util.element import get_psets
+
+from tests.bim.export_runs import CUPBOARD_1, CUPBOARDS, DUPLEX, OFFICE, PLACES, ROUTES, piece, write_results
+from tests.cli.calling import error, run
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    return write_results(tmp_path_factory.mktemp("results"), places=PLACES, routes=ROUTES)
+
+
+@pytest.fixture
+def results(made, tmp_path):
+    """Return a folder of its own with the results."""
+    path = tmp_path / "results.json"
+    path.write_bytes(made.read_bytes())
+    return path
+
+
+def files(folder: Path) -> list[str]:
+    return sorted(one.name for one in folder.iterdir())
+
+
+def read_class(path: Path) -> str:
+    model = ifcopenshell.open(str(path))
+    return str(get_psets(model.by_guid(CUPBOARD_1))["Assess_OverturningRisk"]["RiskClass"])
+
+
+def test_both_are_written_and_said(results):
+    out, bcf = results.with_name("risk.ifc"), results.with_name("fix.bcfzip")
+    done = run("export", results, "--ifc", DUPLEX, "-o", out, "--bcf", bcf)
+    assert done.exit_code == 0
+    lines = done.stdout.splitlines()
+    assert lines[0] == "duplex.ifc: a property set Assess_OverturningRisk on 4 pieces."
+    assert "what to fix, in the order of the schedule" in lines[1]
+    assert f"wrote {out}" in done.stderr
+    assert f"wrote {bcf}" in done.stderr
+    assert read_class(out) == "very high"
+    assert "bcf.version" in zipfile.ZipFile(bcf).namelist()
+
+
+@pytest.mark.parametrize(("option", "name"), [("--out", "risk.ifc"), ("--bcf", "fix.bcf")])
+def test_each_can_be_written_by_itself_from_the_folder_of_a_report(results, option, name):
+    done = run("export", results.parent, "--ifc", DUPLEX, option, results.with_name(name))
+    assert done.exit_code == 0
+    assert len(done.stdout.splitlines()) == 1
+    assert files(results.parent) == sorted([name, "results.json"])
+
+
+def test_pieces_that_are_not_in_the_model_are_named_and_end_with_1(tmp_path):
+    items = [*CUPBOARDS, piece("No id", "1", None, 1, 1), piece("Stranger", "1", "0" * 22, 2, 1)]
+    results = write_results(tmp_path, items)
+    done = run("export", results, "--ifc", DUPLEX, "-o", tmp_path / "o.ifc", "--bcf", tmp_path / "t.bcfzip")
+    assert done.exit_code == 1
+    assert "Not written, 1 piece without a Source ID: No id." in done.stdout
+    assert "Not written, 1 piece with a Source ID that is not in duplex.ifc: Stranger." in done.stdout
+    assert (tmp_path / "o.ifc").exists()
+    assert (tmp_path / "t.bcfzip").exists()
+
+
+def test_the_texts_are_in_the_language_of_the_workbook(tmp_path):
+    results = write_results(tmp_path, building={"building": "Casa", "language": "Italiano"})
+    out = tmp_path / "o.ifc"
+    assert run("export", results, "--ifc", DUPLEX, "-o", out).exit_code == 0
+    assert read_class(out) == "molto alto"
+
+
+# ---------------------------------------------------------------- what is refused
+
+
+def refuse(results: Path, *words: object) -> str:
+    """Return the message of an export that fails, prints one line and leaves the folder as it was."""
+    before = {one.name: one.read_bytes() for one in results.parent.iterdir()}
+    message = str(error(run("export", results, *words)))
+    assert {one.name: one.read_bytes() for one in results.parent.iterdir()} == before
+    return message
+
+
+def test_nothing_asked_for(results):
+    assert "nothing is to be written: add --out MODEL.ifc" in refuse(results, "--ifc", DUPLEX)
+
+
+def test_the_model_is_always_named(results):
+    assert "--ifc" in refuse(results, "-o", results.with_name("o.ifc"))
+
+
+@pytest.mark.parametrize(("option", "name"), [("-o", "o.xlsx"), ("-o", "o"), ("--bcf", "t.zip"), ("--bcf", "t.ifc")])
+def test_another_kind_of_file(results, option, name):
+    assert "has an unsupported file type" in refuse(results, "--ifc", DUPLEX, option, results.with_name(name))
+
+
+@pytest.mark.parametrize("forced", [(), ("--force",)])
+def test_the_model_itself_is_never_replaced(results, forced):
+    model = results.with_name("model.ifc")
+    model.write_bytes(DUPLEX.read_bytes())
+    assert "model.ifc is read for this: name another file" in refuse(results, "--ifc", model, "-o", model, *forced)
+
+
+def test_both_in_one_file(results):
+    out = results.with_name("o.ifc")
+    message = refuse(results, "--ifc", DUPLEX, "-o", out, "--bcf", out)
+    assert "name the same file" in message
+
+
+@pytest.mark.parametrize(("option", "name"), [("-o", "o.ifc"), ("--bcf", "t.bcfzip")])
+def test_an_existing_file_stays_unless_forced(results, option, name):
+    out = results.with_name(name)
+    out.write_bytes(b"mine")
+    assert f"{name} already exists: add --force" in refuse(results, "--ifc", DUPLEX, option, out)
+    assert run("export", results, "--ifc", DUPLEX, option, out, "--force").exit_code == 0
+    assert out.read_bytes() != b"mine"
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"", "model.ifc .* is empty"),
+        (DUPLEX.read_bytes()[: 2 * DUPLEX.stat().st_size // 3], "END-ISO-10303-21;, is missing"),
+        (b"PK\x03\x04....", "packed as a zip file"),
+        (b"plain text", "does not begin as an IFC file"),
+    ],
+)
+def test_a_model_that_cannot_be_read(results, data, message):
+    model = results.with_name("model.ifc")
+    model.write_bytes(data)
+    found = refuse(results, "--ifc", model, "-o", results.with_name("o.ifc"), "--bcf", results.with_name("t.bcfzip"))
+    assert re.search(message, found)
+
+
+def test_a_model_of_another_building(results):
+    message = refuse(results, "--ifc", OFFICE, "-o", results.with_name("o.ifc"))
+    assert "is that of an element of LargeBuilding.ifc. Name the model that the workbook was imported from." in message
+
+
+def test_results_that_are_none(results):
+    results.write_text("{}", encoding="utf-8")
+    assert "results.json was not written by assess" in refuse(
+        results, "--ifc", DUPLEX, "-o", results.with_name("o.ifc")
+    )
+    assert "gone.json does not exist" in refuse(
+        results.with_name("gone.json"), "--ifc", DUPLEX, "-o", results.with_name("o.ifc")
+    )
+
+
+def test_results_of_an_earlier_schema_hold_no_source_ids(results):
+    text = results.read_text(encoding="utf-8").replace('"source_id":', '"source_is":')
+    results.write_text(text, encoding="utf-8")
+    message = refuse(results, "--ifc", DUPLEX, "-o", results.with_name("o.ifc"))
+    assert "holds no Source ID, by which a piece is found in the model" in message
+
+
+def test_a_model_that_was_exported_before(results):
+    first = results.with_name("first.ifc")
+    run("export", results, "--ifc", DUPLEX, "-o", first)
+    message = refuse(results, "--ifc", first, "-o", results.with_name("second.ifc"))
+    assert "first.ifc holds Assess_OverturningRisk already, on 4 of the pieces" in message
+
+
+def test_where_one_file_cannot_be_written_neither_is(results):
+    """A folder of a name that is taken by a file: the model could be written, the topics not."""
+    results.with_name("taken").write_bytes(b"file")
+    bcf = results.parent / "taken" / "t.bcfzip"
+    message = refuse(results, "--ifc", DUPLEX, "-o", results.with_name("o.ifc"), "--bcf", bcf)
+    assert "name a file in a folder that exists" in message
+
+
+WITHOUT = """
+import sys
+sys.modules["ifcopenshell"] = None
+from assess.__main__ import main
+main()
+"""
+
+
+def test_without_the_extra_one_line_tells_what_to_install(results):
+    command = [sys.executable, "-c", WITHOUT, "export", str(results), "--ifc", str(DUPLEX), "-o",
+               str(results.with_name("o.ifc"))]  # fmt: skip
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | {"COLUMNS": "400"})
+    assert (done.returncode, done.stdout) == (2, "")
+    said = " ".join(done.stderr.split())
+    assert "need the library ifcopenshell. Install it from the folder of the source code of assess" in said
+    assert "'.[ifc]'" in said
+    assert "Traceback" not in said
+    assert files(results.parent) == ["results.json"]
