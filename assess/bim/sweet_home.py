@@ -1,0 +1,431 @@
+"""Homes drawn with Sweet Home 3D: walls, rooms, doors, windows, stairs and furniture of an .sh3d file.
+
+Such a file is a zip whose part Home.xml the program writes since version 5.3; older ones hold serialised Java alone.
+Elements and attributes are those of the DTD in the documentation of HomeXMLHandler in the program's source. Lengths
+are in centimetres, X to the right and Y downwards, angles in radians clockwise; an elevation is above the floor of the
+level. No entity is expanded, and nothing that the file names is opened.
+"""
+
+import io
+import math
+import zipfile
+import zlib
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from statistics import median
+from xml.parsers import expat
+
+import shapely
+from shapely import LineString, Polygon
+
+from assess.bim.building_model import Area, BuildingModel, Door, LeftOut, Piece, Point, Space, Stair, Storey
+from assess.bim.plan_shapes import list_polygons, merge, to_area, to_polygon
+from assess.errors import ModelError
+from assess.i18n import Text, fill, gettext, nfill
+
+SCHEMA = "Sweet Home 3D"
+HOME, OLD_HOME = "Home.xml", "Home"
+MOST_BYTES, MOST_HOME = 256 * 2**20, 32 * 2**20
+"""Size of a file, and of its home unpacked, that is read [bytes]; the rest of a file are pictures and shapes."""
+MOST_ELEMENTS, DEEPEST = 100_000, 100
+"""Elements of a home that are read, and elements inside each other."""
+MOST_PIECES, MOST_WALLS, MOST_LEVELS = 10_000, 1_000, 100
+"""Pieces, walls or rooms, and levels that are read."""
+FARTHEST = 1e6
+"""Largest number of a length [cm]."""
+CENTIMETRE = 0.01
+ON_FLOOR = 0.15
+"""Height of its base above the floor up to which a piece stands on it [m]."""
+SILL = 0.3
+"""Height of its lower edge above the floor up to which people walk through a door or window [m]."""
+SMALLEST_ROOM = 0.5
+"""Area below which an outline is no room [m2]."""
+FURNITURE = ("pieceOfFurniture", "light", "shelfUnit", "doorOrWindow")
+
+NOT_ON_FLOOR = fill("not on the floor: its base is more than 15 cm above it")
+IS_HIDDEN = fill("hidden in the plan")
+IS_TILTED = fill("not upright")
+IS_STAIR = fill("a stair, listed in Places")
+DRAWN_SIZES = fill(
+    "Sizes are those of the drawing, which are often those of the program's catalogue: check them against the "
+    "furniture."
+)
+
+_Attributes = dict[str, str]
+
+
+@dataclass(slots=True)
+class _Element:
+    """An element of a home with what is inside it that counts: corners of a room."""
+
+    place: str
+    tag: str
+    values: _Attributes
+    corners: list[Point] = field(default_factory=list)
+
+
+def read_sweet_home(data: bytes, name: str) -> BuildingModel:
+    """Return what a home tells of a building.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    name : str
+        How messages call it.
+
+    Raises
+    ------
+    ModelError
+        If it is no home, of a version that is not read, damaged, or beyond a limit; with the place in its Home.xml.
+    """
+    home = _Home(name)
+    home.parse(_unpack(data, name))
+    return home.build()
+
+
+def _unpack(data: bytes, name: str) -> bytes:
+    """Return Home.xml of a file."""
+    if len(data) > MOST_BYTES:
+        raise _too_large(name)
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            parts = archive.namelist()
+            if HOME not in parts:
+                raise _no_home(name, is_old=OLD_HOME in parts)
+            with archive.open(HOME) as part:
+                found = part.read(MOST_HOME + 1)
+    except (zipfile.BadZipFile, zipfile.LargeZipFile, OSError, EOFError, ValueError, RuntimeError, zlib.error):
+        raise _damaged(name) from None
+    if len(found) > MOST_HOME:
+        raise _too_large(name)
+    return found
+
+
+def _too_large(name: str) -> ModelError:
+    return ModelError(
+        fill("{name} is larger than what is read of a home: {file} MB, of which {home} MB for Home.xml. Save fewer "
+             "levels.", name=name, file=MOST_BYTES // 2**20, home=MOST_HOME // 2**20)
+    )  # fmt: skip
+
+
+def _no_home(name: str, *, is_old: bool) -> ModelError:
+    if is_old:
+        return ModelError(
+            fill("{name} was saved by an old version of Sweet Home 3D: it lacks Home.xml. Open it with version 5.3 or "
+                 "newer, and save it again.", name=name)
+        )  # fmt: skip
+    return ModelError(fill("{name} is not a file of Sweet Home 3D: it lacks Home.xml.", name=name))
+
+
+def _damaged(name: str) -> ModelError:
+    return ModelError(
+        fill(
+            "{name} is damaged: its Home.xml cannot be read. Open it with Sweet Home 3D, and save it again.", name=name
+        )
+    )
+
+
+# ---------------------------------------------------------------- the home as it stands in the file
+
+
+class _Home:
+    """Takes in the elements of a home, and makes a model of them."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.levels: list[_Element] = []
+        self.furniture: list[_Element] = []
+        self.walls: list[_Element] = []
+        self.rooms: list[_Element] = []
+        self.compass: _Element | None = None
+        self.root = ""
+        self.remarks: list[Text] = []
+        self.left_out: Counter[tuple[str, Text, bool]] = Counter()
+        self._open: list[_Element] = []
+        self._counts: Counter[str] = Counter()
+
+    def parse(self, data: bytes) -> None:
+        """Take in Home.xml."""
+        parser = expat.ParserCreate()
+        parser.StartElementHandler, parser.EndElementHandler = self._enter, self._leave
+        parser.EntityDeclHandler = self._refuse
+        try:
+            parser.Parse(data, True)
+        except (expat.ExpatError, ValueError, LookupError):  # an encoding that is not known
+            raise _damaged(self.name) from None
+        if self.root != "home":
+            raise _no_home(self.name, is_old=False)
+
+    def _refuse(self, *_: object) -> None:
+        raise _damaged(self.name)
+
+    def _enter(self, tag: str, values: _Attributes) -> None:
+        self.root = self.root or tag
+        self._counts[""] += 1
+        if self._counts[""] > MOST_ELEMENTS or len(self._open) >= DEEPEST:
+            raise self._too_many(fill("elements"), MOST_ELEMENTS)
+        element = _Element(f"{tag}[{self._counts[tag]}]", tag, values)
+        self._counts[tag] += 1
+        if tag == "point" and self._open and self._open[-1].tag == "room":
+            self._open[-1].corners.append((self.metres(element, "x"), -self.metres(element, "y")))
+        self._open.append(element)
+        self._keep(element)
+
+    def _keep(self, element: _Element) -> None:
+        kept = {
+            "level": self.levels,
+            "wall": self.walls,
+            "room": self.rooms,
+            **dict.fromkeys(FURNITURE, self.furniture),
+        }
+        if element.tag == "compass":
+            self.compass = element
+        if element.tag in kept:
+            group = next((one for one in reversed(self._open[:-1]) if one.tag == "furnitureGroup"), None)
+            if group is not None:  # what is hidden or lies on a level as a whole
+                for name in ("level", "visible"):
+                    if name in group.values:
+                        element.values.setdefault(name, group.values[name])
+            kept[element.tag].append(element)
+            most = {"level": MOST_LEVELS, "wall": MOST_WALLS, "room": MOST_WALLS}.get(element.tag, MOST_PIECES)
+            if len(kept[element.tag]) > most:
+                raise self._too_many(fill("pieces, walls, rooms or levels"), most)
+
+    def _leave(self, _: str) -> None:
+        self._open.pop()
+
+    def _too_many(self, what: Text, most: int) -> ModelError:
+        return ModelError(
+            fill("{name} holds more than {most:,} {what}, or too many inside each other. Save fewer levels.",
+                 name=self.name, most=most, what=what)
+        )  # fmt: skip
+
+    # ------------------------------------------------------------ values
+
+    def number(self, element: _Element, name: str, otherwise: float | None = None) -> float:
+        """Return a number of an element."""
+        text = element.values.get(name)
+        if text is None and otherwise is not None:
+            return otherwise
+        try:
+            found = float(text or "")
+        except ValueError:
+            found = math.nan
+        if not abs(found) <= FARTHEST:
+            raise ModelError(
+                fill("{name}, {place}: {field} is {text!r}, not a number. Open the file with Sweet Home 3D, and save "
+                     "it again.", name=self.name, place=element.place, field=name, text=(text or "")[:40])
+            )  # fmt: skip
+        return found
+
+    def metres(self, element: _Element, name: str, otherwise: float | None = None) -> float:
+        """Return a length of an element [m]."""
+        return CENTIMETRE * self.number(element, name, otherwise)
+
+    # ------------------------------------------------------------ the model
+
+    def build(self) -> BuildingModel:
+        """Return the model."""
+        storeys = self._list_storeys()
+        spaces = tuple(self._list_spaces(storeys))
+        boxes = [self._box(one, storeys) for one in self.furniture]
+        drawn = [one for one in boxes if not one.is_hidden]
+        passages = [one for one in drawn if one.is_opening]
+        doors = [one for one in passages if one.bottom <= SILL]
+        pieces = tuple(self._list_pieces([one for one in boxes if not one.is_opening], spaces))
+        return BuildingModel(
+            source=self.name,
+            schema=SCHEMA,
+            storeys=storeys,
+            spaces=spaces,
+            doors=tuple(one.to_door() for one in doors),
+            stairs=tuple(_list_stairs(drawn, storeys)),
+            pieces=pieces,
+            walls={one.key: self._draw_walls(one.key, passages) for one in storeys},
+            windows={
+                one.key: merge(box.polygon for box in passages if box.storey == one.key and box not in doors)
+                for one in storeys
+            },
+            left_out=tuple(LeftOut(SCHEMA, *one[:2], number, one[2]) for one, number in self.left_out.items()),
+            azimuth_deg=self._find_azimuth(),
+            warnings=(DRAWN_SIZES,) if pieces else (),
+            remarks=tuple(self.remarks),
+        )
+
+    def _list_storeys(self) -> tuple[Storey, ...]:
+        """Return the levels from the lowest; one without a key where the home has none."""
+        found = [
+            Storey(one.values.get("id", one.place), _say(one.values.get("name")) or one.place, height, height)
+            for one in self.levels
+            for height in (self.metres(one, "elevation"),)
+        ]
+        single = Storey("", gettext("Storey {n}", n=0), 0.0, 0.0)
+        return tuple(sorted(found, key=lambda one: one.level)) or (single,)
+
+    def _storey_of(self, element: _Element, storeys: Sequence[Storey]) -> Storey:
+        own = element.values.get("level")
+        return next((one for one in storeys if one.key == own), storeys[0])
+
+    def _list_spaces(self, storeys: Sequence[Storey]) -> Iterator[Space]:
+        """Yield the rooms; their height is left out, as a ceiling tells nothing of the roof of the building."""
+        for number, one in enumerate(self.rooms, 1):
+            storey = self._storey_of(one, storeys)
+            polygon = to_polygon((tuple(one.corners),)) if len(one.corners) >= 3 else Polygon()
+            if polygon.area >= SMALLEST_ROOM:
+                name = _say(one.values.get("name")) or gettext("Room {n}", n=number)
+                key = f"{one.values.get('id', '')} {one.place}".strip()
+                yield Space(key, storey.key, name, "", to_area(polygon), storey.level, storey.level)
+
+    def _box(self, one: _Element, storeys: Sequence[Storey]) -> "_Box":
+        is_tilted = any(abs(self.number(one, name, 0.0)) > math.radians(2.6) for name in ("pitch", "roll"))
+        angle = -self.number(one, "angle", 0.0)  # clockwise in the file
+        return _Box(
+            element=one,
+            key=one.values.get("id", ""),
+            storey=self._storey_of(one, storeys).key,
+            name=_say(one.values.get("name")) or one.tag,
+            x=self.metres(one, "x"),
+            y=-self.metres(one, "y"),
+            angle=math.remainder(angle, math.tau),
+            width=self.metres(one, "width"),
+            depth=self.metres(one, "depth"),
+            height=self.metres(one, "height"),
+            bottom=self.metres(one, "elevation", 0.0),
+            is_tilted=is_tilted,
+        )
+
+    def _list_pieces(self, boxes: Sequence["_Box"], spaces: Sequence[Space]) -> Iterator[Piece]:
+        for one, room in zip(boxes, _place(boxes, spaces), strict=True):
+            reason = one.why_left_out()
+            if reason is None:
+                yield one.to_piece(room)
+            else:
+                self.left_out[one.name, reason, reason is not IS_STAIR] += 1
+
+    def _draw_walls(self, storey: str, passages: Sequence["_Box"]) -> tuple[Area, ...]:
+        """Return the walls of a level with gaps at doors and windows; round ones are left out."""
+        own = [one for one in self.walls if self.levels == [] or one.values.get("level", storey) == storey]
+        straight = [one for one in own if not self.number(one, "arcExtent", 0.0)]
+        if len(straight) < len(own):
+            left = len(own) - len(straight)
+            self.remarks.append(nfill("{n:,} round wall is not drawn.", "{n:,} round walls are not drawn.", left))
+        bands = [self._lay(one) for one in straight]
+        thick = [self.metres(one, "thickness") for one in straight]
+        holes = [one.widened(median(thick) if thick else 0.0) for one in passages if one.storey == storey]
+        return merge(list_polygons(shapely.union_all(bands).difference(shapely.union_all(holes))))
+
+    def _lay(self, wall: _Element) -> Polygon:
+        ends = [(self.metres(wall, f"x{end}"), -self.metres(wall, f"y{end}")) for end in ("Start", "End")]
+        band: Polygon = LineString(ends).buffer(self.metres(wall, "thickness") / 2, cap_style="square")
+        return band
+
+    def _find_azimuth(self) -> float | None:
+        """Return the compass direction of X [deg]; None where the compass was left as it was, up the plan."""
+        north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
+        return round((90 - math.degrees(north)) % 360, 1) if north else None
+
+
+def _place(boxes: Sequence["_Box"], spaces: Sequence[Space]) -> list[str]:
+    """Return the key of the smallest room of its level in which each stands, "" where there is none."""
+    polygons = [to_polygon(one.area) for one in spaces]
+    found = [(math.inf, "")] * len(boxes)
+    if not boxes:
+        return []
+    points = [shapely.Point(one.x, one.y) for one in boxes]
+    for at, room in zip(*shapely.STRtree(polygons).query(points, "covered_by").tolist(), strict=True):
+        if spaces[room].storey == boxes[at].storey:
+            found[at] = min(found[at], (polygons[room].area, spaces[room].key))
+    return [key for _, key in found]
+
+
+def _say(value: str | None) -> str:
+    return " ".join((value or "").split())
+
+
+# ---------------------------------------------------------------- pieces, doors, stairs
+
+
+@dataclass(frozen=True, slots=True)
+class _Box:
+    """A piece, door or window: its centre, its sides along `angle` [rad] and across it, and its height [m]."""
+
+    element: _Element
+    key: str
+    storey: str
+    name: str
+    x: float
+    y: float
+    angle: float
+    width: float
+    depth: float
+    height: float
+    bottom: float
+    is_tilted: bool
+
+    @property
+    def is_hidden(self) -> bool:
+        """Whether it is not shown."""
+        return self.element.values.get("visible") == "false"
+
+    @property
+    def is_opening(self) -> bool:
+        """Whether it is a door or a window."""
+        return self.element.tag == "doorOrWindow" or self.element.values.get("doorOrWindow") == "true"
+
+    @property
+    def is_stair(self) -> bool:
+        """Whether it cuts a hole into the floor above."""
+        return "staircaseCutOutShape" in self.element.values
+
+    @property
+    def polygon(self) -> Polygon:
+        """Its plan."""
+        return self.widened(0.0)
+
+    def widened(self, least: float) -> Polygon:
+        """Return its plan, a little deeper than `least` and than itself where that is not 0."""
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        u, v = self.width / 2, max(self.depth, 1.5 * least) / 2
+        corners = ((-u, -v), (u, -v), (u, v), (-u, v))
+        return Polygon([(self.x + c * p - s * q, self.y + s * p + c * q) for p, q in corners])
+
+    def why_left_out(self) -> Text | None:
+        """Return why it is not taken as a piece."""
+        if self.is_hidden:
+            return IS_HIDDEN
+        if self.is_stair:
+            return IS_STAIR
+        if self.is_tilted:
+            return IS_TILTED
+        return NOT_ON_FLOOR if self.bottom > ON_FLOOR else None
+
+    def to_piece(self, space: str) -> Piece:
+        """Return it as a piece; what is part of the base plan, which the program calls not movable, as fitted."""
+        short, long = sorted((self.width, self.depth))
+        angle = math.degrees(self.angle) + (0 if self.width <= self.depth else 90)
+        return Piece(
+            key=self.key, storey=self.storey, space=space, ifc_class=SCHEMA, name=self.name, type=self.name,
+            x=self.x, y=self.y, breadth=short, width=long, height=self.height, angle_deg=(angle + 90) % 180 - 90,
+            support_breadth=short, support_width=long, bottom=self.bottom,
+            is_fitted=self.element.values.get("movable") == "false",
+        )  # fmt: skip
+
+    def to_door(self) -> Door:
+        """Return it as a door."""
+        return Door(
+            key=f"{self.key} {self.element.place}".strip(), storey=self.storey, name=self.name, x=self.x, y=self.y,
+            normal_deg=math.degrees(self.angle) + 90, width=self.width, thickness=self.depth, overall=self.width,
+        )  # fmt: skip
+
+
+def _list_stairs(boxes: Sequence[_Box], storeys: Sequence[Storey]) -> Iterator[Stair]:
+    """Yield the foot and the head of each stair, at its centre: the head on the next level."""
+    keys = [one.key for one in storeys]
+    for one in boxes:
+        if one.is_stair and not one.is_opening:
+            key = f"{one.key} {one.element.place}".strip()
+            yield Stair(key, one.storey, one.name, "foot", one.x, one.y)
+            above = keys[keys.index(one.storey) + 1 :]
+            yield from (Stair(key, storey, one.name, "head", one.x, one.y) for storey in above[:1])
