@@ -1,6 +1,5 @@
 """Elements of an open building model: by class, their parts, storeys and shapes."""
 
-import multiprocessing
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
@@ -13,6 +12,8 @@ Element = Any
 """An entity of ifcopenshell."""
 _DEEPEST = 20
 """Levels of parts and containers that are followed: a model may hold a loop."""
+THREADS = 1
+"""Of the library: two wait for each other for ever at some damaged elements, and are no faster on small models."""
 MOST_TRIANGLES = 2_000_000
 """Triangles of one element beyond which its shape is not taken."""
 
@@ -82,22 +83,42 @@ def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool 
     """
     import ifcopenshell.geom
 
-    drawn = [one for one in elements if one.Representation]
-    if not drawn:
-        return
     settings = ifcopenshell.geom.settings()
     settings.set("disable-opening-subtractions", not with_openings)
-    threads = min(2, multiprocessing.cpu_count())
-    iterator = ifcopenshell.geom.iterator(settings, model, threads, include=drawn)
-    if not iterator.initialize():
-        return
-    while True:
+    done: set[int] = set()
+    try:
+        for number, shape in _iterate(model, settings, drawn):
+            done.add(number)
+            yield number, shape
+    except RuntimeError:  # one of the elements is damaged: the others one by one, which takes longer
+        for element in (one for one in drawn if one.id() not in done):
+            one = _create(settings, element)
+            if one is not None:
+                yield element.id(), one
+
+
+def _iterate(model: Any, settings: Any, elements: Sequence[Element]) -> Iterator[tuple[int, Shape]]:
+    """Yield the shapes of elements; those of one kind are worked out once. RuntimeError at one that is damaged."""
+    import ifcopenshell.geom
+
+    iterator = ifcopenshell.geom.iterator(settings, model, THREADS, include=list(elements))
+    goes_on = iterator.initialize()
+    while goes_on:
         one = iterator.get()
         shape = _to_shape(one)
         if shape is not None:
             yield one.id, shape
-        if not iterator.next():
-            return
+        goes_on = iterator.next()
+
+
+def _create(settings: Any, element: Element) -> Shape | None:
+    """Return the shape of one element, None where the library cannot make sense of it."""
+    import ifcopenshell.geom
+
+    try:
+        return _to_shape(ifcopenshell.geom.create_shape(settings, element))
+    except (RuntimeError, ValueError, AttributeError):
+        return None
 
 
 def _to_shape(found: Any) -> Shape | None:

@@ -95,11 +95,14 @@ def open_model(path: Path, name: str) -> Any:
 
     try:
         model = ifcopenshell.open(str(path))
-    except (RuntimeError, ValueError, OSError) as error:
-        first = str(error).strip().split("\n")[0][:120].rstrip(".")
-        raise ModelError(
-            fill("{name} is damaged: {why}. Export it again.", name=name, why=first or type(error).__name__)
-        ) from None
+    except (ifcopenshell.Error, RuntimeError, ValueError, OSError) as error:
+        raise find_damage(name, error) from None
     if not isinstance(model, ifcopenshell.file):
         raise ModelError(fill("{name} cannot be imported: {why}.", name=name, why=_NO_MODEL))
     return model
+
+
+def find_damage(name: str, error: Exception) -> ModelError:
+    """Return what is said of a model that the library cannot make sense of."""
+    first = str(error).strip().split("\n")[0][:120].rstrip(".")
+    return ModelError(fill("{name} is damaged: {why}. Export it again.", name=name, why=first or type(error).__name__))

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.bim.building_model import BuildingModel, Door, Piece, Point, Stair, Storey
-from assess.bim.ifc_file import check_model, open_model
+from assess.bim.ifc_file import check_model, find_damage, open_model
 from assess.bim.ifc_pieces import FoundPieces, find_pieces
 from assess.bim.ifc_rooms import cut_walls, list_doors, list_spaces, list_stairs
 from assess.bim.ifc_site import find_azimuth, find_names, find_position, find_unit, list_storeys
@@ -47,6 +47,14 @@ def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel
     """
     check_model(path, name)
     model = open_model(path, name)
+    try:
+        return _understand(model, name, also)
+    except (AttributeError, TypeError, ValueError, LookupError, RuntimeError) as error:  # an entity of a wrong kind
+        raise find_damage(name, error) from error
+
+
+def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
+    """Return what a model holds; errors of Python where it breaks the rules of its schema."""
     unit = find_unit(model, name)
     storeys = list_storeys(model, unit)
     warnings: list[Text] = []

@@ -93,7 +93,8 @@ def list_storeys(model: Any, unit: float) -> list[Storey]:
 
     found = []
     for number, one in enumerate(model.by_type("IfcBuildingStorey"), 1):
-        level = float(get_storey_elevation(one)) * unit
+        placed = get_storey_elevation(one) if one.ObjectPlacement is not None else one.Elevation or 0.0
+        level = float(placed) * unit
         elevation = level if one.Elevation is None else float(one.Elevation) * unit
         name = say(one.Name) or say(one.LongName) or str(number)
         if math.isfinite(level) and math.isfinite(elevation):
