@@ -15,6 +15,7 @@ from assess.web.jobs import READING, Slots
 from assess.web.request_errors import RequestError
 from assess.web.safe_names import clean_name
 from assess.workbook.read import read_tables
+from tests.bim import scan_files
 from tests.bim.cobie_files import write_cobie
 from tests.web.model_reader import hold_reader, is_gone, linux
 from tests.web.serving import wait_until
@@ -112,6 +113,13 @@ def test_a_cobie_file_is_recognised_where_a_workbook_is_opened(served, tmp_path)
     assert server.client.post("/api/import/open").json()["name"] == "handover-inventory.xlsx"
     office = write(tmp_path / "office.xlsx")
     assert server.client.send("/api/upload", "office.xlsx", office.read_bytes()).json()["name"] == "office.xlsx"
+
+
+def test_a_scan_is_told_by_its_content_whatever_it_is_called(served):
+    server = served()
+    found = _read(server.client, "office.ifc", scan_files.write(scan_files.office()))
+    assert (found["state"], found["found"]["floors"]) == ("done", 1)
+    assert server.client.post("/api/import/open").json()["name"] == "office.xlsx"
 
 
 def test_what_cannot_be_read_is_said_and_not_kept_and_a_second_try_works(served, tmp_path):

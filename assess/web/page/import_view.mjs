@@ -92,12 +92,14 @@ class ImportView {
   async #open(one) {
     if (this.open.disabled || !(await canLeave(this.#store, one.workbook))) return;
     this.open.disabled = true;
+    this.open.textContent = t("Making the workbook…");
     try {
       await imports.open(this.shaking.value);
     } catch (error) {
       notice(error.message || t("The server does not answer."), { kind: "error" });
     }
     this.open.disabled = false;
+    this.open.textContent = t("Open the workbook");
   }
 
   async #drop() {
