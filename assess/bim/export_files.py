@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from assess.bim.apart import run_apart
 from assess.bim.export_model import PROPERTY_SET, ModelElement, ModelPart, read_elements
 from assess.bim.export_properties import add_properties
 from assess.bim.export_results import ExportPiece, ExportRun
 from assess.bim.export_topics import Topics, list_entries, write_topics
 from assess.bim.export_views import Pair
 from assess.bim.ifc_file import check_installed, check_model
+from assess.bim.model_process import run_apart
 from assess.errors import ModelError
 from assess.i18n import fill
 from assess.progress import Progress

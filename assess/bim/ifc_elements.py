@@ -83,6 +83,9 @@ def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool 
     """
     import ifcopenshell.geom
 
+    drawn = [one for one in elements if one.Representation]
+    if not drawn:
+        return
     settings = ifcopenshell.geom.settings()
     settings.set("disable-opening-subtractions", not with_openings)
     done: set[int] = set()
@@ -102,13 +105,13 @@ def _iterate(model: Any, settings: Any, elements: Sequence[Element]) -> Iterator
     import ifcopenshell.geom
 
     iterator = ifcopenshell.geom.iterator(settings, model, THREADS, include=list(elements))
-    goes_on = iterator.initialize()
+    goes_on = bool(iterator.initialize())
     while goes_on:
         one = iterator.get()
         shape = _to_shape(one)
         if shape is not None:
             yield one.id, shape
-        goes_on = iterator.next()
+        goes_on = bool(iterator.next())
 
 
 def _create(settings: Any, element: Element) -> Shape | None:

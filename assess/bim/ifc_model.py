@@ -24,7 +24,7 @@ ROUND = 100.0
 
 
 def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
-    """Read a building model; call it in a process of its own (`assess.bim.apart`).
+    """Read a building model; call it in a process of its own (`assess.bim.model_process`).
 
     Parameters
     ----------
@@ -49,12 +49,12 @@ def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel
     model = open_model(path, name)
     try:
         return _understand(model, name, also)
-    except (AttributeError, TypeError, ValueError, LookupError, RuntimeError) as error:  # an entity of a wrong kind
+    except (AssertionError, AttributeError, TypeError, ValueError, LookupError, RuntimeError) as error:
         raise find_damage(name, error) from error
 
 
 def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
-    """Return what a model holds; errors of Python where it breaks the rules of its schema."""
+    """Return what a model holds; errors of Python where an entity is of another kind than its schema asks for."""
     unit = find_unit(model, name)
     storeys = list_storeys(model, unit)
     warnings: list[Text] = []

@@ -67,7 +67,7 @@ def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterat
 def list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:
     """Yield foot and head of each stair and ramp, on the storeys that they join."""
     stairs = {one.id(): one for one in list_outer(list_elements(model, STAIRS))}
-    for number, shape in join_parts(model, list(stairs.values())):
+    for number, shape in sorted(join_parts(model, list(stairs.values())), key=lambda one: one[0]):
         element, low, high = stairs[number], shape.bottom, shape.top
         feet = [one for one in storeys if abs(one.level - low) < AT_FOOT]
         heads = [one for one in storeys if low + LEAST_RISE < one.level < high + ABOVE_HEAD]
@@ -95,8 +95,12 @@ def cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
     elements = {one.id(): one for one in list_elements(model, (*WALLS, "IfcWindow"))}
     walls: dict[str, list[Polygon]] = {}
     windows: dict[str, list[Polygon]] = {}
-    for number, shape in list_shapes(model, list(elements.values()), with_openings=True):
+    cuts = {
+        number: [cut(shape, storey.level + CUT) for storey in storeys]
+        for number, shape in list_shapes(model, list(elements.values()), with_openings=True)
+    }
+    for number in sorted(cuts):
         kept = windows if elements[number].is_a("IfcWindow") else walls
-        for storey in storeys:
-            kept.setdefault(storey.key, []).extend(cut(shape, storey.level + CUT))
+        for storey, polygons in zip(storeys, cuts[number], strict=True):
+            kept.setdefault(storey.key, []).extend(polygons)
     return {key: merge(some) for key, some in walls.items()}, {key: merge(some) for key, some in windows.items()}

@@ -4,10 +4,10 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from assess.bim.apart import run_apart
 from assess.bim.building_model import BuildingModel
 from assess.bim.ifc_file import check_installed, check_model, is_model
 from assess.bim.import_workbook import ImportedBuilding
+from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
 from assess.errors import InputError, ModelError
 from assess.i18n import fill

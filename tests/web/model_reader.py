@@ -20,7 +20,7 @@ def find_reader(server):
 
 def _is_reader(pid):
     try:
-        return b"assess.bim.apart_process" in Path(f"/proc/{pid}/cmdline").read_bytes()
+        return b"assess.bim.model_worker" in Path(f"/proc/{pid}/cmdline").read_bytes()
     except OSError:
         return False
 

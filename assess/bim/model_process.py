@@ -4,6 +4,7 @@ Whatever such work does, it ends: the process is stopped at `SECONDS` of process
 system does not count processor time), cannot use more than `MEMORY`, and takes nothing down with it if it crashes.
 """
 
+import os
 import pickle
 import signal
 import subprocess
@@ -71,8 +72,7 @@ def run_apart(
 
 def _wait(folder: str, name: str, progress: Progress) -> int:
     """Run the process to its end, and return its status."""
-    command = [sys.executable, "-m", "assess.bim.apart_process", folder]
-    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: S603
+    process = _start(folder)
     end = time.monotonic() + PATIENCE * SECONDS
     try:
         while True:
@@ -85,6 +85,17 @@ def _wait(folder: str, name: str, progress: Progress) -> int:
     finally:
         process.kill()
         process.communicate()
+
+
+def _start(folder: str) -> "subprocess.Popen[bytes]":
+    """Start the process in its own folder, where no file of the user's can take the place of a module."""
+    root = str(Path(__file__).parents[2])
+    paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
+    return subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
+        [sys.executable, "-m", "assess.bim.model_worker", folder],
+        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=folder,
+        env={**os.environ, "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"},
+    )  # fmt: skip
 
 
 def _explain(name: str, status: int) -> ModelError:

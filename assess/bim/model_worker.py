@@ -1,4 +1,4 @@
-"""The process that `assess.bim.apart` starts: ``python -m assess.bim.apart_process FOLDER``.
+"""The process that `assess.bim.model_process` starts: ``python -m assess.bim.model_worker FOLDER``.
 
 It sets its own limits, does the work that FOLDER/order names, and leaves FOLDER/answer. Its input is closed when the
 process that started it has ended; then it ends, too.
@@ -11,7 +11,7 @@ import sys
 import threading
 from pathlib import Path
 
-from assess.bim.apart import ANSWER, ORDER, OUT_OF_MEMORY
+from assess.bim.model_process import ANSWER, ORDER, OUT_OF_MEMORY
 from assess.errors import AssessError
 
 

@@ -7,9 +7,9 @@ import threading
 
 import pytest
 
-from assess.bim import apart
-from assess.bim.apart import run_apart
+from assess.bim import model_process
 from assess.bim.cobie import read_cobie
+from assess.bim.model_process import run_apart
 from assess.errors import CancelledError, ModelError, WorkbookError
 from assess.progress import SILENT, Progress
 
@@ -41,7 +41,7 @@ def test_memory_is_limited():
 
 @ON_LINUX
 def test_processor_time_is_limited(monkeypatch):
-    monkeypatch.setattr(apart, "SECONDS", 1)
+    monkeypatch.setattr(model_process, "SECONDS", 1)
     with pytest.raises(ModelError, match="takes more than 1 s of processor time"):
         run_apart("a.ifc", SILENT, eval, "sum(range(10**12))")
 
@@ -51,3 +51,9 @@ def test_a_cancel_stops_the_process():
     threading.Timer(0.3, cancel.set).start()
     with pytest.raises(CancelledError):
         run_apart("a.ifc", Progress(cancel=cancel), eval, "sum(range(10**12))")
+
+
+def test_a_file_of_the_users_takes_the_place_of_no_module(tmp_path, monkeypatch):
+    (tmp_path / "pickle.py").write_text("raise SystemExit(7)", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert run_apart("a.ifc", SILENT, divmod, 17, 5) == (3, 2)
