@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from assess.bim.ifc_file import check_model, open_model
+from assess.bim.ifc_file import check_model, find_damage, open_model
+from assess.bim.ifc_site import find_unit
 
 PROPERTY_SET = "Assess_OverturningRisk"
 """Name of the set; the prefix Pset_ is that of buildingSMART."""
@@ -32,8 +33,8 @@ class ModelElement:
         Whether it has a property set `PROPERTY_SET` already.
     low, high : Place, optional
         Corners of the box around it in the axes of the model [m]; None where that was not asked for.
-    room : tuple of float, optional
-        Middle of the plan of the room that it stands in [m]; None where there is none, or that was not asked for.
+    room : Box, optional
+        Corners of the box around the room that it stands in [m]; None where there is none, or that was not asked for.
     """
 
     key: str
@@ -44,7 +45,7 @@ class ModelElement:
     has_set: bool
     low: Place | None = None
     high: Place | None = None
-    room: tuple[float, float] | None = None
+    room: Box | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,22 +86,33 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
     Raises
     ------
     ModelError
-        If it is no whole building model.
+        If it is no whole building model, or names no unit of length and places are needed.
     """
     check_model(path, name)
     model = open_model(path, name)
+    try:
+        return _understand(model, name, keys, placed)
+    except (AssertionError, AttributeError, TypeError, ValueError, LookupError, RuntimeError) as error:
+        raise find_damage(name, error) from error
+
+
+def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
+    """Return what was found of a model; errors of Python where an entity is not as its schema asks for."""
     found = {key: one for key in keys if (one := _find(model, key)) is not None}
     elements = [_describe(model, key, one) for key, one in found.items()]
+    doors: list[ModelDoor] = []
     if placed is not None:
-        boxes = _find_boxes(model, [found[key] for key in placed if key in found])
-        elements = _place(elements, boxes, _find_boxes(model, model.by_type("IfcSpace")) if boxes else {})
+        unit = find_unit(model, name)
+        boxes = _find_boxes(model, [found[key] for key in placed if key in found], unit)
+        rooms = _find_boxes(model, model.by_type("IfcSpace"), unit) if boxes else {}
+        elements, doors = _place(elements, boxes, rooms), list(_list_doors(model, unit))
     projects = model.by_type("IfcProject")
     return ModelPart(
         schema=str(model.schema),
         project=str(projects[0].GlobalId) if projects else "",
         last_number=max((one.id() for one in model), default=0),
         elements=tuple(elements),
-        doors=() if placed is None else tuple(_list_doors(model)),
+        doors=tuple(doors),
     )
 
 
@@ -129,7 +141,7 @@ def _describe(model: Any, key: str, one: Any) -> ModelElement:
 
 
 def _place(elements: Sequence[ModelElement], boxes: Mapping[int, Box], rooms: Mapping[int, Box]) -> list[ModelElement]:
-    """Return elements with the boxes around them, and the middles of the rooms that they stand in."""
+    """Return elements with the boxes around them and around the rooms that they stand in."""
     return [
         replace(one, low=box[0], high=box[1], room=_find_room(find_middle(box), rooms.values()))
         if (box := boxes.get(one.number)) is not None
@@ -138,11 +150,10 @@ def _place(elements: Sequence[ModelElement], boxes: Mapping[int, Box], rooms: Ma
     ]
 
 
-def _find_room(point: Place, rooms: Iterable[Box]) -> tuple[float, float] | None:
-    """Return the middle of the smallest room whose box holds a point."""
+def _find_room(point: Place, rooms: Iterable[Box]) -> Box | None:
+    """Return the smallest room whose box holds a point."""
     around = [(low, high) for low, high in rooms if all(low[at] <= point[at] <= high[at] for at in range(3))]
-    smallest = min(around, key=lambda box: math.prod(box[1][at] - box[0][at] for at in range(3)), default=None)
-    return None if smallest is None else find_middle(smallest)[:2]
+    return min(around, key=lambda box: math.prod(box[1][at] - box[0][at] for at in range(3)), default=None)
 
 
 def find_middle(box: Box) -> Place:
@@ -151,22 +162,15 @@ def find_middle(box: Box) -> Place:
     return x, y, z
 
 
-def _find_boxes(model: Any, elements: Sequence[Any]) -> dict[int, Box]:
+def _find_boxes(model: Any, elements: Sequence[Any], unit: float) -> dict[int, Box]:
     """Return the boxes around elements by their numbers; of one without a shape its origin, twice."""
     from assess.bim.ifc_elements import join_parts
 
-    unit = _find_unit(model)
     boxes = {one.id(): (place, place) for one in elements if (place := _find_origin(one, unit)) is not None}
     for number, shape in join_parts(model, elements):
         low, high = shape.points.min(axis=0).tolist(), shape.points.max(axis=0).tolist()
         boxes[number] = ((low[0], low[1], low[2]), (high[0], high[1], high[2]))
     return boxes
-
-
-def _find_unit(model: Any) -> float:
-    from ifcopenshell.util.unit import calculate_unit_scale
-
-    return float(calculate_unit_scale(model))
 
 
 def _find_origin(one: Any, unit: float, along: float = 0.0) -> Place | None:
@@ -180,9 +184,8 @@ def _find_origin(one: Any, unit: float, along: float = 0.0) -> Place | None:
     return x, y, z
 
 
-def _list_doors(model: Any) -> Iterator[ModelDoor]:
+def _list_doors(model: Any, unit: float) -> Iterator[ModelDoor]:
     """Yield the doors: a door's origin is at one of its jambs, its opening lies along X."""
-    unit = _find_unit(model)
     for one in model.by_type("IfcDoor"):
         middle = float(one.OverallWidth or 0.0) * unit / 2
         places = [place for along in (0.0, middle) if (place := _find_origin(one, unit, along)) is not None]

@@ -169,8 +169,6 @@ def _list_fixing(entry: ExportEntry, work: ExportWork) -> Iterator[tuple[str, st
 
 
 def _list_origin(run: PastRun) -> Iterator[tuple[str, str]]:
-    scenario = say_scenario(run)
-    if scenario:
-        yield "Scenario", write_long_text(scenario)
+    yield "Scenario", write_long_text(say_scenario(run))
     yield "AssessedBy", write_label(say_program(run))
     yield "Report", write_long_text(say_report(run))

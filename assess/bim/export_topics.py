@@ -163,7 +163,7 @@ def _build_topic(found: ExportRun, topic: Topic) -> _Element:
 def _list_labels(found: ExportRun, topic: Topic) -> list[str]:
     """Return the labels of a topic, by which programs group them."""
     piece = topic.pairs[0][0]
-    labels = [_("earthquake"), words.risk_word(piece.past.risk)]
+    labels = [_("earthquake"), words.risk_word(piece.past.risk), topic.entry.floor]
     if piece.past.basis != found.run.main_basis:
         labels.append(_("unconfirmed") if piece.past.basis == "unconfirmed" else _("by formula only"))
     if list_routes(found, topic.entry.items):

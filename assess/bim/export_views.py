@@ -24,6 +24,10 @@ ROOM = 1.6
 """Distance from which all is in sight of a screen that is broader than high, over that of a round one."""
 LARGEST = 5.0
 """Half the extent of pieces that are looked at together; of others the first is looked at [m]."""
+STEEPEST = 1e-3
+"""Sine of the angle between the camera's direction and the vertical below which it looks straight down."""
+FROM_WALL = 0.3
+"""[m]"""
 FIELD_OF_VIEW = 60.0
 """Horizontal [deg]; BCF 2.1 allows 45 to 60."""
 Pair = tuple[ExportPiece, ModelElement]
@@ -117,12 +121,12 @@ def _distance_to_line(point: Point, start: Point, end: Point) -> float:
 
 
 def find_camera(pairs: Sequence[Pair], centre: Point) -> Camera | None:
-    """Return a camera that sees some pieces from the side to which the first may fall, and from above.
+    """Return a camera that sees some pieces from the side to which the first may fall, from above and in its room.
 
     Parameters
     ----------
     pairs : sequence of (ExportPiece, ModelElement)
-        The pieces with their elements, the most urgent first.
+        The pieces with their elements, the most urgent first; those of its room are looked at.
     centre : Point
         From there a piece is seen whose back is not known, nor the room that it stands in.
 
@@ -131,19 +135,34 @@ def find_camera(pairs: Sequence[Pair], centre: Point) -> Camera | None:
     Camera, optional
         None where no place is known.
     """
-    boxes = [(one.low, one.high) for _, one in pairs if one.low is not None and one.high is not None]
+    piece, first = pairs[0]
+    boxes = [(one.low, one.high) for _, one in pairs if one.low is not None and one.high is not None
+             and one.room == first.room]  # fmt: skip
     if not boxes:
         return None
     low, high = _join(boxes)
     if math.dist(low, high) / 2 > LARGEST:
         low, high = boxes[0]
-    target = [(one + other) / 2 for one, other in zip(low, high, strict=True)]
+    target = find_middle((low, high))
+    middle = find_middle(first.room)[:2] if first.room else centre
     distance = max(DISTANCE, ROOM * math.dist(low, high) / 2 / math.sin(math.radians(FIELD_OF_VIEW / 2)))
     rise = max(EYE + low[2] - target[2], distance / 4)
     flat = math.sqrt(max(distance**2 - rise**2, 1.0))
-    piece, element = pairs[0]
-    x, y = _find_side(piece, (target[0], target[1]), element.room or centre)
-    return _look((target[0] + flat * x, target[1] + flat * y, target[2] + rise), (target[0], target[1], target[2]))
+    x, y = _find_side(piece, target[:2], middle)
+    point = (target[0] + flat * x, target[1] + flat * y, target[2] + rise)
+    return _look(point if first.room is None else _keep_inside(point, first.room), target)
+
+
+def _keep_inside(point: Place, room: Box) -> Place:
+    """Return the nearest point in a room that is `FROM_WALL` away from its walls and ceiling."""
+    low, high = room
+    x, y = (
+        max(low[at] + FROM_WALL, min(high[at] - FROM_WALL, point[at]))
+        if high[at] - low[at] > 2 * FROM_WALL
+        else (low[at] + high[at]) / 2
+        for at in (0, 1)
+    )
+    return x, y, max(low[2] + FROM_WALL, min(high[2] - FROM_WALL, point[2]))
 
 
 def _join(boxes: Sequence[Box]) -> Box:
@@ -169,6 +188,8 @@ def _look(point: Place, target: Place) -> Camera:
     length = math.dist(point, target)
     x, y, z = ((to - at) / length for to, at in zip(target, point, strict=True))
     flat = math.hypot(x, y)
+    if flat < STEEPEST:
+        return Camera(point, (0.0, 0.0, -1.0 if z < 0 else 1.0), (0.0, 1.0, 0.0))
     return Camera(point, (x, y, z), (-z * x / flat, -z * y / flat, flat))
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from assess.bim.export_results import ExportEntry, ExportPiece, ExportRun, ExportWork
 from assess.compare.past_run import UNCONFIRMED, PastRun
-from assess.details import DETAILS
+from assess.details import DETAILS, Detail
 from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
 from assess.report import words
@@ -18,8 +18,10 @@ from assess.report.findings.schedule_words import (
 )
 from assess.report.ranking import RouteStep, say_effect
 from assess.risk import classify
+from assess.settings import SCENARIOS
 
 BASES = {"simulated": fill("simulated"), "formula": fill("formula"), "unconfirmed": fill("unconfirmed")}
+AS_FILLED = SCENARIOS[0]
 LONGEST = 60
 """Characters of a description that a title shows."""
 MOST_CHANCES = 20
@@ -77,11 +79,13 @@ def say_scenario(run: PastRun) -> str:
     """Return the earthquake in words, and where the floor motion comes from."""
     building, settings = run.building, run.settings
     kind = str(settings.get("scenario") or building.get("scenario_kind") or "")
-    parts = [str(building.get("scenario") or ""), run.shaking, run.site_ground, kind]
-    scale = settings.get("scale")
+    parts = [str(building.get("scenario") or ""), run.shaking, run.site_ground, "" if kind == AS_FILLED else kind]
+    pga, scale = building.get("ground_pga_g"), settings.get("scale")
+    if isinstance(pga, int | float):
+        parts.append(_("ground PGA {pga} g", pga=words.in_g(pga)))
     if isinstance(scale, int | float) and scale != 1:
         parts.append(_("motions times {scale:g}", scale=scale))
-    return "; ".join(dict.fromkeys(part for part in parts if part))
+    return "; ".join(dict.fromkeys(part for part in parts if part)) or _("floor motions of the workbook")
 
 
 def say_report(run: PastRun) -> str:
@@ -144,7 +148,7 @@ def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
         yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).", item=one.past.item,
                 chance=say_chance(one), pfa=peak, source=one.pfa_source or words.DASH)  # fmt: skip
     yield _("Earthquake: {scenario}. The chance is that in this earthquake, not that in a year.",
-            scenario=say_scenario(run) or words.DASH)  # fmt: skip
+            scenario=say_scenario(run))  # fmt: skip
     reason = say_reason(found, entry, pieces)
     if reason:
         yield _("Why it comes here: {reason}.", reason=reason)
@@ -152,6 +156,8 @@ def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
         yield _("These pieces only help together: fixing some of them opens no route.")
     for work in entry.works:
         yield from _list_work(work, is_only=len(entry.works) == 1)
+    for detail in dict.fromkeys(work.detail for work in entry.works):
+        yield from _describe_detail(DETAILS[detail])
     yield say_checks()
     yield _("Entry {place:,} of {n:,} of the schedule. {report}; {program}.", place=entry.place,
             n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
@@ -174,16 +180,20 @@ def say_reason(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
 
 def _list_work(work: ExportWork, *, is_only: bool) -> Iterator[str]:
     """Yield how alike pieces may be fixed, and the forces on their fixings."""
-    detail = DETAILS[work.detail]
-    title, what = _(detail.title), _(detail.what)
+    title = _(DETAILS[work.detail].title)
     named = "" if is_only else f"{join_names(shorten_names(work.items))}: "
-    yield _("{names}How to fix: {title}: {what}.", names=named, title=title, what=what)
     least = _("at least {n}, as no capacity is printed", n=work.fixings) if work.is_least else f"{work.fixings:,}"
-    yield _("Fixings of each piece: {fixings}. One is: {fixing}.", fixings=least, fixing=_(detail.fixing))
+    yield _("{names}How to fix: {title}. Fixings of each piece: {fixings}.", names=named, title=title, fixings=least)
     force = _("Force on the fixings of each piece: tension {pfa} kN at PFA, {high} kN at 84 % of PFA; shear at the "
               "base {shear} kN.", pfa=say_force(work.tension_kn), high=say_force(work.tension_high_kn),
               shear=say_force(work.shear_kn))  # fmt: skip
     yield " ".join((force, *_list_remarks(work)))
+
+
+def _describe_detail(detail: Detail) -> Iterator[str]:
+    """Yield what a way to fix pieces is, and what is known against it."""
+    title = _capital(_(detail.title))
+    yield _("{title}: {what}. One fixing is: {fixing}.", title=title, what=_(detail.what), fixing=_(detail.fixing))
     yield _("Known against it: {weakness} ({source}).", weakness=_(detail.weakness), source=_(detail.source))
 
 

@@ -11,9 +11,13 @@ import ifcopenshell
 import pytest
 from lxml import etree
 
+import assess
 from assess.bim import export_topics
 from assess.bim.export_topics import PRIORITIES, find_date
+from assess.bim.import_workbook import build_workbook
+from assess.bim.read_source import read_source
 from assess.i18n import load_catalogue, speaking
+from assess.report.data import write_json
 from assess.risk import RiskClass
 from tests.bim.export_runs import (
     BUILDING,
@@ -23,6 +27,7 @@ from tests.bim.export_runs import (
     DOOR_B202,
     DUPLEX,
     FLOORS,
+    FORMULA,
     PLACES,
     ROUTES,
     SIMULATED,
@@ -140,7 +145,8 @@ def test_a_coordinator_reads_what_is_to_be_done(bcf):
         ", simulated; PFA 1.200 g (given).",
         "Earthquake: Forte – 475 anni 🏢",
         "Why it comes here: life safety, route Scala: ",
-        "How to fix: L-bracket to studs: steel L-brackets near the top",
+        "How to fix: L-bracket to studs. Fixings of each piece: ",
+        "L-bracket to studs: steel L-brackets near the top",
         "Force on the fixings of each piece: tension ",
         "The height of the bracket is assumed: 0.9 of the piece's height.",
         "Forces are for screening, not design",
@@ -148,7 +154,7 @@ def test_a_coordinator_reads_what_is_to_be_done(bcf):
         f"({DOOR_B202}), on the route that it may block.",
     ):
         assert words in text
-    assert topic.labels[:2] == ["earthquake", "very high"]
+    assert topic.labels[:3] == ["earthquake", "very high", "2"]
     assert {"evacuation route", "life safety"} <= set(topic.labels)
     assert (topic.text("CreationDate"), topic.text("CreationAuthor")) == ("2026-05-04T00:00:00Z", "Ing. Rossi")
     kind = topic.markup.find("Topic")
@@ -299,3 +305,30 @@ def test_without_a_date_of_the_report_the_topics_have_that_of_the_results(tmp_pa
     assert find_date(run) == run.written
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
     assert find_date(run).isoformat() == "1970-01-02T00:00:00+00:00"
+
+
+# ---------------------------------------------------------------- from the import to the topics
+
+
+def test_a_whole_building_comes_back_to_its_model(tmp_path):
+    """All pieces of an import are found again, and the topics of those on drafted routes select doors of the model."""
+    imported = read_source(DUPLEX, DUPLEX.name, routes="draft")
+    for name, data in imported.files.items():
+        (tmp_path / name).write_bytes(data)
+    book = tmp_path / "building.xlsx"
+    book.write_bytes(build_workbook(imported))
+    inventory = assess.read_inventory(book, building={"ground_pga": 0.5, "height": 6.0})
+    write_json(assess.run(inventory, FORMULA), tmp_path / "results.json")
+    found = export(tmp_path / "results.json", DUPLEX)
+    assert (found.is_complete, found.written) == (True, len(imported.items))
+    assert (found.topics.unplaced, found.topics.is_placed) == (0, True)
+    model = ifcopenshell.open(str(DUPLEX))
+    doors = {one.GlobalId for one in model.by_type("IfcDoor")}
+    topics = Bcf(found.topics.data).topics
+    with_door = [one for one in topics if doors & set(one.selected)]
+    assert len(with_door) == found.topics.doors > 0
+    assert all("block route" in one.text("Title") for one in with_door)
+    for topic in topics:
+        pieces = [model.by_guid(key) for key in topic.selected if key not in doors]
+        assert pieces
+        assert all(one.is_a("IfcFurnishingElement") for one in pieces)
