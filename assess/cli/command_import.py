@@ -1,15 +1,17 @@
 """``assess import``: an inventory workbook out of a building model, a scan or a handover file of a building."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from assess.cli.console import count, show_progress
 from assess.cli.options import save_files
 from assess.errors import InputError, OutputError
+from assess.progress import Progress
 
 if TYPE_CHECKING:
     from assess.bim.import_workbook import ImportedBuilding
@@ -66,40 +68,65 @@ def command(
     is 1 where furniture was left out, or none was found.
     """
     _check_names(source, out, replaces=force, updates=update)
-    from assess.bim.read_source import read_source
-
+    choices = {"routes": routes.value, "also": also or ()}
     with show_progress() as progress, progress.stage("reading", source.name):
-        found = read_source(source, source.name, progress, routes=routes.value, also=also or ())
-        plans = {out.parent / name: data for name, data in found.files.items()}
         if update:
-            updated = progress.wait_for(lambda: _update(out, found))
-            data, lines = updated.data, list(describe_changes(updated))
+            made = _update(source, out, progress, choices)
         else:
-            _check_plans(plans, replaces=force)
-            data, lines = progress.wait_for(lambda: _build(found)), []
-    save_files({out: data, **plans})
-    for line in (*describe_import(found), *lines):
+            made = _build(source, out, progress, choices, replaces=force)
+    save_files({out: made.data, **made.plans})
+    for line in (*describe_import(made.found), *made.lines):
         typer.echo(line)
-    typer.echo(_describe_written(out, plans), err=True)
-    if not found.is_complete:
+    typer.echo(_describe_written(out, made.plans, is_new=not update), err=True)
+    if not made.is_complete:
         raise typer.Exit(1)
 
 
-def _build(found: "ImportedBuilding") -> bytes:
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """A workbook and the plans beside it, what was found for it, and what else is to be said."""
+
+    data: bytes
+    plans: Mapping[Path, bytes]
+    found: "ImportedBuilding"
+    is_complete: bool
+    lines: tuple[str, ...] = ()
+
+
+def _build(source: Path, out: Path, progress: Progress, choices: Mapping[str, Any], *, replaces: bool) -> _Made:
     from assess.bim.import_workbook import build_workbook
+    from assess.bim.read_source import read_source
 
-    return build_workbook(found)
+    found = read_source(source, source.name, progress, **choices)
+    plans = _place_plans(out, found)
+    _check_plans(plans, replaces=replaces)
+    return _Made(progress.wait_for(lambda: build_workbook(found)), plans, found, found.is_complete)
 
 
-def _update(out: Path, found: "ImportedBuilding") -> "Updated":
+def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, Any]) -> _Made:
+    """Read the model in the language of the workbook: places have names of that language."""
+    from assess.bim.read_source import read_source
     from assess.bim.update_workbook import update_workbook
+    from assess.i18n import load_catalogue, speaking
+    from assess.workbook.read import hold_sheets
 
-    return update_workbook(out.read_bytes(), found, out.name)
+    data = out.read_bytes()
+    with speaking(load_catalogue(hold_sheets(data, out.name, progress).language)):
+        found = read_source(source, source.name, progress, **choices)
+        updated = progress.wait_for(lambda: update_workbook(data, found, out.name, progress, records=out.parent))
+    is_whole = not updated.problems and not any(one.kind == "left_out" for one in updated.changes)
+    lines = tuple(describe_changes(updated))
+    return _Made(updated.data, _place_plans(out, found), found, found.is_complete and is_whole, lines)
 
 
-def _describe_written(out: Path, plans: Mapping[Path, bytes]) -> str:
+def _place_plans(out: Path, found: "ImportedBuilding") -> dict[Path, bytes]:
+    return {out.parent / name: data for name, data in found.files.items()}
+
+
+def _describe_written(out: Path, plans: Mapping[Path, bytes], *, is_new: bool) -> str:
     beside = f" and {count(len(plans), 'plan')} beside it" if plans else ""
-    return f"wrote {out}{beside}. Choose Shaking in Building or fill in Floors, then run: assess check {_quote(out)}"
+    then = "Choose Shaking in Building or fill in Floors, then run" if is_new else "Now run"
+    return f"wrote {out}{beside}. {then}: assess check {_quote(out)}"
 
 
 def _quote(path: Path) -> str:
@@ -160,7 +187,8 @@ def describe_changes(updated: "Updated") -> Iterator[str]:
     from assess.bim.update_workbook import describe
 
     if not updated.changes:
-        yield "Nothing has changed since the workbook was written."
+        yield "The workbook is up to date with the model: nothing was changed."
     yield from (str(describe(change)) for change in updated.changes[:MOST_CHANGES])
     if len(updated.changes) > MOST_CHANGES:
         yield f"and {len(updated.changes) - MOST_CHANGES:,} changes more."
+    yield from (str(problem) for problem in updated.problems)

@@ -1,12 +1,18 @@
 """``assess import``: what users see of it, and what they find in the folder."""
 
+import json
 from pathlib import Path
 
 import pytest
 
+from assess.workbook.layout import PLACES
+from assess.workbook.patch import patch_workbook
+from assess.workbook.read import read_inventory
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
 from tests.cli.calling import error, run
 from tests.workbooks import write
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
 
 
 @pytest.fixture
@@ -37,9 +43,6 @@ def test_the_workbook_lacks_the_shaking_alone(cobie):
 
 
 def test_with_the_shaking_filled_in_it_runs(cobie):
-    from assess.workbook.layout import PLACES
-    from assess.workbook.patch import patch_workbook
-
     out = cobie.with_name("building.xlsx")
     run("import", cobie, "-o", out)
     cell = f"B{PLACES['Building', 'ground_pga'] + 1}"
@@ -53,7 +56,7 @@ def test_furniture_that_was_left_out_is_named_and_ends_with_1(tmp_path):
     done = run("import", path, "-o", tmp_path / "b.xlsx")
     assert done.exit_code == 1
     assert done.stdout.splitlines()[:2] == [
-        "h.xlsx: 1 piece of 1 type on 2 floors taken.",
+        "h.xlsx: 1 of 3 pieces of 1 type on 2 floors taken.",
         "2 pieces left out (no NominalHeight): Bookcase A (2).",
     ]
     assert (tmp_path / "b.xlsx").exists()
@@ -70,9 +73,8 @@ def test_without_furniture_the_floors_are_written_and_the_end_is_1(tmp_path):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("model.ifc", "model.ifc is of a kind that is not imported: name a COBie spreadsheet, which ends in .xlsx."),
-        ("scan.json", "scan.json is of a kind that is not imported"),
-        ("folder", "folder is of a kind that is not imported"),
+        ("model.ifc", "model.ifc does not exist. Check the name and the folder."),
+        ("scan.json", "scan.json does not exist."),
         ("missing.xlsx", "missing.xlsx does not exist. Check the name and the folder."),
     ],
 )
@@ -93,7 +95,7 @@ def test_an_existing_workbook_stays_unless_forced(cobie):
     out.write_bytes(b"mine")
     done = run("import", cobie, "-o", out)
     assert (done.exit_code, done.stdout) == (1, "")
-    assert "already exists: add --force to replace it" in done.stderr
+    assert "already exists: add --update to take the changes of the model into it, --force to replace it" in done.stderr
     assert out.read_bytes() == b"mine"
     assert run("import", cobie, "-o", out, "--force").exit_code == 0
     assert out.read_bytes().startswith(b"PK")
@@ -123,3 +125,166 @@ def test_names_that_command_a_terminal_are_printed_clean(tmp_path):
     rows["components"] = ({**COMPONENTS[0], "TypeName": "Rack \u202e[31m"},)
     done = run("import", write_cobie(tmp_path / "h.xlsx", **rows), "-o", tmp_path / "b.xlsx")
     assert "Rack [31m (1)" in done.stdout
+
+
+# ---------------------------------------------------------------- building models
+
+
+def fill_in(path: Path, **building: object) -> None:
+    """Set lines of Building, as a person does."""
+    cells = {f"B{PLACES['Building', name] + 1}": value for name, value in building.items()}
+    path.write_bytes(patch_workbook(path.read_bytes(), {"Building": cells}).data)
+
+
+def set_item(path: Path, row: int, **values: object) -> None:
+    """Set cells of a row of Items, as a person does."""
+    from assess.workbook.plain_rows import column_letters
+
+    cells = {f"{column_letters(PLACES['Items', name])}{row}": value for name, value in values.items()}
+    path.write_bytes(patch_workbook(path.read_bytes(), {"Items": cells}).data)
+
+
+@pytest.fixture(scope="module")
+def imported(tmp_path_factory) -> Path:
+    """A workbook of the duplex; copy it to change it."""
+    out = tmp_path_factory.mktemp("duplex") / "duplex.xlsx"
+    done = run("import", MODELS / "duplex.ifc", "-o", out)
+    assert done.exit_code == 1
+    out.with_suffix(".txt").write_text(done.stdout, encoding="utf-8")
+    return out
+
+
+@pytest.fixture
+def duplex(imported, tmp_path) -> Path:
+    for one in imported.parent.iterdir():
+        (tmp_path / one.name).write_bytes(one.read_bytes())
+    return tmp_path / imported.name
+
+
+def test_a_model_gives_pieces_plans_and_the_list_of_what_was_left_out(imported):
+    said = imported.with_suffix(".txt").read_text(encoding="utf-8")
+    assert said.startswith(
+        "duplex.ifc: 47 of 61 pieces of 9 types on 3 floors taken.\n14 pieces left out (not on the floor"
+    )
+    assert "IfcFurnishingElement M_Upper Cabinet-Double Door-Wall 1000 mm (6)" in said
+    assert "Check: 4 of 14 doors lead out of the ground storey (a room on one side only)." in said
+    assert {one.name for one in imported.parent.iterdir()} == {
+        "duplex.xlsx", "duplex.txt", "duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg",
+    }  # fmt: skip
+
+
+def test_the_workbook_of_a_model_lacks_the_shaking_alone(imported):
+    checked = run("check", imported)
+    assert checked.exit_code == 1
+    told = [line for line in checked.stderr.splitlines() if line.startswith(("error", "warning", "note"))]
+    assert len(told) == 3
+    assert all("has neither a record nor a PFA" in line for line in told)
+    assert "duplex.xlsx is incomplete: what is filled in can be used." in checked.stderr
+
+
+def test_the_wardrobes_have_their_supports_and_the_catalogue_their_type(duplex):
+    fill_in(duplex, shaking="MMI VII, very strong")
+    inventory = read_inventory(duplex)
+    found = [one for one in inventory.items if "Tall Cabinet" in one.description]
+    assert len(found) == 8
+    for one in found:
+        assert (one.breadth, one.width, one.height) == pytest.approx((0.485, 0.8, 2.0))
+        assert one.notes.startswith("body 54.5 x 80.0 x 200.0 cm, 48.5 cm between the outer supports.")
+        assert (one.sizes_from, one.type) == ("model", "M_Tall Cabinet-Single Door(2) 800 mm")
+        assert len(one.more["source_id"]) == 22
+
+
+def test_with_the_shaking_filled_in_reports_show_the_walls(duplex):
+    fill_in(duplex, shaking="MMI VII, very strong")
+    out = duplex.parent / "reports"
+    done = run("run", duplex, "--out", out, "--verify", "none", "--formats", "html,json")
+    assert done.exit_code == 0, done.stderr
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "the plan duplex-Level-1.svg, placed by the workbook" in page
+    plans = json.loads((out / "results.json").read_text(encoding="utf-8"))["floors"]
+    assert [floor["floor"] for floor in plans] == ["Level 1", "Level 2", "Roof"]
+
+
+def test_drafted_routes_reach_an_exit_or_a_stair_from_19_rooms(tmp_path):
+    out = tmp_path / "d.xlsx"
+    done = run("import", MODELS / "duplex.ifc", "-o", out, "--routes", "draft")
+    assert "No way out of 1 room was found in the model: R301 Roof." in done.stdout
+    fill_in(out, shaking="MMI VII, very strong")
+    inventory = read_inventory(out)
+    assert inventory.routes
+    assert all(segment.route.endswith(" (draft)") for segment in inventory.routes)
+    ends = {end for segment in inventory.routes for end in (segment.start, segment.end)}
+    rooms = {row.place for row in inventory.places if row.outline and row.place in ends}
+    assert len(rooms) == 20  # with a room that is a stair
+    assert len({one for one in rooms if "Stair" not in one}) == 19
+    assert "drafted from a building model" in run("check", out).stderr
+
+
+def test_an_update_keeps_what_people_typed_and_lists_what_changed(duplex):
+    set_item(duplex, 2, anchored="yes", weight=55.0, notes="ours", height=99.0)
+    before = duplex.read_bytes()
+    done = run("import", MODELS / "duplex.ifc", "-o", duplex, "--update")
+    assert done.exit_code == 1  # 14 pieces are left out
+    changed = [line for line in done.stdout.splitlines() if line.startswith("Items ")]
+    assert len(changed) == 1
+    assert " of A102-01: 99 -> 81.3" in changed[0]
+    assert duplex.read_bytes() != before
+    fill_in(duplex, shaking="MMI VII, very strong")
+    first = next(one for one in read_inventory(duplex).items if one.item == "A102-01")
+    assert (first.height, first.anchored, first.weight, first.notes) == (pytest.approx(0.813), "yes", 55.0, "ours")
+
+
+def test_an_update_without_changes_leaves_every_byte(duplex):
+    before = duplex.read_bytes()
+    done = run("import", MODELS / "duplex.ifc", "-o", duplex, "--update")
+    assert "The workbook is up to date with the model: nothing was changed." in done.stdout
+    assert duplex.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--update", "--force"), "--update keeps what is in the workbook, --force replaces it: give one of them."),
+        (("--update",), "b.xlsx does not exist: name the workbook of an earlier import, or leave it out."),
+        (("--also", "IfcTable2"), "IfcTable2 is no class of IFC2X3."),
+        (("--routes", "some"), "'some' is not one of 'none', 'draft'"),
+    ],
+)
+def test_choices_that_do_not_fit(tmp_path, arguments, message):
+    done = run("import", MODELS / "LargeBuilding.ifc", "-o", tmp_path / "b.xlsx", *arguments)
+    assert done.exit_code == 2
+    assert message in done.stderr.replace("\n", " ")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_plan_that_is_there_is_not_replaced(tmp_path):
+    plan = tmp_path / "LargeBuilding-Level-1.svg"
+    plan.write_text("mine", encoding="utf-8")
+    done = run("import", MODELS / "LargeBuilding.ifc", "-o", tmp_path / "b.xlsx")
+    assert (done.exit_code, plan.read_text(encoding="utf-8")) == (1, "mine")
+    assert "LargeBuilding-Level-1.svg already exists: add --force" in done.stderr
+    assert not (tmp_path / "b.xlsx").exists()
+    assert run("import", MODELS / "LargeBuilding.ifc", "-o", tmp_path / "b.xlsx", "--force").exit_code == 0
+
+
+def test_a_model_without_furniture_gives_storeys_and_rooms(tmp_path):
+    from tests.bim.ifc_files import one_room
+
+    model, storey, _ = one_room()
+    model.element("IfcWall", "W", (3, 0, 0, 6, 0.2, 3), within=storey)
+    done = run("import", model.write(tmp_path / "a.ifc"), "-o", tmp_path / "b.xlsx")
+    assert done.exit_code == 1
+    assert done.stdout.splitlines()[:2] == [
+        "a.ifc: 0 pieces of 0 types on 1 floor taken.", "No furniture was found: fill in Items by hand.",
+    ]  # fmt: skip
+    assert {one.name for one in tmp_path.iterdir()} == {"a.ifc", "b.xlsx", "a-Level-1.svg"}
+    checked = run("check", tmp_path / "b.xlsx")
+    assert (checked.exit_code, "is incomplete" in checked.stderr) == (1, True)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
+def test_a_truncated_model_leaves_nothing(tmp_path, share):
+    data = (MODELS / "duplex.ifc").read_bytes()
+    (tmp_path / "a.ifc").write_bytes(data[: int(share * len(data))])
+    assert "a.ifc cannot be imported: it is" in error(run("import", tmp_path / "a.ifc", "-o", tmp_path / "b.xlsx"))
+    assert [one.name for one in tmp_path.iterdir()] == ["a.ifc"]
