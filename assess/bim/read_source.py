@@ -58,9 +58,7 @@ def read_source(
     if start.startswith(_ZIP):
         return _read_packed(path, name, progress, routes)
     if text.startswith(_BRACES):
-        from assess.bim.roomplan import read_roomplan
-
-        return list_building(progress.wait_for(lambda: read_roomplan(path.read_bytes(), name)), routes)
+        return list_building(run_apart(name, progress, read_scan, path.resolve(), name), routes)
     if not is_model(start) and path.suffix.lower() not in (".ifc", ""):
         raise ModelError(
             fill("{name} is of a kind that is not imported: name an IFC model (.ifc), a RoomPlan scan (.json), a Sweet "
@@ -85,15 +83,34 @@ def read_ifc(path: Path, name: str, progress: Progress = SILENT, also: Sequence[
     return run_apart(name, progress, read_model, path.resolve(), name, tuple(also))
 
 
+def read_scan(path: Path, name: str) -> BuildingModel:
+    """Read a RoomPlan scan; errors as of `assess.bim.roomplan.read_roomplan`."""
+    from assess.bim.roomplan import read_roomplan
+    from assess.bim.scan_values import MOST_BYTES
+
+    return read_roomplan(_read_bytes(path, MOST_BYTES), name)
+
+
+def read_home(path: Path, name: str) -> BuildingModel:
+    """Read a home of Sweet Home 3D; errors as of `assess.bim.sweet_home.read_sweet_home`."""
+    from assess.bim.sweet_home import MOST_BYTES, read_sweet_home
+
+    return read_sweet_home(_read_bytes(path, MOST_BYTES), name)
+
+
+def _read_bytes(path: Path, most: int) -> bytes:
+    """Return a file, of one that is too large just more than is read: its reader says so."""
+    with path.open("rb") as file:
+        return file.read(most + 1)
+
+
 def _read_packed(path: Path, name: str, progress: Progress, routes: Drafts) -> ImportedBuilding:
     """Read a file that is a zip: a spreadsheet, or a home."""
     parts = _list_parts(path, name)
     if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
         check_model(path, name)
     if HOME in parts or OLD_HOME in parts:
-        from assess.bim.sweet_home import read_sweet_home
-
-        return list_building(progress.wait_for(lambda: read_sweet_home(path.read_bytes(), name)), routes)
+        return list_building(run_apart(name, progress, read_home, path.resolve(), name), routes)
     from assess.bim.cobie import read_cobie
 
     if routes != "none":

@@ -33,8 +33,8 @@ def _marks() -> tuple[str, ...]:
 
 
 def is_draft(name: str) -> bool:
-    """Tell whether a Route's name ends in the mark, in any language."""
-    return key(name).endswith(_marks())
+    """Tell whether a Route's name ends in the mark, in any language; each is a word in brackets."""
+    return name.rstrip().endswith(")") and key(name).endswith(_marks())
 
 
 def check_drafts(tables: Tables) -> Iterator[Problem]:
