@@ -45,7 +45,7 @@ def check_model(path: Path, name: str) -> None:
         raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=error.strerror or str(error))) from None
     why = _find_fault(size, start, end)
     if why is not None:
-        raise ModelError(fill("{name} cannot be imported: {why}.", name=name, why=why))
+        raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=why))
 
 
 def _find_fault(size: int, start: bytes, end: bytes) -> Text | None:
@@ -98,7 +98,7 @@ def open_model(path: Path, name: str) -> Any:
     except (ifcopenshell.Error, RuntimeError, ValueError, OSError) as error:
         raise find_damage(name, error) from None
     if not isinstance(model, ifcopenshell.file):
-        raise ModelError(fill("{name} cannot be imported: {why}.", name=name, why=_NO_MODEL))
+        raise ModelError(fill("{name} cannot be read: {why}.", name=name, why=_NO_MODEL))
     return model
 
 

@@ -45,7 +45,7 @@ def test_a_cobie_file_is_known_whatever_its_name(tmp_path):
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"", "a.ifc cannot be imported: it is empty. Export the building again."),
+        (b"", "a.ifc cannot be read: it is empty. Export the building again."),
         (b"%PDF-1.7\n" + bytes(1000), "it does not begin as an IFC file (ISO-10303-21) does."),
         (LARGE[: len(LARGE) // 2], "its last line, END-ISO-10303-21;, is missing. Copy or export it again."),
         (LARGE[:-20], "its last line, END-ISO-10303-21;, is missing."),

@@ -286,5 +286,5 @@ def test_a_model_without_furniture_gives_storeys_and_rooms(tmp_path):
 def test_a_truncated_model_leaves_nothing(tmp_path, share):
     data = (MODELS / "duplex.ifc").read_bytes()
     (tmp_path / "a.ifc").write_bytes(data[: int(share * len(data))])
-    assert "a.ifc cannot be imported: it is" in error(run("import", tmp_path / "a.ifc", "-o", tmp_path / "b.xlsx"))
+    assert "a.ifc cannot be read: it is" in error(run("import", tmp_path / "a.ifc", "-o", tmp_path / "b.xlsx"))
     assert [one.name for one in tmp_path.iterdir()] == ["a.ifc"]
