@@ -119,7 +119,9 @@ class Scan:
 
     def turned(self, turn: FloatArray) -> "Scan":
         """Return all of it turned about the origin by a matrix, (3, 3)."""
-        lists = {name: tuple(one.turned(turn) for one in getattr(self, name)) for name in (*LISTS, "labels")}
+        lists: dict[str, Any] = {
+            name: tuple(one.turned(turn) for one in getattr(self, name)) for name in (*LISTS, "labels")
+        }
         return replace(self, **lists)
 
 

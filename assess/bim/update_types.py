@@ -57,8 +57,8 @@ class TypeUpdate:
         taken = [one.name for one in own]
         new = [one for at, one in enumerate(model) if at not in self._found]
         added = iter(name_apart([*taken, *(one.name for one in new)])[len(taken) :])
-        for at, one in enumerate(model):
-            self.names[key(one.name)] = own[self._found[at]].name if at in self._found else next(added)
+        for at, kind in enumerate(model):
+            self.names[key(kind.name)] = own[self._found[at]].name if at in self._found else next(added)
         known = {*self.names, *map(key, self.names.values())}
         found = match_rooms((("", one, other) for one, other in pairs), known)
         sizes = {key(one.name): one.content for one in model}
@@ -75,7 +75,9 @@ class TypeUpdate:
         sheet = self.book.sheets.get("Catalogue")
         for at, other in self._found.items():
             row, model = self._own[other], self.rows[at]
-            for name in SIZES if sheet else ():
+            for name in SIZES:
+                if sheet is None:
+                    continue
                 if _is_built_in(row):
                     sheet.keep(row, name, model.get(name), fill("the type comes with the program"))
                 else:

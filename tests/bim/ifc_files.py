@@ -150,5 +150,5 @@ def one_room(
     """Return a writer with a storey and a room of 6 x 4 x 3 m, `scale` units a metre; also the two."""
     model = ModelWriter(schema, units, **more)
     storey = model.storey()
-    room = model.space(storey, tuple(scale * one for one in (3, 2, 0, 6, 4, 3)), "101", "Office")  # type: ignore[arg-type]
+    room = model.space(storey, tuple(scale * one for one in (3, 2, 0, 6, 4, 3)), "101", "Office")
     return model, storey, room

@@ -82,7 +82,7 @@ def build_office(
         for number in range(corridors if level else 0):
             y = number * (2 * DEEP + WIDE + 4 * WALL) + DEEP + WALL + WIDE / 2
             ends = (("foot", str(level - 1), 1.0), ("head", str(level), 4.0))
-            parts["stairs"] += [Stair(f"{level} s{number}", storey, "Stair", end, x, y) for end, storey, x in ends]  # type: ignore[arg-type]
+            parts["stairs"] += [Stair(f"{level} s{number}", storey, "Stair", end, x, y) for end, storey, x in ends]
     return BuildingModel(
         source="office.ifc",
         schema="IFC4",

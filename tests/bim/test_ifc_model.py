@@ -111,7 +111,8 @@ def test_every_schema_and_unit_gives_metres(tmp_path, schema, units, scale):
     assert (piece.breadth, piece.width, piece.height) == pytest.approx((0.4, 0.8, 1.9), abs=1e-4)
     assert (piece.x, piece.y, piece.bottom) == pytest.approx((2, 1, 0), abs=1e-4)
     (space,) = found.spaces
-    assert (space.key, space.name, space.title, space.top) == (piece.space, "101", "Office", pytest.approx(3, abs=1e-4))
+    assert (space.key, space.name, space.title) == (piece.space, "101", "Office")
+    assert space.top == pytest.approx(3, abs=1e-4)
     corners = sorted((round(x, 2), round(y, 2)) for x, y in space.area[0])
     assert corners == [(0, 0), (0, 4), (6, 0), (6, 4)]
     assert found.schema.startswith(schema)
@@ -183,7 +184,8 @@ def test_a_model_far_from_its_origin_is_brought_near(tmp_path):
     room = model.space(storey, (412_003, 5_654_002, 0, 6, 4, 3))
     model.piece("Shelf", SHELF, within=room, at=(412_002, 5_654_001, 0))
     found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
-    assert found.shift == (412_000, 5_653_900) or found.shift == (412_000, 5_654_000)
+    assert found.shift[0] == 412_000
+    assert found.shift[1] % 100 == 0
     (piece,) = found.pieces
     assert (piece.x + found.shift[0], piece.y + found.shift[1]) == pytest.approx((412_002, 5_654_001), abs=1e-3)
     assert min(x for x, _ in found.spaces[0].area[0]) == pytest.approx(0, abs=1e-3)

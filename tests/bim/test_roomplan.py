@@ -4,6 +4,7 @@ import copy
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import openpyxl
 import pytest
@@ -68,7 +69,8 @@ def test_a_file_of_ios_16_has_neither_floors_nor_storeys():
     model, new = read(old), read(office())
     assert pieces_of(model).keys() == pieces_of(new).keys()
     (room,) = model.spaces
-    assert (room.name, to_polygon(room.area).area) == ("Room 1", pytest.approx(20, abs=0.01))
+    assert room.name == "Room 1"
+    assert to_polygon(room.area).area == pytest.approx(20, abs=0.01)
     assert [one.level for one in model.storeys] == [pytest.approx(0)]
 
 
@@ -221,7 +223,7 @@ def test_a_curved_wall_is_not_drawn():
 def structure():
     """Two rooms side by side below, one above at 2.8 m with a stair, merged; its rooms lie in axes of their own."""
     below, beside, above = (office(identifier=identify(name)) for name in ("a", "b", "c"))
-    merged = {"identifier": identify("structure"), "version": 2, "rooms": [below, beside, above]}
+    merged: dict[str, Any] = {"identifier": identify("structure"), "version": 2, "rooms": [below, beside, above]}
     for number, (room, (x, y, story)) in enumerate(
         zip((below, beside, above), ((0, 0, 0), (5.1, 0, 0), (0, 2.8, 1)), strict=True)
     ):
@@ -231,7 +233,7 @@ def structure():
                 one["identifier"], one["story"], one["parentIdentifier"] = f"{one['identifier']} {number}", story, None
                 one["transform"][12] += x
                 one["transform"][13] += y
-            merged[kind] = [*merged.get(kind, ()), *moved]
+            merged.setdefault(kind, []).extend(moved)
     merged["sections"] = [
         {"label": "livingRoom", "center": [0, 0, 0], "story": 0}, {"label": "kitchen", "center": [5, 0, 0], "story": 0},
         {"label": "bedroom", "center": [0, 2.8, 0], "story": 1},

@@ -130,13 +130,13 @@ def test_names_that_command_a_terminal_are_printed_clean(tmp_path):
 # ---------------------------------------------------------------- building models
 
 
-def fill_in(path: Path, **building: object) -> None:
+def fill_in(path: Path, **building: float | str) -> None:
     """Set lines of Building, as a person does."""
     cells = {f"B{PLACES['Building', name] + 1}": value for name, value in building.items()}
     path.write_bytes(patch_workbook(path.read_bytes(), {"Building": cells}).data)
 
 
-def set_item(path: Path, row: int, **values: object) -> None:
+def set_item(path: Path, row: int, **values: float | str) -> None:
     """Set cells of a row of Items, as a person does."""
     from assess.workbook.plain_rows import column_letters
 
@@ -145,7 +145,7 @@ def set_item(path: Path, row: int, **values: object) -> None:
 
 
 @pytest.fixture(scope="module")
-def imported(tmp_path_factory) -> Path:
+def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A workbook of the duplex; copy it to change it."""
     out = tmp_path_factory.mktemp("duplex") / "duplex.xlsx"
     done = run("import", MODELS / "duplex.ifc", "-o", out)
@@ -155,7 +155,7 @@ def imported(tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def duplex(imported, tmp_path) -> Path:
+def duplex(imported: Path, tmp_path: Path) -> Path:
     for one in imported.parent.iterdir():
         (tmp_path / one.name).write_bytes(one.read_bytes())
     return tmp_path / imported.name
@@ -231,7 +231,8 @@ def test_an_update_keeps_what_people_typed_and_lists_what_changed(duplex):
     assert duplex.read_bytes() != before
     fill_in(duplex, shaking="MMI VII, very strong")
     first = next(one for one in read_inventory(duplex).items if one.item == "A102-01")
-    assert (first.height, first.anchored, first.weight, first.notes) == (pytest.approx(0.813), "yes", 55.0, "ours")
+    assert first.height == pytest.approx(0.813)
+    assert (first.anchored, first.weight, first.notes) == ("yes", 55.0, "ours")
 
 
 def test_an_update_without_changes_leaves_every_byte(duplex):

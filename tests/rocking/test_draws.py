@@ -78,9 +78,10 @@ def test_sizes_by_a_scan_scatter_more_and_the_rest_alike():
 
 
 def test_no_draw_depends_on_which_others_were_scanned():
-    sizes = [np.repeat(one, 3) for one in RACK]
-    mixed = draw_bodies(*sizes, [7, 8, 9], seed=1, first=0, count=50, scanned=np.array([False, True, False]))
-    plain = draw_bodies(*sizes, [7, 8, 9], seed=1, first=0, count=50)
+    breadth, height, centre, restitution = (np.repeat(one, 3) for one in RACK)
+    bodies = (breadth, height, centre, restitution, [7, 8, 9])
+    mixed = draw_bodies(*bodies, seed=1, first=0, count=50, scanned=np.array([False, True, False]))
+    plain = draw_bodies(*bodies, seed=1, first=0, count=50)
     for one, other in zip(arrays(mixed), arrays(plain), strict=True):
         np.testing.assert_array_equal(one[[0, 2]], other[[0, 2]])
     assert not np.array_equal(mixed.breadth[1], plain.breadth[1])
