@@ -13,6 +13,9 @@ OPEN, FORMATS, ARCHIVE = "assess.workbook.open", "assess.motion.formats", "asses
 COMMON, CSV, TEXT = (f"assess.motion.formats.{name}" for name in ("_format", "plain_csv", "_text"))
 ALLOWANCE, PICTURES, PLANS = "assess.workbook.allowance", "assess.pictures", "assess.plans"
 
+MODEL, PROCESS = "assess.bim.ifc_file", "assess.bim.model_process"
+SCAN, HOME = "assess.bim.scan_values", "assess.bim.sweet_home"
+
 ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
     ("Workbook: size of the file", OPEN, "MAX_FILE", 2**20, "{:.0f} MiB", REFUSED),
     ("Workbook: unpacked size of all its parts", OPEN, "MAX_TOTAL", 2**20, "{:.0f} MiB", REFUSED),
@@ -21,6 +24,15 @@ ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
      "an error at the first cell beyond"),
     ("Workbook: columns of a sheet", OPEN, "MAX_COLUMNS", 1, "{:,.0f}", "an error at the first cell beyond"),
     ("Workbook: one row", OPEN, "MAX_ROW_BYTES", 2**20, "{:.0f} MiB of XML", REFUSED),
+    ("Building model (IFC): size of the file", MODEL, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),
+    ("Building model: processor time", PROCESS, "SECONDS", 1, "{:.0f} s", REFUSED),
+    ("Building model: memory", PROCESS, "MEMORY", 2**30, "{:.0f} GiB", REFUSED),
+    ("Building model: pieces", "assess.bim.ifc_pieces", "MOST_PIECES", 1, "{:,.0f}", REFUSED),
+    ("Scan (RoomPlan): size of the file", SCAN, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),
+    ("Scan (RoomPlan): objects", SCAN, "MOST_OBJECTS", 1, "{:,.0f}", REFUSED),
+    ("Home (Sweet Home 3D): size of the file", HOME, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),
+    ("Home (Sweet Home 3D): pieces", HOME, "MOST_PIECES", 1, "{:,.0f}", REFUSED),
+    ("Topics of an export (BCF)", "assess.bim.export_topics", "MOST", 1, "{:,.0f}", "the last entries are left out, counted"),
     ("Record file: size", FORMATS, "LARGEST_FILE", 1e6, "{:.0f} MB", BY_CELL),
     ("Record file: channels", COMMON, "MOST_CHANNELS", 1, "{:,.0f}", BY_CELL + ", at the headings"),
     ("Record file: samples of a channel", "assess.motion.record", "MOST_SAMPLES", 1, "{:,.0f}", BY_CELL),
