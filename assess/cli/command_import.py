@@ -22,7 +22,8 @@ EXAMPLES = (
     "assess import model.ifc --out building.xlsx",
     "assess import model.ifc --out building.xlsx --routes draft",
     "assess import model.ifc --out building.xlsx --update",
-    "assess import handover-cobie.xlsx --out building.xlsx",
+    "assess import model.ifc --out building.xlsx --also IfcBuildingElementProxy",
+    "assess import handover-cobie.xlsx --out building.xlsx --force",
 )
 MOST_CHANGES = 200
 """Changes that are listed one by one."""
