@@ -24,6 +24,7 @@ from tests.benchmarks import (
     cancel,
     generating,
     live_answers,
+    models,
     portfolio,
     report,
     rocking,
@@ -83,6 +84,8 @@ def main() -> None:
             *live_answers.rows(folder),
             "",
             *portfolio.rows(folder),
+            "",
+            *models.rows(folder),
         ):
             print(row)
     print("\n| motions of 4,000 samples | seconds | rival | seconds | times as fast | aim |\n|---|---|---|---|---|---|")
