@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from assess.bim.plan_shapes import Shape, join
+from assess.bim.plan_shapes import FloatArray, Shape, join
 
 Element = Any
 """An entity of ifcopenshell."""
@@ -16,6 +16,8 @@ THREADS = 1
 """Of the library: two wait for each other for ever at some damaged elements, and are no faster on small models."""
 MOST_TRIANGLES = 2_000_000
 """Triangles of one element beyond which its shape is not taken."""
+FARTHEST = 1e8
+"""Distance from the origin beyond which a shape is not taken [m]: no map grid reaches as far."""
 
 
 def list_elements(model: Any, classes: Iterable[str]) -> list[Element]:
@@ -65,8 +67,24 @@ def find_holders(element: Element) -> Iterator[Element]:
 
 
 def find_storey(element: Element) -> str:
-    """Return the GlobalId of the storey that holds an element, "" if none does."""
-    return next((one.GlobalId for one in find_holders(element) if one.is_a("IfcBuildingStorey")), "")
+    """Return the key of the storey that holds an element, "" if none does."""
+    return next((find_key(one) for one in find_holders(element) if one.is_a("IfcBuildingStorey")), "")
+
+
+def find_key(element: Element) -> str:
+    """Return the GlobalId of an element; of one without it, its number in the file."""
+    return element.GlobalId or f"#{element.id()}"
+
+
+def tell_apart(elements: Iterable[Element]) -> dict[int, str]:
+    """Return the key of each element by its number in the file; the second with a GlobalId gets its number added."""
+    found: dict[int, str] = {}
+    taken: set[str] = set()
+    for one in elements:
+        name = find_key(one)
+        found[one.id()] = name if name not in taken else f"{name} #{one.id()}"
+        taken.add(name)
+    return found
 
 
 def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:
@@ -91,8 +109,9 @@ def list_shapes(model: Any, elements: Sequence[Element], *, with_openings: bool 
     done: set[int] = set()
     try:
         for number, shape in _iterate(model, settings, drawn):
-            done.add(number)
-            yield number, shape
+            if number not in done:  # a damaged reference makes two of one element
+                done.add(number)
+                yield number, shape
     except RuntimeError:  # one of the elements is damaged: the others one by one, which takes longer
         for element in (one for one in drawn if one.id() not in done):
             one = _create(settings, element)
@@ -128,9 +147,15 @@ def _to_shape(found: Any) -> Shape | None:
     points = np.array(found.geometry.verts, float).reshape(-1, 3)
     triangles = np.array(found.geometry.faces, np.int64).reshape(-1, 3)
     matrix = np.array(found.transformation.matrix, float).reshape(4, 4).T  # column-major
-    if not 0 < len(triangles) <= MOST_TRIANGLES or not np.isfinite(points).all() or not np.isfinite(matrix).all():
+    if not 0 < len(triangles) <= MOST_TRIANGLES or not (_is_near(points) and _is_near(matrix)):
         return None
-    return Shape(points @ matrix[:3, :3].T + matrix[:3, 3], triangles, matrix[:3, :3])
+    placed = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return Shape(placed, triangles, matrix[:3, :3]) if _is_near(placed) else None
+
+
+def _is_near(values: FloatArray) -> bool:
+    """Tell whether all lengths are numbers, and none lies beyond all maps."""
+    return bool((np.abs(values) <= FARTHEST).all())
 
 
 def join_parts(model: Any, elements: Sequence[Element], *, with_openings: bool = False) -> Iterator[tuple[int, Shape]]:

@@ -5,22 +5,17 @@ sides of a door, whatever its IsExternal says.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from assess.bim.building_model import BuildingModel, Door, Piece, Point, Stair, Storey
+from assess.bim.building_model import BuildingModel, Storey
 from assess.bim.ifc_file import check_model, find_damage, open_model
 from assess.bim.ifc_pieces import FoundPieces, find_pieces
 from assess.bim.ifc_rooms import cut_walls, list_doors, list_spaces, list_stairs
 from assess.bim.ifc_site import find_azimuth, find_names, find_position, find_unit, list_storeys
+from assess.bim.model_position import bring_near
 from assess.errors import ModelError
 from assess.i18n import Text, fill
-
-FARTHEST = 10_000.0
-"""Distance from the origin up to which positions are kept as they are [m]."""
-ROUND = 100.0
-"""What is taken off positions farther away is a multiple of this [m]."""
 
 
 def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
@@ -115,37 +110,3 @@ def _note_rooms(model: Any, spaces: Sequence[Any], found: FoundPieces) -> list[T
     if outside:
         remarks.append(fill("{n:,} of the pieces stand in no room of the model: Room stays blank.", n=outside))
     return remarks
-
-
-# ---------------------------------------------------------------- models far from their origin
-
-
-def bring_near(model: BuildingModel) -> BuildingModel:
-    """Return a model whose positions lie near the origin: a workbook holds them to 100 km only."""
-    placed: Sequence[Piece | Door | Stair] = (*model.pieces, *model.doors, *model.stairs)
-    points = [(one.x, one.y) for one in placed]
-    points += [corner for one in model.spaces for corner in one.area[0]]
-    points += [corner for areas in model.walls.values() for area in areas for corner in area[0]]
-    if not points or max(max(abs(x), abs(y)) for x, y in points) <= FARTHEST:
-        return model
-    shift = (ROUND * (min(x for x, _ in points) // ROUND), ROUND * (min(y for _, y in points) // ROUND))
-    text = fill("The model stands far from its origin: {x:,.0f} m were taken off every X, and {y:,.0f} m off every Y.",
-                x=shift[0], y=shift[1])  # fmt: skip
-    return replace(_move(model, (-shift[0], -shift[1])), shift=shift, remarks=(*model.remarks, text))
-
-
-def _move(model: BuildingModel, by: Point) -> BuildingModel:
-    def move_area(area: Any) -> Any:
-        return tuple(tuple((round(x + by[0], 3), round(y + by[1], 3)) for x, y in ring) for ring in area)
-
-    def move_all(some: Any) -> Any:
-        return tuple(replace(one, x=one.x + by[0], y=one.y + by[1]) for one in some)
-
-    def move_plans(plans: Any) -> Any:
-        return {key: tuple(map(move_area, areas)) for key, areas in plans.items()}
-
-    return replace(
-        model, pieces=move_all(model.pieces), doors=move_all(model.doors), stairs=move_all(model.stairs),
-        spaces=tuple(replace(one, area=move_area(one.area)) for one in model.spaces),
-        walls=move_plans(model.walls), windows=move_plans(model.windows),
-    )  # fmt: skip

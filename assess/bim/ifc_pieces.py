@@ -9,7 +9,16 @@ import shapely
 from shapely import Point, Polygon
 
 from assess.bim.building_model import LeftOut, Piece, Space, Storey
-from assess.bim.ifc_elements import Element, find_holders, find_storey, join_parts, list_elements, list_outer
+from assess.bim.ifc_elements import (
+    Element,
+    find_holders,
+    find_key,
+    find_storey,
+    join_parts,
+    list_elements,
+    list_outer,
+    tell_apart,
+)
 from assess.bim.ifc_site import say
 from assess.bim.plan_shapes import Shape, find_box, to_polygon
 from assess.errors import ModelError
@@ -79,10 +88,10 @@ def find_pieces(
     for one in every:
         if one.id() not in pieces:
             found.leave_out(one, NO_PIECE, is_furniture=False)
-    places = _Places(storeys, spaces)
+    places, keys = _Places(storeys, spaces), tell_apart(pieces.values())
     shaped: dict[int, Piece] = {}
     for number, shape in join_parts(model, list(pieces.values())):
-        shaped[number] = _to_piece(pieces[number], shape, places)
+        shaped[number] = _to_piece(pieces[number], keys[number], shape, places)
     for number, element in pieces.items():
         piece = shaped.get(number)
         if piece is None:
@@ -161,7 +170,7 @@ class _Places:
 
     def find(self, element: Element, x: float, y: float, bottom: float) -> tuple[str, Space | None]:
         """Return the key of the storey, and the space."""
-        holder = next((one.GlobalId for one in find_holders(element) if one.is_a("IfcSpace")), "")
+        holder = next((find_key(one) for one in find_holders(element) if one.is_a("IfcSpace")), "")
         if holder in self._spaces:
             return self._spaces[holder].storey, self._spaces[holder]
         storey = find_storey(element)
@@ -180,13 +189,13 @@ class _Places:
                 yield space
 
 
-def _to_piece(element: Element, shape: Shape, places: _Places) -> Piece:
+def _to_piece(element: Element, key: str, shape: Shape, places: _Places) -> Piece:
     box = find_box(shape)
     storey, space = places.find(element, box.x, box.y, shape.bottom)
     floor = space.bottom if space is not None else places.storeys[storey].level
     kind = name_type(element)
     return Piece(
-        key=element.GlobalId, storey=storey, space=space.key if space is not None else "",
+        key=key, storey=storey, space=space.key if space is not None else "",
         ifc_class=element.is_a(), name=say(element.Name), type=kind, x=box.x, y=box.y, breadth=box.breadth,
         width=box.width, height=box.height, angle_deg=box.angle_deg, support_breadth=box.support_breadth,
         support_width=box.support_width, bottom=shape.bottom - floor, is_fitted=_is_fitted(kind),

@@ -7,8 +7,16 @@ from typing import Any
 import numpy as np
 from shapely import Polygon
 
-from assess.bim.building_model import Area, Door, Space, Stair, Storey
-from assess.bim.ifc_elements import Element, find_storey, join_parts, list_elements, list_outer, list_shapes
+from assess.bim.building_model import Area, Door, Point, Space, Stair, Storey
+from assess.bim.ifc_elements import (
+    Element,
+    find_storey,
+    join_parts,
+    list_elements,
+    list_outer,
+    list_shapes,
+    tell_apart,
+)
 from assess.bim.ifc_site import say
 from assess.bim.plan_shapes import FloatArray, cut, find_base, find_rectangle, merge
 
@@ -26,6 +34,7 @@ and its top [m]."""
 def list_spaces(model: Any, storeys: Mapping[str, Storey]) -> Iterator[Space]:
     """Yield the rooms that have a plan, on the storeys that are given."""
     spaces = {one.id(): one for one in model.by_type("IfcSpace")}
+    keys = tell_apart(spaces.values())
     shapes = dict(list_shapes(model, list(spaces.values())))
     for number, one in spaces.items():
         storey = _find_known(one, storeys)
@@ -34,7 +43,7 @@ def list_spaces(model: Any, storeys: Mapping[str, Storey]) -> Iterator[Space]:
         if shape is None or storey is None or area is None:
             continue
         name, title = say(one.Name), say(one.LongName)
-        yield Space(one.GlobalId, storey, name or title, "" if title == name else title, area, shape.bottom, shape.top)
+        yield Space(keys[number], storey, name or title, "" if title == name else title, area, shape.bottom, shape.top)
 
 
 def _find_known(element: Element, storeys: Mapping[str, Storey]) -> str | None:
@@ -48,6 +57,7 @@ def _find_known(element: Element, storeys: Mapping[str, Storey]) -> str | None:
 def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterator[Door]:
     """Yield the doors that have a plan: that of their opening, else their own."""
     doors = model.by_type("IfcDoor")
+    keys = tell_apart(doors)
     openings = {one.id(): fill.RelatingOpeningElement for one in doors for fill in one.FillsVoids}
     shapes = dict(list_shapes(model, [*doors, *openings.values()]))
     for one in doors:
@@ -59,7 +69,7 @@ def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterat
             continue
         overall = float(one.OverallWidth or 0.0) * unit
         yield Door(
-            one.GlobalId, storey, say(one.Name), plan.x, plan.y, plan.angle_deg, plan.long, plan.short,
+            keys[one.id()], storey, say(one.Name), plan.x, plan.y, plan.angle_deg, plan.long, plan.short,
             overall if math.isfinite(overall) and overall > 0 else 0.0,
         )  # fmt: skip
 
@@ -67,23 +77,25 @@ def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterat
 def list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:
     """Yield foot and head of each stair and ramp, on the storeys that they join."""
     stairs = {one.id(): one for one in list_outer(list_elements(model, STAIRS))}
+    keys = tell_apart(stairs.values())
     for number, shape in sorted(join_parts(model, list(stairs.values())), key=lambda one: one[0]):
-        element, low, high = stairs[number], shape.bottom, shape.top
+        key, name, low, high = keys[number], say(stairs[number].Name), shape.bottom, shape.top
         feet = [one for one in storeys if abs(one.level - low) < AT_FOOT]
         heads = [one for one in storeys if low + LEAST_RISE < one.level < high + ABOVE_HEAD]
         if feet:
             foot = min(feet, key=lambda one: abs(one.level - low))
-            yield _to_stair(element, foot, "foot", shape.points, low)
+            yield Stair(key, foot.key, name, "foot", *_find_step(shape.points, low))
         if heads:
             head = max(heads, key=lambda one: one.level)
-            yield _to_stair(element, head, "head", shape.points, min(head.level, high))
+            yield Stair(key, head.key, name, "head", *_find_step(shape.points, min(head.level, high)))
 
 
-def _to_stair(element: Element, storey: Storey, end: Any, points: FloatArray, level: float) -> Stair:
+def _find_step(points: FloatArray, level: float) -> Point:
+    """Return the middle of the step at a level."""
     near = points[np.abs(points[:, 2] - level) < RISER]
     plan = (near if len(near) else points)[:, :2]
     x, y = (plan.max(axis=0) + plan.min(axis=0)) / 2
-    return Stair(element.GlobalId, storey.key, say(element.Name), end, float(x), float(y))
+    return float(x), float(y)
 
 
 Plans = dict[str, tuple[Area, ...]]

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from assess.bim.building_model import Storey
-from assess.bim.ifc_elements import Element
+from assess.bim.ifc_elements import Element, tell_apart
 from assess.errors import ModelError
 from assess.i18n import fill
 
@@ -62,10 +62,10 @@ def _list_address(address: Element | None) -> Iterator[str]:
 
 
 def find_position(model: Any) -> tuple[float, float] | None:
-    """Return latitude and longitude of the site [deg], None where the model gives none, or both are 0."""
+    """Return latitude and longitude of the site [deg], None where the model gives none, no such, or both are 0."""
     for site in model.by_type("IfcSite"):
         latitude, longitude = to_degrees(site.RefLatitude), to_degrees(site.RefLongitude)
-        if latitude is not None and longitude is not None and (latitude or longitude):
+        if latitude is not None and longitude is not None and (latitude or longitude) and abs(latitude) <= 90:
             return latitude, longitude
     return None
 
@@ -92,11 +92,13 @@ def list_storeys(model: Any, unit: float) -> list[Storey]:
     from ifcopenshell.util.placement import get_storey_elevation
 
     found = []
-    for number, one in enumerate(model.by_type("IfcBuildingStorey"), 1):
+    storeys = model.by_type("IfcBuildingStorey")
+    keys = tell_apart(storeys)
+    for number, one in enumerate(storeys, 1):
         placed = get_storey_elevation(one) if one.ObjectPlacement is not None else one.Elevation or 0.0
         level = float(placed) * unit
         elevation = level if one.Elevation is None else float(one.Elevation) * unit
         name = say(one.Name) or say(one.LongName) or str(number)
         if math.isfinite(level) and math.isfinite(elevation):
-            found.append(Storey(one.GlobalId, name, elevation, level))
+            found.append(Storey(keys[one.id()], name, elevation, level))
     return sorted(found, key=lambda one: (one.level, one.name))

@@ -20,7 +20,7 @@ from assess.bim.model_names import Names, name_floors, name_items, name_places, 
 from assess.bim.plan_shapes import to_polygon
 from assess.i18n import Text, fill, gettext
 from assess.workbook.outlines import MOST, OutlineError, parse_outline
-from assess.workbook.schema import ITEMS
+from assess.workbook.schema import BUILDING, FLOORS, ITEMS
 
 Drafts = Literal["none", "draft"]
 """Whether evacuation routes are drafted."""
@@ -32,6 +32,10 @@ CORRIDORS = ("corridor", "hall", "passage", "lobby", "foyer", "flur", "gang", "d
 """Words with which names of stairs and corridors begin or end."""
 LOW, HIGH = ITEMS.column("breadth").low or 0.0, ITEMS.column("breadth").high or math.inf
 """Sizes that a workbook takes [cm]."""
+LOWEST, HIGHEST = FLOORS.column("elevation").low or 0.0, FLOORS.column("elevation").high or math.inf
+"""Elevations that a workbook takes [m]."""
+TALLEST = BUILDING.column("height").high or math.inf
+"""Height of a building that a workbook takes [m]."""
 FITTED = fill("fitted furniture, usually fixed: look at it, and fill in Anchored")
 
 
@@ -62,7 +66,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
         routes=draft.routes,
         types=list(_list_types(model, types)),
         skipped=(*_list_skipped(model), *outside),
-        warnings=(*model.warnings, *note_datum([(floors[one.key], one.elevation) for one in storeys]), *draft.warnings),
+        warnings=(*model.warnings, *_note_elevations(storeys, floors), *draft.warnings),
         remarks=(*model.remarks, *_note(model, storeys, pieces)),
         files={files[key]: plan.svg for key, plan in drawn.items()},
     )
@@ -116,10 +120,10 @@ def find_sizes(piece: Piece) -> Sized:
 def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
     """Return the pieces whose sizes a workbook takes, and the others as left out."""
     sized = [find_sizes(one) for one in pieces]
-    outside = [one for one in sized if not all(LOW <= size <= HIGH for size in one.sizes.values())]
+    fits = [all(LOW <= size <= HIGH for size in one.sizes.values()) for one in sized]
     reason = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
-    counts = Counter(one.piece.type for one in outside)
-    kept = [one for one in sized if one not in outside]
+    counts = Counter(one.piece.type for one, is_inside in zip(sized, fits, strict=True) if not is_inside)
+    kept = [one for one, is_inside in zip(sized, fits, strict=True) if is_inside]
     return kept, [Skipped(kind, number, reason) for kind, number in counts.items()]
 
 
@@ -145,20 +149,42 @@ def _describe_building(model: BuildingModel, storeys: Sequence[Storey]) -> dict[
 
 
 def _find_height(model: BuildingModel, storeys: Sequence[Storey]) -> float | None:
-    """Return the height of the roof: the highest storey or ceiling; None where that is no more than the last floor."""
+    """Return the height of the roof: the highest storey or ceiling; None where that is no more than the last floor.
+
+    A workbook takes none above `TALLEST` either.
+    """
     datum = {one.key: one.elevation - one.level for one in model.storeys}
     tops = [one.elevation for one in model.storeys]
     tops += [one.top + datum[one.storey] for one in model.spaces if one.storey in datum]
     highest = max((one.elevation for one in storeys), default=0.0)
     top = max(tops, default=0.0)
-    return round(top, 2) if top > max(highest, LOWEST_ROOF) else None
+    return round(top, 2) if max(highest, LOWEST_ROOF) < top <= TALLEST else None
 
 
 def _list_floor(storey: Storey, floors: Names, plan: Drawn | None, files: Names) -> dict[str, Any]:
-    row: dict[str, Any] = {"floor": floors[storey.key], "elevation": round(storey.elevation, 3) + 0.0}
+    row: dict[str, Any] = {"floor": floors[storey.key]}
+    if _is_known(storey):
+        row["elevation"] = round(storey.elevation, 3) + 0.0
     if plan is not None:
         row |= {"plan": files[storey.key], "plan_left": plan.left, "plan_bottom": plan.bottom, "plan_width": plan.width}
     return row
+
+
+def _is_known(storey: Storey) -> bool:
+    """Tell whether a workbook takes the elevation of a storey."""
+    return LOWEST <= storey.elevation <= HIGHEST
+
+
+def _note_elevations(storeys: Sequence[Storey], floors: Names) -> list[Text]:
+    """Return what has to be checked of the elevations of storeys."""
+    odd = [floors[one.key] for one in storeys if not _is_known(one)]
+    notes = note_datum([(floors[one.key], one.elevation) for one in storeys if _is_known(one)])
+    if odd:
+        notes.append(
+            fill("Elevation was left blank of {floors}: it is outside {low:g} to {high:g} m in the model. Fill in "
+                 "heights above the ground.", floors=", ".join(odd[:20]), low=LOWEST, high=HIGHEST)
+        )  # fmt: skip
+    return notes
 
 
 def _list_items(

@@ -1,0 +1,118 @@
+"""Building models far from their origin brought near it, without what lies far from the rest of the building."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from statistics import median
+from typing import Any, TypeVar
+
+from assess.bim.building_model import Area, BuildingModel, Door, LeftOut, Piece, Point, Stair
+from assess.i18n import Text, fill
+
+FARTHEST = 10_000.0
+"""Distance from the origin up to which positions are kept as they are [m]."""
+ROUND = 100.0
+"""What is taken off positions farther away is a multiple of this [m]."""
+REACH = 2000.0
+"""Distance from the middle of the building up to which something belongs to it, along X and Y [m]."""
+FAR = fill("more than {reach:g} km from the middle of the building", reach=REACH / 1000)
+
+_Placed = TypeVar("_Placed", Door, Stair)
+
+
+def bring_near(model: BuildingModel) -> BuildingModel:
+    """Return a model whose positions lie near the origin: a workbook holds them to 100 km only, and plans to 5 km."""
+    near = _leave_out_far(model)
+    points = list(_list_points(near))
+    if not points or max(max(abs(x), abs(y)) for x, y in points) <= FARTHEST:
+        return near
+    shift = (ROUND * (min(x for x, _ in points) // ROUND), ROUND * (min(y for _, y in points) // ROUND))
+    text = fill("The model stands far from its origin: {x:,.0f} m were taken off every X, and {y:,.0f} m off every Y.",
+                x=shift[0], y=shift[1])  # fmt: skip
+    return replace(_move(near, (-shift[0], -shift[1])), shift=shift, remarks=(*near.remarks, text))
+
+
+def _list_points(model: BuildingModel) -> Iterator[Point]:
+    placed: Sequence[Piece | Door | Stair] = (*model.pieces, *model.doors, *model.stairs)
+    yield from ((one.x, one.y) for one in placed)
+    for area in (*(one.area for one in model.spaces), *(area for areas in model.walls.values() for area in areas)):
+        yield from area[0]
+
+
+# ---------------------------------------------------------------- what lies far from the rest
+
+
+def _leave_out_far(model: BuildingModel) -> BuildingModel:
+    """Return a model without what lies far from most of it: elements forgotten at the origin, damaged positions."""
+    points = list(_list_points(model))
+    if not points:
+        return model
+    x, y = (median(one[axis] for one in points) for axis in (0, 1))
+
+    def is_near(*some: Point) -> bool:
+        return all(abs(one - x) <= REACH and abs(other - y) <= REACH for one, other in some)
+
+    spaces = tuple(one for one in model.spaces if is_near(*one.area[0]))
+    kept = {one.key for one in spaces}
+    pieces, far = _part_pieces(model.pieces, is_near)
+    near = replace(
+        model,
+        spaces=spaces,
+        doors=_keep(model.doors, is_near),
+        stairs=_keep(model.stairs, is_near),
+        pieces=tuple(one if one.space in kept else replace(one, space="") for one in pieces),
+        walls=_keep_areas(model.walls, is_near),
+        windows=_keep_areas(model.windows, is_near),
+        left_out=(*model.left_out, *far),
+    )
+    return replace(near, remarks=(*near.remarks, *_note_far(_count(model) - _count(near))))
+
+
+def _part_pieces(pieces: Sequence[Piece], is_near: Callable[..., bool]) -> tuple[list[Piece], list[LeftOut]]:
+    """Return the pieces that are near with their whole width, and the others by class and type as left out."""
+    near = [
+        one for one in pieces if is_near((one.x - one.width, one.y - one.width), (one.x + one.width, one.y + one.width))
+    ]
+    kept = {id(one) for one in near}
+    far = Counter((one.ifc_class, one.type) for one in pieces if id(one) not in kept)
+    return near, [LeftOut(*kind, FAR, count=number, is_furniture=True) for kind, number in far.items()]
+
+
+def _keep(placed: Sequence[_Placed], is_near: Callable[..., bool]) -> tuple[_Placed, ...]:
+    return tuple(one for one in placed if is_near((one.x, one.y)))
+
+
+def _keep_areas(plans: Mapping[str, tuple[Area, ...]], is_near: Callable[..., bool]) -> dict[str, tuple[Area, ...]]:
+    return {key: tuple(one for one in areas if is_near(*one[0])) for key, areas in plans.items()}
+
+
+def _count(model: BuildingModel) -> int:
+    """Return how many rooms, doors, stairs and parts of walls there are."""
+    areas = sum(map(len, (*model.walls.values(), *model.windows.values())))
+    return len(model.spaces) + len(model.doors) + len(model.stairs) + areas
+
+
+def _note_far(count: int) -> Iterator[Text]:
+    if count:
+        yield fill("{n:,} of the rooms, doors, stairs and walls lie more than {reach:g} km from the middle of the "
+                   "building: left out.", n=count, reach=REACH / 1000)  # fmt: skip
+
+
+# ---------------------------------------------------------------- moving it
+
+
+def _move(model: BuildingModel, by: Point) -> BuildingModel:
+    def move_area(area: Any) -> Any:
+        return tuple(tuple((round(x + by[0], 3), round(y + by[1], 3)) for x, y in ring) for ring in area)
+
+    def move_all(some: Any) -> Any:
+        return tuple(replace(one, x=one.x + by[0], y=one.y + by[1]) for one in some)
+
+    def move_plans(plans: Any) -> Any:
+        return {key: tuple(map(move_area, areas)) for key, areas in plans.items()}
+
+    return replace(
+        model, pieces=move_all(model.pieces), doors=move_all(model.doors), stairs=move_all(model.stairs),
+        spaces=tuple(replace(one, area=move_area(one.area)) for one in model.spaces),
+        walls=move_plans(model.walls), windows=move_plans(model.windows),
+    )  # fmt: skip
