@@ -3,7 +3,7 @@
 import math
 import re
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -58,6 +58,21 @@ def name_plan(source: str, storey: str) -> str:
     stem = re.sub(r"\.[^.]*$", "", source)
     plain = unicodedata.normalize("NFKD", f"{stem} {storey}").encode("ascii", "ignore").decode()
     return (re.sub(r"[^A-Za-z0-9]+", "-", plain).strip("-")[:LONGEST_NAME].strip("-") or "plan") + ".svg"
+
+
+def name_plans(source: str, storeys: Iterable[str]) -> list[str]:
+    """Return the names of the plans of storeys, each its own in any letter case: ``a-1.svg``, ``a-1-2.svg``."""
+    found: list[str] = []
+    taken: set[str] = set()
+    for storey in storeys:
+        one = bare = name_plan(source, storey)
+        number = 1
+        while one.casefold() in taken:
+            number += 1
+            one = f"{bare.removesuffix('.svg')}-{number}.svg"
+        taken.add(one.casefold())
+        found.append(one)
+    return found
 
 
 def _list_corners(*groups: Sequence[Area]) -> Iterator[Point]:

@@ -8,9 +8,12 @@ from assess.bim.building_model import Storey
 from assess.bim.ifc_elements import Element, tell_apart
 from assess.errors import ModelError
 from assess.i18n import fill
+from assess.workbook.values import ERRORS, read_text
 
 _PLACEHOLDERS = ("enter address here", "//", "default", "<default>", "project number", "project name", "undefined")
 """What programs write where nobody has typed a name or an address."""
+LONGEST = 1000
+"""Characters that are kept of a text."""
 _ARC = (1.0, 60.0, 3600.0, 3.6e9)
 """Parts of an IfcCompoundPlaneAngleMeasure in a degree: degrees, minutes, seconds, millionths of a second."""
 
@@ -39,9 +42,12 @@ def find_unit(model: Any, name: str) -> float:
 
 
 def say(value: object) -> str:
-    """Return a text of the model in one line, "" for none and for what programs write in its place."""
-    text = " ".join(str(value).split()) if value is not None else ""
-    return "" if text.casefold().startswith(_PLACEHOLDERS) else text
+    """Return a text of the model in one line; "" for none, and for what programs write in its place.
+
+    What is no text is taken out as from cells (`assess.workbook.values`): else names that are read alike would differ.
+    """
+    text = " ".join(read_text(value).split())[:LONGEST] if value is not None else ""
+    return "" if text.casefold().startswith(_PLACEHOLDERS) or text in ERRORS else text
 
 
 def find_names(model: Any) -> tuple[str, str]:

@@ -17,9 +17,12 @@ from assess.workbook.catalogue import read_catalogue
 from assess.workbook.names import key
 from assess.workbook.schema import SHEETS
 from assess.workbook.template import Content, Rows, write_workbook
+from assess.workbook.values import clean
 
 LONGEST_NAME = 120
 """Characters that are kept of a name."""
+LONGEST_CELL = 32_767
+"""Characters that a spreadsheet takes in a cell."""
 _LONG = frozenset(
     {"notes", "source", *(column.name for sheet in SHEETS for column in sheet.columns if column.kind == "outline")}
 )
@@ -126,20 +129,20 @@ def _join_types(types: Rows) -> list[Mapping[str, Any]]:
 
 
 def _cut_texts(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row with its names cut to `LONGEST_NAME`: a spreadsheet takes no cell of over 32,767 characters."""
+    """Return a row with its names cut to `LONGEST_NAME`, and other texts to what a spreadsheet takes in a cell."""
     return {
-        name: value[:LONGEST_NAME] if isinstance(value, str) and name not in _LONG else value
+        name: clean(value)[0][: LONGEST_CELL if name in _LONG else LONGEST_NAME] if isinstance(value, str) else value
         for name, value in row.items()
     }
 
 
 def name_apart(names: Iterable[str]) -> list[str]:
-    """Return names cut to `LONGEST_NAME`, each its own: a second "Desk" becomes "Desk (2)"."""
+    """Return names as cells hold them, cut to `LONGEST_NAME`, each its own: a second "Desk" becomes "Desk (2)"."""
     taken: set[str] = set()
     next_number: Counter[str] = Counter()
     found = []
     for name in names:
-        bare = name[:LONGEST_NAME]
+        bare = " ".join(clean(name)[0].split())[:LONGEST_NAME].rstrip()
         one = bare
         while key(one) in taken:
             next_number[key(bare)] += 1

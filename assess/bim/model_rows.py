@@ -14,8 +14,8 @@ from assess.bim.building_model import Area, BuildingModel, Door, Piece, Space, S
 from assess.bim.cobie_floors import LOWEST_ROOF, note_datum
 from assess.bim.door_sides import find_kinds
 from assess.bim.draft_floor import find_room_points
-from assess.bim.floor_drawing import Drawn, draw_storey, name_plan
-from assess.bim.import_workbook import ImportedBuilding, Skipped, name_apart
+from assess.bim.floor_drawing import Drawn, draw_storey, name_plans
+from assess.bim.import_workbook import LONGEST_NAME, ImportedBuilding, Skipped, name_apart
 from assess.bim.model_names import Names, name_floors, name_items, name_places, sort_pieces
 from assess.bim.plan_shapes import to_polygon
 from assess.i18n import Text, fill, gettext
@@ -54,7 +54,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
     places = name_places(model, floors)
     pieces, outside = _sort_by_size(sort_pieces(model.pieces, storeys, places))
     drawn = {one.key: plan for one in storeys if (plan := draw_storey(model, one)) is not None}
-    files = dict(zip(drawn, name_apart(name_plan(model.source, floors[key]) for key in drawn), strict=True))
+    files = dict(zip(drawn, name_plans(model.source, (floors[key] for key in drawn)), strict=True))
     types = _name_types(pieces)
     draft = _draft(model, {**places, **floors}, routes)
     return ImportedBuilding(
@@ -122,7 +122,7 @@ def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
     sized = [find_sizes(one) for one in pieces]
     fits = [all(LOW <= size <= HIGH for size in one.sizes.values()) for one in sized]
     reason = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
-    counts = Counter(one.piece.type for one, is_inside in zip(sized, fits, strict=True) if not is_inside)
+    counts = Counter(one.piece.type[:LONGEST_NAME] for one, is_inside in zip(sized, fits, strict=True) if not is_inside)
     kept = [one for one, is_inside in zip(sized, fits, strict=True) if is_inside]
     return kept, [Skipped(kind, number, reason) for kind, number in counts.items()]
 
@@ -293,7 +293,7 @@ def _draft(model: BuildingModel, places: Names, routes: Drafts) -> _Draft:
 def _list_skipped(model: BuildingModel) -> Iterator[Skipped]:
     for one in model.left_out:
         kind = one.type if one.ifc_class in ("", one.type) else f"{one.ifc_class} {one.type}"
-        yield Skipped(kind, one.count, one.reason, one.is_furniture)
+        yield Skipped(kind[:LONGEST_NAME], one.count, one.reason, one.is_furniture)
 
 
 def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Sized]) -> Iterator[Text]:

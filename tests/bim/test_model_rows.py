@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Storey
-from assess.bim.floor_drawing import name_plan
+from assess.bim.floor_drawing import name_plan, name_plans
 from assess.bim.ifc_model import read_model
 from assess.bim.model_rows import find_kind, find_sizes, list_building
 from assess.plans import read_plan
@@ -176,6 +176,12 @@ def test_plans_of_published_models_are_read_as_reports_read_them(name):
 )  # fmt: skip
 def test_names_of_plans_are_plain(source, storey, name):
     assert name_plan(source, storey) == name
+
+
+def test_plans_of_storeys_that_no_latin_letters_tell_apart_have_names_of_their_own() -> None:
+    assert name_plans("a.ifc", ["一层", "二层", "Level-1", "level 1"]) == [
+        "a.svg", "a-2.svg", "a-Level-1.svg", "a-level-1-2.svg"
+    ]  # fmt: skip
 
 
 def test_a_model_of_walls_alone_keeps_its_storeys():
