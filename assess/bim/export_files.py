@@ -106,7 +106,7 @@ def _read(
     if with_topics:
         keys = {piece.past.item: key for key, piece in known.items()}
         placed = [keys[item] for entry in list_entries(found, keys) for item in entry.items if item in keys]
-    return run_apart(model.name, progress, read_elements, model, model.name, list(known), placed)
+    return run_apart(model.name, progress, read_elements, model.resolve(), model.name, list(known), placed)
 
 
 def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_properties: bool) -> None:

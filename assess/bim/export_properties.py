@@ -74,8 +74,8 @@ def _write_set(properties: Sequence[tuple[str, str]], element: ModelElement, fir
 
 def say_meaning() -> str:
     """Return what the set is, for its Description."""
-    return _("Chance that the piece overturns in the earthquake of Scenario, not in a year. Forces are for screening, "
-             "not design.")  # fmt: skip
+    return _("Chance that the piece overturns in the earthquake named in Scenario, not per year. Forces are for "
+             "screening, not design.")  # fmt: skip
 
 
 Planned = tuple[ExportEntry, ExportWork]

@@ -106,9 +106,13 @@ class ExportSegment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportRun:
-    """The results of a run; `steps` are what to fix for its routes, `item_index` of which is a place in `pieces`."""
+    """The results of a run; `steps` are what to fix for its routes, `item_index` of which is a place in `pieces`.
+
+    `language` is the code of the language of its reports, "" where the file does not tell it.
+    """
 
     run: PastRun
+    language: str
     pieces: tuple[ExportPiece, ...]
     entries: tuple[ExportEntry, ...]
     segments: tuple[ExportSegment, ...]
@@ -138,6 +142,7 @@ def read_export(path: Path) -> ExportRun:
     schedule = reader.part(record, "schedule", "")
     return ExportRun(
         run=run,
+        language=str(reader.part(record, "assess", "").get("language") or ""),
         pieces=pieces,
         entries=_read_entries(reader, schedule, {one.past.item for one in pieces}),
         segments=tuple(_read_segments(reader, routes)),

@@ -109,7 +109,7 @@ def _find_end(data: bytes, name: str) -> int:
     *_, last = [None, *_END.finditer(data, start)]
     if last is None:
         raise ModelError(
-            fill("{name} does not end as an IFC file does: ENDSEC; of its data and then END-ISO-10303-21; are expected "
-                 "in its last lines. Export it again from the program that made it.", name=name)
+            fill("{name} does not end as an IFC file does: its last lines lack 'ENDSEC;' or 'END-ISO-10303-21;'. "
+                 " Export it again from the program that made it.", name=name)
         )  # fmt: skip
     return last.start()

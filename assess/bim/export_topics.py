@@ -175,7 +175,7 @@ def _list_labels(found: ExportRun, topic: Topic) -> list[str]:
 def _list_selected(topic: Topic) -> list[str]:
     """Return lines that name the doors that are selected, and the pieces that could not be."""
     lines = [
-        _("Selected with it: door {name} ({key}), on the route that it may block.", name=one.name, key=one.key)
+        _("Also selected: door {name} ({key}), on the route that may be blocked.", name=one.name, key=one.key)
         for one in topic.doors
     ]
     known = {piece.past.item for piece, _element in topic.pairs}

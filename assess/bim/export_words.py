@@ -114,7 +114,7 @@ def say_title(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece
         text = ngettext(
             "{risk}: {names} may overturn and block route {routes}",
             "{risk}: {names} may overturn and block routes {routes}",
-            len(routes), routes=words.name_first([words.cut(one, 30) for one in routes], NAMED), **values,
+            len(routes), routes=words.name_first([words.cut(one, LONGEST) for one in routes], NAMED), **values,
         )  # fmt: skip
     else:
         text = _("{risk}: {names} may overturn", **values)
@@ -147,13 +147,13 @@ def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
         peak = words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH
         yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).", item=one.past.item,
                 chance=say_chance(one), pfa=peak, source=one.pfa_source or words.DASH)  # fmt: skip
-    yield _("Earthquake: {scenario}. The chance is that in this earthquake, not that in a year.",
+    yield _("Earthquake: {scenario}. The chance is for this earthquake, not per year.",
             scenario=say_scenario(run))  # fmt: skip
     reason = say_reason(found, entry, pieces)
     if reason:
         yield _("Why it comes here: {reason}.", reason=reason)
     if entry.is_together:
-        yield _("These pieces only help together: fixing some of them opens no route.")
+        yield _("Fix all of these pieces: fixing only some of them opens no route.")
     for work in entry.works:
         yield from _list_work(work, is_only=len(entry.works) == 1)
     for detail in dict.fromkeys(work.detail for work in entry.works):
@@ -171,7 +171,7 @@ def say_reason(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiec
     for step in sorted(found.steps, key=lambda step: (step.route, step.place)):
         if step.item_index in own:
             steps.setdefault(step.route, []).append(step)
-    others = [words.cut(one, 30) for one in list_routes(found, entry.items) if one not in steps]
+    others = [words.cut(one, LONGEST) for one in list_routes(found, entry.items) if one not in steps]
     beside = ngettext("route {routes}", "routes {routes}", len(others), routes=words.name_first(others, NAMED))
     return ", ".join(
         [*map(_, _list_importance(pieces)), *map(say_effect, steps.values()), *([beside] if others else [])]
@@ -204,7 +204,7 @@ def _list_remarks(work: ExportWork) -> Iterator[str]:
     if work.tension_high_kn == 0:
         yield f"{_capital(say_held())}."
     if work.is_per_metre:
-        yield _("Forces and fixings are those of one metre of the width, which is not known.")
+        yield _("Forces and fixings are per metre of width, as the width is not known.")
     if work.weights_assumed:
         yield _("The weight is assumed.")
     if work.heights_assumed:

@@ -15,7 +15,7 @@ from assess.bim.ifc_rooms import cut_walls, list_doors, list_spaces, list_stairs
 from assess.bim.ifc_site import find_azimuth, find_names, find_position, find_unit, list_storeys
 from assess.bim.model_position import bring_near
 from assess.errors import ModelError
-from assess.i18n import Text, fill
+from assess.i18n import Text, fill, nfill
 
 
 def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
@@ -105,8 +105,14 @@ def _note_rooms(model: Any, spaces: Sequence[Any], found: FoundPieces) -> list[T
             fill("The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys.")
         )
     if missing:
-        remarks.append(fill("{n:,} of the rooms in the model have no plan or no storey: left out.", n=missing))
+        remarks.append(
+            nfill("{n:,} room of the model has no plan or no storey: left out.",
+                  "{n:,} rooms of the model have no plan or no storey: left out.", missing)
+        )  # fmt: skip
     outside = sum(not piece.space for piece in found.pieces) if spaces else 0
     if outside:
-        remarks.append(fill("{n:,} of the pieces stand in no room of the model: Room stays blank.", n=outside))
+        remarks.append(
+            nfill("{n:,} piece stands in no room of the model: its Room stays blank.",
+                  "{n:,} pieces stand in no room of the model: their Room stays blank.", outside)
+        )  # fmt: skip
     return remarks

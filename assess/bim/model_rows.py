@@ -18,7 +18,7 @@ from assess.bim.floor_drawing import Drawn, draw_storey, name_plans
 from assess.bim.import_workbook import LONGEST_NAME, ImportedBuilding, Skipped, name_apart
 from assess.bim.model_names import Names, name_floors, name_items, name_places, sort_pieces
 from assess.bim.plan_shapes import to_polygon
-from assess.i18n import Text, fill, gettext
+from assess.i18n import Text, fill, gettext, nfill
 from assess.workbook.outlines import MOST, OutlineError, parse_outline
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS
 
@@ -198,7 +198,7 @@ def _list_items(
             "item": name, "floor": floors[piece.storey], "room": places.get(piece.space, ""), "description": piece.type,
             "type": types[_type_key(one)], **one.sizes, "x": round(piece.x, 3), "y": round(piece.y, 3),
             "angle_deg": one.angle_deg, "anchored": "unknown" if piece.is_fitted else "", "source_id": piece.key,
-            "sizes_from": model.sizes_from, "notes": ". ".join(_list_notes(one)),
+            "sizes_from": model.sizes_from, "notes": "; ".join(_list_notes(one)),
         }  # fmt: skip
         yield {field: value for field, value in row.items() if value != ""}
 
@@ -206,9 +206,9 @@ def _list_items(
 def _list_notes(one: Sized) -> Iterator[str]:
     piece = one.piece
     if one.is_inset:
-        body = [f"{CENTIMETRES * size:.1f}" for size in (piece.breadth, piece.width, piece.height)]
-        yield gettext("body {body} cm, {support:g} cm between the outer supports", body=" x ".join(body),
-                      support=one.breadth)  # fmt: skip
+        breadth, width, height = (CENTIMETRES * size for size in (piece.breadth, piece.width, piece.height))
+        yield gettext("body {breadth:.1f} x {width:.1f} x {height:.1f} cm, {support:g} cm between the outer supports",
+                      breadth=breadth, width=width, height=height, support=one.breadth)  # fmt: skip
     if piece.is_fitted:
         yield gettext(FITTED)
     if piece.name and piece.name != piece.type:
@@ -300,20 +300,26 @@ def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Size
     """Yield what else is to be checked."""
     fitted = sum(one.piece.is_fitted for one in pieces)
     if fitted:
-        yield fill("{n:,} of the pieces are fitted furniture by their names: usually fixed, counted as free-standing "
-                   "until Anchored says so.", n=fitted)  # fmt: skip
+        yield nfill(
+            "{n:,} piece is fitted furniture by its name: usually fixed, free-standing until Anchored says yes.",
+            "{n:,} pieces are fitted furniture by their names: usually fixed, free-standing until Anchored says yes.",
+            fitted,
+        )  # fmt: skip
     inset = sum(one.is_inset for one in pieces)
     if inset:
-        yield fill("{n:,} of the pieces stand on supports inside their body: Breadth is between these; Notes give the "
-                   "body's sizes.", n=inset)  # fmt: skip
+        yield nfill(
+            "{n:,} piece stands on supports inside its body: Breadth is between these, and Notes give the body.",
+            "{n:,} pieces stand on supports inside their bodies: Breadth is between these, and Notes give the bodies.",
+            inset,
+        )  # fmt: skip
     if model.doors:
         kinds = find_kinds(model)
         out = sum(kind == "exit" for kind in kinds.values())
-        yield fill("{n:,} of {all:,} doors lead out of the ground storey (a room on one side only).", n=out,
+        yield fill("Doors that lead out of the ground storey (a room on one side only): {n:,} of {all:,}.", n=out,
                    all=len(model.doors))  # fmt: skip
     if model.latitude is not None:
-        yield fill("Latitude and Longitude are those of the model, {latitude:g} and {longitude:g}: programs fill in a "
-                   "default town.", latitude=model.latitude, longitude=model.longitude)  # fmt: skip
+        yield fill("Latitude and Longitude are those of the model, {latitude:g} and {longitude:g}: check them, as "
+                   "programs fill in a default town.", latitude=model.latitude, longitude=model.longitude)  # fmt: skip
     empty = [one.name for one in model.storeys if one not in storeys]
     if empty:
         yield fill("Storeys without furniture, rooms and doors were left out: {names}.", names=", ".join(empty[:20]))

@@ -44,7 +44,7 @@ FITTED = ("oven", "dishwasher")
 LOW = "low"
 
 IS_FIXED = fill("fixed to the building")
-IS_BUILT_IN = fill("built into a cabinet, which is taken")
+IS_BUILT_IN = fill("built into a cabinet, which is imported")
 IS_TILTED = fill("not upright")
 NOT_ON_FLOOR = fill("not on the floor: its base is more than 15 cm above it")
 
@@ -212,12 +212,13 @@ def _remark(scan: Scan, found: _Found) -> Iterator[Text]:
     if not scan.objects:
         yield fill("The scan holds no objects: fill in Items by hand.")
     unsure = [(kind, number) for kind, number in found.unsure.items() if number]
+    total = sum(number for kind, number in unsure)
     if unsure:
         kinds = ", ".join(f"{kind} ({number:,})" for kind, number in unsure)
         yield nfill(
             "{n:,} piece was recognised with low confidence: check what it is: {kinds}.",
             "{n:,} pieces were recognised with low confidence: check what they are: {kinds}.",
-            sum(number for _, number in unsure), kinds=kinds,
+            total, kinds=kinds,
         )  # fmt: skip
     curved = sum(one.is_curved for one in scan.walls)
     if curved:

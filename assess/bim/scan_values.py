@@ -250,7 +250,7 @@ class _Reader:
         if not found:
             raise self._fault(f"{place}.identifier", fill("it is missing."))
         if found in self.known:
-            raise self._fault(f"{place}.identifier", fill("it is that of {other}, too.", other=self.known[found]))
+            raise self._fault(f"{place}.identifier", fill("{other} has the same one.", other=self.known[found]))
         self.known[found] = place
         return found
 
@@ -276,7 +276,7 @@ class _Reader:
         axes = matrix[:3, :3]
         is_rigid = np.abs(axes.T @ axes - np.eye(3)).max() <= RIGID and np.linalg.det(axes) > 0
         if not is_rigid or np.abs(matrix[3] - (0, 0, 0, 1)).max() > RIGID:
-            raise self._fault(place, fill("it is not a rotation and a position, column after column."))
+            raise self._fault(place, fill("it does not hold a rotation and a position, by columns."))
         return _UPWARDS @ axes, _UPWARDS @ matrix[:3, 3]
 
     def _read_corners(self, found: object, place: str) -> FloatArray:

@@ -105,7 +105,7 @@ def _unpack(data: bytes, name: str) -> bytes:
 
 def _too_large(name: str) -> ModelError:
     return ModelError(
-        fill("{name} is larger than what is read of a home: {file} MB, of which {home} MB for Home.xml. Save fewer "
+        fill("{name} is too large: at most {file} MB are read, and {home} MB of the Home.xml in it. Save fewer "
              "levels.", name=name, file=MOST_BYTES // 2**20, home=MOST_HOME // 2**20)
     )  # fmt: skip
 

@@ -67,7 +67,7 @@ def add_rows(update: SheetUpdate, rows: Rows) -> Problem | None:
         "{n:,} new row of the model was not added: {why}.", "{n:,} new rows of the model were not added: {why}.",
         len(rows), why=why,
     )  # fmt: skip
-    fix = fill("Let the table end with a complete entry and move what stands below it elsewhere, then import again.")
+    fix = fill("Move what stands below the last complete row of this sheet elsewhere, then import again.")
     cell = update.cells.address(last, 0) if last else ""
     return Problem("warning", update.cells.title, cell, message, fix)
 

@@ -12,7 +12,6 @@ from assess.errors import InputError
 
 if TYPE_CHECKING:
     from assess.bim.export_files import Export
-    from assess.bim.export_results import ExportRun
     from assess.bim.export_topics import Topics
 
 ORDER = 4
@@ -57,11 +56,11 @@ def command(
     _check_names({"--out": out, "--bcf": bcf}, {ifc, results}, replaces=force)
     from assess.bim.export_files import build_export
     from assess.bim.export_results import read_export
-    from assess.i18n import load_catalogue, speaking
+    from assess.i18n import LANGUAGES, load_catalogue, speaking
 
     with show_progress() as progress, progress.stage("reading", ifc.name):
         found = progress.wait_for(lambda: read_export(results))
-        with speaking(load_catalogue(_find_own_language(found))):
+        with speaking(load_catalogue(found.language if found.language in LANGUAGES else LANGUAGES[0])):
             export = build_export(found, ifc, progress, with_properties=out is not None, with_topics=bcf is not None)
     files = {out: export.model, bcf: export.topics.data if export.topics else None}
     save_files({path: data for path, data in files.items() if path is not None and data is not None})
@@ -71,16 +70,6 @@ def command(
         typer.echo(f"wrote {path}", err=True)
     if not export.is_complete:
         raise typer.Exit(1)
-
-
-def _find_own_language(found: "ExportRun") -> str:
-    """Return the language of the workbook, English where the results name none that is known."""
-    from assess.i18n import LANGUAGES, find_language
-
-    try:
-        return find_language(str(found.run.building.get("language") or LANGUAGES[0]))
-    except InputError:
-        return LANGUAGES[0]
 
 
 def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replaces: bool) -> None:

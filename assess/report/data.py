@@ -87,6 +87,7 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
             "earthquakes": origin.earthquakes and asdict(origin.earthquakes),
             "shaking": origin.shaking and asdict(origin.shaking),
             "site_ground": origin.site_ground and asdict(origin.site_ground),
+            "language": origin.language,
             "platform": dict(origin.platform),
             "inputs": {
                 "workbook": origin.workbook,

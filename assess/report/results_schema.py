@@ -200,6 +200,7 @@ def _assess() -> Schema:
             | {"description": "The assumed intensity that stands in for a known motion of the ground; null: none."},
             "site_ground": _or_null(_of_row(SiteGroundInfo))
             | {"description": "The ground motion at the building by a ShakeMap or scenarios; null: none."},
+            "language": TEXT | {"description": "Code of the language that reports are in where none is asked for."},
             "platform": _map(TEXT),
             "inputs": _object({"workbook": TEXT, "sha256": HASH, "records": _map(HASH), "motions": _map(HASH)}),
             "fitted_models": _map(fitted)

@@ -37,6 +37,11 @@ def is_draft(name: str) -> bool:
     return name.rstrip().endswith(")") and key(name).endswith(_marks())
 
 
+def _find_mark(name: str) -> str:
+    """Return the mark of a drafted route's name as it stands there."""
+    return name[name.rindex("(") :].strip()
+
+
 def check_drafts(tables: Tables) -> Iterator[Problem]:
     """Warn, once a workbook, of routes that still carry the mark."""
     table = tables["Routes"]
@@ -56,6 +61,6 @@ def check_drafts(tables: Tables) -> Iterator[Problem]:
             "Walk it, correct it, and take '{mark}' off its name.",
             "Walk them, correct them, and take '{mark}' off their names.",
             len(drafts),
-            mark=DRAFT,
+            mark=_find_mark(first.get("route")),
         )
         yield table.problem("route", first, message, fix, "warning")

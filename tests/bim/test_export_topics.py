@@ -151,7 +151,7 @@ def test_a_coordinator_reads_what_is_to_be_done(bcf):
         "The height of the bracket is assumed: 0.9 of the piece's height.",
         "Forces are for screening, not design",
         "Palazzo Duè, building.xlsx, revision B, 2026-05-04, results.json SHA-256 ",
-        f"({DOOR_B202}), on the route that it may block.",
+        f"({DOOR_B202}), on the route that may be blocked.",
     ):
         assert words in text
     assert topic.labels[:3] == ["earthquake", "very high", "2"]
@@ -239,7 +239,7 @@ def test_pieces_that_only_help_together_are_one_topic(tmp_path):
     (topic,) = Bcf(export(results, DUPLEX, with_properties=False).topics.data).topics
     assert set(topic.selected) == {*BOTH, DOOR_B202}
     assert "Armadio è 1 and Armadio è 2 together" in topic.text("Title")
-    assert "fixing some of them opens no route" in topic.text("Description")
+    assert "fixing only some of them opens no route" in topic.text("Description")
     assert topic.text("Description").count("How to fix:") == 2
 
 

@@ -49,8 +49,8 @@ def test_breadth_is_the_shortest_distance_between_outer_supports(supports, sizes
 def test_the_body_of_a_piece_on_supports_stands_in_its_notes():
     found = list_building(model(pieces=(replace(PIECE, support_breadth=0.3, name="Shelf:1"),)))
     (row,) = found.items
-    assert row["notes"] == "body 40.0 x 80.0 x 190.0 cm, 30 cm between the outer supports. in the model: Shelf:1"
-    assert any("1 of the pieces stand on supports inside their body" in text for text in found.remarks)
+    assert row["notes"] == "body 40.0 x 80.0 x 190.0 cm, 30 cm between the outer supports; in the model: Shelf:1"
+    assert any("1 piece stands on supports inside its body" in text for text in found.remarks)
 
 
 def test_sizes_that_a_workbook_does_not_take_are_left_out():
@@ -126,7 +126,7 @@ def test_doors_become_places_and_those_that_lead_out_exits():
     rows = {row["place"]: row for row in found.places}
     assert set(rows) == {"101 Office", "102 Office", "Door 101 / 102", "Exit 101"}
     assert (rows["Exit 101"]["kind"], rows["Door 101 / 102"]["kind"]) == ("exit", "door")
-    assert "1 of 2 doors lead out of the ground storey (a room on one side only)." in found.remarks
+    assert "Doors that lead out of the ground storey (a room on one side only): 1 of 2." in found.remarks
 
 
 def test_an_outline_is_read_back_as_the_room():

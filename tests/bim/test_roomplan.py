@@ -115,7 +115,7 @@ def test_what_is_no_piece_is_listed_with_its_reason():
     hanging = "not on the floor: its base is more than 15 cm above it"
     assert found == {
         *((kind, "fixed to the building", 1, False) for kind in ("Sink", "Toilet", "Bathtub", "Fireplace", "Stairs")),
-        ("Oven", "built into a cabinet, which is taken", 1, False), ("Bed", "not upright", 1, True),
+        ("Oven", "built into a cabinet, which is imported", 1, False), ("Bed", "not upright", 1, True),
         ("Storage", hanging, 1, True), ("Television", hanging, 1, True),
     }  # fmt: skip
     assert [(one.storey, one.end) for one in model.stairs] == [("0", "foot")]

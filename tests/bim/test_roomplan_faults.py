@@ -65,14 +65,14 @@ def broken(change, kind="objects", at=3):
         (lambda one: one.update(transform=[[1, 0, 0, 0]] * 3), "objects[3].transform: expected 16 numbers"),
         (lambda one: one["transform"].__setitem__(12, float("nan")), "objects[3].transform: expected 16 numbers"),
         (lambda one: one["transform"].__setitem__(12, 2e4), "objects[3].transform: expected 16 numbers"),
-        (lambda one: one.update(transform=[0] * 16), "objects[3].transform: it is not a rotation and a position"),
-        (lambda one: one.update(transform=[1, 0, 0, 3, 0, 1, 0, 2, 0, 0, 1, 1, 0, 0, 0, 1]), "not a rotation"),
-        (lambda one: one.update(transform=[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]), "not a rotation"),
+        (lambda one: one.update(transform=[0] * 16), "objects[3].transform: it does not hold a rotation and a position, by columns."),
+        (lambda one: one.update(transform=[1, 0, 0, 3, 0, 1, 0, 2, 0, 0, 1, 1, 0, 0, 0, 1]), "does not hold a rotation"),
+        (lambda one: one.update(transform=[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1]), "does not hold a rotation"),
         (lambda one: one.update(polygonCorners=[[0, 0]]), "objects[3].polygonCorners: expected points of three"),
         (lambda one: one.update(polygonCorners="none"), "objects[3].polygonCorners: expected points of three numbers"),
         (lambda one: one.pop("identifier"), "objects[3].identifier: it is missing."),
         (lambda one: one.update(identifier=office()["objects"][1]["identifier"]),
-         "objects[3].identifier: it is that of objects[1], too."),
+         "objects[3].identifier: objects[1] has the same one."),
     ],
 )  # fmt: skip
 def test_a_fault_names_its_place(change, said):

@@ -140,8 +140,8 @@ def test_below_something_else_nothing_is_added_and_all_is_listed(book: bytes, fi
     assert texts(found)[1:] == ["Items B201-07 of the model was left out"]
     (problem,) = found.problems
     assert str(problem) == (
-        f"Items!A9: 1 new row of the model was not added: {why}. Let the table end with a complete entry and move what "
-        "stands below it elsewhere, then import again."
+        f"Items!A9: 1 new row of the model was not added: {why}. Move what stands below the last complete row of this "
+        "sheet elsewhere, then import again."
     )
     assert row(found.data).get("breadth") == pytest.approx(0.6), "what is there already is updated all the same"
 

@@ -167,7 +167,7 @@ def test_a_model_gives_pieces_plans_and_the_list_of_what_was_left_out(imported):
         "duplex.ifc: 47 of 61 pieces of 9 types on 3 floors taken.\n14 pieces left out (not on the floor"
     )
     assert "IfcFurnishingElement M_Upper Cabinet-Double Door-Wall 1000 mm (6)" in said
-    assert "Check: 4 of 14 doors lead out of the ground storey (a room on one side only)." in said
+    assert "Check: Doors that lead out of the ground storey (a room on one side only): 4 of 14." in said
     assert {one.name for one in imported.parent.iterdir()} == {
         "duplex.xlsx", "duplex.txt", "duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg",
     }  # fmt: skip
@@ -189,7 +189,7 @@ def test_the_wardrobes_have_their_supports_and_the_catalogue_their_type(duplex):
     assert len(found) == 8
     for one in found:
         assert (one.breadth, one.width, one.height) == pytest.approx((0.485, 0.8, 2.0))
-        assert one.notes.startswith("body 54.5 x 80.0 x 200.0 cm, 48.5 cm between the outer supports.")
+        assert one.notes.startswith("body 54.5 x 80.0 x 200.0 cm, 48.5 cm between the outer supports;")
         assert (one.sizes_from, one.type) == ("model", "M_Tall Cabinet-Single Door(2) 800 mm")
         assert len(one.more["source_id"]) == 22
 

@@ -152,7 +152,7 @@ def test_a_cobie_file_is_read_and_an_inventory_opened(page, served, tmp_path):
     _choose(found, write_cobie(tmp_path / "handover.xlsx"))
     shown = _see_list(found, "handover.xlsx")
     expect(shown).to_contain_text("2 pieces on 2 floors")
-    shown.get_by_text("1 element skipped that is no furniture").click()
+    shown.get_by_text("1 element skipped that is not furniture").click()
     expect(shown.get_by_role("row", name="Door B 1")).to_be_visible()
     drop(found, "office.xlsx", write(tmp_path / "office.xlsx").read_bytes())
     expect(found.get_by_role("heading", name="office.xlsx")).to_be_visible()

@@ -117,7 +117,7 @@ class Imports extends EventTarget {
   }
 
   #tellOpened(book, name, shaking) {
-    const text = t("{book} was made of {name}.", { book: book.name, name });
+    const text = t("{book} was made from {name}.", { book: book.name, name });
     const show = [t("What was imported"), () => (location.hash = "#import")];
     const line = this.#store.sheet("Building")?.column("shaking");
     if (shaking || !line) notice(text, { actions: [show] });

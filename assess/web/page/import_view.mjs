@@ -58,7 +58,7 @@ class ImportView {
     const maybe = found.skipped.filter((group) => group.is_furniture);
     const others = found.skipped.filter((group) => !group.is_furniture);
     const n = total(others);
-    const summary = tn("{n:,} element skipped that is no furniture", "{n:,} elements skipped that are no furniture", n);
+    const summary = tn("{n:,} element skipped that is not furniture", "{n:,} elements skipped that are not furniture", n);
     const copy = el("button", { type: "button", text: t("Copy the list"), on: { click: () => copyList(found) } });
     return [
       maybe.length > 0 && el("section", { class: "card" }, el("div", { class: "head" },
@@ -120,7 +120,7 @@ function headline(found) {
     found.rooms > 0 && tn("{n:,} room", "{n:,} rooms", found.rooms),
     found.plans > 0 && tn("{n:,} plan", "{n:,} plans", found.plans),
     found.pieces > 0 && found.pieces === found.of && t("no furniture skipped"),
-    found.routes > 0 && tn("{n:,} route, a draft", "{n:,} routes, a draft", found.routes),
+    found.routes > 0 && tn("{n:,} drafted route", "{n:,} drafted routes", found.routes),
   ].filter(Boolean);
   const first = found.pieces ? t("{pieces} on {floors}", { pieces, floors }) : t("No furniture was found: fill in the sheet Items by hand.");
   return el("p", { class: "taken" }, el("strong", { text: first }), more.length > 0 && el("span", { class: "muted", text: more.join(" · ") }));
