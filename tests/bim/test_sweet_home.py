@@ -235,11 +235,9 @@ def test_entities_are_refused():
 
 def test_what_unpacks_to_too_much_is_refused(monkeypatch):
     monkeypatch.setattr(sweet_home, "MOST_HOME", 20_000)
-    assert "is too large: at most 256 MB are read, and 32 MB of the Home.xml in it." in refused(
-        pack(home_xml() + b" " * 10_000_000)
-    )
+    assert "is too large: at most" in refused(pack(home_xml() + b" " * 10_000_000))
     monkeypatch.setattr(sweet_home, "MOST_BYTES", 5_000)
-    assert "is too large: at most 256 MB are read, and 32 MB of the Home.xml in it." in refused(FILE.read_bytes())
+    assert "is too large: at most" in refused(FILE.read_bytes())
 
 
 def test_too_many_elements_or_too_deep_is_refused():
