@@ -110,6 +110,6 @@ def _find_end(data: bytes, name: str) -> int:
     if last is None:
         raise ModelError(
             fill("{name} does not end as an IFC file does: its last lines lack 'ENDSEC;' or 'END-ISO-10303-21;'. "
-                 " Export it again from the program that made it.", name=name)
+                 "Export it again from the program that made it.", name=name)
         )  # fmt: skip
     return last.start()
