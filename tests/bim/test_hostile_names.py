@@ -60,7 +60,7 @@ def write_tower(path: Path) -> Path:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     """Return a folder in which a command has imported the model."""
-    folder = tmp_path_factory.mktemp("names")
+    folder: Path = tmp_path_factory.mktemp("names")
     done = run("import", write_tower(folder / "a.ifc"), "-o", folder / "book.xlsx", "--routes", "draft")
     assert done.exit_code == 1, done.output  # the pieces on the wall were left out
     (folder / "said").write_text(done.output, encoding="utf-8")

@@ -1,0 +1,84 @@
+"""Building models damaged at random: each ends in words, or in a workbook that lacks nothing but the shaking."""
+
+import random
+from pathlib import Path
+
+import pytest
+
+from assess.bim import model_process
+from assess.bim.import_workbook import build_workbook
+from assess.bim.model_rows import Drafts
+from assess.bim.read_source import read_source
+from assess.errors import AssessError, WorkbookError
+from assess.workbook.read import read_inventory, read_tables
+from tests.bim.damaged_models import damage, write_house
+
+MODELS = Path(__file__).parents[2] / "samples" / "models"
+QUICK, MANY, PARTS = 4, 60, 2
+"""Damaged models of each of the two that are read by the quick tests, and by the slow ones in so many parts."""
+FOUND = {"house": (142, 143, 184, 315, 333, 344, 379, 496), "large": (1108,)}
+"""Seeds that once broke something."""
+ENDS = {"read", "refused"}
+DRAFTS: tuple[Drafts, ...] = ("none", "draft")
+
+
+@pytest.fixture(autouse=True)
+def _limits(monkeypatch):
+    """Bound the time of a model that the library does not come to an end with."""
+    monkeypatch.setattr(model_process, "SECONDS", 20)
+
+
+def read_damaged(data: bytes, seed: int, folder: Path) -> str:
+    """Return how it ends to read a model after a damage by a seed: "refused", "read", or what is wrong with that."""
+    draw = random.Random(seed)
+    path = folder / "a.ifc"
+    path.write_bytes(damage(data, draw))
+    try:
+        found = read_source(path, "a.ifc", routes=draw.choice(DRAFTS))
+    except AssessError as error:
+        return "refused" if error.message.startswith(("a.ifc", "The model")) else error.message
+    for name, plan in found.files.items():
+        (folder / name).write_bytes(plan)
+    book = folder / "book.xlsx"
+    book.write_bytes(build_workbook(found))
+    _, problems = read_tables(book.read_bytes(), book.name)
+    errors = [str(one) for one in problems if one.severity == "error"]
+    try:
+        read_inventory(book)
+    except WorkbookError as error:  # it lacks the shaking, and there may be no furniture
+        errors += [] if error.is_incomplete else [error.message]
+    return "\n".join(errors) or "read"
+
+
+@pytest.fixture(scope="module")
+def models(tmp_path_factory) -> dict[str, bytes]:
+    """Return the models that are damaged."""
+    house = write_house(tmp_path_factory.mktemp("house") / "house.ifc")
+    return {"house": house.read_bytes(), "large": (MODELS / "LargeBuilding.ifc").read_bytes()}
+
+
+@pytest.mark.parametrize("seed", range(QUICK))
+@pytest.mark.parametrize("name", FOUND)
+def test_a_damaged_model(tmp_path, models, name, seed):
+    assert read_damaged(models[name], seed, tmp_path) in ENDS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("name", FOUND)
+def test_many_damaged_models(tmp_path, models, name, part):
+    ends = {}
+    for seed in (*FOUND[name], *range(500, 500 + MANY))[part::PARTS]:
+        folder = tmp_path / str(seed)
+        folder.mkdir()
+        ends[seed] = read_damaged(models[name], seed, folder)
+    assert {seed: end for seed, end in ends.items() if end not in ENDS} == {}
+    assert {*ends.values()} == ENDS
+
+
+def test_the_house_itself_is_read_whole(tmp_path):
+    found = read_source(write_house(tmp_path / "a.ifc"), "a.ifc", routes="draft")
+    assert [row["description"] for row in found.items] == ["Desk", "Shelf", "Shelf"] * 2
+    assert {row["kind"] for row in found.places} >= {"room", "door", "exit", "stair"}
+    assert [(one.type, one.count) for one in found.skipped] == [("IfcFurniture Wall unit", 2)]
+    assert len(found.files) == 2
