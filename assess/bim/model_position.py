@@ -94,8 +94,8 @@ def _count(model: BuildingModel) -> int:
 
 def _note_far(count: int) -> Iterator[Text]:
     if count:
-        yield fill("{n:,} of the rooms, doors, stairs and walls lie more than {reach:g} km from the middle of the "
-                   "building: left out.", n=count, reach=REACH / 1000)  # fmt: skip
+        yield fill("Rooms, doors, stairs and parts of walls that lie more than {reach:g} km from the middle of the "
+                   "building were left out: {n:,}.", n=count, reach=REACH / 1000)  # fmt: skip
 
 
 # ---------------------------------------------------------------- moving it

@@ -181,8 +181,8 @@ def _note_elevations(storeys: Sequence[Storey], floors: Names) -> list[Text]:
     notes = note_datum([(floors[one.key], one.elevation) for one in storeys if _is_known(one)])
     if odd:
         notes.append(
-            fill("Elevation was left blank of {floors}: it is outside {low:g} to {high:g} m in the model. Fill in "
-                 "heights above the ground.", floors=", ".join(odd[:20]), low=LOWEST, high=HIGHEST)
+            fill("Elevation is blank for {floors}: in the model it is outside {low:g} to {high:g} m. Fill in the "
+                 "height above the ground.", floors=", ".join(odd[:20]), low=LOWEST, high=HIGHEST)
         )  # fmt: skip
     return notes
 

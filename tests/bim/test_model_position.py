@@ -41,7 +41,10 @@ def test_what_was_forgotten_at_the_origin_leaves_the_building_where_it_is(tmp_pa
     assert [(one.type, str(one.reason)) for one in found.left_out] == [
         ("Forgotten", "more than 2 km from the middle of the building")
     ]
-    remark = "2 of the rooms, doors, stairs and walls lie more than 2 km from the middle of the building: left out."
+    remark = (
+        "Rooms, doors, stairs and parts of walls that lie more than 2 km from the middle of the building were left "
+        "out: 2."
+    )
     assert remark in found.remarks
     (item,) = check(found, tmp_path).items
     assert (item.x, item.y) == pytest.approx((2, 101), abs=1e-3)
@@ -69,7 +72,7 @@ def test_an_elevation_that_no_workbook_takes_is_left_blank(tmp_path, elevation):
     found = list_building(read(model, tmp_path))
     assert "elevation" not in found.floors[0]
     assert [str(one) for one in found.warnings] == [
-        "Elevation was left blank of Level 1: it is outside -200 to 1000 m in the model. Fill in heights above the "
+        "Elevation is blank for Level 1: in the model it is outside -200 to 1000 m. Fill in the height above the "
         "ground."
     ]
     assert "height" not in found.building
