@@ -103,13 +103,14 @@ class Course:
 def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Course:
     """Return the course of a route: it serves its rooms and its open ends, and leads to its exits.
 
-    Without an exit it leads to its stairs; without stairs, or where it is all stairs, to where its last segment ends.
+    Without an exit it leads to its stairs, down a flight that it includes to the end of that; without stairs, or where
+    it is all stairs, to where its last segment ends.
     """
     graph = build_graph(segments)
     parts, loose = [], [at for at, one in segments.items() if not (one.start and one.end)]
-    for part in find_parts(graph, kinds):
+    for part in _find_route_parts(graph, segments, kinds):
         led = part if part.targets else Part(part.edges, frozenset({_last_end(part, segments)}), by_stairs=False)
-        places = {place for edge in led.edges for place in edge[:2]}
+        places = _list_places(led)
         served = sorted(_served(graph.subgraph(places), kinds, led.targets))
         is_chain = len(led.targets) == 1 and len(led.edges) == len(places) - 1  # every segment is on the only way
         if served and not is_chain:
@@ -123,12 +124,27 @@ def find_ends(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> tupl
     """Return the places that a route serves, and those that it leads to, as in `build_course`."""
     graph = build_graph(segments)
     served, led = dict[str, None](), dict[str, None]()
-    for part in find_parts(graph, kinds):
+    for part in _find_route_parts(graph, segments, kinds):
         targets = part.targets or frozenset({_last_end(part, segments)})
-        places = {place for edge in part.edges for place in edge[:2]}
+        places = _list_places(part)
         served |= dict.fromkeys(sorted(_served(graph.subgraph(places), kinds, targets), key=natural_key))
         led |= dict.fromkeys(sorted(targets, key=natural_key))
     return tuple(served), tuple(led)
+
+
+def _find_route_parts(
+    graph: "nx.MultiGraph[str]", segments: Mapping[int, Segment], kinds: Mapping[str, str]
+) -> Iterator[Part]:
+    """Yield the parts of a route as `find_parts` does; the top of a flight of its own is no way out, its end is."""
+    for part in find_parts(graph, kinds):
+        own = [segments[at] for at in part.segments]
+        left = part.targets - {one.start for one in own if not one.floor and one.end in part.targets}
+        is_shorter = part.by_stairs and left and left != part.targets
+        yield Part(_outward(graph.subgraph(_list_places(part)), left), left, by_stairs=True) if is_shorter else part
+
+
+def _list_places(part: Part) -> set[str]:
+    return {place for edge in part.edges for place in edge[:2]}
 
 
 def _last_end(part: Part, segments: Mapping[int, Segment]) -> str:

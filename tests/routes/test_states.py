@@ -195,6 +195,32 @@ def test_pieces_that_name_a_stair_are_evaluated_by_their_edge_distance():
     assert flight(None, own, chance=0.5).state is BLOCKED, "blocked wins"
 
 
+OFFICE = place("Office", "room", (-5, 0), floor="2")
+BESIDE_CORRIDOR = piece(2.0, 0.0, route="Way", segment="corridor", floor="2")
+
+
+@pytest.mark.parametrize(
+    ("width", "chance", "state"), [(None, 0.0, NOT_KNOWN), (1.2, 0.0, OPEN), (1.2, 0.2, DOUBTFUL), (None, 0.5, BLOCKED)]
+)
+def test_a_route_needs_the_flight_that_it_includes(width, chance, state):
+    """Both ends of a flight are stairs: the way leads to the lower one, and one that is blocked above stays so."""
+    ways = [
+        stretch("corridor", "Office", "Up", floor="2"),
+        stretch("flight", "Up", "Down", floor="", clear_width=width),
+    ]
+    found = evaluated(make_falls([chance]), [BESIDE_CORRIDOR], ways, [OFFICE, *STAIR_ENDS]).routes[0]
+    assert (found.state, found.from_places, found.to_places) == (state, ("Office",), ("Down",))
+    assert found.unevaluated_segments == (("flight",) if width is None else ())
+
+
+def test_two_stairs_of_one_floor_that_a_corridor_joins_are_both_ways_out():
+    """Either is enough, whatever blocks the corridor between them."""
+    ends = (STAIR_ENDS[0], place("Other", "stair", (9, 0), floor="2"))
+    ways = [stretch("office", "Office", "Up", floor="2"), stretch("corridor", "Up", "Other", floor="2")]
+    found = evaluated(make_falls([0.5]), [BESIDE_CORRIDOR], ways, [OFFICE, *ends]).routes[0]
+    assert (found.state, found.to_places) == (OPEN, ("Other", "Up"))
+
+
 def test_a_segment_on_no_floor_that_joins_nothing_is_no_stair():
     found = evaluated(make_falls([]), [], [stretch(floor="", clear_width=1.2)]).segments[0]
     assert (found.state, found.missing[0].what) == (NOT_KNOWN, "ends")
