@@ -28,7 +28,7 @@ from assess.bim.export_views import (
     find_shift,
 )
 from assess.bim.export_words import list_lines, list_routes, say_program, say_title
-from assess.compare.past_run import PastRun
+from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.environment import find_source_date
 from assess.i18n import gettext as _
 from assess.plain_text import plain_text
@@ -161,14 +161,15 @@ def _build_topic(found: ExportRun, topic: Topic) -> _Element:
 
 
 def _list_labels(found: ExportRun, topic: Topic) -> list[str]:
-    """Return the labels of a topic, by which programs group them."""
-    piece = topic.pairs[0][0]
-    labels = [_("earthquake"), words.risk_word(piece.past.risk), topic.entry.floor]
-    if piece.past.basis != found.run.main_basis:
-        labels.append(_("unconfirmed") if piece.past.basis == "unconfirmed" else _("by formula only"))
+    """Return the labels of a topic, by which programs group them: the highest class of its pieces, the upper one."""
+    pieces = [piece for piece, _element in topic.pairs]
+    classes = {max(one.past.risk for one in pieces), max(one.upper for one in pieces)}
+    labels = [_("earthquake"), *map(words.risk_word, sorted(classes)), topic.entry.floor]
+    apart = dict.fromkeys(one.past.basis for one in pieces if one.past.basis != found.run.main_basis)
+    labels += [_("unconfirmed") if basis == UNCONFIRMED else _("by formula only") for basis in apart]
     if list_routes(found, topic.entry.items):
         labels.append(_("evacuation route"))
-    importance = dict.fromkeys(one.importance for one, _element in topic.pairs if one.importance)
+    importance = dict.fromkeys(one.importance for one in pieces if one.importance)
     return [*labels, *(_(text) for text in importance)]
 
 

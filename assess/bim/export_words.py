@@ -1,12 +1,13 @@
 """What an export says of a piece and of an entry of the schedule, in the language in use and in the report's words."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from assess.bim.export_results import ExportEntry, ExportPiece, ExportRun, ExportWork
 from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.details import DETAILS, Detail
 from assess.i18n import fill, ngettext
 from assess.i18n import gettext as _
+from assess.intensity import SHAKINGS
 from assess.report import words
 from assess.report.findings.schedule_words import (
     NAMED,
@@ -17,13 +18,15 @@ from assess.report.findings.schedule_words import (
     shorten_names,
 )
 from assess.report.ranking import RouteStep, say_effect
-from assess.risk import classify
+from assess.risk import RiskClass, classify
 from assess.settings import SCENARIOS
 
 BASES = {"simulated": fill("simulated"), "formula": fill("formula"), "unconfirmed": fill("unconfirmed")}
 AS_FILLED = SCENARIOS[0]
 LONGEST = 60
 """Characters of a description that a title shows."""
+MOST_KINDS = 3
+"""Kinds of pieces that a title names; the rest are counted."""
 MOST_CHANCES = 20
 """Pieces of a topic whose chances its description lists; the Excel report holds all."""
 
@@ -32,23 +35,29 @@ MOST_CHANCES = 20
 
 
 def say_standing(run: PastRun, one: ExportPiece) -> str:
-    """Return the class of a piece in words; of one outside the classes of the run, on what it rests or depends."""
+    """Return the class of a piece in words, with what it could be; of one outside the classes, on what it rests."""
+    return _say_class(run, one, one.upper, is_short=True)
+
+
+def say_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
+    """Return the highest class of some pieces in words, with what any of them could be, and why it is no lower."""
+    highest = max(pieces, key=lambda one: one.past.risk)
+    return _say_class(run, highest, max(one.upper for one in pieces), is_short=False)
+
+
+def _say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
     past, word = one.past, words.risk_word(one.past.risk)
     if past.basis == UNCONFIRMED:
         word = _("unconfirmed (formula: {risk})", risk=word)
     elif past.basis != run.main_basis:
         word = _("{risk} by formula only", risk=word)
-    return _("depends on its anchor (free-standing: {risk})", risk=word) if past.is_held else word
-
-
-def say_risk(run: PastRun, one: ExportPiece) -> str:
-    """Return the class of a piece in words, with what it could be."""
-    notes = [say_standing(run, one)]
-    if classify(one.past.chance.probability) != one.past.risk:
+    notes = [word]
+    if not is_short and classify(past.chance.probability) != past.risk:
         notes.append(_("as it overturns under the record itself"))
-    if one.upper != one.past.risk:
-        notes.append(words.could_be(words.risk_word(one.upper)))
-    return ", ".join(notes)
+    if upper > past.risk:
+        notes.append(words.could_be(words.risk_word(upper)))
+    word = ", ".join(notes)
+    return _("depends on its anchor (free-standing: {risk})", risk=word) if past.is_held else word
 
 
 def say_chance(one: ExportPiece) -> str:
@@ -79,13 +88,20 @@ def say_scenario(run: PastRun) -> str:
     """Return the earthquake in words, and where the floor motion comes from."""
     building, settings = run.building, run.settings
     kind = str(settings.get("scenario") or building.get("scenario_kind") or "")
-    parts = [str(building.get("scenario") or ""), run.shaking, run.site_ground, "" if kind == AS_FILLED else kind]
+    kind = "" if kind == AS_FILLED else kind
+    parts = [str(building.get("scenario") or ""), _say_shaking(run), run.site_ground, kind]
     pga, scale = building.get("ground_pga_g"), settings.get("scale")
     if isinstance(pga, int | float):
         parts.append(_("ground PGA {pga} g", pga=words.in_g(pga)))
     if isinstance(scale, int | float) and scale != 1:
         parts.append(_("motions times {scale:g}", scale=scale))
     return "; ".join(dict.fromkeys(part for part in parts if part)) or _("floor motions of the workbook")
+
+
+def _say_shaking(run: PastRun) -> str:
+    """Return the assumed intensity, "" where none is assumed."""
+    choice = next((one.choice for one in SHAKINGS.values() if one.name == run.shaking), run.shaking)
+    return _("assumed: {intensity}", intensity=_(choice)) if choice else ""
 
 
 def say_report(run: PastRun) -> str:
@@ -109,7 +125,7 @@ def say_program(run: PastRun) -> str:
 def say_title(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
     """Return the title of the topic of an entry: class, pieces, and why they are to be fixed."""
     routes = list_routes(found, entry.items)
-    values = {"risk": say_risk(found.run, pieces[0]), "names": _name_with_kind(entry, pieces)}
+    values = {"risk": say_risk(found.run, pieces), "names": _name_with_kind(entry, pieces)}
     if routes:
         text = ngettext(
             "{risk}: {names} may overturn and block route {routes}",
@@ -128,8 +144,19 @@ def say_names(entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
 
 
 def _name_with_kind(entry: ExportEntry, pieces: Sequence[ExportPiece]) -> str:
-    names, kind = say_names(entry, pieces), words.cut(describe(pieces[0]), LONGEST)
+    names, kind = say_names(entry, pieces), name_kinds(map(describe, pieces))
     return names if kind == names else f"{names} ({kind})"
+
+
+def name_kinds(kinds: Iterable[str]) -> str:
+    """Return each of the kinds once: the first of them, and how many more there are."""
+    return words.name_first(list(dict.fromkeys(words.cut(one, LONGEST) for one in kinds)), MOST_KINDS, "; ")
+
+
+def _name(one: ExportPiece, pieces: Sequence[ExportPiece]) -> str:
+    """Return the name of a piece, with its kind where those of the others differ."""
+    kind, item = describe(one), one.past.item
+    return item if kind == item or all(describe(other) == kind for other in pieces) else f"{item} ({kind})"
 
 
 def _list_importance(pieces: Sequence[ExportPiece]) -> list[str]:
@@ -138,14 +165,14 @@ def _list_importance(pieces: Sequence[ExportPiece]) -> list[str]:
 
 def list_lines(found: ExportRun, entry: ExportEntry, pieces: Sequence[ExportPiece]) -> Iterator[str]:
     """Yield the lines of the description of a topic: where, how likely, why, how to fix it, with what force."""
-    first, run = pieces[0], found.run
+    run = found.run
     where = _("Floor {floor}, room {room}.", floor=entry.floor, room=entry.room or words.DASH)
     yield f"{_name_with_kind(entry, pieces)}: {words.plural(entry.pieces, 'piece')}. {where}"
-    yield _("Risk of overturning: {risk}.", risk=say_risk(run, first))
+    yield _("Risk of overturning: {risk}.", risk=say_risk(run, pieces))
     for one in pieces[:MOST_CHANCES]:
         pfa = one.past.inputs.get("pfa_g")
         peak = words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH
-        yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).", item=one.past.item,
+        yield _("{item}: chance of overturning {chance}; PFA {pfa} g ({source}).", item=_name(one, pieces),
                 chance=say_chance(one), pfa=peak, source=one.pfa_source or words.DASH)  # fmt: skip
     yield _("Earthquake: {scenario}. The chance is for this earthquake, not per year.",
             scenario=say_scenario(run))  # fmt: skip

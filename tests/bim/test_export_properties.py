@@ -1,5 +1,6 @@
 """Risk classes as property sets: read back by ifcopenshell from models of which every byte is still there."""
 
+import json
 import math
 import shutil
 from pathlib import Path
@@ -98,8 +99,32 @@ def test_the_upper_class_stands_there_where_it_differs(simulated, exported):
         adopted, found = row["adopted"], sets[row["source_id"]]
         upper = adopted["class_upper"] if adopted["class_upper"] != adopted["class"] else None
         assert found.get("ClassUpper") == upper
+        assert upper is None or f", could be {upper}" in found["RiskClass"]
         differs += upper is not None
     assert differs < len(sets)
+
+
+def test_a_class_by_which_programs_filter_tells_what_it_could_be(simulated, tmp_path):
+    """Twenty draws leave the class of one of the two open; as which one is chance, the file is edited."""
+    record = json.loads(simulated.read_text(encoding="utf-8"))
+    for row in record["items"]:
+        row["adopted"] |= {"class": "low", "class_upper": "medium", "probability": 0.0}
+    results = tmp_path / "results.json"
+    results.write_text(json.dumps(record), encoding="utf-8")
+    out = tmp_path / "out.ifc"
+    out.write_bytes(export(results, DUPLEX, with_topics=False).model)
+    sets = read_sets(out)
+    assert (sets[CUPBOARD_1]["RiskClass"], sets[CUPBOARD_1]["ClassUpper"]) == ("low, could be medium", "medium")
+    assert sets[HELD]["RiskClass"] == "depends on its anchor (free-standing: low, could be medium)"
+    assert sets[SOFA]["RiskClass"] == "unconfirmed (formula: low), could be medium"
+
+
+def test_an_assumed_shaking_is_called_assumed(tmp_path):
+    floors = [{"floor": "1", "elevation": 0.0}, {"floor": "2", "elevation": 3.1}]
+    results = write_results(tmp_path, CUPBOARDS, floors, building={"shaking": "MMI VIII, severe", "height": 6.2})
+    out = tmp_path / "out.ifc"
+    out.write_bytes(export(results, DUPLEX, with_topics=False).model)
+    assert read_sets(out)[CUPBOARD_1]["Scenario"] == "assumed: MMI VIII, severe"
 
 
 def test_texts_come_back_with_their_accents(exported):

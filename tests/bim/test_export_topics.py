@@ -141,7 +141,7 @@ def test_a_coordinator_reads_what_is_to_be_done(bcf):
     for words in (
         "Floor 2, room B202.",
         "Risk of overturning: very high",
-        "Armadio è 2: chance of overturning ",
+        "Armadio è 2 (Cupboard): chance of overturning ",
         ", simulated; PFA 1.200 g (given).",
         "Earthquake: Forte – 475 anni 🏢",
         "Why it comes here: life safety, route Scala: ",
@@ -169,6 +169,31 @@ def test_an_unconfirmed_piece_is_no_class_in_its_title(bcf):
     assert "unconfirmed" in topic.labels
     assert "may overturn" in topic.text("Title")
     assert "block" not in topic.text("Title")
+
+
+def test_titles_and_labels_have_the_upper_class_as_well(results, tmp_path):
+    record = json.loads(results.read_text(encoding="utf-8"))
+    for row in record["items"]:
+        row["adopted"] |= {"class": "medium", "class_upper": "high", "probability": 0.2}
+    changed = tmp_path / "results.json"
+    changed.write_text(json.dumps(record), encoding="utf-8")
+    for topic in Bcf(export(changed, DUPLEX, with_properties=False).topics.data).topics:
+        assert {"medium", "high"} <= set(topic.labels)
+        assert ", could be high: " in topic.text("Title")
+        assert topic.text("Priority") == "Major"
+
+
+def test_a_topic_of_unlike_pieces_has_the_highest_class_of_any(tmp_path):
+    """One is high; the other medium, but could be very high."""
+    results = write_pair(tmp_path)
+    record = json.loads(results.read_text(encoding="utf-8"))
+    for row, classes in zip(record["items"], (("medium", "very high"), ("high", "high")), strict=True):
+        row["adopted"] |= {"class": classes[0], "class_upper": classes[1], "probability": 0.5}
+    results.write_text(json.dumps(record), encoding="utf-8")
+    (topic,) = Bcf(export(results, DUPLEX, with_properties=False).topics.data).topics
+    assert topic.labels[:4] == ["earthquake", "high", "very high", "2"]
+    assert topic.text("Title").startswith("high, could be very high: ")
+    assert topic.text("Priority") == "Critical"
 
 
 def test_priorities_follow_the_upper_class():
@@ -229,18 +254,33 @@ def test_of_an_entry_that_is_partly_in_the_model_the_rest_is_named(tmp_path):
     assert topic.text("Title").startswith("very high: C1 (")
 
 
-def test_pieces_that_only_help_together_are_one_topic(tmp_path):
+def write_pair(folder: Path) -> Path:
     """Each cupboard blocks the way out by itself, and both surely fall: only fixing both opens it."""
     items = [CUPBOARDS[0] | {"description": "Armadio"}, CUPBOARDS[1] | {"description": "Libreria"}]
     floors = [{"floor": "2", "elevation": 3.1, "pfa_x": 2.5, "pfa_y": 2.5}]
-    results = write_results(tmp_path, items, floors, SIMULATED, places=PLACES, routes=ROUTES)
+    return write_results(folder, items, floors, SIMULATED, places=PLACES, routes=ROUTES)
+
+
+def test_pieces_that_only_help_together_are_one_topic(tmp_path):
+    results = write_pair(tmp_path)
     (entry,) = json.loads(results.read_text(encoding="utf-8"))["schedule"]["entries"]
     assert (entry["only_together"], len(entry["works"])) == (True, 2)
     (topic,) = Bcf(export(results, DUPLEX, with_properties=False).topics.data).topics
     assert set(topic.selected) == {*BOTH, DOOR_B202}
-    assert "Armadio è 1 and Armadio è 2 together" in topic.text("Title")
+    title, text = topic.text("Title"), topic.text("Description")
+    assert "Armadio è 1 and Armadio è 2 together" in title
+    assert {"(Armadio; Libreria)" in title, "(Libreria; Armadio)" in title} == {True, False}
+    assert "\nArmadio è 1 (Armadio): chance of overturning " in text
+    assert "\nArmadio è 2 (Libreria): chance of overturning " in text
     assert "fixing only some of them opens no route" in topic.text("Description")
-    assert topic.text("Description").count("How to fix:") == 2
+    assert text.count("How to fix:") == 2
+
+
+def test_of_many_kinds_the_first_are_named():
+    from assess.bim.export_words import MOST_KINDS, name_kinds
+
+    kinds = [f"Kind {at}" for at in range(MOST_KINDS + 2)]
+    assert name_kinds([*kinds, kinds[0]]) == "Kind 0; Kind 1; Kind 2 and 2 more"
 
 
 # ---------------------------------------------------------------- positions
