@@ -6,6 +6,7 @@ from pathlib import Path
 
 from assess.bim.building_model import BuildingModel
 from assess.bim.ifc_file import check_installed, check_model, is_model
+from assess.bim.import_record import keep_record
 from assess.bim.import_workbook import ImportedBuilding
 from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
@@ -49,11 +50,20 @@ def read_source(
     """
     if not path.exists():
         raise InputError(fill("{name} does not exist. Check the name and the folder.", name=name))
+    if path.is_dir():
+        raise InputError(fill("{name} is a folder. Name the file in it that is to be imported.", name=name))
     try:
         with path.open("rb") as file:
             start = file.read(_LOOKED_AT)
+        return keep_record(_read(path, name, start, progress, routes, also), path)
     except OSError as error:
         raise InputError(fill("{name} cannot be read: {why}.", name=name, why=error.strerror or str(error))) from None
+
+
+def _read(
+    path: Path, name: str, start: bytes, progress: Progress, routes: Drafts, also: Sequence[str]
+) -> ImportedBuilding:
+    """Read a file with the reader that its beginning asks for."""
     text = start.removeprefix(b"\xef\xbb\xbf").lstrip()
     if start.startswith(_ZIP):
         return _read_packed(path, name, progress, routes)

@@ -290,15 +290,16 @@ class _BuildingUpdate:
         if not model.get("plan"):
             return
         own = row.get("plan")
-        if own is None or self._is_imported(own, model):
+        if own is None or self._is_imported(own, {model["floor"], row.get("floor")}, model["plan"]):
             for name in PLAN:
                 sheet.replace(row, name, model.get(name))
         else:
             sheet.keep(row, "plan", model["plan"], fill("it is not a plan of the import"))
 
-    def _is_imported(self, plan: str, model: Mapping[str, Any]) -> bool:
-        """Tell whether a plan is one that an import writes, of this model or of one of an earlier name."""
-        written = {*self.imported.files, model["plan"], *(name_plan(one, model["floor"]) for one in self.sources)}
+    def _is_imported(self, plan: str, floors: Iterable[str], new: str) -> bool:
+        """Tell whether a plan is one that an import writes: of this model, or of one of its earlier names."""
+        sources = {self.imported.source, *self.sources}
+        written = {*self.imported.files, new, *(name_plan(one, floor) for one in sources for floor in floors)}
         return key(plan) in map(key, written)
 
     # ------------------------------------------------------------ pieces

@@ -65,10 +65,12 @@ def command(
 
     Furniture becomes rows with sizes, floor, room, position and the identifier of the file; rooms and doors become
     Places, and a plan of each storey is written beside the workbook. What is left out is listed by type with the
-    reason. The workbook lacks only how the floors shake: choose Shaking in Building, or fill in Floors. The exit status
-    is 1 where furniture was left out, or none was found.
+    reason, on the screen and in a file beside the workbook, which lacks only how the floors shake: choose Shaking in
+    Building, or fill in Floors. The exit status is 1 where furniture was left out, or none was found.
     """
     _check_names(source, out, replaces=force, updates=update)
+    from assess.bim.import_record import describe
+
     choices = {"routes": routes.value, "also": also or ()}
     with show_progress() as progress, progress.stage("reading", source.name):
         if update:
@@ -76,7 +78,7 @@ def command(
         else:
             made = _build(source, out, progress, choices, replaces=force)
     save_files({out: made.data, **made.plans})
-    for line in (*describe_import(made.found), *made.lines):
+    for line in (*describe(made.found), *made.lines):
         typer.echo(line)
     typer.echo(_describe_written(out, made.plans, is_new=not update), err=True)
     if not made.is_complete:
@@ -125,7 +127,8 @@ def _place_plans(out: Path, found: "ImportedBuilding") -> dict[Path, bytes]:
 
 
 def _describe_written(out: Path, plans: Mapping[Path, bytes], *, is_new: bool) -> str:
-    beside = f" and {count(len(plans), 'plan')} beside it" if plans else ""
+    drawn = sum(path.suffix == ".svg" for path in plans)
+    beside = f", {count(drawn, 'plan')} and this list beside it" if drawn else " and this list beside it"
     then = "Choose Shaking in Building or fill in Floors, then run" if is_new else "Now run"
     return f"wrote {out}{beside}. {then}: assess check {_quote(out)}"
 
@@ -166,21 +169,6 @@ def _check_plans(plans: Mapping[Path, bytes], *, replaces: bool) -> None:
         raise OutputError(
             f"{there} already exists: add --force to replace it, or write the workbook into another folder."
         )
-
-
-def describe_import(found: "ImportedBuilding") -> Iterator[str]:
-    """Yield what was taken, what was left out by reason and type, and what has to be checked."""
-    from assess.bim.import_workbook import MOST_NAMED, group_skipped, say_skipped
-
-    kinds = {row["type"] for row in found.items}
-    where = f"of {count(len(kinds), 'type')} on {count(len(found.floors), 'floor')}"
-    left = sum(one.count for one in found.skipped if one.is_furniture)
-    pieces = count(len(found.items) + left, "piece")
-    yield f"{found.source}: {f'{len(found.items):,} of ' if left else ''}{pieces} {where} taken."
-    if not found.items:
-        yield "No furniture was found: fill in Items by hand."
-    yield from (say_skipped(group, MOST_NAMED) for _, group in group_skipped(found.skipped))
-    yield from (f"Check: {text}" for text in (*found.warnings, *found.remarks))
 
 
 def describe_changes(updated: "Updated") -> Iterator[str]:

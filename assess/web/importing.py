@@ -115,7 +115,7 @@ def summarise(found: "ImportedBuilding") -> Taken:
         floors=len({row.get("floor") for row in found.items}),
         rooms=sum(row.get("kind") == "room" for row in found.places),
         routes=len({row.get("route") for row in found.routes}),
-        plans=len(found.files),
+        plans=sum(name.endswith(".svg") for name in found.files),
         skipped=[
             (reason, group[0].is_furniture, [(one.type, one.count) for one in group])
             for reason, group in group_skipped(found.skipped)

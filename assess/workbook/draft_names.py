@@ -10,7 +10,8 @@ from functools import cache
 from assess.errors import Problem
 from assess.i18n import LANGUAGES, fill, gettext, load_catalogue, nfill
 from assess.workbook.names import key
-from assess.workbook.parse import Row, Tables
+from assess.workbook.parse import Row, Table, Tables
+from assess.workbook.schema import DEFAULT_WIDTH
 from assess.workbook.values import shorten
 
 DRAFT = fill("(draft)")
@@ -64,3 +65,19 @@ def check_drafts(tables: Tables) -> Iterator[Problem]:
             mark=_find_mark(first.get("route")),
         )
         yield table.problem("route", first, message, fix, "warning")
+        yield from _check_widths(table)
+
+
+def _check_widths(table: Table) -> Iterator[Problem]:
+    """Warn of drafted segments that ask for less than the usual width: as much as their doors and passages have."""
+    own = [row for row in table.with_all("route", "required_width") if is_draft(row.get("route"))]
+    narrow = [row for row in own if row.get("required_width") < DEFAULT_WIDTH]
+    if narrow:
+        message = nfill(
+            "{n} drafted segment asks for less than {width:g} m: its Required width is that of its door.",
+            "{n} drafted segments ask for less than {width:g} m: their Required width is that of their doors.",
+            len(narrow), width=DEFAULT_WIDTH,
+        )  # fmt: skip
+        yield table.problem(
+            "required_width", narrow[0], message, fill("Fill in the width that must stay free."), "warning"
+        )

@@ -107,9 +107,9 @@ class PictureReader:
             if table.lacks(row, "plan"):
                 yield from _check_numbers_alone(table, row)
             elif row.get("plan") is not None:
-                yield from self._check_plan(table, row, tables["Items"])
+                yield from self._check_plan(table, row, tables)
 
-    def _check_plan(self, table: Table, row: Row, items: Table) -> Iterator[Problem]:
+    def _check_plan(self, table: Table, row: Row, tables: Tables) -> Iterator[Problem]:
         self.progress.check()
         found = self._draw(row.get("plan"), row.get("plan_width"))
         if isinstance(found, CellError):
@@ -128,7 +128,7 @@ class PictureReader:
             yield _describe_unplaced(table, row, drawing)
         else:
             self.plans[row.number] = plan
-            yield from _check_place(table, row, plan, items)
+            yield from _check_place(table, row, plan, tables["Items"], tables["Places"])
 
     def find_drawing(self, text: str, width: float | None) -> Drawing | None:
         """Return what is drawn of a plan, wherever it lies; None where its file cannot be used."""
@@ -241,8 +241,8 @@ def _check_numbers_alone(table: Table, row: Row) -> Iterator[Problem]:
 # ---------------------------------------------------------------- where a plan lies
 
 
-def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table) -> Iterator[Problem]:
-    """Warn of a plan that pieces of its floor lie outside of, or that is far larger than all of them together."""
+def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table, places: Table) -> Iterator[Problem]:
+    """Warn of a plan that pieces of its floor lie outside of, or that is far larger than all that is placed on it."""
     own = [one for one in items.with_all("floor", "x", "y") if one.get("floor") == row.get("floor")]
     if not own:
         return
@@ -256,7 +256,8 @@ def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table) -> Itera
         fix = fill("Check Plan left X, Plan bottom Y, Plan width and Plan turn, and the positions of these pieces.")
         yield table.problem("plan", row, message, fix, "warning")
         return
-    spread = max(max(one.get(side) for one in own) - min(one.get(side) for one in own) for side in ("x", "y"))
+    placed = [*own, *(one for one in places.with_all("floor", "x", "y") if one.get("floor") == row.get("floor"))]
+    spread = max(max(one.get(side) for one in placed) - min(one.get(side) for one in placed) for side in ("x", "y"))
     if spread >= LEAST_SPREAD and min(plan.width, plan.height) > FAR_LARGER * spread:
         message = fill(
             "the plan is {width:.4g} x {height:.4g} m, while the pieces on it lie within {spread:.3g} m.",

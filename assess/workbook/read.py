@@ -12,7 +12,7 @@ from assess.i18n import fill
 from assess.model import Cost, Inventory, Place, Segment
 from assess.motion.site_ground import GroundField
 from assess.progress import SILENT, Progress, Stage
-from assess.workbook import check, check_routes, draft_names
+from assess.workbook import check, check_routes, draft_names, source_ids
 from assess.workbook.check import Check
 from assess.workbook.ground_files import fill_building, replace_ground
 from assess.workbook.held import HeldSheets, hold_cells
@@ -318,6 +318,7 @@ def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
         check_routes.check_segment_rooms,
         check_routes.check_network,
         draft_names.check_drafts,
+        source_ids.check_source_ids,
         check.check_item_names,
         check_routes.check_next_to_routes,
         check_routes.check_positions,

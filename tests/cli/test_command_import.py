@@ -1,5 +1,6 @@
 """``assess import``: what users see of it, and what they find in the folder."""
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from tests.cli.calling import error, run
 from tests.workbooks import write
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
+DUPLEX = MODELS / "duplex.ifc"
 
 
 @pytest.fixture
@@ -28,7 +30,9 @@ def test_it_says_what_was_taken_and_what_was_left_out(cobie):
         "handover.xlsx: 2 pieces of 1 type on 2 floors taken.",
         "1 component left out (AssetType is Fixed): Door B (1).",
     ]
-    assert done.stderr.startswith(f"wrote {out}. Choose Shaking in Building or fill in Floors, then run: assess check")
+    assert done.stderr.startswith(
+        f"wrote {out} and this list beside it. Choose Shaking in Building or fill in Floors, then run: assess check"
+    )
 
 
 def test_the_workbook_lacks_the_shaking_alone(cobie):
@@ -56,7 +60,7 @@ def test_furniture_that_was_left_out_is_named_and_ends_with_1(tmp_path):
     done = run("import", path, "-o", tmp_path / "b.xlsx")
     assert done.exit_code == 1
     assert done.stdout.splitlines()[:2] == [
-        "h.xlsx: 1 of 3 pieces of 1 type on 2 floors taken.",
+        "h.xlsx: 1 of 3 pieces of 1 type on 1 floor taken.",
         "2 pieces left out (no NominalHeight): Bookcase A (2).",
     ]
     assert (tmp_path / "b.xlsx").exists()
@@ -164,12 +168,17 @@ def duplex(imported: Path, tmp_path: Path) -> Path:
 def test_a_model_gives_pieces_plans_and_the_list_of_what_was_left_out(imported):
     said = imported.with_suffix(".txt").read_text(encoding="utf-8")
     assert said.startswith(
-        "duplex.ifc: 47 of 61 pieces of 9 types on 3 floors taken.\n14 pieces left out (not on the floor"
+        "duplex.ifc: 47 of 61 pieces of 9 types on 2 floors taken.\n14 pieces left out (not on the floor"
     )
     assert "IfcFurnishingElement M_Upper Cabinet-Double Door-Wall 1000 mm (6)" in said
     assert "Check: Doors that lead out of the ground storey (a room on one side only): 4 of 14." in said
+    record = (imported.parent / "duplex-import.txt").read_text(encoding="utf-8")
+    assert record.splitlines()[0].endswith(
+        "from duplex.ifc, SHA-256 " + hashlib.sha256(DUPLEX.read_bytes()).hexdigest()
+    )
+    assert record.endswith(said)
     assert {one.name for one in imported.parent.iterdir()} == {
-        "duplex.xlsx", "duplex.txt", "duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg",
+        "duplex.xlsx", "duplex.txt", "duplex-import.txt", "duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg",
     }  # fmt: skip
 
 
@@ -278,7 +287,7 @@ def test_a_model_without_furniture_gives_storeys_and_rooms(tmp_path):
     assert done.stdout.splitlines()[:2] == [
         "a.ifc: 0 pieces of 0 types on 1 floor taken.", "No furniture was found: fill in Items by hand.",
     ]  # fmt: skip
-    assert {one.name for one in tmp_path.iterdir()} == {"a.ifc", "b.xlsx", "a-Level-1.svg"}
+    assert {one.name for one in tmp_path.iterdir()} == {"a.ifc", "b.xlsx", "a-Level-1.svg", "a-import.txt"}
     checked = run("check", tmp_path / "b.xlsx")
     assert (checked.exit_code, "is incomplete" in checked.stderr) == (1, True)
 

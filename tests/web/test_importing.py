@@ -54,7 +54,7 @@ def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
 
     book = server.client.post("/api/import/open", {"shaking": "MMI VIII, severe"}).json()
     assert (book["name"], book["mode"], book["missing"]) == ("duplex.xlsx", "disk", [])
-    assert sorted(one.name for one in server.folder.iterdir()) == [*PLANS, "duplex.xlsx"]
+    assert sorted(one.name for one in server.folder.iterdir()) == [*PLANS, "duplex-import.txt", "duplex.xlsx"]
     live = server.client.get("/api/live").json()
     assert (live["error"], len(live["items"]["class"]), "" in live["items"]["class"]) == ("", 47, False)
     assert len(assess.read_inventory(server.folder / "duplex.xlsx").items) == 47
