@@ -50,12 +50,13 @@ class ModelElement:
 
 @dataclass(frozen=True, slots=True)
 class ModelDoor:
-    """A door: two points of its opening in plan, and the height of its sill [m]."""
+    """A door: two points of its opening in plan, the height of its sill, and corners of the box around it [m]."""
 
     key: str
     name: str
     points: tuple[tuple[float, float], ...]
     bottom: float
+    box: Box | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,9 +187,11 @@ def _find_origin(one: Any, unit: float, along: float = 0.0) -> Place | None:
 
 def _list_doors(model: Any, unit: float) -> Iterator[ModelDoor]:
     """Yield the doors: a door's origin is at one of its jambs, its opening lies along X."""
-    for one in model.by_type("IfcDoor"):
+    doors = model.by_type("IfcDoor")
+    boxes = _find_boxes(model, doors, unit)
+    for one in doors:
         middle = float(one.OverallWidth or 0.0) * unit / 2
         places = [place for along in (0.0, middle) if (place := _find_origin(one, unit, along)) is not None]
         if places:
             points = tuple((x, y) for x, y, _ in places)
-            yield ModelDoor(str(one.GlobalId), str(one.Name or ""), points, places[0][2])
+            yield ModelDoor(str(one.GlobalId), str(one.Name or ""), points, places[0][2], boxes.get(one.id()))

@@ -15,18 +15,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
+from assess.bim.export_camera import FIELD_OF_VIEW, Camera, find_camera
 from assess.bim.export_model import ModelDoor, ModelElement, ModelPart, Place
 from assess.bim.export_results import ExportEntry, ExportRun
 from assess.bim.export_step import make_uuid
-from assess.bim.export_views import (
-    FIELD_OF_VIEW,
-    Camera,
-    Pair,
-    find_camera,
-    find_centre,
-    find_doors,
-    find_shift,
-)
+from assess.bim.export_views import Pair, find_centre, find_doors, find_shift
 from assess.bim.export_words import list_lines, list_routes, say_program, say_title
 from assess.compare.past_run import UNCONFIRMED, PastRun
 from assess.environment import find_source_date
@@ -98,7 +91,7 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
         own = [by_item[item] for item in entry.items if item in by_item]
         doors = find_doors(own, found.segments, part.doors, shift)
         with_door += bool(doors)
-        files |= _write_topic(name, part, found, Topic(entry, own, doors, find_camera(own, centre)))
+        files |= _write_topic(name, part, found, Topic(entry, own, doors, find_camera(own, doors, centre)))
     all_placed = sum(any(item in by_item for item in one.items) for one in found.entries)
     return Topics(
         _pack(files), len(entries), len(found.entries) - all_placed, all_placed - len(entries), with_door,

@@ -1,4 +1,4 @@
-"""Where the topics of an export look: from which point, at which elements, and at which door that a piece obstructs.
+"""Where the elements of an export are: how workbook and model are shifted, and which door a piece obstructs.
 
 Positions of the workbook are those of the model but for a shift of whole metres, which is found from the pieces that
 have both. Lengths are in metres, in the axes of the model.
@@ -7,9 +7,8 @@ have both. Lengths are in metres, in the axes of the model.
 import math
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
-from assess.bim.export_model import Box, ModelDoor, ModelElement, Place, find_middle
+from assess.bim.export_model import ModelDoor, ModelElement, Place, find_middle
 from assess.bim.export_results import ExportPiece, ExportSegment, Point
 
 AGREE = 0.5
@@ -18,28 +17,7 @@ NEAR_DOOR = 1.0
 """Distance from an end of a segment, or from its line, up to which a door belongs to it [m]."""
 SAME_STOREY = 2.0
 """Difference in height up to which a door is on the storey of a piece [m]."""
-DISTANCE, EYE = 3.0, 2.2
-"""Distance of the camera from a piece, and its height above the piece's base: under the usual ceilings [m]."""
-ROOM = 1.6
-"""Distance from which all is in sight of a screen that is broader than high, over that of a round one."""
-LARGEST = 5.0
-"""Half the extent of pieces that are looked at together; of others the first is looked at [m]."""
-STEEPEST = 1e-3
-"""Sine of the angle between the camera's direction and the vertical below which it looks straight down."""
-FROM_WALL = 0.3
-"""[m]"""
-FIELD_OF_VIEW = 60.0
-"""Horizontal [deg]; BCF 2.1 allows 45 to 60."""
 Pair = tuple[ExportPiece, ModelElement]
-
-
-@dataclass(frozen=True, slots=True)
-class Camera:
-    """A perspective camera: its point, the direction in which it looks, and what is up in it, both of length 1."""
-
-    point: Place
-    direction: Place
-    up: Place
 
 
 def find_shift(pairs: Sequence[Pair]) -> Point | None:
@@ -117,80 +95,7 @@ def _distance_to_line(point: Point, start: Point, end: Point) -> float:
     return math.dist(point, (x1 + along * (x2 - x1), y1 + along * (y2 - y1)))
 
 
-# ---------------------------------------------------------------- the camera
-
-
-def find_camera(pairs: Sequence[Pair], centre: Point) -> Camera | None:
-    """Return a camera that sees some pieces from the side to which the first may fall, from above and in its room.
-
-    Parameters
-    ----------
-    pairs : sequence of (ExportPiece, ModelElement)
-        The pieces with their elements, the most urgent first; those of its room are looked at.
-    centre : Point
-        From there a piece is seen whose back is not known, nor the room that it stands in.
-
-    Returns
-    -------
-    Camera, optional
-        None where no place is known.
-    """
-    piece, first = pairs[0]
-    boxes = [(one.low, one.high) for _, one in pairs if one.low is not None and one.high is not None
-             and one.room == first.room]  # fmt: skip
-    if not boxes:
-        return None
-    low, high = _join(boxes)
-    if math.dist(low, high) / 2 > LARGEST:
-        low, high = boxes[0]
-    target = find_middle((low, high))
-    middle = find_middle(first.room)[:2] if first.room else centre
-    distance = max(DISTANCE, ROOM * math.dist(low, high) / 2 / math.sin(math.radians(FIELD_OF_VIEW / 2)))
-    rise = max(EYE + low[2] - target[2], distance / 4)
-    flat = math.sqrt(max(distance**2 - rise**2, 1.0))
-    x, y = _find_side(piece, target[:2], middle)
-    point = (target[0] + flat * x, target[1] + flat * y, target[2] + rise)
-    return _look(point if first.room is None else _keep_inside(point, first.room), target)
-
-
-def _keep_inside(point: Place, room: Box) -> Place:
-    """Return the nearest point in a room that is `FROM_WALL` away from its walls and ceiling."""
-    low, high = room
-    x, y = (
-        max(low[at] + FROM_WALL, min(high[at] - FROM_WALL, point[at]))
-        if high[at] - low[at] > 2 * FROM_WALL
-        else (low[at] + high[at]) / 2
-        for at in (0, 1)
-    )
-    return x, y, max(low[2] + FROM_WALL, min(high[2] - FROM_WALL, point[2]))
-
-
-def _join(boxes: Sequence[Box]) -> Box:
-    """Return the box around boxes."""
-    x1, y1, z1 = (min(low[axis] for low, _ in boxes) for axis in range(3))
-    x2, y2, z2 = (max(high[axis] for _, high in boxes) for axis in range(3))
-    return (x1, y1, z1), (x2, y2, z2)
-
-
-def _find_side(piece: ExportPiece, middle: Point, centre: Point) -> Point:
-    """Return the direction in plan from a piece to the camera, of length 1."""
-    dx, dy = centre[0] - middle[0], centre[1] - middle[1]
-    if piece.faces is None:
-        length = math.hypot(dx, dy)
-        return (dx / length, dy / length) if length > AGREE else (-math.sqrt(0.5), -math.sqrt(0.5))
-    x, y = math.cos(math.radians(piece.faces)), math.sin(math.radians(piece.faces))
-    is_turned = not piece.falls_one_way and x * dx + y * dy < 0
-    return (-x, -y) if is_turned else (x, y)
-
-
-def _look(point: Place, target: Place) -> Camera:
-    """Return a camera at a point that looks at another one, upright."""
-    length = math.dist(point, target)
-    x, y, z = ((to - at) / length for to, at in zip(target, point, strict=True))
-    flat = math.hypot(x, y)
-    if flat < STEEPEST:
-        return Camera(point, (0.0, 0.0, -1.0 if z < 0 else 1.0), (0.0, 1.0, 0.0))
-    return Camera(point, (x, y, z), (-z * x / flat, -z * y / flat, flat))
+# ---------------------------------------------------------------- the middle
 
 
 def find_centre(elements: Mapping[str, ModelElement]) -> Point:

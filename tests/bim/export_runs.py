@@ -9,6 +9,7 @@ import assess
 from assess.bim.export_files import Export, build_export
 from assess.bim.export_results import read_export
 from assess.bim.import_workbook import ImportedBuilding, build_workbook
+from assess.bim.read_source import read_source
 from assess.progress import SILENT
 from assess.report.data import write_json
 from assess.settings import Settings
@@ -75,6 +76,18 @@ def write_results(
     book.write_bytes(build_workbook(imported))
     out = folder / "results.json"
     write_json(assess.run(assess.read_inventory(book), settings), out)
+    return out
+
+
+def import_results(folder: Path, model: Path) -> Path:
+    """Import a model with drafted routes, assess it by formula at 0.5 g, and return its results.json."""
+    imported = read_source(model, model.name, routes="draft")
+    for name, data in imported.files.items():
+        (folder / name).write_bytes(data)
+    book, out = folder / "building.xlsx", folder / "results.json"
+    book.write_bytes(build_workbook(imported))
+    inventory = assess.read_inventory(book, building={"ground_pga": 0.5, "height": 6.0})
+    write_json(assess.run(inventory, FORMULA), out)
     return out
 
 

@@ -11,13 +11,9 @@ import ifcopenshell
 import pytest
 from lxml import etree
 
-import assess
 from assess.bim import export_topics
 from assess.bim.export_topics import PRIORITIES, find_date
-from assess.bim.import_workbook import build_workbook
-from assess.bim.read_source import read_source
 from assess.i18n import load_catalogue, speaking
-from assess.report.data import write_json
 from assess.risk import RiskClass
 from tests.bim.export_runs import (
     BUILDING,
@@ -27,13 +23,14 @@ from tests.bim.export_runs import (
     DOOR_B202,
     DUPLEX,
     FLOORS,
-    FORMULA,
     PLACES,
     ROUTES,
     SIMULATED,
     SOFA,
     export,
+    import_results,
     piece,
+    read_rows,
     write_results,
 )
 
@@ -352,15 +349,9 @@ def test_without_a_date_of_the_report_the_topics_have_that_of_the_results(tmp_pa
 
 def test_a_whole_building_comes_back_to_its_model(tmp_path):
     """All pieces of an import are found again, and the topics of those on drafted routes select doors of the model."""
-    imported = read_source(DUPLEX, DUPLEX.name, routes="draft")
-    for name, data in imported.files.items():
-        (tmp_path / name).write_bytes(data)
-    book = tmp_path / "building.xlsx"
-    book.write_bytes(build_workbook(imported))
-    inventory = assess.read_inventory(book, building={"ground_pga": 0.5, "height": 6.0})
-    write_json(assess.run(inventory, FORMULA), tmp_path / "results.json")
-    found = export(tmp_path / "results.json", DUPLEX)
-    assert (found.is_complete, found.written) == (True, len(imported.items))
+    results = import_results(tmp_path, DUPLEX)
+    found = export(results, DUPLEX)
+    assert (found.is_complete, found.written) == (True, len(read_rows(results)))
     assert (found.topics.unplaced, found.topics.is_placed) == (0, True)
     model = ifcopenshell.open(str(DUPLEX))
     doors = {one.GlobalId for one in model.by_type("IfcDoor")}
