@@ -51,8 +51,7 @@ def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel
 def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
     """Return what a model holds; errors of Python where an entity is of another kind than its schema asks for."""
     unit = find_unit(model, name)
-    storeys = list_storeys(model, unit)
-    warnings: list[Text] = []
+    storeys, warnings = list_storeys(model, unit)
     if not storeys:
         storeys = [_stand_in(model, name)]
         warnings.append(

@@ -2,18 +2,22 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from assess.bim.building_model import Storey
 from assess.bim.ifc_elements import Element, tell_apart
 from assess.errors import ModelError
-from assess.i18n import fill
+from assess.i18n import Text, fill
 from assess.workbook.values import ERRORS, read_text
 
 _PLACEHOLDERS = ("enter address here", "//", "default", "<default>", "project number", "project name", "undefined")
 """What programs write where nobody has typed a name or an address."""
 LONGEST = 1000
 """Characters that are kept of a text."""
+SAME = 0.05
+"""Difference up to which two heights are the same [m]."""
+MOST_NAMED = 20
 _ARC = (1.0, 60.0, 3600.0, 3.6e9)
 """Parts of an IfcCompoundPlaneAngleMeasure in a degree: degrees, minutes, seconds, millionths of a second."""
 
@@ -93,18 +97,39 @@ def find_azimuth(model: Any) -> float | None:
     return None
 
 
-def list_storeys(model: Any, unit: float) -> list[Storey]:
-    """Return all storeys of a model, from the lowest."""
+def list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
+    """Return all storeys of a model, from the lowest, and warnings.
+
+    Elevation counts from the building's zero, the placement from that of the model: they differ by one height in all
+    storeys. Where they do not, Elevation was not kept up, and the placements tell the elevations.
+    """
     from ifcopenshell.util.placement import get_storey_elevation
 
-    found = []
-    storeys = model.by_type("IfcBuildingStorey")
+    storeys, found = model.by_type("IfcBuildingStorey"), []
     keys = tell_apart(storeys)
     for number, one in enumerate(storeys, 1):
-        placed = get_storey_elevation(one) if one.ObjectPlacement is not None else one.Elevation or 0.0
-        level = float(placed) * unit
-        elevation = level if one.Elevation is None else float(one.Elevation) * unit
+        own = None if one.Elevation is None else float(one.Elevation) * unit
+        level = float(get_storey_elevation(one)) * unit if one.ObjectPlacement is not None else own or 0.0
         name = say(one.Name) or say(one.LongName) or str(number)
-        if math.isfinite(level) and math.isfinite(elevation):
-            found.append(Storey(keys[one.id()], name, elevation, level))
-    return sorted(found, key=lambda one: (one.level, one.name))
+        if math.isfinite(level) and (own is None or math.isfinite(own)):
+            found.append((Storey(keys[one.id()], name, level, level), own))
+    if len({round(storey.level, 2) for storey, _ in found}) == 1:  # none is placed: what is in them is
+        found = [(replace(storey, level=storey.level if own is None else own), own) for storey, own in found]
+    found.sort(key=lambda pair: (pair[0].level, pair[0].name))
+    return _count_from_zero(found)
+
+
+def _count_from_zero(found: Sequence[tuple[Storey, float | None]]) -> tuple[list[Storey], list[Text]]:
+    """Return storeys with their elevations, of which each may state its own [m], and warnings."""
+    datum = next((own - storey.level for storey, own in found if own is not None), 0.0)
+    kept = [replace(storey, elevation=storey.level + datum) for storey, _ in found]
+    odd = [
+        storey.name
+        for storey, (_, own) in zip(kept, found, strict=True)
+        if own is not None and abs(own - storey.elevation) > SAME
+    ]
+    if not odd:
+        return kept, []
+    text = fill("Elevation in the model differs from where these storeys are placed, which was taken: {names}. Check "
+                "Elevation in Floors.", names=", ".join(odd[:MOST_NAMED]))  # fmt: skip
+    return kept, [text]

@@ -4,7 +4,7 @@ The workbook is that of `assess new`, filled in. Motions of the floors are not k
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -119,7 +119,10 @@ def list_rows(imported: ImportedBuilding) -> dict[str, Rows]:
         "Routes": imported.routes,
         "Catalogue": _join_types(imported.types),
     }
-    return {name: [_cut_texts(row) for row in sheet] for name, sheet in rows.items()}
+    return {
+        name: [_cut_texts(row, _LONG | {"room"} if name == "Routes" else _LONG) for row in sheet]
+        for name, sheet in rows.items()
+    }
 
 
 def _join_types(types: Rows) -> list[Mapping[str, Any]]:
@@ -128,10 +131,13 @@ def _join_types(types: Rows) -> list[Mapping[str, Any]]:
     return [*types, *(row for row in read_catalogue() if key(row["type"]) not in own)]
 
 
-def _cut_texts(row: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a row with its names cut to `LONGEST_NAME`, and other texts to what a spreadsheet takes in a cell."""
+def _cut_texts(row: Mapping[str, Any], long: Collection[str]) -> dict[str, Any]:
+    """Return a row with its names cut to `LONGEST_NAME`, and `long` texts to what a spreadsheet takes in a cell.
+
+    The Room of a segment lists the names of rooms.
+    """
     return {
-        name: clean(value)[0][: LONGEST_CELL if name in _LONG else LONGEST_NAME] if isinstance(value, str) else value
+        name: clean(value)[0][: LONGEST_CELL if name in long else LONGEST_NAME] if isinstance(value, str) else value
         for name, value in row.items()
     }
 

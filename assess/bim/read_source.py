@@ -1,7 +1,7 @@
 """Files that an inventory is imported from: which reader takes one is told by its content, not by its name."""
 
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from assess.bim.building_model import BuildingModel
@@ -11,9 +11,11 @@ from assess.bim.import_workbook import ImportedBuilding
 from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
 from assess.errors import InputError, ModelError
-from assess.i18n import fill
+from assess.i18n import fill, load_catalogue, speaking, spoken
 from assess.progress import SILENT, Progress
 
+Reader = Callable[[Path, str, Sequence[str]], BuildingModel]
+"""Reads a file, by its path, its name and further classes of furniture."""
 KINDS = (".ifc", ".json", ".sh3d", ".xlsx", ".xlsm")
 """Ends of names of files that are imported."""
 HOME, OLD_HOME = "Home.xml", "Home"
@@ -68,32 +70,38 @@ def _read(
     if start.startswith(_ZIP):
         return _read_packed(path, name, progress, routes)
     if text.startswith(_BRACES):
-        return list_building(run_apart(name, progress, read_scan, path.resolve(), name), routes)
+        return _build_apart(read_scan, path, name, progress, routes)
     if not is_model(start) and path.suffix.lower() not in (".ifc", ""):
         raise ModelError(
             fill("{name} is of a kind that is not imported: name an IFC model (.ifc), a RoomPlan scan (.json), a Sweet "
                  "Home 3D file (.sh3d) or a COBie spreadsheet (.xlsx).", name=name)
         )  # fmt: skip
-    return list_building(read_ifc(path, name, progress, also), routes)
-
-
-def read_ifc(path: Path, name: str, progress: Progress = SILENT, also: Sequence[str] = ()) -> BuildingModel:
-    """Read a building model in IFC, in a process of its own with limits of time and memory.
-
-    Raises
-    ------
-    ModelError
-        As `assess.bim.ifc_model.read_model`; if the library that reads such models is not installed, crashes or reaches
-        a limit.
-    """
-    from assess.bim.ifc_model import read_model
-
     check_model(path, name)
     check_installed()
-    return run_apart(name, progress, read_model, path.resolve(), name, tuple(also))
+    return _build_apart(read_ifc, path, name, progress, routes, also)
 
 
-def read_scan(path: Path, name: str) -> BuildingModel:
+def _build_apart(
+    read: Reader, path: Path, name: str, progress: Progress, routes: Drafts, also: Sequence[str] = ()
+) -> ImportedBuilding:
+    """Read a file and make rows, plans and routes of it in a process with limits, in the language in use."""
+    return run_apart(name, progress, build, read, path.resolve(), name, routes, tuple(also), spoken().code)
+
+
+def build(read: Reader, path: Path, name: str, routes: Drafts, also: Sequence[str], language: str) -> ImportedBuilding:
+    """Return what a reader finds in a file as rows, in a language by its code."""
+    with speaking(load_catalogue(language)):
+        return list_building(read(path, name, also), routes)
+
+
+def read_ifc(path: Path, name: str, also: Sequence[str]) -> BuildingModel:
+    """Read a building model in IFC; errors as of `assess.bim.ifc_model.read_model`."""
+    from assess.bim.ifc_model import read_model
+
+    return read_model(path, name, also)
+
+
+def read_scan(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a RoomPlan scan; errors as of `assess.bim.roomplan.read_roomplan`."""
     from assess.bim.roomplan import read_roomplan
     from assess.bim.scan_values import MOST_BYTES
@@ -101,7 +109,7 @@ def read_scan(path: Path, name: str) -> BuildingModel:
     return read_roomplan(_read_bytes(path, MOST_BYTES), name)
 
 
-def read_home(path: Path, name: str) -> BuildingModel:
+def read_home(path: Path, name: str, _also: Sequence[str]) -> BuildingModel:
     """Read a home of Sweet Home 3D; errors as of `assess.bim.sweet_home.read_sweet_home`."""
     from assess.bim.sweet_home import MOST_BYTES, read_sweet_home
 
@@ -120,7 +128,7 @@ def _read_packed(path: Path, name: str, progress: Progress, routes: Drafts) -> I
     if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
         check_model(path, name)
     if HOME in parts or OLD_HOME in parts:
-        return list_building(run_apart(name, progress, read_home, path.resolve(), name), routes)
+        return _build_apart(read_home, path, name, progress, routes)
     from assess.bim.cobie import read_cobie
 
     if routes != "none":

@@ -296,6 +296,28 @@ def test_a_storey_without_elevation_lies_where_it_is_placed(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("storeys", "elevations", "warned"),
+    [
+        ([("a", 0.0, 0.0), ("b", 3.0, 3.0), ("c", 6.0, 6.0)], [0, 3, 6], False),
+        ([("a", 0.0, 100.0), ("b", 3.0, 103.0), ("c", None, 106.0)], [0, 3, 6], False),
+        ([("a", 0.0, 0.0), ("b", 0.0, 3.0), ("c", 0.0, 6.0)], [0, 3, 6], True),
+        ([("a", 0.0, 0.0), ("b", 3.0, 0.0), ("c", 6.0, 0.0)], [0, 3, 6], False),
+        ([("a", None, -3.0), ("b", None, 0.0)], [-3, 0], False),
+    ],
+)
+def test_elevations_and_placements_of_storeys_agree_or_are_warned_of(tmp_path, storeys, elevations, warned):
+    model = ModelWriter()
+    for name, elevation, z in storeys:
+        model.storey(name, elevation, z)
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert [(one.name, one.elevation) for one in found.storeys] == [
+        (name, pytest.approx(one)) for (name, _, _), one in zip(storeys, elevations, strict=True)
+    ]
+    told = "Elevation in the model differs from where these storeys are placed, which was taken: b, c."
+    assert any(told in text for text in found.warnings) == warned
+
+
+@pytest.mark.parametrize(
     ("make", "message"),
     [
         (lambda model: None, "holds neither storeys nor rooms, furniture or walls with a shape"),

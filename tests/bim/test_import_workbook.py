@@ -81,3 +81,11 @@ def test_remarks_for_many_buildings_put_left_out_furniture_first() -> None:
 def test_of_many_types_the_first_are_named_and_the_rest_counted() -> None:
     group = [Skipped(f"T{at}", 1, fill("Fixed"), is_furniture=False) for at in range(7)]
     assert say_skipped(group, 2) == "7 components left out (Fixed): T0 (1), T1 (1) and 5 more types."
+
+
+def test_the_rooms_of_a_segment_are_not_cut():
+    from assess.bim.import_workbook import ImportedBuilding, list_rows
+
+    rooms = "; ".join(f"{number} Waiting area and reception" for number in range(30))
+    rows = list_rows(ImportedBuilding(source="a", routes=[{"route": "A", "segment": "1", "room": rooms}]))
+    assert rows["Routes"][0]["room"] == rooms

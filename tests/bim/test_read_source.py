@@ -10,6 +10,7 @@ import pytest
 
 from assess.bim.read_source import read_source
 from assess.errors import AssessError, InputError, ModelError
+from assess.i18n import load_catalogue, speaking
 from tests.bim.cobie_files import write_cobie
 from tests.bim.ifc_files import one_room
 
@@ -106,6 +107,14 @@ def test_more_pieces_than_are_read_are_refused(tmp_path):
     path.write_bytes(LARGE[:at] + b"".join(one % (10**6 + n, n) for n in range(20_000)) + LARGE[at:])
     with pytest.raises(ModelError, match=r"holds 20,014 pieces of furniture, more than 20,000\. Export"):
         read_source(path, "a.ifc")
+
+
+def test_rows_are_in_the_language_in_use(tmp_path):
+    model, storey, _ = one_room()
+    model.element("IfcDoor", "D", (0, 0, 0, 0.9, 0.2, 2), within=storey, at=(3, -0.1, 0), OverallWidth=0.9)
+    with speaking(load_catalogue("it")):
+        found = read_source(model.write(tmp_path / "a.ifc"), "a.ifc")
+    assert {row["place"] for row in found.places} == {"101 Office", "Uscita 101"}
 
 
 def test_without_the_library_one_line_tells_how_to_install_it(tmp_path):
