@@ -46,6 +46,7 @@ INPUTS: Mapping[str, tuple[Text, str]] = {
     "breadth_cm": (fill("Breadth"), "cm"),
     "width_cm": (fill("Width"), "cm"),
     "height_cm": (fill("Height"), "cm"),
+    "sizes_from": (fill("Sizes from"), ""),
     "centre_of_gravity": (fill("Centre of gravity"), ""),
     "weight_kg": (fill("Weight"), "kg"),
     "friction": (fill("Friction"), ""),

@@ -14,6 +14,7 @@ from typing import Any, Never, TypeVar
 from assess.compare import past_run as past
 from assess.errors import InputError
 from assess.i18n import Text, fill
+from assess.model import MEASURED
 from assess.plain_text import plain_line
 from assess.report.results_schema import VERSION
 from assess.results import BASES
@@ -33,6 +34,7 @@ INPUTS = (
     "breadth_cm",
     "width_cm",
     "height_cm",
+    "sizes_from",
     "centre_of_gravity",
     "weight_kg",
     "friction",
@@ -429,6 +431,7 @@ def _read_inputs(row: Mapping[str, Any]) -> dict[str, Any]:
     found = {**row, **{name: bracket.get(name) for name in ("bracket_height_cm", "bracket_capacity_kn")}}
     if bracket.get("is_height_assumed") is True:
         found["bracket_height_cm"] = None
+    found["sizes_from"] = found.get("sizes_from") or MEASURED  # results before 5.2 do not tell it
     return {name: _plain(found.get(name)) for name in INPUTS}
 
 

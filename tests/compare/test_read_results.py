@@ -145,3 +145,12 @@ def test_a_shakemap_is_read_with_its_value_and_hash_and_may_be_absent(source, tm
     damaged = change(source, tmp_path / "c", lambda record: record["assess"].update(site_ground=site | {"pga_g": "x"}))
     with pytest.raises(InputError, match=r"assess\.site_ground"):
         read_run(damaged)
+
+
+def test_where_sizes_come_from_is_an_input_and_measured_where_a_file_does_not_tell(source, tmp_path):
+    def edit(record):
+        record["items"][0]["sizes_from"] = "scan"
+        del record["items"][1]["sizes_from"]
+
+    first, second, *_ = read_run(change(source, tmp_path, edit)).pieces
+    assert (first.inputs["sizes_from"], second.inputs["sizes_from"]) == ("scan", "measured")
