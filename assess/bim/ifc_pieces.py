@@ -114,7 +114,7 @@ def _check_classes(model: Any, classes: Sequence[str]) -> None:
             entity = None
         if entity is None:
             raise ModelError(
-                fill("{name} is no class of {schema}. Classes have names such as {example}.", name=name[:60],
+                fill("{name} is not a class of {schema}. Classes have names such as {example}.", name=name[:60],
                      schema=model.schema_identifier, example="IfcBuildingElementProxy")
             )  # fmt: skip
 

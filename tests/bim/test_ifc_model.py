@@ -86,7 +86,9 @@ def test_large_building_proxies_are_named_as_left_out(large):
 def test_proxies_are_taken_by_name():
     found = read_model(MODELS / "LargeBuilding.ifc", "a.ifc", ("IfcBuildingElementProxy",))
     assert sum(one.ifc_class == "IfcBuildingElementProxy" for one in found.pieces) > 0
-    with pytest.raises(ModelError, match=r"IfcTable2 is no class of IFC2X3\. Classes have names such as IfcBuilding"):
+    with pytest.raises(
+        ModelError, match=r"IfcTable2 is not a class of IFC2X3\. Classes have names such as IfcBuilding"
+    ):
         read_model(MODELS / "LargeBuilding.ifc", "a.ifc", ("IfcTable2",))
 
 
@@ -321,7 +323,7 @@ def test_elevations_and_placements_of_storeys_agree_or_are_warned_of(tmp_path, s
     ("make", "message"),
     [
         (lambda model: None, "holds neither storeys nor rooms, furniture or walls with a shape"),
-        (lambda model: setattr(model.file.by_type("IfcProject")[0], "UnitsInContext", None), "names no unit of length"),
+        (lambda model: setattr(model.file.by_type("IfcProject")[0], "UnitsInContext", None), "has no unit of length"),
     ],
 )
 def test_what_cannot_be_used_at_all(tmp_path, make, message):

@@ -54,7 +54,7 @@ def test_a_cobie_file_is_known_whatever_its_name(tmp_path):
         (zipped(a__ifc=LARGE), "it is packed as a zip file. Unpack it and import the .ifc file in it."),
         (b"PK\x03\x04" + bytes(200), "a.ifc is damaged: it cannot be unpacked."),
         (LARGE.replace(b"'IFC2X3'", b"'IFC1X9'", 1), "its schema is IFC1X9, expected one of: IFC2X3, IFC4, IFC4X3."),
-        (LARGE.replace(b"LENGTHUNIT", b"AREAUNIT"), "a.ifc names no unit of length"),
+        (LARGE.replace(b"LENGTHUNIT", b"AREAUNIT"), "a.ifc has no unit of length"),
         (b"ISO-10303-21;\nHEADER;\nENDSEC;\nEND-ISO-10303-21;\n", "its schema is -, expected one of"),
         (NO_ENTITIES, "a.ifc is damaged: "),
     ],

@@ -255,8 +255,9 @@ def test_an_update_without_changes_leaves_every_byte(duplex):
     ("arguments", "message"),
     [
         (("--update", "--force"), "--update keeps what is in the workbook, --force replaces it: give one of them."),
+        (("--update", "--routes", "draft"), "routes are drafted into a new workbook only: leave out one of the two."),
         (("--update",), "b.xlsx does not exist: name the workbook of an earlier import, or leave it out."),
-        (("--also", "IfcTable2"), "IfcTable2 is no class of IFC2X3."),
+        (("--also", "IfcTable2"), "IfcTable2 is not a class of IFC2X3."),
         (("--routes", "some"), "'some' is not one of 'none', 'draft'"),
     ],
 )
