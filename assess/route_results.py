@@ -80,6 +80,7 @@ MISSING: Mapping[str, str] = {
     "ends": "From and To of a segment, or its Floor (Routes)",
     "places": "X and Y of places (Places)",
     "positions": "X and Y, or Route, of pieces that may reach it (Items)",
+    "furniture": "the furniture of the building (Items)",
     "beyond_stairs": "segments from stairs to an exit (Routes)",
     "unconfirmed_period": "Period T1 or Height (Building)",
     "unconfirmed_motions": "motions of your own that reach the PFA and PFV of the floor",
@@ -504,6 +505,9 @@ class RouteTables:
         Sum over the floors.
     unjoined_rooms : tuple of str
         Rooms that no segment joins to an exit or a stair: nothing is known of their way to the street.
+    furnished_rooms, counted_rooms : int
+        Rooms and corridors of the workbook in which furniture is listed, and all of them: ways through the others count
+        as free of furniture.
     """
 
     risk: float
@@ -514,6 +518,8 @@ class RouteTables:
     draws: int = 0
     uncounted_pieces: int = 0
     unjoined_rooms: tuple[str, ...] = ()
+    furnished_rooms: int = 0
+    counted_rooms: int = 0
     segments: tuple[SegmentRow, ...] = ()
     routes: tuple[RouteRow, ...] = ()
     rooms: tuple[RoomRow, ...] = ()

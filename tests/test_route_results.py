@@ -250,7 +250,7 @@ def test_without_routes_lists_are_empty(tmp_path):
     run = assessed(tmp_path / "w.xlsx")
     assert RouteTables(risk=0.03).to_record() == {
         "risk": 0.03, "blocked_routes_expected": 0.0, "cut_off_rooms_expected": 0.0, "unknown_routes": 0,
-        "unknown_rooms": 0, "draws": 0, "unjoined_rooms": [],
+        "unknown_rooms": 0, "draws": 0, "unjoined_rooms": [], "furnished_rooms": 0, "counted_rooms": 0,
         "uncounted_pieces": 0, "segments": [], "routes": [], "rooms": [], "floors": [],
     }  # fmt: skip
     write_json(run, tmp_path / "r.json")

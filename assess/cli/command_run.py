@@ -318,6 +318,7 @@ def _describe_routes(routes: "RouteTables") -> str:
         count_routes,
         say_expected,
         say_not_counted,
+        say_reservations,
         say_to_fill_in,
     )
     from assess.report.findings.route_words import is_held
@@ -326,6 +327,7 @@ def _describe_routes(routes: "RouteTables") -> str:
     texts = [
         count_routes(routes),
         *count_rooms(routes),
+        *say_reservations(routes),
         say_expected(routes),
         *say_not_counted(routes),
         *([f"If anchors fail, {held:,} would be worse."] if held else []),

@@ -21,6 +21,7 @@ from assess.route_results import (
     SegmentRow,
 )
 from assess.routes.chances import DRAWS, Falls
+from assess.routes.furnished import list_rooms_to_furnish, list_unfurnished
 from assess.routes.network import build_course, find_ends
 from assess.routes.obstructions import Obstructions
 from assess.routes.rooms import (
@@ -90,7 +91,9 @@ def evaluate_routes(
         routes = tuple(step(_route(scene, name, segments)) for name in names)
         rooms = tuple(step(evaluate_room(scene, place, part, segments)) for place, part in parts)
         by_floor = [step(evaluate_floor(scene, floor, parts, segments, rooms)) for floor in floors]
-    return _join(settings.route_risk, segments, routes, rooms, by_floor, list_unjoined(scene, parts))
+    found = _join(settings.route_risk, segments, routes, rooms, by_floor, list_unjoined(scene, parts))
+    counted = len(list_rooms_to_furnish(inventory))
+    return replace(found, furnished_rooms=counted - len(list_unfurnished(inventory)), counted_rooms=counted)
 
 
 def _join(

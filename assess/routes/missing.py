@@ -41,15 +41,19 @@ def find_missing(one: Obstructions, inventory: Inventory, left_out: Collection[i
     if unplaced:
         cells = tuple(_cell(inventory, "Items", item.row, "x") for item in unplaced)
         found.append(MissingRow(what="positions", names=tuple(item.item for item in unplaced), cells=cells))
+    if not inventory.items:
+        found.append(MissingRow(what="furniture", cells=(_cell(inventory, "Items", 2, "item"),)))
     return tuple(found)
 
 
 def is_unknown(one: Obstructions, inventory: Inventory) -> bool:
     """Tell whether nothing is known of a segment, whatever furniture falls: its width, its floor or its furniture."""
-    if one.is_blocked_standing or one.band is not None:
+    if one.is_blocked_standing:
         return False
     if one.is_stair:
         return one.segment.clear_width is None
+    if not inventory.items or one.band is not None:
+        return not inventory.items
     is_listed = one.is_evaluated or any(item.floor == one.segment.floor for item in inventory.items)
     return not one.segment.floor or not is_listed
 

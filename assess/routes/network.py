@@ -137,10 +137,17 @@ def _find_route_parts(
 ) -> Iterator[Part]:
     """Yield the parts of a route as `find_parts` does; the top of a flight of its own is no way out, its end is."""
     for part in find_parts(graph, kinds):
-        own = [segments[at] for at in part.segments]
-        left = part.targets - {one.start for one in own if not one.floor and one.end in part.targets}
+        left = part.targets - _find_tops([segments[at] for at in part.segments], part.targets)
         is_shorter = part.by_stairs and left and left != part.targets
         yield Part(_outward(graph.subgraph(_list_places(part)), left), left, by_stairs=True) if is_shorter else part
+
+
+def _find_tops(segments: Sequence[Segment], stairs: Collection[str]) -> set[str]:
+    """Return the stairs from which a flight of a route goes on, and those from which a segment leads to them."""
+    found = {one.start for one in segments if not one.floor and one.end in stairs and one.start != one.end}
+    while more := {one.start for one in segments if one.end in found and one.start in stairs} - found:
+        found |= more
+    return found
 
 
 def _list_places(part: Part) -> set[str]:

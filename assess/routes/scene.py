@@ -104,8 +104,9 @@ class Scene:
 
     def is_evaluated(self, segment: int) -> bool:
         """Tell whether it is known which pieces can reach a segment, or those left out hardly fall, all together."""
-        if self.obstructions[segment].is_evaluated:
-            return True
+        one = self.obstructions[segment]
+        if one.is_evaluated:
+            return bool(self.inventory.items) or one.is_stair or one.is_blocked_standing
         return not self.is_unknown(segment) and self.any_left_out_falls([segment])[1] < self.risk
 
     def piece(self, item: int) -> PieceRef:

@@ -19,8 +19,8 @@ def test_a_segment_that_neither_plan_nor_piece_tells_of_is_not_evaluated():
     assert [(one.evaluated, one.unevaluated_segments) for one in found.routes] == [(True, ("b",)), (False, ("flight",))]
 
 
-def test_a_plan_without_pieces_is_evaluated():
-    found = evaluated(make_falls([]), [], [corridor()], CORRIDOR)
+def test_a_plan_that_no_piece_reaches_is_evaluated():
+    found = evaluated(make_falls([0.5]), [piece(1.0, x=50.0, y=50.0)], [corridor()], CORRIDOR)
     assert found.segments[0].evaluated
     assert found.rooms[0].unevaluated_segments == ()
 

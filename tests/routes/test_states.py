@@ -211,6 +211,9 @@ def test_a_route_needs_the_flight_that_it_includes(width, chance, state):
     found = evaluated(make_falls([chance]), [BESIDE_CORRIDOR], ways, [OFFICE, *STAIR_ENDS]).routes[0]
     assert (found.state, found.from_places, found.to_places) == (state, ("Office",), ("Down",))
     assert found.unevaluated_segments == (("flight",) if width is None else ())
+    space = [place("Stairwell", "stair", (1, 0), floor="2"), stretch("well", "Stairwell", "Up", floor="2")]
+    again = evaluated(make_falls([chance]), [BESIDE_CORRIDOR], [*ways, space[1]], [OFFICE, *STAIR_ENDS, space[0]])
+    assert (again.routes[0].state, again.routes[0].to_places) == (state, ("Down",)), "nor does its space count"
 
 
 def test_two_stairs_of_one_floor_that_a_corridor_joins_are_both_ways_out():
@@ -248,8 +251,8 @@ def test_a_room_goes_by_its_way_to_the_street_stairs_included():
     (room,) = found.rooms
     assert [one.state for one in found.routes] == [OPEN, OPEN, DOUBTFUL]
     assert (room.state, room.decisive_segment, [fix.item for fix in room.fixes]) == (DOUBTFUL, 2, ["P0"])
-    narrow = evaluated(make_falls([]), [], [WAY[0], stretch("flight", "Up", "Down", **FLIGHT, clear_width=None),
-                                            WAY[2]], [UP, *STAIR_ENDS, STREET])  # fmt: skip
+    blank = stretch("flight", "Up", "Down", **FLIGHT, clear_width=None)
+    narrow = evaluated(make_falls([0.0]), [BESIDE_HALL], [WAY[0], blank, WAY[2]], [UP, *STAIR_ENDS, STREET])
     assert (narrow.rooms[0].state, [row.what for row in narrow.rooms[0].missing]) == (NOT_KNOWN, ["clear_width"])
     assert (narrow.unknown_rooms, narrow.cut_off_rooms_expected) == (1, 0)
 

@@ -11,6 +11,7 @@ from assess.report.findings.route_rows import (
     count_routes,
     say_expected,
     say_not_counted,
+    say_reservations,
     say_to_fill_in,
     say_uncounted,
 )
@@ -118,6 +119,7 @@ def say_routes(results: Results) -> list[str]:
     return [
         count_routes(routes),
         *count_rooms(routes),
+        *say_reservations(routes),
         say_expected(routes),
         *say_not_counted(routes),
         *say_to_fill_in(routes),

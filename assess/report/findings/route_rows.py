@@ -18,6 +18,7 @@ from assess.route_results import (
     SegmentRow,
     join_missing,
 )
+from assess.workbook.draft_names import is_draft
 
 Row = TypeVar("Row")
 MOST_ROOMS = 3
@@ -36,10 +37,34 @@ def describe_routes(routes: RouteTables) -> list[str]:
     return [
         count_routes(routes),
         *count_rooms(routes),
+        *say_reservations(routes),
         say_expected(routes),
         *say_not_counted(routes),
         _("These are chances in this scenario, not per year."),
     ]
+
+
+def say_reservations(routes: RouteTables) -> list[str]:
+    """Return that routes are drafts, and that rooms have no furniture listed: states may rest on less than is there."""
+    return [*_say_drafts(routes), *_say_furnished(routes)]
+
+
+def _say_drafts(routes: RouteTables) -> list[str]:
+    drafts = sum(is_draft(one.route) for one in routes.routes)
+    if not drafts:
+        return []
+    return [ngettext("{n:,} of {all:,} routes is a draft from a building model that nobody has walked yet.",
+                     "{n:,} of {all:,} routes are drafts from a building model that nobody has walked yet.",
+                     drafts, all=len(routes.routes))]  # fmt: skip
+
+
+def _say_furnished(routes: RouteTables) -> list[str]:
+    if any(row.what == "furniture" for one in routes.segments for row in one.missing):
+        return [_("No furniture is listed, so whether ways through rooms stay open is not known.")]
+    if routes.furnished_rooms == routes.counted_rooms:
+        return []
+    return [_("Furniture is listed in {listed:,} of {count:,} rooms and corridors. Ways through the others count as "
+              "free of furniture.", listed=routes.furnished_rooms, count=routes.counted_rooms)]  # fmt: skip
 
 
 def say_expected(routes: RouteTables) -> str:

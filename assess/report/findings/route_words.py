@@ -324,6 +324,7 @@ def _say_one_missing(one: MissingRow) -> str:
         "ends": _("fill in From, To and Floor of {names}", names=names),
         "places": _("fill in X and Y of {names}", names=names),
         "positions": _("fill in X and Y, or the Route, of {names}", names=names),
+        "furniture": _("list the furniture of the building"),
         "beyond_stairs": _("add the way from {names} to an exit in Routes", names=names),
         "unconfirmed_period": _("enter the Period T1 or the Height in the sheet Building"),
         "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
