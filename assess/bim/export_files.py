@@ -1,7 +1,6 @@
 """The results of a run brought back to the building model that its workbook was imported from."""
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,23 +27,27 @@ class Export:
     topics : Topics, optional
         What to fix; None where that was not asked for.
     written : int
-        Pieces that were found in the model.
-    without_id, repeated, missing : tuple of str
-        Names of the pieces that have no Source ID, share theirs with another piece, or have one that no element of the
-        model has: nothing is written for them.
+        Elements of the model that are pieces.
+    without_id, missing : tuple of str
+        Names of the pieces that have no Source ID, or one that nothing in the model has: nothing is written for them.
+    refused : mapping of str to tuple of str
+        Names of the pieces whose Source ID is that of something else, by its class: nothing is written for them.
+    repeated : tuple of str
+        Names of the pieces that share their Source ID with another piece: the worse is written.
     """
 
     model: bytes | None
     topics: Topics | None
     written: int
     without_id: tuple[str, ...]
-    repeated: tuple[str, ...]
     missing: tuple[str, ...]
+    refused: Mapping[str, tuple[str, ...]]
+    repeated: tuple[str, ...]
 
     @property
     def is_complete(self) -> bool:
-        """Whether every piece was found."""
-        return not (self.without_id or self.repeated or self.missing)
+        """Whether every piece was found, and has an element of its own."""
+        return not (self.without_id or self.missing or self.refused or self.repeated)
 
 
 def build_export(
@@ -76,37 +79,63 @@ def build_export(
     """
     check_installed()
     check_model(model, model.name)
-    known, repeated = _list_unique(found.pieces)
-    part = _read(found, model, progress, known, with_topics=with_topics)
+    sharing = _group(found.pieces)
+    part = _read(found, model, progress, list(sharing), with_topics=with_topics)
     elements = {one.key: one for one in part.elements}
-    pairs = [(piece, elements[key]) for key, piece in known.items() if key in elements]
-    _check_pairs(found, model, pairs, with_properties=with_properties)
+    pairs = [(one, elements[one.source_id]) for one in found.pieces if one.source_id in elements]
+    worst = [(max(own, key=_rank), elements[key]) for key, own in sharing.items() if key in elements]
+    _check_refused(found, model, part, worst)
+    _check_pairs(found, model, worst, with_properties=with_properties)
     return Export(
-        model=add_properties(_read_bytes(model), model.name, part, found, pairs) if with_properties else None,
+        model=add_properties(_read_bytes(model), model.name, part, found, worst) if with_properties else None,
         topics=write_topics(model.name, part, found, pairs) if with_topics else None,
-        written=len(pairs),
+        written=len(worst),
         without_id=tuple(one.past.item for one in found.pieces if not one.source_id),
-        repeated=repeated,
-        missing=tuple(piece.past.item for key, piece in known.items() if key not in elements),
+        missing=_list_names(own for key, own in sharing.items() if key not in elements and key not in part.refused),
+        refused={
+            name: _list_names(sharing[key] for key, other in part.refused.items() if other == name)
+            for name in dict.fromkeys(part.refused.values())
+        },
+        repeated=_list_names(own for key, own in sharing.items() if key in elements and len(own) > 1),
     )
 
 
-def _list_unique(pieces: Sequence[ExportPiece]) -> tuple[dict[str, ExportPiece], tuple[str, ...]]:
-    """Return the pieces by their Source ID, and the names of those that share theirs with another piece."""
-    counts = Counter(one.source_id for one in pieces if one.source_id)
-    known = {one.source_id: one for one in pieces if counts[one.source_id] == 1}
-    return known, tuple(one.past.item for one in pieces if counts[one.source_id] > 1)
+def _group(pieces: Sequence[ExportPiece]) -> dict[str, list[ExportPiece]]:
+    """Return the pieces that have a Source ID by it."""
+    found: dict[str, list[ExportPiece]] = {}
+    for one in pieces:
+        if one.source_id:
+            found.setdefault(one.source_id, []).append(one)
+    return found
 
 
-def _read(
-    found: ExportRun, model: Path, progress: Progress, known: Mapping[str, ExportPiece], *, with_topics: bool
-) -> ModelPart:
+def _rank(one: ExportPiece) -> tuple[int, float]:
+    """Return by what the worst of several pieces is told."""
+    return one.upper, one.past.chance.probability
+
+
+def _list_names(groups: Iterable[Sequence[ExportPiece]]) -> tuple[str, ...]:
+    return tuple(one.past.item for own in groups for one in own)
+
+
+def _read(found: ExportRun, model: Path, progress: Progress, wanted: Sequence[str], *, with_topics: bool) -> ModelPart:
     """Return what the export needs to know of the model: for topics also the places of the pieces to fix."""
     placed = None
     if with_topics:
-        keys = {piece.past.item: key for key, piece in known.items()}
+        keys = {one.past.item: one.source_id for one in found.pieces if one.source_id}
         placed = [keys[item] for entry in list_entries(found, keys) for item in entry.items if item in keys]
-    return run_apart(model.name, progress, read_elements, model.resolve(), model.name, list(known), placed)
+    return run_apart(model.name, progress, read_elements, model.resolve(), model.name, wanted, placed)
+
+
+def _check_refused(found: ExportRun, model: Path, part: ModelPart, pairs: Sequence[Pair]) -> None:
+    """Raise ModelError where no piece is in the model, but something else that has its Source ID."""
+    if part.refused and not pairs:
+        key, name = next(iter(part.refused.items()))
+        raise ModelError(
+            fill("None of the Source IDs in {results} is that of furniture in {model}: {id} is an {name}. Fill in "
+                 "Source ID in Items with the GlobalIds of furniture.",
+                 results=found.run.path, model=model.name, id=key, name=name)
+        )  # fmt: skip
 
 
 def _check_pairs(found: ExportRun, model: Path, pairs: Sequence[Pair], *, with_properties: bool) -> None:

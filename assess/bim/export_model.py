@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,11 @@ from assess.bim.ifc_site import find_unit
 
 PROPERTY_SET = "Assess_OverturningRisk"
 """Name of the set; the prefix Pset_ is that of buildingSMART."""
+NOT_FURNITURE = (
+    "IfcWall", "IfcCurtainWall", "IfcSlab", "IfcRoof", "IfcCovering", "IfcDoor", "IfcWindow", "IfcColumn", "IfcBeam",
+    "IfcStair", "IfcStairFlight", "IfcRamp", "IfcRampFlight", "IfcRailing", "IfcFeatureElement",
+)  # fmt: skip
+"""Classes whose elements, with their subclasses, are no pieces: an import may take all others by name."""
 Place = tuple[float, float, float]
 Box = tuple[Place, Place]
 
@@ -61,13 +66,17 @@ class ModelDoor:
 
 @dataclass(frozen=True, slots=True)
 class ModelPart:
-    """What was found of a model: its schema, the GlobalId of its project, its highest number, elements and doors."""
+    """What was found of a model: its schema, the GlobalId of its project, its highest number, elements and doors.
+
+    `refused` are the classes, by GlobalId, of what was sought but is no furniture.
+    """
 
     schema: str
     project: str
     last_number: int
     elements: tuple[ModelElement, ...]
     doors: tuple[ModelDoor, ...] = ()
+    refused: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
@@ -80,7 +89,7 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
     name : str
         How messages call it.
     keys : sequence of str
-        GlobalIds; those that no element has are left out of what is returned.
+        GlobalIds; those that nothing in the model has are left out of what is returned.
     placed : sequence of str, optional
         Those of which the place is needed, and with them the doors; None where no place is.
 
@@ -99,7 +108,8 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
 
 def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str] | None) -> ModelPart:
     """Return what was found of a model; errors of Python where an entity is not as its schema asks for."""
-    found = {key: one for key in keys if (one := _find(model, key)) is not None}
+    known = {key: one for key in keys if (one := _find(model, key)) is not None}
+    found = {key: one for key, one in known.items() if _may_be_furniture(one)}
     elements = [_describe(model, key, one) for key, one in found.items()]
     doors: list[ModelDoor] = []
     if placed is not None:
@@ -114,16 +124,20 @@ def _understand(model: Any, name: str, keys: Sequence[str], placed: Sequence[str
         last_number=max((one.id() for one in model), default=0),
         elements=tuple(elements),
         doors=tuple(doors),
+        refused={key: str(one.is_a()) for key, one in known.items() if key not in found},
     )
 
 
 def _find(model: Any, key: str) -> Any:
-    """Return the element of a GlobalId, None where there is none."""
+    """Return what has a GlobalId, None where there is nothing."""
     try:
-        one = model.by_guid(key)
+        return model.by_guid(key)
     except RuntimeError:
         return None
-    return one if one.is_a("IfcElement") else None
+
+
+def _may_be_furniture(one: Any) -> bool:
+    return one.is_a("IfcElement") and not any(one.is_a(name) for name in NOT_FURNITURE)
 
 
 def _find_owner(model: Any, one: Any) -> int:

@@ -1,5 +1,6 @@
 """Risk classes as property sets of a building model: STEP lines added to the file, of which every byte stays."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from assess.bim.export_model import PROPERTY_SET, ModelElement, ModelPart
@@ -43,7 +44,7 @@ def add_properties(
     found : ExportRun
         The results.
     pieces : sequence of (ExportPiece, ModelElement)
-        The pieces with their elements.
+        The pieces with their elements: of several with one Source ID, the worst.
 
     Raises
     ------
@@ -52,9 +53,11 @@ def add_properties(
     """
     lines: list[str] = []
     planned, routes = find_works(found.entries), find_routes(found.segments)
+    counts = Counter(one.source_id for one in found.pieces)
     for piece, element in pieces:
         item = piece.past.item
         properties = list_properties(found.run, piece, routes.get(item, ()), planned.get(item))
+        properties += _list_sharing(counts[piece.source_id])
         lines += _write_set(properties, element, part.last_number + len(lines) + 1)
     return append_lines(data, lines, name)
 
@@ -166,6 +169,13 @@ def _list_fixing(entry: ExportEntry, work: ExportWork) -> Iterator[tuple[str, st
     if work.tension_code_kn is not None:
         yield "FixingTensionCode_kN", write_real(work.tension_code_kn)
     yield "BaseShear_kN", write_real(work.shear_kn)
+
+
+def _list_sharing(pieces: int) -> Iterator[tuple[str, str]]:
+    """Yield of how many pieces with the Source ID of the element this is the worst, where there are several."""
+    if pieces > 1:
+        several = _("{n:,} pieces with this Source ID, the worst", n=pieces)
+        yield "Of", write_label(_("2 pieces with this Source ID, the worse") if pieces == 2 else several)
 
 
 def _list_origin(run: PastRun) -> Iterator[tuple[str, str]]:

@@ -11,6 +11,7 @@ of BCF-XML, release 2.1 (a folder entry for every topic, forward slashes).
 import datetime
 import io
 import zipfile
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
@@ -86,12 +87,15 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
     shift = find_shift(pairs)
     centre = find_centre({element.key: element for _piece, element in pairs})
     files: dict[str, bytes] = {"bcf.version": VERSION.encode()}
+    counts = Counter(element.key for _piece, element in pairs)
     with_door = 0
     for entry in entries:
         own = [by_item[item] for item in entry.items if item in by_item]
         doors = find_doors(own, found.segments, part.doors, shift)
         with_door += bool(doors)
-        files |= _write_topic(name, part, found, Topic(entry, own, doors, find_camera(own, doors, centre)))
+        files |= _write_topic(
+            name, part, found, Topic(_identify(own, counts), entry, own, doors, find_camera(own, doors, centre))
+        )
     all_placed = sum(any(item in by_item for item in one.items) for one in found.entries)
     return Topics(
         _pack(files), len(entries), len(found.entries) - all_placed, all_placed - len(entries), with_door,
@@ -101,8 +105,9 @@ def write_topics(name: str, part: ModelPart, found: ExportRun, pairs: Sequence[P
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """An entry of the schedule with its pieces in the model, the doors that they obstruct, and its camera."""
+    """An entry of the schedule: its identifier, its pieces in the model, the doors that they obstruct, its camera."""
 
+    guid: str
     entry: ExportEntry
     pairs: Sequence[Pair]
     doors: Sequence[ModelDoor]
@@ -113,10 +118,14 @@ class Topic:
         """The elements of its pieces, the most urgent first."""
         return [element for _piece, element in self.pairs]
 
-    @property
-    def guid(self) -> str:
-        """Its identifier: that of its pieces, so that a later export of theirs is the same topic."""
-        return str(make_uuid("topic", *sorted(one.key for one in self.elements)))
+
+def _identify(pairs: Sequence[Pair], counts: Mapping[str, int]) -> str:
+    """Return the identifier of a topic: that of its pieces, so that a later export of theirs is the same topic.
+
+    `counts` tells how many pieces each element is; of those of which it is several, the names tell them apart.
+    """
+    names = (one.key if counts[one.key] == 1 else f"{one.key} {piece.past.item}" for piece, one in pairs)
+    return str(make_uuid("topic", *sorted(names)))
 
 
 def _write_topic(name: str, part: ModelPart, found: ExportRun, topic: Topic) -> dict[str, bytes]:

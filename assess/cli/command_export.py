@@ -1,6 +1,6 @@
 """``assess export``: risk classes back into the building model, and what to fix as topics for it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,7 +8,7 @@ import typer
 
 from assess.cli.console import count, show_progress
 from assess.cli.options import check_file, save_files
-from assess.errors import InputError
+from assess.errors import InputError, OutputError
 
 if TYPE_CHECKING:
     from assess.bim.export_files import Export
@@ -51,7 +51,8 @@ def command(
 
     Pieces are found by Source ID. Each gets a property set Assess_OverturningRisk; nothing else in the model changes. A
     topic is an entry of the schedule: it selects its pieces, and the door on a route that they may block, if one is
-    found. Texts are in the language of the workbook. The exit status is 1 where a piece is not in the model.
+    found. Texts are in the language of the workbook. The exit status is 1 where a piece is not furniture in the model,
+    or shares its Source ID.
     """
     _check_names({"--out": out, "--bcf": bcf}, {ifc, results}, replaces=force)
     from assess.bim.export_files import build_export
@@ -73,7 +74,15 @@ def command(
 
 
 def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replaces: bool) -> None:
-    """Raise InputError unless the files may be written, as far as is known before the work."""
+    """Raise unless the files may be written, as far as is known before the work.
+
+    Raises
+    ------
+    InputError
+        If no file is named, two are the same, one is read for this, or one is of another kind or in no folder.
+    OutputError
+        If one exists, and it was not asked for that it be replaced.
+    """
     wanted = {option: path for option, path in files.items() if path is not None}
     if not wanted:
         raise InputError("nothing is to be written: add --out MODEL.ifc, --bcf TOPICS.bcfzip or both.")
@@ -85,7 +94,7 @@ def _check_names(files: Mapping[str, Path | None], sources: set[Path], *, replac
         if any(_is_same(path, source) for source in sources):
             raise InputError(f"{option}: {path} is read for this: name another file, so that it stays as it is.")
         if path.exists() and not replaces:
-            raise InputError(f"{path} already exists: add --force to replace it, or choose another name.")
+            raise OutputError(f"{path} already exists: add --force to replace it, or choose another name.")
 
 
 def _is_same(path: Path, other: Path) -> bool:
@@ -101,12 +110,19 @@ def describe_export(export: "Export", model: str) -> Iterator[str]:
     groups = {
         "without a Source ID": export.without_id,
         f"with a Source ID that is not in {model}": export.missing,
-        "with the Source ID of another piece": export.repeated,
+        **{f"whose Source ID is an {name} in the model, not furniture": own for name, own in export.refused.items()},
     }
     for why, names in groups.items():
         if names:
-            more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
-            yield f"Not written, {count(len(names), 'piece')} {why}: {', '.join(names[:MOST_NAMED])}{more}."
+            yield f"Not written, {count(len(names), 'piece')} {why}: {_name_first(names)}."
+    if export.repeated:
+        set_of = "" if export.model is None else "; the property set is that of the worse"
+        yield f"{count(len(export.repeated), 'piece')} that share a Source ID{set_of}: {_name_first(export.repeated)}."
+
+
+def _name_first(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_NAMED:,} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + more
 
 
 def _describe_topics(topics: "Topics", model: str) -> Iterator[str]:

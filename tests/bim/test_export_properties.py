@@ -18,6 +18,7 @@ from tests.bim.export_runs import (
     CUPBOARD_1,
     CUPBOARDS,
     DESKS,
+    DOOR_B202,
     DUPLEX,
     FLOORS,
     HELD,
@@ -230,19 +231,91 @@ def test_pieces_that_are_not_in_the_model_are_named(tmp_path):
         *CUPBOARDS[:2],
         piece("No id", "1", None, 1, 1),
         piece("Stranger", "1", "0000000000000000000000", 2, 1),
-        piece("A room", "1", "0BTBFw6f90Nfh9rP1dlXrr", 3, 1),
         piece("Text", "1", "é 62.5'", 4, 1),
-        piece("Twice 1", "1", SOFA, 5, 1),
-        piece("Twice 2", "1", SOFA, 6, 1),
     ]
     found = export(write_results(tmp_path, items), DUPLEX, with_topics=False)
     assert (found.written, found.is_complete) == (2, False)
     assert found.without_id == ("No id",)
-    assert found.missing == ("Stranger", "A room", "Text")
-    assert found.repeated == ("Twice 1", "Twice 2")
+    assert found.missing == ("Stranger", "Text")
     out = tmp_path / "out.ifc"
     out.write_bytes(found.model)
     assert read_sets(out).keys() == {one["source_id"] for one in CUPBOARDS[:2]}
+
+
+NO_PIECES = {
+    "IfcWall": "2O2Fr$t4X7Zf8NOew3FKau",
+    "IfcWallStandardCase": "2O2Fr$t4X7Zf8NOew3FNld",
+    "IfcSlab": "2O2Fr$t4X7Zf8NOew3FK4F",
+    "IfcRoof": "0jf0rYHfX3RAB3bSIRjmxl",
+    "IfcCovering": "3bXiCStxP6Fgxdej$yc5T8",
+    "IfcDoor": DOOR_B202,
+    "IfcWindow": "1hOSvn6df7F8_7GcBWlR72",
+    "IfcBeam": "2OrWItJ6zAwBNp0OUxK_l8",
+    "IfcStair": "0wkEuT1wr1kOyafLY4v_O1",
+    "IfcRailing": "0wkEuT1wr1kOyafLY4v_PL",
+    "IfcOpeningElement": "1xS3BCk291UvhgP2dvNrrP",
+    "IfcSpace": "0BTBFw6f90Nfh9rP1dlXrr",
+    "IfcBuildingStorey": "1xS3BCk291UvhgP2dvNMKI",
+    "IfcFurnitureType": "0wkEuT1wr1kOyafLY4vyuY",
+}
+"""Of Duplex, one of each."""
+
+
+def test_nothing_is_written_on_what_is_no_furniture(tmp_path):
+    others = [piece(name, "1", key, 1.0 + at, 1) for at, (name, key) in enumerate(NO_PIECES.items())]
+    found = export(write_results(tmp_path, [*CUPBOARDS[:2], *others]), DUPLEX)
+    assert (found.written, found.is_complete, found.missing) == (2, False, ())
+    assert found.refused == {name: (name,) for name in NO_PIECES}
+    out = tmp_path / "out.ifc"
+    out.write_bytes(found.model)
+    assert read_sets(out).keys() == {one["source_id"] for one in CUPBOARDS[:2]}
+    assert found.topics.unplaced > 0, "entries of such pieces"
+
+
+def test_a_workbook_of_walls_alone_is_refused(tmp_path):
+    results = write_results(tmp_path, [piece("Wall", "1", NO_PIECES["IfcWall"], 1, 1)])
+    message = r"is that of furniture in duplex.ifc: 2O2Fr\$t4X7Zf8NOew3FKau is an IfcWall. Fill in Source ID in Items"
+    with pytest.raises(ModelError, match=message):
+        export(results, DUPLEX)
+
+
+@pytest.mark.parametrize(
+    "name", ["IfcBuildingElementProxy", "IfcElementAssembly", "IfcTransportElement", "IfcFlowTerminal", "IfcTank"]
+)
+def test_what_an_import_takes_by_name_may_be_a_piece(tmp_path, name):
+    writer = ModelWriter("IFC4")
+    one = writer.element(name, "Thing", (0, 0, 0, 0.6, 1.2, 2.0), within=writer.storey(), at=(2, 3, 0))
+    model = writer.write(tmp_path / "model.ifc")
+    found = export(write_results(tmp_path, [piece("Thing", "1", one.GlobalId, 2, 3)], FLOORS[:1]), model)
+    assert (found.written, found.is_complete) == (1, True)
+
+
+def test_of_two_pieces_with_one_source_id_the_worse_is_written(tmp_path):
+    """The first stands on the ground floor and is low, the second very high."""
+    items = [
+        piece("Low", "1", CUPBOARD_1, 2.91, -11.41, height=40.0),
+        piece("Tall", "2", CUPBOARD_1, 2.91, -11.41),
+        CUPBOARDS[1],
+    ]
+    results = write_results(tmp_path, items)
+    found = export(results, DUPLEX)
+    assert (found.written, found.is_complete, found.repeated) == (2, False, ("Low", "Tall"))
+    out = tmp_path / "out.ifc"
+    out.write_bytes(found.model)
+    sets = read_sets(out)
+    assert (sets[CUPBOARD_1]["Item"], sets[CUPBOARD_1]["RiskClass"]) == ("Tall", "very high")
+    assert sets[CUPBOARD_1]["Of"] == "2 pieces with this Source ID, the worse"
+    assert "Of" not in sets[CUPBOARDS[1]["source_id"]]
+    assert complain(out) == complain(DUPLEX)
+
+
+def test_of_three_pieces_it_is_the_worst(tmp_path):
+    items = [piece(f"C{at}", "2", CUPBOARD_1, 2.91 + at, -11.41, height=height)
+             for at, height in enumerate((60.0, 200.0, 90.0))]  # fmt: skip
+    out = tmp_path / "out.ifc"
+    out.write_bytes(export(write_results(tmp_path, items), DUPLEX).model)
+    found = read_sets(out)[CUPBOARD_1]
+    assert (found["Item"], found["Of"]) == ("C1", "3 pieces with this Source ID, the worst")
 
 
 def test_a_model_that_was_exported_before_is_refused(simulated, exported):

@@ -251,6 +251,15 @@ def test_of_an_entry_that_is_partly_in_the_model_the_rest_is_named(tmp_path):
     assert topic.text("Title").startswith("very high: C1 (")
 
 
+def test_pieces_with_one_source_id_have_topics_of_their_own(tmp_path):
+    """Cupboards of other sizes, in entries of their own, both on one element of the model."""
+    items = [CUPBOARDS[0], CUPBOARDS[1] | {"source_id": CUPBOARD_1, "height": 240.0, "room": "B203"}]
+    found = Bcf(export(write_results(tmp_path, items), DUPLEX, with_properties=False).topics.data)
+    assert [one.selected for one in found.topics] == [[CUPBOARD_1]] * 2
+    assert len({one.folder for one in found.topics}) == 2
+    assert all(not one.text("Description").count("Not in this model") for one in found.topics)
+
+
 def write_pair(folder: Path) -> Path:
     """Each cupboard blocks the way out by itself, and both surely fall: only fixing both opens it."""
     items = [CUPBOARDS[0] | {"description": "Armadio"}, CUPBOARDS[1] | {"description": "Libreria"}]

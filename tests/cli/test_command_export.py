@@ -14,6 +14,8 @@ from ifcopenshell.util.element import get_psets
 from tests.bim.export_runs import CUPBOARD_1, CUPBOARDS, DUPLEX, OFFICE, PLACES, ROUTES, piece, write_results
 from tests.cli.calling import error, run
 
+WALL = "2O2Fr$t4X7Zf8NOew3FKau"
+
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
@@ -69,6 +71,33 @@ def test_pieces_that_are_not_in_the_model_are_named_and_end_with_1(tmp_path):
     assert (tmp_path / "t.bcfzip").exists()
 
 
+def test_pieces_of_walls_and_pieces_that_share_an_element_are_named_and_end_with_1(tmp_path):
+    items = [*CUPBOARDS, piece("On a wall", "1", WALL, 1, 1), piece("Twin", "1", CUPBOARD_1, 2, 1, height=40.0)]
+    out = tmp_path / "o.ifc"
+    done = run("export", write_results(tmp_path, items), "--ifc", DUPLEX, "-o", out)
+    assert done.exit_code == 1
+    assert done.stdout.splitlines() == [
+        "duplex.ifc: a property set Assess_OverturningRisk on 4 pieces.",
+        "Not written, 1 piece whose Source ID is an IfcWall in the model, not furniture: On a wall.",
+        "2 pieces that share a Source ID; the property set is that of the worse: Armadio è 1, Twin.",
+    ]
+    model = ifcopenshell.open(str(out))
+    assert "Assess_OverturningRisk" not in get_psets(model.by_guid(WALL))
+    assert read_class(out) == "very high"
+
+
+def test_relative_names_in_the_folder_of_the_model(results, monkeypatch):
+    """As it is called most often: from the folder that holds model and results."""
+    results.with_name("model.ifc").write_bytes(DUPLEX.read_bytes())
+    monkeypatch.chdir(results.parent)
+    done = run("export", "results.json", "--ifc", "model.ifc", "-o", "risk.ifc", "--bcf", "fix.bcfzip")
+    assert (done.exit_code, done.stderr.splitlines()[-2:]) == (0, ["wrote risk.ifc", "wrote fix.bcfzip"])
+    assert files(results.parent) == ["fix.bcfzip", "model.ifc", "results.json", "risk.ifc"]
+    assert read_class(Path("risk.ifc")) == "very high"
+    assert run("export", ".", "--ifc", "./model.ifc", "-o", "risk.ifc", "--force").exit_code == 0
+    assert "model.ifc is read for this" in str(error(run("export", ".", "--ifc", "model.ifc", "-o", "./model.ifc")))
+
+
 def test_the_texts_are_in_the_language_of_the_workbook(tmp_path):
     results = write_results(tmp_path, building={"building": "Casa", "language": "Italiano"})
     out = tmp_path / "o.ifc"
@@ -117,7 +146,9 @@ def test_both_in_one_file(results):
 def test_an_existing_file_stays_unless_forced(results, option, name):
     out = results.with_name(name)
     out.write_bytes(b"mine")
-    assert f"{name} already exists: add --force" in refuse(results, "--ifc", DUPLEX, option, out)
+    done = run("export", results, "--ifc", DUPLEX, option, out)
+    assert (done.exit_code, done.stdout, out.read_bytes()) == (1, "", b"mine")
+    assert f"{name} already exists: add --force" in " ".join(done.stderr.split())
     assert run("export", results, "--ifc", DUPLEX, option, out, "--force").exit_code == 0
     assert out.read_bytes() != b"mine"
 
