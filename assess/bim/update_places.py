@@ -1,4 +1,8 @@
-"""Places of a workbook that follow a building model: rooms, doors, stairs and exits, which have no identifier there."""
+"""Places of a workbook that follow a building model: rooms, doors, stairs and exits, which have no identifier there.
+
+Points that drafted routes pass have no kind. They do not follow: their names are numbers of one draft, by which another
+draft calls other points, and routes are drafted into new workbooks only.
+"""
 
 from collections.abc import Callable, Sequence
 from math import hypot
@@ -28,14 +32,14 @@ def update_places(
     book : BookUpdate
         The workbook.
     rows : sequence of mapping
-        The places of the model.
+        The places of the model; those without a kind, which routes pass, are not used.
     find_floor, find_room : callable
         What people call a floor of the model, and a room of it on such a floor.
     """
     sheet = book.sheets.get("Places")
     own = sheet.table.with_all("place") if sheet else []
     named = {key(row.get("place")) for row in own}
-    model = [{**row, "floor": find_floor(row["floor"])} for row in rows]
+    model = [{**row, "floor": find_floor(row["floor"])} for row in rows if row.get("kind")]
     for row in model:
         renamed = find_room(row["floor"], row["place"])
         row["place"] = renamed if key(renamed) in named else row["place"]
@@ -43,7 +47,7 @@ def update_places(
         [_describe_model(row) for row in model], [_describe(row) for row in own], _is_near, by_content=True
     )
     if sheet:
-        sheet.note_columns(FOLLOWED, rows)
+        sheet.note_columns(FOLLOWED, model)
         for at, other in found.items():
             _update_place(sheet, own[other], model[at])
     new = [row for at, row in enumerate(model) if at not in found]

@@ -68,6 +68,7 @@ def command(
     reason, on the screen and in a file beside the workbook, which lacks only how the floors shake: choose Shaking in
     Building, or fill in Floors. The exit status is 1 where furniture was left out, or none was found.
     """
+    _check_choices(routes, replaces=force, updates=update)
     _check_names(source, out, replaces=force, updates=update)
     from assess.bim.import_record import describe
 
@@ -137,6 +138,16 @@ def _quote(path: Path) -> str:
     return f'"{path}"' if " " in str(path) else str(path)
 
 
+def _check_choices(routes: Routes, *, replaces: bool, updates: bool) -> None:
+    """Raise InputError where choices exclude each other."""
+    if updates and replaces:
+        raise InputError("--update keeps what is in the workbook, --force replaces it: give one of them.")
+    if updates and routes is not Routes.none:
+        raise InputError(
+            f"--update: --routes {routes.value}: routes are drafted into a new workbook only: leave out one of the two."
+        )
+
+
 def _check_names(source: Path, out: Path, *, replaces: bool, updates: bool) -> None:
     """Raise unless the workbook may be written, as far as is known before the work.
 
@@ -151,8 +162,6 @@ def _check_names(source: Path, out: Path, *, replaces: bool, updates: bool) -> N
         raise InputError(f"--out: {out} does not end in .xlsx: name it {out.stem or 'building'}.xlsx.")
     if out.resolve() == source.resolve() or (out.exists() and source.exists() and out.samefile(source)):
         raise InputError(f"--out: {out} is the file to import: name another file, so that the original stays as it is.")
-    if updates and replaces:
-        raise InputError("--update keeps what is in the workbook, --force replaces it: give one of them.")
     if updates and not out.exists():
         raise InputError(f"--update: {out} does not exist: name the workbook of an earlier import, or leave it out.")
     if out.exists() and not (replaces or updates):

@@ -252,6 +252,15 @@ def test_routes_are_peoples_own() -> None:
     assert found.changes == ()
 
 
+def test_points_of_another_draft_move_no_points_of_routes() -> None:
+    """Drafts number their points: "L1 point 1" of the model may be another one than that of a reviewed route."""
+    point = {"place": "L1 point 1", "floor": "Level 1", "x": 5.0, "y": 2.0}
+    segment = {"route": "R", "segment": "a", "floor": "Level 1", "start": "L1 point 1", "end": "Exit A101"}
+    data = build_workbook(building(places=[*PLACES, point], routes=[segment]))
+    others = [{**point, "x": 9.0}, {**point, "place": "L1 point 2"}]
+    assert update(data, building(places=[*PLACES, *others])).changes == ()
+
+
 def test_without_a_sheet_of_places_these_are_left_out(book: bytes) -> None:
     def drop(workbook: Any) -> None:
         del workbook["Places"]
