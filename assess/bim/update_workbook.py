@@ -322,7 +322,7 @@ class _BuildingUpdate:
     def _update_sizes(self, model: Mapping[str, Any], row: Row) -> None:
         """Update the sizes, unless people have measured them."""
         sheet, origin = self.items, model.get("sizes_from")
-        is_measured = row.get("sizes_from") == MEASURED != origin
+        is_measured = _is_measured(sheet, row, origin)
         for name in SIZES:
             if is_measured:
                 sheet.keep(row, name, model.get(name), fill("it was measured"))
@@ -347,6 +347,16 @@ class _BuildingUpdate:
         for one, rows in _by_id(self.items.table.rows).items():
             for row in rows if one not in known else ():
                 self.items.note_row("missing", row)
+
+
+def _is_measured(sheet: SheetUpdate, row: Row, origin: str | None) -> bool:
+    """Tell whether people have measured the sizes of a row: it says so, or says nothing, which is the same.
+
+    Handover files do not tell where sizes come from, so that the workbook of one says nothing either: these follow.
+    """
+    has_sizes = any(row.get(name) is not None for name in SIZES)
+    unsaid = MEASURED if origin and has_sizes and sheet.can_hold("sizes_from") else None
+    return (row.get("sizes_from") or unsaid) == MEASURED != origin
 
 
 def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:

@@ -192,6 +192,32 @@ def test_sizes_that_people_have_measured_stay(book: bytes) -> None:
     assert row(found.data, 3).get("breadth") == pytest.approx(0.52)
 
 
+def test_sizes_stay_where_nothing_says_where_they_come_from(book: bytes) -> None:
+    """A blank cell means measured."""
+    data = typed(book, row=4, breadth=52, sizes_from=None)
+    found = update(data)
+    assert texts(found) == [
+        f"Items {address('breadth', 4)} Breadth [cm] of A102-03 stays 52; the model has 54.5: it was measured"
+    ]
+    assert inventory(found.data).items[2].sizes_from == "measured"
+
+
+def test_without_sizes_nothing_was_measured(book: bytes) -> None:
+    found = update(typed(book, row=4, breadth=None, width=None, height=None, sizes_from=None))
+    assert kinds(found) == ["changed"] * 4
+    assert inventory(found.data).items[2].sizes_from == "model"
+
+
+def test_sizes_of_a_handover_file_follow_although_nothing_says_where_they_come_from(tmp_path: Path) -> None:
+    from tests.bim.cobie_files import TYPES
+
+    path = write_cobie(tmp_path / "handover.xlsx")
+    data = build_workbook(read_source(path, path.name))
+    write_cobie(path, types=({**TYPES[0], "NominalHeight": 1850}, *TYPES[1:]))
+    found = update_workbook(data, read_source(path, path.name), "b.xlsx")
+    assert [(one.label, one.now) for one in found.changes if one.sheet == "Items"] == [("Height [cm]", 185)] * 2
+
+
 def test_where_sizes_come_from_follows_them(book: bytes) -> None:
     found = update(book, changed(p3={"breadth": 60.0, "sizes_from": "scan"}))
     assert kinds(found) == ["changed", "changed"]
