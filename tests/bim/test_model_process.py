@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -46,11 +47,27 @@ def test_processor_time_is_limited(monkeypatch):
         run_apart("a.ifc", SILENT, eval, "sum(range(10**12))")
 
 
-def test_a_cancel_stops_the_process():
-    cancel = threading.Event()
-    threading.Timer(0.3, cancel.set).start()
+WORK_ON = """open({path!r}, "w").write(str(__import__("os").getpid())), sum(range(10**12))"""
+
+
+class _Begun(threading.Event):
+    """A cancel that is asked for once the work has left the number of its process in a file."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.path = path
+
+    def is_set(self) -> bool:
+        return self.path.exists() and self.path.read_text().isdigit()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no signal 0, which only asks for a process")
+def test_a_cancel_stops_the_process(tmp_path):
+    cancel = _Begun(tmp_path / "pid")
     with pytest.raises(CancelledError):
-        run_apart("a.ifc", Progress(cancel=cancel), eval, "sum(range(10**12))")
+        run_apart("a.ifc", Progress(cancel=cancel), eval, WORK_ON.format(path=str(cancel.path)))
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(cancel.path.read_text()), 0)
 
 
 def test_a_file_of_the_users_takes_the_place_of_no_module(tmp_path, monkeypatch):
