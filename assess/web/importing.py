@@ -8,7 +8,7 @@ import secrets
 import shutil
 import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextvars import copy_context
 from dataclasses import dataclass, replace
 from itertools import count
@@ -290,16 +290,24 @@ def _is_there(path: Path) -> bool:
 
 
 def _rename_files(found: "ImportedBuilding", folder: Path) -> "ImportedBuilding":
-    """Return a building whose plans have names that the folder does not have, but for the very same files."""
-    names = {name: _find_name(name, data, folder) for name, data in found.files.items()}
+    """Return a building whose files have names that the folder does not have, but for the very same files.
+
+    Nor does any file get the name that another file of the building has or would have.
+    """
+    names: dict[str, str] = {}
+    for name, data in found.files.items():
+        others = {one.casefold() for one in (*found.files, *names.values()) if one != name}
+        names[name] = _find_name(name, data, folder, others)
     floors = [_rename(row, names) for row in found.floors]
     return replace(found, floors=floors, files={names[name]: data for name, data in found.files.items()})
 
 
-def _find_name(name: str, data: bytes, folder: Path) -> str:
-    """Return the first name that no file of the folder has, or that very file."""
+def _find_name(name: str, data: bytes, folder: Path, others: Collection[str]) -> str:
+    """Return the first name that no file of the folder has, or that very file, and that is none of `others`."""
     return next(
-        one for one in _number(PurePosixPath(name)) if not _is_there(folder / one) or _holds(folder / one, data)
+        one
+        for one in _number(PurePosixPath(name))
+        if one.casefold() not in others and (not _is_there(folder / one) or _holds(folder / one, data))
     )
 
 

@@ -260,6 +260,19 @@ def test_plans_get_names_that_no_other_file_has(tmp_path):
     assert renamed.files == {"a-2.svg": b"a", "b.svg": b"b"}
 
 
+def test_a_plan_takes_no_name_of_another_plan_of_the_import(tmp_path):
+    """Storeys "EG" and "EG 2": the second name of the first plan is that of the second plan."""
+    (tmp_path / "m-EG.svg").write_bytes(b"mine")
+    floors = [{"floor": "EG", "plan": "m-EG.svg"}, {"floor": "EG 2", "plan": "m-EG-2.svg"}]
+    found = ImportedBuilding(source="m.ifc", floors=floors, files={"m-EG.svg": b"eg", "m-EG-2.svg": b"eg2"})
+    renamed = importing._rename_files(found, tmp_path)
+    assert [row["plan"] for row in renamed.floors] == ["m-EG-3.svg", "m-EG-2.svg"]
+    assert renamed.files == {"m-EG-3.svg": b"eg", "m-EG-2.svg": b"eg2"}
+    (tmp_path / "m-EG-2.svg").write_bytes(b"mine, too")
+    renamed = importing._rename_files(found, tmp_path)
+    assert [renamed.files[row["plan"]] for row in renamed.floors] == [b"eg", b"eg2"]
+
+
 def test_names_of_new_workbooks_and_of_models(tmp_path):
     assert name_workbook("duplex.ifc") == "duplex.xlsx"
     assert name_workbook("hand.over.XLSX") == "hand.over-inventory.xlsx"
