@@ -113,6 +113,13 @@ class Piece:
         Height of its lowest point above the floor of its room, or of its storey [m].
     is_fitted : bool
         Whether its name tells of kitchen or fitted furniture, which is usually fixed.
+    support_reach : float, optional
+        Least distance from the middle of its plan to an edge of its base, the convex hull of its points at the floor
+        [m]: 0 where the middle lies beside the base, None where the shape of the base is not known.
+    support_angle_deg : float
+        Direction from the middle to that edge, in [-90, 90).
+    support_across : float
+        Extent of its plan across that direction [m].
     """
 
     key: str
@@ -131,6 +138,9 @@ class Piece:
     support_width: float
     bottom: float
     is_fitted: bool = False
+    support_reach: float | None = None
+    support_angle_deg: float = 0.0
+    support_across: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

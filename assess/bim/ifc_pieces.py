@@ -199,4 +199,5 @@ def _to_piece(element: Element, key: str, shape: Shape, places: _Places) -> Piec
         ifc_class=element.is_a(), name=say(element.Name), type=kind, x=box.x, y=box.y, breadth=box.breadth,
         width=box.width, height=box.height, angle_deg=box.angle_deg, support_breadth=box.support_breadth,
         support_width=box.support_width, bottom=shape.bottom - floor, is_fitted=_is_fitted(kind),
+        support_reach=box.base.reach, support_angle_deg=box.base.angle_deg, support_across=box.base.across,
     )  # fmt: skip

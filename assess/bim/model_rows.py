@@ -1,7 +1,9 @@
 """A building model as the rows of an inventory, with a plan of each storey beside it.
 
 Breadth is the distance between the outer supports where that is less than the body's, as pieces rock about their
-supports; where the supports stand closest along the longer side, Breadth lies along that.
+supports; where the supports stand closest along the longer side, Breadth lies along that. Where an edge of the base is
+nearer to the middle of the body than half of that, as with a plinth set back at the front only, on three legs or on a
+cross, Breadth is twice that distance and lies across that edge: the piece rocks most easily about it.
 """
 
 import math
@@ -27,6 +29,8 @@ Drafts = Literal["none", "draft"]
 CENTIMETRES = 100.0
 SAME = 0.005
 """Difference up to which two sizes are the same [m]."""
+ALONG = 1.0
+"""Angle between an edge and a side of a piece up to which the edge is along it [deg]."""
 STAIRS = ("stair", "treppe", "scala", "scale")
 CORRIDORS = ("corridor", "hall", "passage", "lobby", "foyer", "flur", "gang", "diele", "corridoio", "atrio", "ingresso")
 """Words with which names of stairs and corridors begin or end."""
@@ -36,6 +40,7 @@ LOWEST, HIGHEST = FLOORS.column("elevation").low or 0.0, FLOORS.column("elevatio
 """Elevations that a workbook takes [m]."""
 TALLEST = BUILDING.column("height").high or math.inf
 """Height of a building that a workbook takes [m]."""
+BESIDE_BASE = fill("the middle of its body is not above its base in the model")
 FITTED = fill("fitted furniture, usually fixed: look at it, and fill in Anchored")
 
 
@@ -84,7 +89,11 @@ def _keep_storeys(model: BuildingModel) -> list[Storey]:
 
 @dataclass(frozen=True, slots=True)
 class Sized:
-    """A piece with the sizes of its row [cm], the direction of Breadth [deg], and whether its supports stand inside."""
+    """A piece with the sizes of its row [cm], the direction of Breadth [deg], and whether its supports stand inside.
+
+    `supports` is the least distance between its outer supports along its sides [cm]; `is_off_middle` tells that an edge
+    of its base is nearer to the middle than half of that, `is_oblique` that this edge is along neither of its sides.
+    """
 
     piece: Piece
     breadth: float
@@ -92,6 +101,9 @@ class Sized:
     height: float
     angle_deg: float
     is_inset: bool
+    supports: float
+    is_off_middle: bool = False
+    is_oblique: bool = False
 
     @property
     def sizes(self) -> dict[str, float]:
@@ -106,7 +118,13 @@ def find_sizes(piece: Piece) -> Sized:
     breadth, width, angle = along, piece.width, piece.angle_deg
     if across < along - SAME:
         breadth, width, angle = across, piece.breadth, piece.angle_deg + 90
-    breadth_cm, width_cm, height_cm = (round(CENTIMETRES * one, 1) for one in (breadth, width, piece.height))
+    supports = breadth
+    is_off_middle = piece.support_reach is not None and 2 * piece.support_reach < breadth - SAME
+    if piece.support_reach is not None and is_off_middle:
+        breadth, angle = 2 * piece.support_reach, piece.support_angle_deg
+        width = _find_across(piece)
+    sizes = (breadth, width, piece.height, supports)
+    breadth_cm, width_cm, height_cm, supports_cm = (round(CENTIMETRES * one, 1) for one in sizes)
     return Sized(
         piece,
         breadth_cm,
@@ -114,17 +132,37 @@ def find_sizes(piece: Piece) -> Sized:
         height_cm,
         angle_deg=round((angle + 90) % 180 - 90, 1),
         is_inset=breadth < piece.breadth - SAME,
+        supports=supports_cm,
+        is_off_middle=is_off_middle,
+        is_oblique=is_off_middle and _is_oblique(piece),
     )
+
+
+def _find_across(piece: Piece) -> float:
+    """Return the size of a piece along the nearest edge of its base [m]."""
+    if _is_oblique(piece):
+        return piece.support_across
+    is_along = abs(math.cos(math.radians(piece.support_angle_deg - piece.angle_deg))) > 0.5
+    return piece.width if is_along else piece.breadth
+
+
+def _is_oblique(piece: Piece) -> bool:
+    """Tell whether the nearest edge of the base of a piece is along neither of its sides."""
+    return ALONG <= (piece.support_angle_deg - piece.angle_deg) % 90 <= 90 - ALONG
 
 
 def _sort_by_size(pieces: Sequence[Piece]) -> tuple[list[Sized], list[Skipped]]:
     """Return the pieces whose sizes a workbook takes, and the others as left out."""
     sized = [find_sizes(one) for one in pieces]
     fits = [all(LOW <= size <= HIGH for size in one.sizes.values()) for one in sized]
-    reason = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
-    counts = Counter(one.piece.type[:LONGEST_NAME] for one, is_inside in zip(sized, fits, strict=True) if not is_inside)
+    outside = fill("a size outside {low:g} to {high:g} cm", low=LOW, high=HIGH)
+    counts = Counter(
+        (one.piece.type[:LONGEST_NAME], BESIDE_BASE if one.piece.support_reach == 0 else outside)
+        for one, is_inside in zip(sized, fits, strict=True)
+        if not is_inside
+    )
     kept = [one for one, is_inside in zip(sized, fits, strict=True) if is_inside]
-    return kept, [Skipped(kind, number, reason) for kind, number in counts.items()]
+    return kept, [Skipped(kind, number, reason) for (kind, reason), number in counts.items()]
 
 
 def _name_types(pieces: Sequence[Sized]) -> dict[tuple[str, float, float, float], str]:
@@ -206,13 +244,26 @@ def _list_items(
 def _list_notes(one: Sized) -> Iterator[str]:
     piece = one.piece
     if one.is_inset:
-        breadth, width, height = (CENTIMETRES * size for size in (piece.breadth, piece.width, piece.height))
-        yield gettext("body {breadth:.1f} x {width:.1f} x {height:.1f} cm, {support:g} cm between the outer supports",
-                      breadth=breadth, width=width, height=height, support=one.breadth)  # fmt: skip
+        yield _note_supports(one)
     if piece.is_fitted:
         yield gettext(FITTED)
     if piece.name and piece.name != piece.type:
         yield gettext("in the model: {name}", name=piece.name)
+
+
+def _note_supports(one: Sized) -> str:
+    """Return the body of a piece and the distance between its supports, and how Breadth comes of these."""
+    sizes = (one.piece.breadth, one.piece.width, one.piece.height)
+    breadth, width, height = (CENTIMETRES * size for size in sizes)
+    body = gettext("body {breadth:.1f} x {width:.1f} x {height:.1f} cm, {support:g} cm between the outer supports",
+                   breadth=breadth, width=width, height=height, support=one.supports)  # fmt: skip
+    if one.is_oblique:
+        return gettext("{body}: Breadth is twice the distance from the middle to the nearest edge between them",
+                       body=body)  # fmt: skip
+    if one.is_off_middle:
+        return gettext("{body}, which are off the middle: Breadth is twice the distance from the middle to the nearer "
+                       "edge", body=body)  # fmt: skip
+    return body
 
 
 def _list_types(model: BuildingModel, types: Mapping[tuple[str, float, float, float], str]) -> Iterator[dict[str, Any]]:
@@ -308,8 +359,10 @@ def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Size
     inset = sum(one.is_inset for one in pieces)
     if inset:
         yield nfill(
-            "{n:,} piece stands on supports inside its body: Breadth is between these, and Notes give the body.",
-            "{n:,} pieces stand on supports inside their bodies: Breadth is between these, and Notes give the bodies.",
+            "{n:,} piece stands on supports inside its body: Breadth is twice the distance from its middle to the "
+            "nearest edge of its base, and Notes give the body.",
+            "{n:,} pieces stand on supports inside their bodies: Breadth is twice the distance from the middle to the "
+            "nearest edge of the base, and Notes give the bodies.",
             inset,
         )  # fmt: skip
     if model.doors:

@@ -27,6 +27,8 @@ SMALLEST = 1e-6
 """Area below which a triangle is a line [m2]."""
 JOINED = 1e-3
 """Gap across which two parts of an outline are joined [m]."""
+NEAREST = 1e-3
+"""Edges of a base whose distances from the middle differ by less are as near [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +78,8 @@ def join(shapes: Sequence[Shape]) -> Shape:
 class Box:
     """The box round a piece: centre of its plan, shorter and longer side, height [m]; direction of the shorter [deg].
 
-    `support_breadth` and `support_width` are the distances between its outermost points at the floor along both [m].
+    `support_breadth` and `support_width` are the distances between its outermost points at the floor along both [m];
+    `base` is what the edge of its base that is nearest to the middle leaves it.
     """
 
     x: float
@@ -87,6 +90,20 @@ class Box:
     angle_deg: float
     support_breadth: float
     support_width: float
+    base: "Base"
+
+
+@dataclass(frozen=True, slots=True)
+class Base:
+    """The base of a piece about the middle of its plan: the convex hull of its points at the floor.
+
+    `reach` is the distance from the middle to the nearest edge [m], 0 where the middle lies beside the base;
+    `angle_deg` the direction to that edge, in [-90, 90); `across` the extent of the whole plan across that [m].
+    """
+
+    reach: float
+    angle_deg: float
+    across: float
 
 
 def find_box(shape: Shape) -> Box:
@@ -107,7 +124,8 @@ def find_box(shape: Shape) -> Box:
     along, across = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
     supports = float(np.ptp(feet @ along)), float(np.ptp(feet @ across))
     sides, height = (rectangle.short, rectangle.long), shape.top - shape.bottom
-    return Box(rectangle.x, rectangle.y, *sides, height, rectangle.angle_deg, *supports)
+    base = _find_base_edge(plan, feet, rectangle)
+    return Box(rectangle.x, rectangle.y, *sides, height, rectangle.angle_deg, *supports, base)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,6 +142,23 @@ class Rectangle:
     def area(self) -> float:
         """Its area [m2]."""
         return self.short * self.long
+
+
+def _find_base_edge(plan: FloatArray, feet: FloatArray, rectangle: Rectangle) -> Base:
+    """Return what the nearest edge of the base leaves a piece; of edges that are as near, that along the short side."""
+    middle, hull = np.array([rectangle.x, rectangle.y]), MultiPoint(feet).convex_hull
+    if not isinstance(hull, Polygon) or not hull.covers(shapely.Point(middle)):
+        return Base(0.0, rectangle.angle_deg, rectangle.long)
+    corners = np.array(shapely.geometry.polygon.orient(hull).exterior.coords)
+    edges = np.diff(corners, axis=0)
+    normals = np.stack([edges[:, 1], -edges[:, 0]], axis=1) / np.hypot(edges[:, 0], edges[:, 1])[:, None]
+    far = ((corners[:-1] - middle) * normals).sum(axis=1)
+    turn = math.radians(rectangle.angle_deg)
+    along = np.abs(normals @ np.array([math.cos(turn), math.sin(turn)]))
+    near = np.flatnonzero(far < far.min() + NEAREST)
+    x, y = normals[near[along[near].argmax()]].tolist()
+    angle = (math.degrees(math.atan2(y, x)) + 90) % 180 - 90
+    return Base(max(float(far.min()), 0.0), angle, float(np.ptp(plan @ np.array([-y, x]))))
 
 
 def _in_own_axes(shape: Shape) -> Rectangle | None:

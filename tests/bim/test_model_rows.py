@@ -46,6 +46,49 @@ def test_breadth_is_the_shortest_distance_between_outer_supports(supports, sizes
     assert found.breadth <= found.width
 
 
+def test_the_nearest_edge_of_the_base_leaves_less():
+    """The plinth of a wardrobe is set back by 10 cm at its front only: its middle is 20 cm from that edge."""
+    front = replace(PIECE, breadth=0.6, support_breadth=0.5, support_reach=0.2, support_angle_deg=30.0)
+    found = find_sizes(front)
+    assert (found.breadth, found.width, found.angle_deg, found.supports) == (40.0, 80.0, 30.0, 50.0)
+    assert (found.is_inset, found.is_off_middle, found.is_oblique) == (True, True, False)
+    side = replace(front, support_reach=0.15, support_angle_deg=-60.0)
+    assert (find_sizes(side).breadth, find_sizes(side).width, find_sizes(side).angle_deg) == (30.0, 60.0, -60.0)
+    (row,) = list_building(model(pieces=(front,))).items
+    assert row["notes"] == (
+        "body 60.0 x 80.0 x 190.0 cm, 50 cm between the outer supports, which are off the middle: Breadth is twice the "
+        "distance from the middle to the nearer edge"
+    )
+
+
+def test_an_oblique_edge_of_the_base_gives_the_direction_of_breadth():
+    chair = replace(PIECE, breadth=0.7, width=0.7, support_breadth=0.7, support_width=0.7, support_reach=0.265,
+                    support_angle_deg=75.0, support_across=0.8)  # fmt: skip
+    found = find_sizes(chair)
+    assert (found.breadth, found.width, found.angle_deg) == (53.0, 80.0, 75.0)
+    (row,) = list_building(model(pieces=(chair,))).items
+    assert row["notes"].endswith(
+        " between the outer supports: Breadth is twice the distance from the middle to the nearest edge between them"
+    )
+
+
+def test_an_edge_as_far_as_half_the_supports_changes_nothing():
+    for piece in (PIECE, replace(PIECE, support_breadth=0.3), replace(PIECE, support_breadth=0.4, support_width=0.25)):
+        reach = min(piece.support_breadth, piece.support_width) / 2
+        angle = 30.0 if piece.support_breadth < piece.support_width else -60.0
+        assert find_sizes(replace(piece, support_reach=reach, support_angle_deg=angle)) == replace(
+            find_sizes(piece), piece=replace(piece, support_reach=reach, support_angle_deg=angle)
+        )
+
+
+def test_a_piece_whose_middle_is_beside_its_base_is_left_out():
+    found = list_building(model(pieces=(PIECE, replace(PIECE, key="q", type="Easel", support_reach=0.0))))
+    assert [row["source_id"] for row in found.items] == ["p"]
+    assert [(one.type, str(one.reason)) for one in found.skipped] == [
+        ("Easel", "the middle of its body is not above its base in the model")
+    ]
+
+
 def test_the_body_of_a_piece_on_supports_stands_in_its_notes():
     found = list_building(model(pieces=(replace(PIECE, support_breadth=0.3, name="Shelf:1"),)))
     (row,) = found.items

@@ -1,0 +1,102 @@
+"""Boxes of pieces, and the base on which each stands."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+
+from assess.bim.plan_shapes import Box, Shape, find_box
+
+
+def draw(*boxes: tuple[float, float, float, float, float, float], turn: float = 0.0) -> Shape:
+    """Return boxes as one shape, each by two corners (x, y, z), turned about Z [deg]; of triangles it has none."""
+    points = [(x, y, z) for one in boxes for x in one[0::3] for y in one[1::3] for z in one[2::3]]
+    c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+    axes = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return Shape(np.array(points) @ axes.T, np.empty((0, 3), np.int64), axes)
+
+
+def leg(x: float, y: float, half: float = 0.001) -> tuple[float, float, float, float, float, float]:
+    return x - half, y - half, 0.0, x + half, y + half, 0.5
+
+
+def on_circle(radius: float, *degrees: float) -> list[tuple[float, float]]:
+    return [(radius * math.cos(math.radians(one)), radius * math.sin(math.radians(one))) for one in degrees]
+
+
+def base(box: Box) -> tuple[float, float]:
+    return box.base.reach, box.base.angle_deg
+
+
+WARDROBE = (-0.3, -0.5, 0.1, 0.3, 0.5, 2.0)
+
+
+@pytest.mark.parametrize("turn", [0.0, 30.0, -75.0])
+def test_a_plinth_set_back_at_the_front_only(turn):
+    """The middle of the body is 20 cm from the front edge of a plinth that is 50 cm deep."""
+    found = find_box(draw(WARDROBE, (-0.3, -0.5, 0.0, 0.2, 0.5, 0.1), turn=turn))
+    assert (found.breadth, found.support_breadth) == pytest.approx((0.6, 0.5))
+    assert base(found) == pytest.approx((0.2, turn))
+    assert found.base.across == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("turn", [0.0, 30.0, -75.0])
+@pytest.mark.parametrize("body", [(0.6, 1.0), (0.6, 0.6)])
+def test_feet_at_the_corners_of_a_rectangle_about_the_middle(body, turn):
+    """The edge along the longer side is the nearest; of a square, one along its own axes."""
+    breadth, width = body
+    x, y = breadth / 2 - 0.05, width / 2 - 0.05
+    found = find_box(draw((-breadth / 2, -width / 2, 0.5, breadth / 2, width / 2, 0.6),
+                          *(leg(i * x, j * y) for i in (-1, 1) for j in (-1, 1)), turn=turn))  # fmt: skip
+    assert found.base.reach == pytest.approx(found.support_breadth / 2)
+    assert found.base.angle_deg == pytest.approx(found.angle_deg)
+    assert found.base.across == pytest.approx(found.width)
+
+
+def test_a_plinth_off_the_middle_along_the_longer_side():
+    found = find_box(draw(WARDROBE, (-0.3, -0.1, 0.0, 0.3, 0.5, 0.1)))
+    assert base(found) == pytest.approx((0.1, -90.0))
+    assert found.base.across == pytest.approx(0.6)
+
+
+def test_a_base_in_the_form_of_a_cross():
+    """Four feet on the axes, 35 cm from the middle: the edges between them are at 45 degrees, and nearer."""
+    body = (-0.35, -0.35, 0.5, 0.35, 0.35, 1.0)
+    found = find_box(draw(body, *(leg(x, y) for x, y in on_circle(0.349, 0, 90, 180, 270))))
+    assert found.support_breadth == pytest.approx(0.7)
+    assert found.base.reach == pytest.approx(0.35 / math.sqrt(2), abs=2e-3)
+    assert abs(found.base.angle_deg) == pytest.approx(45, abs=0.5)
+    assert found.base.across == pytest.approx(0.7 * math.sqrt(2))
+
+
+def test_three_legs():
+    top = [(x - 0.001, y - 0.001, 0.5, x + 0.001, y + 0.001, 0.6) for x, y in on_circle(0.5, *range(0, 360, 10))]
+    found = find_box(draw(*top, *(leg(x, y) for x, y in on_circle(0.4, 90, 210, 330))))
+    assert (found.x, found.y) == pytest.approx((0, 0), abs=1e-6)
+    assert found.base.reach == pytest.approx(0.2, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    "feet",
+    [[(0.2, -0.4), (0.2, 0.4), (0.28, 0.0)], [(0.1, -0.4), (0.1, 0.4)], [(0.0, 0.0)]],
+    ids=["beside the middle", "two feet", "one foot"],
+)
+def test_a_middle_beside_its_base_has_no_reach(feet):
+    found = find_box(draw(WARDROBE, *(leg(x, y, 0.0) for x, y in feet)))
+    assert base(found) == (0.0, found.angle_deg)
+
+
+def test_no_direction_is_nearer_than_the_edge_that_is_found():
+    """Of any base: the distance from the middle to its outline, followed all the way round."""
+    rng = np.random.default_rng(7)
+    for _ in range(50):
+        feet = rng.uniform(-0.3, 0.3, (12, 2))
+        found = find_box(draw((-0.3, -0.3, 0.5, 0.3, 0.3, 1.0), *(leg(x, y, 0.0) for x, y in feet)))
+        ring = list(shapely.MultiPoint(feet).convex_hull.exterior.coords)
+        steps = np.linspace(0, 1, 500)[:, None]
+        around = np.vstack([np.array(one) + steps * np.subtract(other, one) for one, other in pairwise(ring)])
+        nearest = around[np.hypot(*around.T).argmin()]
+        assert found.base.reach == pytest.approx(np.hypot(*nearest), abs=1e-3)
+        assert found.base.across >= 2 * found.base.reach
