@@ -75,6 +75,20 @@ def test_the_list_of_what_was_skipped_is_copied(page, served):
     expect(found.get_by_role("heading", name="Start from a building model")).to_be_visible()
 
 
+FORMULAS = ('=HYPERLINK("https://example.org")', "+1", "-1", "@SUM(A1)", "\t=1", " =1", "Desk\t=1", "Desk\n=1", "A=1")
+
+
+def test_no_type_of_a_model_becomes_a_formula_of_a_spreadsheet(page, served):
+    found = page(served())
+    rows = [["Not on the floor", name, 3] for name in FORMULAS]
+    text = found.evaluate("async (rows) => (await import('/clipboard.mjs')).writeList(rows)", rows)
+    cells = [line.split("\t") for line in text.split("\n")]
+    assert [(one[0], one[2]) for one in cells] == [("Not on the floor", "3")] * len(FORMULAS)
+    assert [one[1] for one in cells] == [
+        '\'=HYPERLINK("https://example.org")', "'+1", "'-1", "'@SUM(A1)", "' =1", "' =1", "Desk =1", "Desk =1", "A=1",
+    ]  # fmt: skip
+
+
 def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try_works(page, served, tmp_path):
     server = served()
     found = page(server)

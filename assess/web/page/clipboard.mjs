@@ -105,6 +105,16 @@ export function readBlock(data) {
 }
 
 const quote = (text) => (/[\t\n\r"]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+
+/** Rows as lines with tabs, which a spreadsheet takes as cells: a text of a stranger's file becomes no formula there. */
+export const writeList = (rows) => rows.map((row) => row.map(writePlain).join("\t")).join("\n");
+
+function writePlain(value) {
+  if (typeof value === "number") return String(value);
+  const text = value.replace(/[\t\r\n]+/g, " ");
+  return /^\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|^\t/.test(value) ? `'${text}` : text;
+}
+
 const ESCAPES = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
 const escapeHtml = (text) => text.replace(/[&<>"]/g, (sign) => ESCAPES[sign]);
 

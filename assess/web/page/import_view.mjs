@@ -1,6 +1,7 @@
 // What was taken of a building model and what was skipped, what to check, and the way into the new workbook.
 
 import { get } from "./api.mjs";
+import { writeList } from "./clipboard.mjs";
 import { choose, clear, el, labelled } from "./elements.mjs";
 import { imports } from "./import_job.mjs";
 import { notice } from "./messages.mjs";
@@ -158,9 +159,8 @@ function checks({ warnings, remarks }) {
 /** The list as lines with tabs, which a spreadsheet takes as cells. */
 async function copyList(found) {
   const rows = found.skipped.flatMap((group) => group.types.map(([type, n]) => [group.reason, type, n]));
-  const text = [[t("Reason"), t("Type"), t("Number")], ...rows].map((row) => row.join("\t")).join("\n");
   try {
-    await navigator.clipboard.writeText(text);
+    await navigator.clipboard.writeText(writeList([[t("Reason"), t("Type"), t("Number")], ...rows]));
     notice(t("The list was copied: paste it into a spreadsheet or a message."));
   } catch {
     notice(t("The browser does not allow copying. Select the table, and copy it with Ctrl and C."), { kind: "error" });
