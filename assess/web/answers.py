@@ -176,8 +176,9 @@ def upload(asked: Asked) -> Answer:
 
 def add_file(asked: Asked) -> Answer:
     """Take a file that the workbook names."""
-    asked.session.check_room(len(asked.data))
-    asked.book.add_file(_name(asked), asked.data)
+    with asked.session.lock:
+        asked.session.check_room(len(asked.data))
+        asked.book.add_file(_name(asked), asked.data)
     return asked.book.describe()
 
 

@@ -26,9 +26,9 @@ from assess.web.guard import MODELS, MOST_MODEL, SESSION
 from assess.web.importing import SOURCE
 from assess.web.problem_answers import describe_fault
 from assess.web.request_errors import NOT_FOUND, RequestError
-from assess.web.sessions import Session
+from assess.web.sessions import Session, check_share
 from assess.web.texts import COOKIE, choose_language
-from assess.web.uploads import parse_body, read_body, save_body, skip_body
+from assess.web.uploads import check_size, parse_body, read_body, save_body, skip_body
 
 MOST_JSON = 32 * 2**20
 """Bytes of a request in JSON: a whole sheet that is pasted."""
@@ -107,25 +107,41 @@ async def _send(note_edit: NoteEdit, handler: Handler, request: Request) -> Resp
 
 
 async def _receive(note_edit: NoteEdit, handler: Handler, request: Request) -> Response:
-    """Have a handler take a file that is too large for the memory, in a folder of its own."""
+    """Have a handler take a file that is too large for the memory, in a folder of its own; one file at a time."""
     asked = _ask(request, note_edit)
+    slots, place = asked.session.sending_slots, object()
     try:
-        path = await run_in_threadpool(_make_room, asked.session, request)
+        slots.take(place)
+        path, room = await run_in_threadpool(_make_room, asked.session, request)
     except (RequestError, OSError) as error:
+        slots.leave(place)
         await skip_body(request)
         return await run_in_threadpool(_carry_out, _fail(error), asked)
     try:
-        await save_body(request, path, MOST_MODEL)
+        await _save(asked.session, request, path, room)
     except (RequestError, OSError) as error:
-        await run_in_threadpool(shutil.rmtree, path.parent, ignore_errors=True)
         return await run_in_threadpool(_carry_out, _fail(error), asked)
+    finally:
+        slots.leave(place)
     return await run_in_threadpool(_carry_out, handler, replace(asked, file=path))
 
 
-def _make_room(session: Session, request: Request) -> Path:
-    """Return where the body of a request goes."""
-    session.check_room(int(request.headers.get("content-length", "0")))
-    return session.make_import_folder() / SOURCE
+def _make_room(session: Session, request: Request) -> tuple[Path, int]:
+    """Return where the body of a request goes, and how many bytes it may have: not every request tells its length."""
+    room = session.find_room()
+    check_share(int(request.headers.get("content-length", "0")), room, session.limits)
+    return session.make_import_folder() / SOURCE, room
+
+
+async def _save(session: Session, request: Request, path: Path, room: int) -> None:
+    """Save a body; what is too large, or breaks off, leaves nothing."""
+    try:
+        size = await save_body(request, path, min(room, MOST_MODEL))
+        check_size(size, MOST_MODEL)
+        check_share(size, room, session.limits)
+    except BaseException:
+        shutil.rmtree(path.parent, ignore_errors=True)
+        raise
 
 
 def _fail(error: RequestError | OSError) -> Handler:

@@ -65,6 +65,16 @@ class Limits:
 HOSTED = Limits(bytes=300_000_000, sessions=50, jobs=2, idle=12 * 3600.0)
 """Limits of a server for several users."""
 
+SENDING = fill("Another building model is being sent. Wait until it has been received, then try again.")
+
+
+def check_share(size: int, room: int, limits: Limits) -> None:
+    """Raise RequestError where so many bytes are more than the room that a session has left."""
+    if size > room:
+        raise RequestError(
+            fill("The files of this session have more than {most:.0f} MB.", most=limits.bytes / 1e6), TOO_MANY
+        )
+
 
 @dataclass(slots=True, eq=False)
 class Session:
@@ -82,6 +92,8 @@ class Session:
         Where new workbooks are made: the folder in which the command was started; None: they are only held.
     language : str
         Code of the language of the page; blank: see `assess.web.texts.choose_language`.
+    sending_slots : Slots
+        The place of a building model while it is sent; one at a time, so that their bytes can be counted.
     reading, imported : Import, optional
         The building model that was sent last, as long as it has not become a workbook, and that of the open workbook.
     """
@@ -98,6 +110,7 @@ class Session:
     reading: "Import | None" = None
     imported: "Import | None" = None
     reading_slots: Slots = field(default_factory=lambda: Slots(1))
+    sending_slots: Slots = field(default_factory=lambda: Slots(1, SENDING))
     language: str = ""
     seen: float = field(default_factory=time.monotonic)
     looked: float = 0.0
@@ -106,11 +119,11 @@ class Session:
 
     def check_room(self, size: int) -> None:
         """Raise RequestError where so many bytes more are too many for one session."""
-        used = sum(path.stat().st_size for path in self.folder.rglob("*") if path.is_file())
-        if used + size > self.limits.bytes:
-            raise RequestError(
-                fill("The files of this session have more than {most:.0f} MB.", most=self.limits.bytes / 1e6), TOO_MANY
-            )
+        check_share(size, self.find_room(), self.limits)
+
+    def find_room(self) -> int:
+        """Return how many bytes more this session may have."""
+        return self.limits.bytes - sum(path.stat().st_size for path in self.folder.rglob("*") if path.is_file())
 
     def view(self) -> "LiveView":
         """Return what answers with live values."""
@@ -147,8 +160,8 @@ class Session:
         """Open a workbook that was sent."""
         from assess.web.book import Book
 
-        self.check_room(len(data))
         with self.lock:
+            self.check_room(len(data))
             folder = Path(tempfile.mkdtemp(prefix="files-", dir=self.folder))
             return self.take(Book.hold(make_safe(name), data, folder))
 

@@ -35,13 +35,15 @@ async def read_body(request: Request, most: int) -> bytes:
     return b"".join(parts)
 
 
-async def save_body(request: Request, path: Path, most: int) -> None:
-    """Write the body of a request to a new file, as it comes; what is too large is read to its end, as above.
+async def save_body(request: Request, path: Path, most: int) -> int:
+    """Write the body of a request to a new file, as it comes, and return how many bytes it has.
+
+    No more than `most` are written; what is too large is read to its end, as above.
 
     Raises
     ------
     RequestError
-        If it has more than `most` bytes, or breaks off.
+        If it breaks off.
     OSError
         If it cannot be written.
     """
@@ -56,7 +58,7 @@ async def save_body(request: Request, path: Path, most: int) -> None:
                     await run_in_threadpool(file.write, part)
         except ClientDisconnect:
             raise RequestError(fill("The request broke off."), BAD_REQUEST) from None
-    check_size(size, most)
+    return size
 
 
 async def skip_body(request: Request) -> None:

@@ -14,6 +14,7 @@ from assess.web.importing import Import, find_free, name_workbook
 from assess.web.jobs import READING, Slots
 from assess.web.request_errors import RequestError
 from assess.web.safe_names import clean_name
+from assess.web.sessions import HOSTED
 from assess.workbook.read import read_tables
 from tests.bim import scan_files
 from tests.bim.cobie_files import write_cobie
@@ -188,6 +189,39 @@ def test_a_client_that_goes_away_while_it_sends_leaves_nothing(served, tmp_path)
         wait_until(lambda: _list_left(tmp_path), len)
     wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
     assert client.get("/api/import").json()["import"] is None
+
+
+def test_one_model_is_sent_at_a_time(served, tmp_path):
+    client = served().client
+    head = "".join(f"{name}: {value}\r\n" for name, value in client.headers.items())
+    parts = urlsplit(client.base)
+    with socket.create_connection((parts.hostname, parts.port)) as line:
+        text = f"POST /api/import?name=a.ifc HTTP/1.1\r\nHost: {parts.netloc}\r\n{head}Transfer-Encoding: chunked\r\n"
+        line.sendall(text.encode() + b"\r\n3e8\r\n" + b"x" * 1000 + b"\r\n")
+        wait_until(lambda: _list_left(tmp_path), len)
+        reply = client.request("POST", "/api/import?name=b.ifc", b"x")
+        assert (reply.status, reply.json()["message"]) == (
+            429, "Another building model is being sent. Wait until it has been received, then try again.",
+        )  # fmt: skip
+        assert len(_list_left(tmp_path)) == 1
+        assert client.get("/api/start").status == 200
+    wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
+    wait_until(lambda: client.request("POST", "/api/import?name=b.ifc", b"x").status, lambda status: status == 200)
+
+
+@pytest.mark.slow
+def test_on_a_server_for_several_a_model_of_no_known_length_is_counted_as_it_is_saved(served, tmp_path):
+    server = served(None, *OPTIONS)
+    ann, _ = _come(server, "ann")
+    (folder,) = (tmp_path / "tmp").rglob("session-*")
+    with (folder / "results").open("wb") as file:
+        file.truncate(HOSTED.bytes - 2**20)
+    part = b"x" * 2**18
+    for headers in ({"Content-Length": str(5 * 2**18)}, {}):
+        reply = ann.request("POST", "/api/import?name=a.ifc", (part for _ in range(5)), headers)
+        assert (reply.status, reply.json()["message"]) == (429, "The files of this session have more than 300 MB.")
+        assert _list_left(tmp_path) == []
+    assert ann.request("POST", "/api/import?name=a.ifc", (part for _ in range(3))).status == 200
 
 
 @pytest.mark.slow
