@@ -45,7 +45,7 @@ class Link:
     spaces : tuple of str
         Keys of the spaces that it joins.
     overall : float
-        Width of a door as the model states it, else that of its opening [m]; 0 where it is no door.
+        Width of a door: the smaller of what the model states and its opening [m]; 0 where it is no door.
     """
 
     name: str
@@ -155,11 +155,14 @@ def place_at(at: Point, normal: Point, corners: Sequence[Point]) -> shapely.Poly
 
 DOOR_LESS = 0.1
 """What frame and leaf take of the overall width of a door, assumed [m]."""
+SAME = 0.005
+"""Difference up to which two widths are the same [m]."""
 
 
 def link_door(door: Door, sides: Sides) -> Link:
-    """Return a door as a link."""
-    overall = door.overall if door.overall > 0 else door.width
+    """Return a door as a link; of its stated width and that of its opening in the plan the smaller is believed."""
+    stated, drawn = door.overall, door.width
+    overall = drawn if stated <= 0 or 0 < drawn < stated - SAME else stated
     spaces = tuple(dict.fromkeys(key for key in sides if key))
     at, clear = (door.x, door.y), max(overall - DOOR_LESS, 0.0)
     return Link(f"door {door.key}", at, find_normal(door), door.width, clear, spaces, overall)

@@ -7,7 +7,7 @@ A route is the union of the ways of all rooms that leave their storey by one exi
 once. The route to a stair ends with the flight, at whose other end the route of that storey goes on.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
@@ -16,19 +16,18 @@ import shapely
 
 from assess.bim.building_model import BuildingModel
 from assess.bim.door_sides import find_ground, find_kinds
-from assess.bim.draft_floor import DOOR_LESS, Link
+from assess.bim.draft_floor import Link
 from assess.bim.draft_network import Network, Node, Step, build_network, find_steps
 from assess.bim.draft_openings import NARROWEST_OPENING
+from assess.bim.draft_widths import measure_gap, set_widths
 from assess.i18n import Text, fill, gettext, nfill
 from assess.natural import natural_key
 from assess.workbook.draft_names import DRAFT, mark_draft
 from assess.workbook.names import key
-from assess.workbook.schema import DEFAULT_WIDTH, ROUTES
+from assess.workbook.schema import DEFAULT_WIDTH
 
 Rows = Sequence[Mapping[str, Any]]
 
-NARROWEST = ROUTES.column("clear_width").low or 0.0
-"""Least clear width that a workbook takes [m]."""
 IN_ROOM = 0.3
 """A segment runs through a room if it is longer than this there [m]."""
 FALLS_OVER = 3.0
@@ -169,7 +168,8 @@ class _Sheet:
             return row | {"notes": gettext("Stair: fill in Clear width.")}
         row |= {"floor": self._floor(ends[0].storey), "room": self._list_rooms(ends, way["space"])}
         links = [node.link for node in ends if node.link is not None]
-        row |= _set_widths(links, way["width"])
+        gap = measure_gap(self.network.plans[ends[0].storey], way["space"], (ends[0].at, ends[1].at), links)
+        row |= set_widths(links, way["width"], gap)
         return {name: value for name, value in row.items() if value not in ("", None)}
 
     def _list_rooms(self, ends: tuple[Node, Node], space: str) -> str:
@@ -185,24 +185,6 @@ class _Sheet:
                 found += [one for one in opening.spaces if not plan.hides(line, one, BEHIND_WALL)]
         rooms = [self.names[one] for one in dict.fromkeys(found)]
         return "" if any(";" in room for room in rooms) else "; ".join(rooms)
-
-
-def _set_widths(links: Iterable[Link], between_walls: float | None) -> dict[str, Any]:
-    """Return the widths of a segment and what is assumed of them, by the links at its ends, and of a corridor."""
-    narrow = [link for link in links if link.overall > 0 or 0 < link.clear < DEFAULT_WIDTH]
-    clear = min((link.clear for link in narrow), default=between_walls)
-    if clear is None:
-        return {}
-    tightest = next((link for link in narrow if link.clear == clear), None)
-    clear = max(int(100 * clear + 1e-6) / 100, NARROWEST)
-    notes = gettext("Clear width: between the walls of the model.")
-    if tightest is not None and tightest.overall > 0:
-        notes = gettext("Clear width: the door's {overall:.2f} m in the model less {less:g} m for frame and leaf, "
-                        "assumed.", overall=tightest.overall, less=DOOR_LESS)  # fmt: skip
-    if clear >= DEFAULT_WIDTH:
-        return {"clear_width": clear, "notes": notes}
-    same = gettext("Required width: the same, as that is less than {default:g} m.", default=DEFAULT_WIDTH)
-    return {"clear_width": clear, "required_width": clear, "notes": f"{notes} {same}"}
 
 
 # ---------------------------------------------------------------- remarks
