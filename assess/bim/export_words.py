@@ -101,7 +101,7 @@ def say_scenario(run: PastRun) -> str:
 def _say_shaking(run: PastRun) -> str:
     """Return the assumed intensity, "" where none is assumed."""
     choice = next((one.choice for one in SHAKINGS.values() if one.name == run.shaking), run.shaking)
-    return _("assumed: {intensity}", intensity=_(choice)) if choice else ""
+    return _("{intensity} (assumed)", intensity=_(choice)) if choice else ""
 
 
 def say_report(run: PastRun) -> str:

@@ -125,7 +125,7 @@ def test_an_assumed_shaking_is_called_assumed(tmp_path):
     results = write_results(tmp_path, CUPBOARDS, floors, building={"shaking": "MMI VIII, severe", "height": 6.2})
     out = tmp_path / "out.ifc"
     out.write_bytes(export(results, DUPLEX, with_topics=False).model)
-    assert read_sets(out)[CUPBOARD_1]["Scenario"] == "assumed: MMI VIII, severe"
+    assert read_sets(out)[CUPBOARD_1]["Scenario"] == "MMI VIII, severe (assumed)"
 
 
 def test_texts_come_back_with_their_accents(exported):
