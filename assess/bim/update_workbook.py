@@ -16,11 +16,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+from assess.bim.building_model import Point
 from assess.bim.floor_drawing import name_plan
 from assess.bim.import_workbook import ImportedBuilding, list_rows, name_apart
 from assess.bim.update_cells import SheetUpdate
 from assess.bim.update_changes import RENAMED, Change, describe
 from assess.bim.update_names import match_floors, match_rooms
+from assess.bim.update_origin import Pair, find_offset, move_rows
 from assess.bim.update_places import update_places
 from assess.bim.update_rows import BookUpdate, Rows
 from assess.bim.update_types import SIZES, TypeUpdate
@@ -58,11 +60,14 @@ class Updated:
         All that was done, and all that was not: see `assess.bim.update_changes.Change`.
     problems : tuple of Problem
         Why new rows could not be added, as warnings.
+    moved : Point
+        What was added to all positions of the model, so that they have the origin of the workbook [m].
     """
 
     data: bytes
     changes: tuple[Change, ...] = ()
     problems: tuple[Problem, ...] = ()
+    moved: Point = (0.0, 0.0)
 
     @property
     def is_changed(self) -> bool:
@@ -113,14 +118,15 @@ def update_workbook(
     if not items.rows and any(one.severity == "error" and one.sheet == items.sheet.name for one in problems):
         raise WorkbookError(problems, held.language)
     book = BookUpdate(sheets, changes)
-    _BuildingUpdate(imported, name, book).run()
+    building = _BuildingUpdate(imported, name, book)
+    building.run()
     written = {sheet: one for sheet, one in sheets.items() if one.values}
     if written:
         patches = {one.cells.title: one.values for one in written.values()}
         data = patch_workbook(data, patches, name=name, progress=progress).data
         if not written.keys() <= _IDLE:
             data = _store_results(data, name, progress, records)
-    return Updated(data, tuple(changes), tuple(book.problems))
+    return Updated(data, tuple(changes), tuple(book.problems), building.moved)
 
 
 def _store_results(data: bytes, name: str, progress: Progress, records: Path | Mapping[str, bytes] | None) -> bytes:
@@ -132,17 +138,15 @@ def _store_results(data: bytes, name: str, progress: Progress, records: Path | M
 # ---------------------------------------------------------------- the building
 
 
-_Pair = tuple[Mapping[str, Any], Row]
-"""A row of the model, and that of the workbook that was imported from it."""
-
-
 class _BuildingUpdate:
     """One update: it works out everything that is to be written."""
 
     def __init__(self, imported: ImportedBuilding, name: str, book: BookUpdate) -> None:
         self.imported, self.name, self.book = imported, name, book
         self.items = book.sheets["Items"]
-        self.rows = list_rows(imported)
+        rows = list_rows(imported)
+        self.moved = find_offset(_pair(self.items.table.rows, rows["Items"]))
+        self.rows = move_rows(rows, self.moved)
         self.types = TypeUpdate(book, self.rows["Catalogue"][: len(imported.types)])
         self.floors: dict[str, str] = {}
         self.rooms: dict[tuple[str, str], str] = {}
@@ -170,7 +174,7 @@ class _BuildingUpdate:
 
     # ------------------------------------------------------------ who is who
 
-    def _match_items(self) -> tuple[list[_Pair], list[Mapping[str, Any]]]:
+    def _match_items(self) -> tuple[list[Pair], list[Mapping[str, Any]]]:
         """Return the pieces that both have, and those of the model that the workbook lacks.
 
         Raises
@@ -187,7 +191,7 @@ class _BuildingUpdate:
             raise self._no_match()
         for one in (one for one in own if one in model):
             self._note_duplicates(own[one], model[one])
-        pairs = [(rows[0], own[one][0]) for one, rows in model.items() if len(rows) == 1 == len(own.get(one, ()))]
+        pairs = list(_pair(self.items.table.rows, self.rows["Items"]))
         return pairs, [row for one, rows in model.items() if one not in own for row in rows]
 
     def _no_match(self) -> InputError:
@@ -211,7 +215,7 @@ class _BuildingUpdate:
             why = fill("the model has {n} pieces of its Source ID", n=len(models))
             self.items.note_row("kept", rows[0], why)
 
-    def _match_floors(self, pairs: Sequence[_Pair]) -> None:
+    def _match_floors(self, pairs: Sequence[Pair]) -> None:
         own = _by_floor(self.book.sheets["Floors"].table) if "Floors" in self.book.sheets else {}
         found = match_floors(
             {key(row["floor"]): row.get("elevation") for row in self.rows["Floors"]},
@@ -220,7 +224,7 @@ class _BuildingUpdate:
         )
         self.floors = {one: own[name].get("floor") for one, name in found.items()}
 
-    def _match_rooms(self, stayed: Sequence[_Pair]) -> None:
+    def _match_rooms(self, stayed: Sequence[Pair]) -> None:
         """Find out which rooms people have renamed, by the pieces that are still on their floor."""
         known = {key(row["room"]) for row in self.rows["Items"] if row.get("room")}
         known |= {key(row["place"]) for row in self.rows["Places"]}
@@ -239,7 +243,7 @@ class _BuildingUpdate:
         """Return what people call a room of the model on a floor of the workbook."""
         return self.rooms.get((key(floor), key(room)), room)
 
-    def _note_renamed(self, pairs: Sequence[_Pair]) -> None:
+    def _note_renamed(self, pairs: Sequence[Pair]) -> None:
         """List each room, and each type, that keeps the name that people gave to it."""
         rooms, types = dict(self.rooms), dict(self.types.renamed)
         for model, row in pairs:
@@ -366,6 +370,14 @@ def _by_id(rows: Iterable[_Row]) -> dict[str, list[_Row]]:
         if one := read_text(row.get("source_id") or ""):
             found.setdefault(one, []).append(row)
     return found
+
+
+def _pair(own: Iterable[Row], model: Iterable[Mapping[str, Any]]) -> Iterator[Pair]:
+    """Yield the pieces that both have, by Source IDs that each has once."""
+    known = _by_id(own)
+    for one, rows in _by_id(model).items():
+        if len(rows) == 1 == len(known.get(one, ())):
+            yield rows[0], known[one][0]
 
 
 def _list_sources(book: BookUpdate, suffix: str) -> Iterator[str]:

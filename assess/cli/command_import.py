@@ -184,6 +184,9 @@ def describe_changes(updated: "Updated") -> Iterator[str]:
     """Yield what an update changed, added, kept or missed in the workbook."""
     from assess.bim.update_workbook import describe
 
+    x, y = updated.moved
+    if x or y:
+        yield f"Positions of the model were moved by {x:,.0f} m along X and {y:,.0f} m along Y, as in the workbook."
     if not updated.changes:
         yield "The workbook is up to date with the model: nothing was changed."
     yield from (str(describe(change)) for change in updated.changes[:MOST_CHANGES])
