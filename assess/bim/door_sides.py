@@ -9,18 +9,22 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
 import shapely
+from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import BuildingModel, Door, Space, Storey
+from assess.bim.building_model import Area, BuildingModel, Door, Point, Space, Storey
 from assess.bim.plan_shapes import to_polygon
+from assess.bim.space_search import SpaceSearch
 
 Sides = tuple[str, str]
 """Keys of the spaces on the side to which the normal of a door points, and on the other; "" where there is none."""
 DoorKind = Literal["inside", "exit", "outside", "same room", "no room"]
 
 PROBES = (0.15, 0.35, 0.65)
-"""Distances from the face of the wall at which a space is looked for, the nearest first [m]."""
+"""Distances from the face of the door, and of the wall, at which a space is looked for, the nearest first [m]."""
 THINNEST = 0.1
 """A wall is taken to be at least so thick [m]."""
+THICKEST = 1.5
+"""So far from the centre of a door the face of its wall is looked for [m]."""
 REACH = 0.02
 """How far a space may be from the point at which it is looked for [m]."""
 BASEMENT = -1.0
@@ -31,8 +35,8 @@ def find_sides(model: BuildingModel) -> dict[str, Sides]:
     """Return the spaces on both sides of every door, by the door's key; of spaces that overlap the smallest."""
     found: dict[str, Sides] = {}
     for storey, doors in _by_storey(model.doors).items():
-        spaces = [one for one in model.spaces if one.storey == storey]
-        found.update(zip((door.key for door in doors), _probe(doors, spaces), strict=True))
+        spaces, walls = [one for one in model.spaces if one.storey == storey], model.walls.get(storey, ())
+        found.update(zip((door.key for door in doors), _probe(doors, spaces, walls), strict=True))
     return {door.key: found[door.key] for door in model.doors}
 
 
@@ -87,29 +91,50 @@ def _by_storey(doors: Sequence[Door]) -> dict[str, list[Door]]:
     return found
 
 
-def _probe(doors: Sequence[Door], spaces: Sequence[Space]) -> Iterator[Sides]:
+def _probe(doors: Sequence[Door], spaces: Sequence[Space], walls: Sequence[Area]) -> Iterator[Sides]:
     """Yield the sides of the doors of one storey."""
-    polygons = [to_polygon(space.area) for space in spaces]
-    sizes = [polygon.area for polygon in polygons]
-    points = [shapely.Point(at) for door in doors for at in _place_probes(door)]
-    hits: dict[int, int] = {}
-    for at, space in zip(*_query(polygons, points), strict=True):
-        hits[at] = min(hits.get(at, space), space, key=lambda one: (sizes[one], one))
-    count = len(PROBES)
-    for start in range(0, len(points), 2 * count):
-        near = [next((hits[at] for at in range(one, one + count) if at in hits), -1) for one in (start, start + count)]
-        one, other = ("" if at < 0 else spaces[at].key for at in near)
+    search, solids = SpaceSearch(spaces), [to_polygon(one) for one in walls]
+    tree = shapely.STRtree(solids)
+    for door in doors:
+        ways = [_look(door, sign) for sign in (1, -1)]
+        near = [shapely.union_all([solids[at] for at in sorted(tree.query(way))]) for way in ways]
+        probes = [_place_probes(door, way, wall) for way, wall in zip(ways, near, strict=True)]
+        one, other = (next((held[0].key for held in search.find_all(own, REACH) if held), "") for own in probes)
         yield one, other
 
 
-def _query(polygons: Sequence[shapely.Polygon], points: Sequence[shapely.Point]) -> tuple[list[int], list[int]]:
-    """Return which points are in which polygons: the numbers of points, and of polygons."""
-    found = shapely.STRtree(polygons).query(points, predicate="dwithin", distance=REACH)
-    return found[0].tolist(), found[1].tolist()
-
-
-def _place_probes(door: Door) -> list[tuple[float, float]]:
-    """Return where spaces are looked for on the side of a door's normal, then on the other."""
+def _look(door: Door, sign: int) -> shapely.LineString:
+    """Return the line from the centre of a door along its normal, or against it, through the thickest wall."""
     x, y = find_normal(door)
-    away = [max(door.thickness, THINNEST) / 2 + probe for probe in PROBES]
-    return [(door.x + sign * far * x, door.y + sign * far * y) for sign in (1, -1) for far in away]
+    return shapely.LineString([(door.x, door.y), (door.x + sign * THICKEST * x, door.y + sign * THICKEST * y)])
+
+
+def _place_probes(door: Door, way: shapely.LineString, walls: BaseGeometry) -> list[Point]:
+    """Return where spaces are looked for on one side of a door: from its own face, and from that of the wall round it.
+
+    A leaf without an opening is often much thinner than its wall, and at one face of that.
+    """
+    face = max(door.thickness, THINNEST) / 2
+    away = [face + probe for probe in PROBES]
+    far = _find_face(way, walls, face)
+    if far > face:
+        away += [far + probe for probe in PROBES]
+    return [_reach(way, one) for one in away]
+
+
+def _find_face(way: shapely.LineString, walls: BaseGeometry, face: float) -> float:
+    """Return how far along a line from a door the wall round it ends [m]; `face` where it is thinner."""
+    start = shapely.Point(way.coords[0])
+    parts = [one for one in shapely.get_parts(way.intersection(walls)) if isinstance(one, shapely.LineString)]
+    for part in sorted(parts, key=start.distance):
+        if start.distance(part) > face + REACH:
+            break
+        face = max(face, start.hausdorff_distance(part))
+    return face
+
+
+def _reach(way: shapely.LineString, far: float) -> Point:
+    """Return the point so far along a line, or beyond its end [m]."""
+    (x, y), (u, v) = way.coords
+    share = far / way.length
+    return x + share * (u - x), y + share * (v - y)

@@ -5,9 +5,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import shapely
-from shapely import Point, Polygon
-
 from assess.bim.building_model import LeftOut, Piece, Space, Storey
 from assess.bim.ifc_elements import (
     Element,
@@ -20,7 +17,8 @@ from assess.bim.ifc_elements import (
     tell_apart,
 )
 from assess.bim.ifc_site import say
-from assess.bim.plan_shapes import Shape, find_box, to_polygon
+from assess.bim.plan_shapes import Shape, find_box
+from assess.bim.space_search import SpaceSearch
 from assess.errors import ModelError
 from assess.i18n import Text, fill
 
@@ -157,16 +155,15 @@ def _is_fitted(kind: str) -> bool:
 
 
 class _Places:
-    """Finds the storey and the room of an element: that which holds it in the model, else by where it stands."""
+    """Finds the storey and the room of an element: that which holds it in the model, else the smallest it stands in."""
 
     def __init__(self, storeys: Sequence[Storey], spaces: Sequence[Space]) -> None:
         self.storeys = {one.key: one for one in storeys}
         self._spaces = {one.key: one for one in spaces}
-        self._plans: dict[str, list[tuple[Space, Polygon]]] = {}
+        of_storey: dict[str, list[Space]] = {}
         for one in spaces:
-            plan = to_polygon(one.area)
-            shapely.prepare(plan)
-            self._plans.setdefault(one.storey, []).append((one, plan))
+            of_storey.setdefault(one.storey, []).append(one)
+        self._searches = {storey: SpaceSearch(own) for storey, own in of_storey.items()}
 
     def find(self, element: Element, x: float, y: float, bottom: float) -> tuple[str, Space | None]:
         """Return the key of the storey, and the space."""
@@ -184,9 +181,10 @@ class _Places:
         return (max(below, key=lambda one: one.level) if below else next(iter(self.storeys.values()))).key
 
     def _list_at(self, storey: str, x: float, y: float, bottom: float) -> Iterator[Space]:
-        for space, plan in self._plans.get(storey, ()):
-            if space.bottom - _NEAR_FLOOR <= bottom <= space.top and plan.intersects(Point(x, y)):
-                yield space
+        if storey in self._searches:
+            for space in self._searches[storey].find_all([(x, y)])[0]:
+                if space.bottom - _NEAR_FLOOR <= bottom <= space.top:
+                    yield space
 
 
 def _to_piece(element: Element, key: str, shape: Shape, places: _Places) -> Piece:

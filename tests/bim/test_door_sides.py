@@ -74,6 +74,29 @@ def test_of_spaces_in_each_other_the_smallest_counts():
     assert find_sides(found) == {"d": ("b", "a")}
 
 
+@pytest.mark.parametrize("x", [4.03, 4.97, 4.5])
+def test_a_leaf_at_one_face_of_a_thick_wall_joins_both_rooms(x):
+    """The wall is 1 m thick and not cut; the leaf is 6 cm and has no opening of its own."""
+    leaf = replace(door("d", x, 2.0, 0.0), thickness=0.06)
+    found = model(leaf, spaces=(room("a", 0, 0, 4, 4), room("b", 5, 0, 9, 4)))
+    walled = replace(found, walls={"0": (rectangle(4, -1, 5, 5),)})
+    assert (find_sides(walled), find_kinds(walled)) == ({"d": ("b", "a")}, {"d": "inside"})
+
+
+def test_an_outer_wall_that_is_thick_leads_out_all_the_same():
+    leaf = replace(door("d", 4.03, 2.0, 0.0), thickness=0.06)
+    found = replace(model(leaf, spaces=(room("a", 0, 0, 4, 4),)), walls={"0": (rectangle(4, -1, 5, 5),)})
+    assert find_kinds(found) == {"d": "exit"}
+
+
+def test_a_wall_behind_another_is_not_that_of_the_door():
+    """Beyond a passage of 80 cm that has no space."""
+    leaf = door("d", 4.05, 2.0, 0.0)
+    found = model(leaf, spaces=(room("a", 0, 0, 4, 4), room("b", 5.2, 0, 9, 4)))
+    walled = replace(found, walls={"0": (rectangle(4, -1, 4.1, 5), rectangle(4.9, -1, 5.2, 5))})
+    assert find_sides(walled) == {"d": ("", "a")}
+
+
 def test_a_room_is_found_behind_a_thick_finish():
     found = model(replace(door("d", 4.25, 2.0, 0.0), thickness=0.1),
                   spaces=(room("a", 0, 0, 4, 4), room("b", 4.7, 0, 8, 4)))  # fmt: skip

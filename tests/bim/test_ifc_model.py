@@ -161,6 +161,32 @@ def test_supports_are_what_touches_the_floor(tmp_path):
     assert (piece.support_breadth, piece.support_width) == pytest.approx((0.40, 1.46), abs=1e-4)
 
 
+@pytest.mark.parametrize("gross_first", [True, False])
+def test_a_piece_in_overlapping_spaces_stands_in_the_smallest(tmp_path, gross_first):
+    """Some programs export the gross area of a storey as a space, too."""
+    model = ModelWriter()
+    storey = model.storey()
+    sizes = [(0, 0, 0, 20, 20, 3), (0, 0, 0, 6, 4, 3)]
+    for size in sizes if gross_first else sizes[::-1]:
+        model.space(storey, size)
+    model.piece("Shelf", SHELF, within=storey, at=(2, 1, 0))
+    model.piece("Shelf 2", SHELF, within=storey, at=(8, 8, 0))
+    found = read_model(model.write(tmp_path / "a.ifc"), "a.ifc")
+    areas = {one.key: max(x for x, _ in one.area[0]) - min(x for x, _ in one.area[0]) for one in found.spaces}
+    assert {one.name: areas[one.space] for one in found.pieces} == pytest.approx({"Shelf": 6, "Shelf 2": 20})
+
+
+def test_the_space_that_holds_a_piece_in_the_model_is_its_room(tmp_path):
+    """Whatever else it stands in."""
+    model = ModelWriter()
+    storey = model.storey()
+    gross = model.space(storey, (0, 0, 0, 20, 20, 3))
+    model.space(storey, (0, 0, 0, 6, 4, 3))
+    model.piece("Shelf", SHELF, within=gross, at=(2, 1, 0))
+    (piece,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").pieces
+    assert piece.space == gross.GlobalId
+
+
 def test_an_assembly_is_one_piece_with_its_parts(tmp_path):
     model, _, room = one_room()
     whole = model.piece("Desk", within=room, at=(3, 2, 0))
