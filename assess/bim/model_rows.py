@@ -7,19 +7,24 @@ cross, Breadth is twice that distance and lies across that edge: the piece rocks
 """
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from assess.bim.building_model import Area, BuildingModel, Door, Piece, Space, Stair, Storey
 from assess.bim.cobie_floors import LOWEST_ROOF, note_datum
-from assess.bim.door_sides import find_kinds
+from assess.bim.door_sides import REACH, find_kinds, find_sides
+from assess.bim.draft_corridors import find_width
 from assess.bim.draft_floor import find_room_points
 from assess.bim.floor_drawing import Drawn, draw_storey, name_plans
 from assess.bim.import_workbook import LONGEST_NAME, ImportedBuilding, Skipped, name_apart
 from assess.bim.model_names import Names, name_floors, name_items, name_places, sort_pieces
-from assess.bim.plan_shapes import to_polygon
+from assess.bim.plan_shapes import find_rectangle, to_polygon
+from assess.bim.space_search import SpaceSearch
 from assess.i18n import Text, fill, gettext, nfill
 from assess.workbook.outlines import MOST, OutlineError, parse_outline
 from assess.workbook.schema import BUILDING, FLOORS, ITEMS
@@ -31,9 +36,17 @@ SAME = 0.005
 """Difference up to which two sizes are the same [m]."""
 ALONG = 1.0
 """Angle between an edge and a side of a piece up to which the edge is along it [deg]."""
-STAIRS = ("stair", "treppe", "scala", "scale")
-CORRIDORS = ("corridor", "hall", "passage", "lobby", "foyer", "flur", "gang", "diele", "corridoio", "atrio", "ingresso")
-"""Words with which names of stairs and corridors begin or end."""
+STAIRS = (
+    "stair", "stairs", "staircase", "stairway", "stairwell", "treppe", "treppen", "treppenhaus", "treppenraum", "scala",
+    "scale",
+)  # fmt: skip
+CORRIDORS = (
+    "corridor", "corridors", "hallway", "passage", "passageway", "lobby", "foyer", "flur", "hausflur", "korridor",
+    "gang", "diele", "corridoio", "disimpegno", "atrio", "ingresso",
+)  # fmt: skip
+"""Words in names of stairs and of corridors. A hall may be any large room."""
+SLENDER, MANY_DOORS = 2.5, 3
+"""A corridor is so many times as long as wide, or has so many doors [-]."""
 LOW, HIGH = ITEMS.column("breadth").low or 0.0, ITEMS.column("breadth").high or math.inf
 """Sizes that a workbook takes [cm]."""
 LOWEST, HIGHEST = FLOORS.column("elevation").low or 0.0, FLOORS.column("elevation").high or math.inf
@@ -273,21 +286,53 @@ def _list_types(model: BuildingModel, types: Mapping[tuple[str, float, float, fl
 
 
 def _list_spaces(model: BuildingModel, floors: Names, places: Names) -> Iterator[dict[str, Any]]:
-    points = find_room_points(model)
+    points, stairs = find_room_points(model), _find_stair_rooms(model)
+    doors = Counter(key for sides in find_sides(model).values() for key in set(sides))
     for one in model.spaces:
         if one.storey in floors:
             x, y = points[one.key]
-            row = {"place": places[one.key], "floor": floors[one.storey], "x": x, "y": y, "kind": find_kind(one)}
+            kind = find_kind(one, doors[one.key], holds_stair=one.key in stairs)
+            row = {"place": places[one.key], "floor": floors[one.storey], "x": x, "y": y, "kind": kind}
             outline = _write_outline(one.area)
             yield row | ({"outline": outline} if outline else {})
 
 
-def find_kind(space: Space) -> Literal["room", "corridor", "stair"]:
-    """Return what a room is by the words of its name."""
-    words = f"{space.name} {space.title}".casefold().split()
-    if any(word.startswith(STAIRS) for word in words):
+def _find_stair_rooms(model: BuildingModel) -> set[str]:
+    """Return the keys of the spaces in which a stair begins or ends."""
+    found = set()
+    for storey in {one.storey for one in model.stairs}:
+        search = SpaceSearch([one for one in model.spaces if one.storey == storey])
+        held = search.find_all([(one.x, one.y) for one in model.stairs if one.storey == storey], REACH)
+        found |= {own[0].key for own in held if own}
+    return found
+
+
+def find_kind(space: Space, doors: int = 0, *, holds_stair: bool = False) -> Literal["room", "corridor", "stair"]:
+    """Return what a room is by the words of its name, and what bears them out.
+
+    Rooms are checked for losing all their ways out, corridors and stairs are not: so a name alone makes none.
+
+    Parameters
+    ----------
+    space : Space
+        The room.
+    doors : int
+        How many doors it has.
+    holds_stair : bool
+        Whether a stair begins or ends in it.
+    """
+    words = set(re.findall(r"[^\W\d_]+", f"{space.name} {space.title}".casefold()))
+    if holds_stair and words & set(STAIRS):
         return "stair"
-    return "corridor" if any(word.startswith(CORRIDORS) or word.endswith(CORRIDORS) for word in words) else "room"
+    is_corridor = words & set(CORRIDORS) and (doors >= MANY_DOORS or _is_slender(space.area))
+    return "corridor" if is_corridor else "room"
+
+
+def _is_slender(area: Area) -> bool:
+    """Tell whether a room is long and narrow, round corners too."""
+    polygon = to_polygon(area)
+    rectangle = find_rectangle(np.array(polygon.exterior.coords)) if polygon.area > 0 else None
+    return rectangle is not None and (rectangle.long >= SLENDER * rectangle.short or find_width(polygon) > 0)
 
 
 def _write_outline(area: Area) -> str:

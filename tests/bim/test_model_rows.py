@@ -1,12 +1,13 @@
 """Rows of an inventory out of a building model: names, sizes with which a piece rocks, places, plans."""
 
 import re
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from assess.bim.building_model import BuildingModel, Door, Piece, Space, Storey
+from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
 from assess.bim.floor_drawing import name_plan, name_plans
 from assess.bim.ifc_model import read_model
 from assess.bim.model_rows import find_kind, find_sizes, list_building
@@ -138,16 +139,61 @@ def test_a_type_of_several_sizes_becomes_several_types():
     assert all(heights[row["type"]] == row["height"] for row in found.items)
 
 
+LONG = ((0.0, 0.0), (12.0, 0.0), (12.0, 2.0), (0.0, 2.0))
+ANGLED = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (7.5, 9.0), (7.5, 1.5), (0.0, 1.5))
+
+
 @pytest.mark.parametrize(
     ("title", "kind"),
     [
-        ("Office", "room"), ("Corridor", "corridor"), ("Flur EG", "corridor"), ("Scala A", "stair"),
-        ("Hallway", "corridor"), ("Treppenhaus", "stair"), ("Eingangshalle", "room"), ("Stair 2", "stair"),
-        ("Upstairs office", "room"),
+        ("Office", "room"), ("Corridor", "corridor"), ("Flur EG", "corridor"), ("Corridor1/Lobby", "corridor"),
+        ("Hallway", "corridor"), ("Eingangshalle", "room"), ("Lecture hall", "room"), ("Dining hall", "room"),
+        ("Town hall office", "room"), ("Gangster room", "room"), ("Hall", "room"), ("Passages archive", "room"),
+        ("Stair 2", "room"),
     ],
 )  # fmt: skip
-def test_kinds_of_rooms_by_their_names(title, kind):
-    assert find_kind(replace(SPACE, title=title)) == kind
+def test_corridors_have_a_word_for_it_and_are_slender(title, kind):
+    for area in (LONG, ANGLED):
+        assert find_kind(replace(SPACE, title=title, area=(area,))) == kind
+    assert find_kind(replace(SPACE, title=title), doors=2) == "room"
+    assert find_kind(replace(SPACE, title=title), doors=3) == kind
+
+
+@pytest.mark.parametrize(
+    ("title", "kind"),
+    [
+        ("Scala A", "stair"), ("Treppenhaus", "stair"), ("Stair 2", "stair"), ("S-101 STAIR", "stair"),
+        ("Upstairs office", "room"), ("Scaleworks", "room"), ("Office", "room"),
+    ],
+)  # fmt: skip
+def test_stairs_have_a_word_for_it_and_hold_an_end_of_a_stair(title, kind):
+    assert find_kind(replace(SPACE, title=title), holds_stair=True) == kind
+    assert find_kind(replace(SPACE, title=title)) == "room"
+    assert find_kind(replace(SPACE, title="Scale lab")) == "room"
+
+
+def test_the_room_in_which_a_stair_ends_is_the_smallest_that_holds_it():
+    stairwell = replace(SPACE, key="t", name="S1", title="Stair", area=(((1, 1), (3, 1), (3, 3), (1, 3)),))
+    other = replace(SPACE, key="u", name="S2", title="Stair", area=(((8, 1), (9, 1), (9, 3), (8, 3)),))
+    gross = replace(SPACE, name="Stair and all else", title="")
+    stair = Stair("x", "s", "Stair", "foot", 2.0, 2.0)
+    found = list_building(model(spaces=(gross, stairwell, other), stairs=(stair,)))
+    assert {row["place"]: row["kind"] for row in found.places if "outline" in row} == {
+        "Stair and all else": "room", "S1 Stair": "stair", "S2 Stair": "room",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "kinds"),
+    [
+        ("duplex.ifc", {"corridor": 4, "stair": 1}),
+        ("LargeBuilding.ifc", {}),
+    ],
+)
+def test_kinds_of_rooms_of_published_models(name, kinds):
+    rows = list_building(read_model(MODELS / name, name)).places
+    found = Counter(row["kind"] for row in rows if "outline" in row)
+    assert {kind: number for kind, number in found.items() if kind != "room"} == kinds
 
 
 def test_fitted_furniture_is_of_unknown_fixing_and_says_so():
