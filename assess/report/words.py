@@ -9,6 +9,7 @@ from assess.i18n import ngettext, number
 from assess.model import SCANNED
 from assess.results import ItemResult
 from assess.risk import LIMITS, RiskClass, classify
+from assess.workbook.draft_names import is_draft
 
 if TYPE_CHECKING:
     from assess.methods import MethodInfo
@@ -40,9 +41,15 @@ def clip(text: str, longest: int = LONGEST) -> str:
 
 
 def cut(text: str, longest: int) -> str:
-    """Return a text short enough for one line; an ellipsis stands for what was left out."""
+    """Return a text short enough for one line; an ellipsis stands for what was left out.
+
+    The mark of a route that is a draft stays: ``To Stair Level 2… (draft)``.
+    """
     text = " ".join(text.split())
-    return text if len(text) <= longest else f"{text[: longest - 1].rstrip()}…"
+    if len(text) <= longest:
+        return text
+    mark = f" {text[text.rindex('(') :]}" if is_draft(text) else ""
+    return f"{text[: max(longest - 1 - len(mark), 1)].rstrip()}…{mark}"
 
 
 def list_breaks(text: str) -> list[str]:

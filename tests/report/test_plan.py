@@ -10,7 +10,7 @@ import pytest
 
 import assess
 from assess.report.content import build_content
-from assess.report.figures.labels import overlap, place_labels
+from assess.report.figures.labels import bounds, overlap, place_labels
 from assess.report.figures.plan import build_plan, fallen, rectangle
 from assess.report.figures.ways import build_stretches, list_styles
 from assess.route_results import MissingRow, RouteState
@@ -402,3 +402,68 @@ def test_what_hangs_on_anchors_is_marked(tmp_path):
     assert (aisle.style.name, aisle.marks, aisle.is_open) == ("open", "⚓", False)
     assert "✓ open if the anchors hold ⚓" in aisle.title
     assert aisle.sign is not None
+
+
+# ---------------------------------------------------------------- many places, as drafts from a building model have
+
+CROWD = [
+    {"place": f"{kind or 'point'} {at}", "floor": "1", "x": 1.0 + 2.0 * at, "y": 5.0 + 3.0 * row, "kind": kind}
+    for row, kind in enumerate(("room", "door", ""))
+    for at in range(14)
+]
+DRAFTED = [
+    {"route": "To Exit 1 (draft)", "segment": str(at), "floor": "1", "start": f"room {at}", "end": f"door {at}",
+     "clear_width": 0.9}
+    for at in range(14)
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def crowded(tmp_path_factory):
+    walked = {"route": "Walked", "segment": "x", "floor": "1", "start": "door 0", "end": "point 0"}
+    return _assess(tmp_path_factory.mktemp("crowd") / "w.xlsx", PIECES[:3], CROWD, [*DRAFTED, walked])
+
+
+def test_points_of_routes_have_no_names_where_places_are_many(crowded):
+    """They keep their dots, and stand in no list below the plan; where places are few, all are named."""
+    plan = _plans(crowded)[0]
+    named = {spot.name for spot in plan.places} | {key.name for key in plan.keys}
+    assert not [name for name in named if name.startswith("point")]
+    assert {f"room {at}" for at in range(14)} <= named
+    assert len(plan.places) == len(CROWD)
+
+
+def test_names_of_doors_cover_nothing_where_places_are_many(crowded):
+    plan = _plans(crowded)[0]
+    doors = [spot for spot in plan.places if spot.kind == "door" and spot.name]
+    others = [spot.box for spot in plan.places if spot.name and spot.kind != "door"]
+    assert not [1 for one, box in itertools.product(doors, others) if overlap(one.box, box)]
+    assert not [key for key in plan.keys if key.name.startswith("door")]
+
+
+def test_no_name_covers_a_piece(crowded, routed):
+    for plan in (*_plans(crowded), *_plans(routed)):
+        shapes = [bounds(one.corners) for one in plan.pieces] if plan else []
+        assert not [1 for box, shape in itertools.product(plan.boxes if plan else (), shapes) if overlap(box, shape)]
+
+
+def test_the_caption_counts_what_is_drafted(crowded, routed):
+    assert "14 of 15 segments drawn are drafted, not walked." in render(crowded)
+    assert "drafted, not walked" not in render(routed)
+
+
+def test_outlines_over_a_drawing_are_as_grey_as_it(tmp_path):
+    """The caption says of the drawing that it is grey; dark outlines on top of it would belie that."""
+    (tmp_path / "plan.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
+                                       '<path d="M0 0L9 0L9 9" stroke="#000"/></svg>', encoding="utf-8")  # fmt: skip
+    room = {"place": "Room", "floor": "1", "kind": "room", "outline": "0 0; 9 0; 9 9; 0 9"}
+    plain = FLOORS[0] | {"floor": "1"}
+    drawn = plain | {"plan": "plan.svg", "plan_left": 0, "plan_bottom": 0, "plan_width": 9}
+    strokes = []
+    for name, floor in (("drawn", drawn), ("plain", plain)):
+        rows = {"Floors": [floor], "Items": PIECES[:1], "Places": [room]}
+        write_workbook(tmp_path / f"{name}.xlsx", Content(rows=rows), "si")
+        page = render(assess.run(assess.read_inventory(tmp_path / f"{name}.xlsx"), UNVERIFIED))
+        strokes += re.findall(r'<g class="rooms" fill="none" stroke="(#\w+)"', page)
+        assert ("In grey: the plan" in page) == (name == "drawn")
+    assert strokes == ["#757575", "#3f3f3f"]

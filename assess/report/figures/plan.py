@@ -184,7 +184,7 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     frame = _frame(pieces, ways, [at for _place, at in places], rooms, underlay)
     unit = _unit(frame)
     signed = tuple(place_signs(ways, [bounds(one.corners) for one in pieces], unit))
-    named = _name(pieces, places, rooms, signed, Names(frame, unit))
+    named = _name(pieces, places, rooms, signed, Names(frame, unit, [bounds(one.corners) for one in pieces]))
     return Plan(
         key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}",
         title=page.title,
@@ -216,11 +216,12 @@ def _name(
     middle = names.place_rooms(rooms, [*shapes, *signs])
     labels = [one for one in names.place(_risky(pieces), [*shapes, *signs]) if one is not None]
     segments = name_ways(ways, [*shapes, *names.boxes], names.frame, unit)
+    held = (*names.boxes, *shapes)
     return {
         "places": tuple(spots),
         "room_names": tuple(middle),
         "labels": tuple(labels),
-        "names": tuple(one for one in segments if not any(overlap(one.box, other) for other in names.boxes)),
+        "names": tuple(one for one in segments if not any(overlap(one.box, other) for other in held)),
         "keys": tuple(names.keys),
     }
 

@@ -5,11 +5,13 @@ from dataclasses import dataclass
 
 from assess.model import Place
 from assess.report import words
-from assess.report.figures.labels import LINE, Bounds, Label, Point, place_each
+from assess.report.figures.labels import LINE, Bounds, Label, Point, overlap, place_each
 from assess.report.figures.underlay import Room
 
 NAMED = 24
 """Characters of a place's name that are drawn."""
+FEW = 30
+"""Places on a plan up to which all are named: of more, mere points of routes are not, and doors where there is room."""
 LARGE = ("exit", "stair")
 """Kinds of places whose sign is a large one, and whose names come first."""
 
@@ -41,21 +43,22 @@ class Key:
 
 
 class Names:
-    """Places names on a plan one group after another; `keys` are those that found no room."""
+    """Places names on a plan one group after another, none on a piece; `keys` are those that found no room."""
 
-    def __init__(self, frame: Bounds, unit: float) -> None:
+    def __init__(self, frame: Bounds, unit: float, pieces: Sequence[Bounds] = ()) -> None:
         self.frame, self.unit = frame, unit
         self.boxes: list[Bounds] = []
+        self.pieces: tuple[Bounds, ...] = tuple(pieces)
         self.keys: list[Key] = []
 
     def place(self, named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds]) -> list[Label | None]:
         """Return the label of each name, a number in its place, or None."""
-        found = place_each(named, taken, self.frame, self.unit, self.boxes)
+        found = place_each(named, taken, self.frame, self.unit, (*self.boxes, *self.pieces))
         self.boxes += [one.box for one in found if one is not None]
         for at, (text, box) in enumerate(named):
             if found[at] is None:
                 number = sum(key.number is not None for key in self.keys) + 1
-                (label,) = place_each([(str(number), box)], taken, self.frame, self.unit, self.boxes)
+                (label,) = place_each([(str(number), box)], taken, self.frame, self.unit, (*self.boxes, *self.pieces))
                 point = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
                 self.keys.append(Key(None if label is None else number, text, point))
                 self.boxes += [] if label is None else [label.box]
@@ -63,12 +66,26 @@ class Names:
         return found
 
     def place_spots(self, places: Sequence[tuple[Place, Point]], taken: Sequence[Bounds]) -> list[Spot]:
-        """Return each place with its name; exits and stairs first."""
-        ordered = sorted(places, key=lambda pair: pair[0].kind not in LARGE)
+        """Return each place with its name, as far as all are few; exits and stairs first."""
+        rank = {"": 3, "door": 2} if len(places) > FEW else {}
+        ordered = sorted(places, key=lambda pair: rank.get(pair[0].kind, pair[0].kind not in LARGE))
+        ranks = [rank.get(one.kind, 0) for one, _at in ordered]
         named = [(words.cut(one.place, NAMED), self._sign(one, at)) for one, at in ordered]
-        signs = [box for _name, box in named]
-        labels = self.place(named, [*taken, *signs])
+        free = [*taken, *(box for _name, box in named)]
+        labels = self.place(named[: ranks.count(0)], free)
+        labels += self._place_free(named[ranks.count(0) : len(ranks) - ranks.count(3)], free)
+        labels += [None] * ranks.count(3)
         return [self._spot(one, at, label) for (one, at), label in zip(ordered, labels, strict=True)]
+
+    def _place_free(self, named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds]) -> list[Label | None]:
+        """Return the label of each name that covers nothing and lies beside its place; the others are left out."""
+        found: list[Label | None] = []
+        for one in named:
+            (label,) = place_each([one], taken, self.frame, self.unit, (*self.boxes, *self.pieces))
+            is_free = label is not None and label.lead is None and not any(overlap(label.box, box) for box in taken)
+            found.append(label if is_free else None)
+            self.boxes += [label.box] if label is not None and is_free else []
+        return found
 
     def place_rooms(self, rooms: Sequence[Room], taken: Sequence[Bounds]) -> list[Label]:
         """Return the names of the rooms that have no sign, in their middle."""

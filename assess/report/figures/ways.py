@@ -14,6 +14,7 @@ from assess.report.findings.route_words import (
     say_segment_state,
 )
 from assess.route_results import RouteState, RouteTables, SegmentRow
+from assess.workbook.draft_names import is_draft
 
 NAMED = 20
 """Characters of a segment's name that are drawn."""
@@ -44,7 +45,7 @@ class Stretch:
     """A segment as it is drawn; `number` is that of its row among all segments, from 1.
 
     `sign` is where its sign stands: None where there is no room and nothing to warn of. `is_held` tells that anchors
-    alone keep its state from being worse.
+    alone keep its state from being worse, `is_draft` that its route is drafted from a building model and not walked.
     """
 
     number: int
@@ -55,6 +56,7 @@ class Stretch:
     end: Point
     corners: Corners
     is_held: bool = False
+    is_draft: bool = False
     sign: Point | None = None
 
     @property
@@ -105,6 +107,7 @@ def _stretch(number: int, one: SegmentRow, risk: float, styles: Mapping[str, Sty
         end=(one.end_x_m or 0.0, one.end_y_m or 0.0),
         corners=_outline(one),
         is_held=is_held(one, risk),
+        is_draft=is_draft(one.route),
     )
 
 

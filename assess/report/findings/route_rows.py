@@ -46,10 +46,11 @@ def describe_routes(routes: RouteTables) -> list[str]:
 
 def say_reservations(routes: RouteTables) -> list[str]:
     """Return that routes are drafts, and that rooms have no furniture listed: states may rest on less than is there."""
-    return [*_say_drafts(routes), *_say_furnished(routes)]
+    return [*say_drafts(routes), *_say_furnished(routes)]
 
 
-def _say_drafts(routes: RouteTables) -> list[str]:
+def say_drafts(routes: RouteTables) -> list[str]:
+    """Return how many routes are drafts that nobody has walked; nothing where none is."""
     drafts = sum(is_draft(one.route) for one in routes.routes)
     if not drafts:
         return []

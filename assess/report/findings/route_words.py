@@ -22,6 +22,7 @@ from assess.route_results import (
 from assess.routes.states import find_state
 from assess.routes.widths import LEVEL, RULES, STAIR
 from assess.units import LENGTH
+from assess.workbook.draft_names import is_draft
 from assess.workbook.schema import DEFAULT_WIDTH
 
 MOST_NAMED = 3
@@ -346,7 +347,13 @@ def list_unfixable(routes: RouteTables) -> list[tuple[RouteRow, str]]:
 
 def name_few(names: Sequence[str]) -> str:
     """Return the first of some names of the workbook, cut, and how many more there are."""
-    return words.name_first([words.cut(name, 40) for name in names], MOST_NAMED)
+    return words.name_first([_cut_name(name) for name in names], MOST_NAMED)
+
+
+def _cut_name(name: str) -> str:
+    """Return a name, cut; of ``route: segment`` either of both, so that the mark of a draft stays."""
+    route, mark, segment = name.rpartition(": ")
+    return f"{words.cut(route, 30)}{mark}{words.cut(segment, 20)}" if is_draft(route) else words.cut(name, 40)
 
 
 def say_way(way: WayRow, routes: RouteTables) -> str:

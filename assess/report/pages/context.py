@@ -234,6 +234,7 @@ def _of_route_page(found: RouteTables) -> dict[str, Any]:
         "most_way_lines": route_page.MOST_LINES,
         "state_rules": route_words.list_rules(found.risk),
         "route_lines": route_rows.describe_routes(found),
+        "draft_lines": route_rows.say_drafts(found),
         "uncounted": route_rows.say_uncounted(found),
     }
 
