@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,12 +19,14 @@ from assess.bim.ifc_elements import (
     tell_apart,
 )
 from assess.bim.ifc_site import say
-from assess.bim.plan_shapes import FloatArray, cut, find_base, find_rectangle, merge
+from assess.bim.plan_shapes import FloatArray, Rectangle, Shape, cut, find_base, find_rectangle, merge
 
 CUT = 1.2
 """Height above the floor at which walls are cut for the plan [m]."""
 WALLS = ("IfcWall", "IfcColumn", "IfcCurtainWall", "IfcPlate", "IfcMember")
 STAIRS = ("IfcStair", "IfcStairFlight", "IfcRamp", "IfcRampFlight")
+CLEARLY_LONGER = 2.0
+"""Ratio of sides from which a plan tells the direction of a wall by itself [-]."""
 RISER = 0.35
 """Height within which the first and the last step of a stair lie [m]."""
 AT_FOOT, LEAST_RISE, ABOVE_HEAD = 0.7, 1.5, 0.3
@@ -65,6 +68,8 @@ def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterat
         opening = openings.get(one.id())
         shape = (shapes.get(opening.id()) if opening is not None else None) or shapes.get(one.id())
         plan = find_rectangle(shape.points[:, :2]) if shape is not None else None
+        if plan is not None:
+            plan = _turn_to_leaf(plan, shapes.get(one.id()))
         if storey is None or plan is None:
             continue
         overall = float(one.OverallWidth or 0.0) * unit
@@ -72,6 +77,18 @@ def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterat
             keys[one.id()], storey, say(one.Name), plan.x, plan.y, plan.angle_deg, plan.long, plan.short,
             overall if math.isfinite(overall) and overall > 0 else 0.0,
         )  # fmt: skip
+
+
+def _turn_to_leaf(plan: Rectangle, leaf: Shape | None) -> Rectangle:
+    """Return the plan of an opening with the direction of the door's normal, where the wall may be thicker than wide.
+
+    The short side of a rectangle is taken for the thickness of the wall; here the door itself tells it.
+    """
+    own = find_rectangle(leaf.points[:, :2]) if leaf is not None else None
+    if own is None or plan.long >= CLEARLY_LONGER * plan.short or own.long < CLEARLY_LONGER * own.short:
+        return plan
+    is_across = abs(math.sin(math.radians(own.angle_deg - plan.angle_deg))) > 0.9
+    return replace(plan, short=plan.long, long=plan.short, angle_deg=own.angle_deg) if is_across else plan
 
 
 def list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:

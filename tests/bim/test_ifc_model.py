@@ -187,6 +187,18 @@ def test_the_space_that_holds_a_piece_in_the_model_is_its_room(tmp_path):
     assert piece.space == gross.GlobalId
 
 
+@pytest.mark.parametrize(("deep", "direction"), [(1.0, 90.0), (0.2, 90.0)])
+def test_a_door_in_a_wall_that_is_thicker_than_it_is_wide(tmp_path, deep, direction):
+    """The opening is 0.9 m wide; the leaf tells which way it leads."""
+    model, storey, _ = one_room()
+    leaf = model.element("IfcDoor", "D", (0, 0, 0, 0.9, 0.06, 2.1), within=storey, at=(3, 4, 0), OverallWidth=0.9)
+    opening = model.element("IfcOpeningElement", "O", (0, 0, 0, 0.9, deep, 2.1), at=(3, 4 + deep / 2, 0))
+    model.root("IfcRelFillsElement", None, RelatingOpeningElement=opening, RelatedBuildingElement=leaf)
+    (door,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").doors
+    assert (door.width, door.thickness) == pytest.approx((0.9, deep), abs=1e-4)
+    assert abs(door.normal_deg) == pytest.approx(direction)
+
+
 def test_an_assembly_is_one_piece_with_its_parts(tmp_path):
     model, _, room = one_room()
     whole = model.piece("Desk", within=room, at=(3, 2, 0))
