@@ -12,6 +12,7 @@ from assess.pipeline.schedule import fix_first
 from assess.report import statements, words
 from assess.report.content import build_content
 from assess.report.findings import at_risk
+from assess.report.findings.route_page import list_route_lines
 from assess.report.ranking import list_steps, say_effect, say_step
 from assess.report.report_options import ReportOptions
 from assess.report.summary import FIXES
@@ -252,3 +253,44 @@ def test_the_summary_stays_on_one_page(crowded, language, tmp_path):
     assert pages[following] == pages[summary] + 1
     assert "Long name of route" in document[pages[summary]].get_textpage().get_text_range()
     assert len(build_content(crowded).summary.fixes) > FIXES
+
+
+# ---------------------------------------------------------------- drafts, and rooms without furniture
+
+LONG = "To the stair of the north wing, upper landing (draft)"
+MANY = "2 of 3 routes are drafts from a building model that nobody has walked yet."
+SECTIONS = ("summary", "routes")
+LITTLE = "Furniture is listed in 1 of 2 rooms and corridors. Ways through the others count as free of furniture."
+
+
+@pytest.fixture(scope="module")
+def drafted(tmp_path_factory):
+    """The same building with two of its routes marked as drafts, and furniture in one room alone."""
+    names = {"West": LONG, "Back": "Back (draft)"}
+    routes = [one | {"route": names.get(one["route"], one["route"])} for one in ROUTES]
+    items = [one | {"room": "Office"} | ({"route": names["Back"]} if one.get("route") == "Back" else {})
+             for one in ITEMS]  # fmt: skip
+    return assess_routed(tmp_path_factory.mktemp("drafted") / "w.xlsx", Routes=routes, Items=items)
+
+
+def test_drafts_and_rooms_without_furniture_stand_beside_the_answer(drafted, tmp_path):
+    line = next(text for text in describe_result(drafted) if "evacuation routes" in text)
+    assert MANY in line
+    assert LITTLE in line
+    page = _flat(write_html(drafted, tmp_path))
+    summary, routes = (page[page.index(f'<section id="{name}"') :].split("</section>")[0] for name in SECTIONS)
+    assert (summary.count(MANY), summary.count(LITTLE)) == (1, 1)
+    assert (routes.count(MANY), routes.count(LITTLE)) == (2, 1), "of drafts above the rooms as well"
+
+
+def test_the_data_quality_log_warns_of_rooms_without_furniture(drafted, routed):
+    found = [str(one.message) for one in drafted.problem_rows if "Furniture is listed in" in str(one.message)]
+    assert len(found) == 1
+    assert "in 1 of 2 rooms and corridors of Places, not in Archive" in found[0]
+
+
+def test_a_long_draft_keeps_its_mark_in_every_list(drafted):
+    (step, *_others) = [say_step(one) for one in list_steps(drafted.route_tables) if one.route == LONG]
+    assert step.startswith("route To the stair of the n… (draft): ")
+    lines = [one.names for one in list_route_lines(drafted.route_tables)]
+    assert "To the stair of the north wing,… (draft)" in lines

@@ -10,6 +10,7 @@ from assess.i18n import Catalogue, speaking
 from assess.report import words
 from assess.report.content import build_content
 from assess.report.counts import CannotRock, build_bars, count, count_cannot_rock
+from assess.report.findings.route_words import name_few
 from assess.report.statements import list_assumptions
 from assess.report.summary import describe, say_plainly
 from assess.risk import LIMITS, RiskClass, classify
@@ -181,3 +182,22 @@ def test_what_is_avoided_is_the_same_number_in_every_report(tmp_path):
     (cell,) = (row[column - 1] for row in page.iter_rows(min_row=2) if row[1].value == 1)
     assert cell.number_format == "0.000"
     assert cell.value == pytest.approx(fix.saved)
+
+
+@pytest.mark.parametrize(
+    ("text", "longest", "shown"),
+    [
+        ("To Stair Level 2, head (draft)", 40, "To Stair Level 2, head (draft)"),
+        ("To Stair Level 2, head (draft)", 26, "To Stair Level 2,… (draft)"),
+        ("To Stair Level 2, head (bozza)", 26, "To Stair Level 2,… (bozza)"),
+        ("To Stair Level 2, head (east)", 26, "To Stair Level 2, head (e…"),
+        ("a (draft)", 4, "a… (draft)"),
+    ],
+)
+def test_the_mark_of_a_draft_is_never_cut(text, longest, shown):
+    assert words.cut(text, longest) == shown
+
+
+def test_nor_is_it_in_front_of_a_segment():
+    named = name_few(["To Stair Level 2, head of the main staircase (draft): 17"])
+    assert named == "To Stair Level 2, hea… (draft): 17"
