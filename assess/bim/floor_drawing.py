@@ -19,6 +19,7 @@ STYLE = (
 )
 LINE = 0.02
 """Width of lines [m]."""
+_HEAD = re.compile(rb'<svg xmlns="http://www\.w3\.org/2000/svg" viewBox="0 0 [\d.]+ [\d.]+"><style>\.wall\{')
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,11 @@ def draw_storey(model: BuildingModel, storey: Storey) -> Drawn | None:
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size}"><style>{STYLE}</style>'
     svg = f'{head}<g stroke-width="{LINE}">{"".join(parts)}</g></svg>\n'
     return Drawn(svg.encode(), frame.left, frame.bottom, frame.width)
+
+
+def is_drawn(data: bytes) -> bool:
+    """Tell whether a file begins as `draw_storey` begins a plan: programs that save a plan begin it otherwise."""
+    return _HEAD.match(data) is not None
 
 
 def name_plan(source: str, storey: str) -> str:

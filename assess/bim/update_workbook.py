@@ -12,18 +12,18 @@ Cells are set in the bytes of the sheets; the stored results of the live formula
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from assess.bim.building_model import Point
-from assess.bim.floor_drawing import name_plan
 from assess.bim.import_workbook import ImportedBuilding, list_rows, name_apart
 from assess.bim.update_cells import SheetUpdate
 from assess.bim.update_changes import RENAMED, Change, describe
 from assess.bim.update_names import match_floors, match_rooms
 from assess.bim.update_origin import Pair, find_offset, move_rows
 from assess.bim.update_places import update_places
+from assess.bim.update_plans import PLAN, Files, PlanUpdate
 from assess.bim.update_rows import BookUpdate, Rows
 from assess.bim.update_types import SIZES, TypeUpdate
 from assess.errors import InputError, Problem, WorkbookError
@@ -42,7 +42,6 @@ __all__ = ["Change", "Updated", "describe", "update_workbook"]
 POSITION = ("x", "y", "angle_deg")
 SITE = ("latitude", "longitude", "azimuth_deg")
 """Lines of Building that are filled in where they are blank."""
-PLAN = ("plan", "plan_left", "plan_bottom", "plan_width", "plan_turn")
 _IDLE = frozenset({"Places"})
 """Sheets on which no live formula rests."""
 _Row = TypeVar("_Row", Row, Mapping[str, Any])
@@ -62,12 +61,15 @@ class Updated:
         Why new rows could not be added, as warnings.
     moved : Point
         What was added to all positions of the model, so that they have the origin of the workbook [m].
+    plans : mapping of str to bytes
+        Plans to write beside the workbook: those that Floors names, under names that no file of users has.
     """
 
     data: bytes
     changes: tuple[Change, ...] = ()
     problems: tuple[Problem, ...] = ()
     moved: Point = (0.0, 0.0)
+    plans: Mapping[str, bytes] = field(default_factory=dict)
 
     @property
     def is_changed(self) -> bool:
@@ -81,7 +83,7 @@ def update_workbook(
     name: str,
     progress: Progress = SILENT,
     *,
-    records: Path | Mapping[str, bytes] | None = None,
+    records: Files = None,
 ) -> Updated:
     """Bring a workbook up to date with the building model that it was imported from.
 
@@ -96,7 +98,8 @@ def update_workbook(
     progress : Progress
         Checked while it works.
     records : Path or mapping of str to bytes, optional
-        Folder, or files, that the workbook names, on which the stored results of its live formulas may rest.
+        The folder of the workbook, or the files beside it: the stored results of its live formulas may rest on these,
+        and plans replace none of them but earlier plans.
 
     Returns
     -------
@@ -118,7 +121,7 @@ def update_workbook(
     if not items.rows and any(one.severity == "error" and one.sheet == items.sheet.name for one in problems):
         raise WorkbookError(problems, held.language)
     book = BookUpdate(sheets, changes)
-    building = _BuildingUpdate(imported, name, book)
+    building = _BuildingUpdate(imported, name, book, records)
     building.run()
     written = {sheet: one for sheet, one in sheets.items() if one.values}
     if written:
@@ -126,10 +129,10 @@ def update_workbook(
         data = patch_workbook(data, patches, name=name, progress=progress).data
         if not written.keys() <= _IDLE:
             data = _store_results(data, name, progress, records)
-    return Updated(data, tuple(changes), tuple(book.problems), building.moved)
+    return Updated(data, tuple(changes), tuple(book.problems), building.moved, building.plans.files)
 
 
-def _store_results(data: bytes, name: str, progress: Progress, records: Path | Mapping[str, bytes] | None) -> bytes:
+def _store_results(data: bytes, name: str, progress: Progress, records: Files) -> bytes:
     """Return a workbook whose live formulas have stored what they show now, or nothing where that is not known."""
     inventory = read_inventory(data, records=records, strict=False, progress=progress)
     return patch_workbook(data, {}, find_results(data, inventory), name=name, progress=progress).data
@@ -141,7 +144,7 @@ def _store_results(data: bytes, name: str, progress: Progress, records: Path | M
 class _BuildingUpdate:
     """One update: it works out everything that is to be written."""
 
-    def __init__(self, imported: ImportedBuilding, name: str, book: BookUpdate) -> None:
+    def __init__(self, imported: ImportedBuilding, name: str, book: BookUpdate, beside: Files) -> None:
         self.imported, self.name, self.book = imported, name, book
         self.items = book.sheets["Items"]
         rows = list_rows(imported)
@@ -150,7 +153,8 @@ class _BuildingUpdate:
         self.types = TypeUpdate(book, self.rows["Catalogue"][: len(imported.types)])
         self.floors: dict[str, str] = {}
         self.rooms: dict[tuple[str, str], str] = {}
-        self.sources = set(_list_sources(book, Path(imported.source).suffix))
+        sources = set(_list_sources(book, Path(imported.source).suffix))
+        self.plans = PlanUpdate(book.sheets.get("Floors"), imported, sources, beside)
 
     def run(self) -> None:
         """Update every sheet; floors first, as what is new stands on them."""
@@ -273,38 +277,23 @@ class _BuildingUpdate:
         WorkbookError
             If floors cannot be added: pieces would stand on floors that are not there.
         """
+        sheet = self.book.sheets.get("Floors")
+        own, uses = _by_floor(sheet.table) if sheet else {}, Counter(map(key, self.floors.values()))
+        pairs = [(one, row) for one in self.rows["Floors"] if (row := own.get(key(self._find_floor(one["floor"]))))]
+        updated = [(model, row) for model, row in pairs if uses[key(row.get("floor"))] == 1]
+        self.plans.release(updated)
         new = [row for row in self.rows["Floors"] if key(row["floor"]) not in self.floors]
-        if not self.book.add("Floors", new):
+        if not self.book.add("Floors", [self.plans.name_new(row) for row in new]):
             faults = [replace(one, severity="error") for one in self.book.problems]
             raise WorkbookError(faults or [Problem("error", "Floors", "", fill("the sheet is missing."))])
-        sheet = self.book.sheets.get("Floors")
         if sheet is None:
             return
         sheet.note_columns(PLAN, self.rows["Floors"])
-        own, uses = _by_floor(sheet.table), Counter(map(key, self.floors.values()))
-        for model in self.rows["Floors"]:
-            row = own.get(key(self._find_floor(model["floor"])))
-            if row is not None:
-                sheet.keep(row, "floor", model["floor"], RENAMED)
-                if uses[key(row.get("floor"))] == 1:
-                    self._update_floor(sheet, model, row)
-
-    def _update_floor(self, sheet: SheetUpdate, model: Mapping[str, Any], row: Row) -> None:
-        sheet.fill_blank(row, "elevation", model.get("elevation"))
-        if not model.get("plan"):
-            return
-        own = row.get("plan")
-        if own is None or self._is_imported(own, {model["floor"], row.get("floor")}, model["plan"]):
-            for name in PLAN:
-                sheet.replace(row, name, model.get(name))
-        else:
-            sheet.keep(row, "plan", model["plan"], fill("it is not a plan of the import"))
-
-    def _is_imported(self, plan: str, floors: Iterable[str], new: str) -> bool:
-        """Tell whether a plan is one that an import writes: of this model, or of one of its earlier names."""
-        sources = {self.imported.source, *self.sources}
-        written = {*self.imported.files, new, *(name_plan(one, floor) for one in sources for floor in floors)}
-        return key(plan) in map(key, written)
+        for model, row in pairs:
+            sheet.keep(row, "floor", model["floor"], RENAMED)
+            if (model, row) in updated:
+                sheet.fill_blank(row, "elevation", model.get("elevation"))
+                self.plans.update(model, row)
 
     # ------------------------------------------------------------ pieces
 

@@ -78,19 +78,19 @@ def command(
             made = _update(source, out, progress, choices)
         else:
             made = _build(source, out, progress, choices, replaces=force)
-    save_files({out: made.data, **made.plans})
+    save_files({**({out: made.data} if made.data is not None else {}), **made.plans})
     for line in (*describe(made.found), *made.lines):
         typer.echo(line)
-    typer.echo(_describe_written(out, made.plans, is_new=not update), err=True)
+    typer.echo(_describe_written(out, made, is_new=not update), err=True)
     if not made.is_complete:
         raise typer.Exit(1)
 
 
 @dataclass(frozen=True, slots=True)
 class _Made:
-    """A workbook and the plans beside it, what was found for it, and what else is to be said."""
+    """A workbook (None where it stays), the plans beside it, what was found for it, and what else is to be said."""
 
-    data: bytes
+    data: bytes | None
     plans: Mapping[Path, bytes]
     found: "ImportedBuilding"
     is_complete: bool
@@ -108,7 +108,14 @@ def _build(source: Path, out: Path, progress: Progress, choices: Mapping[str, An
 
 
 def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, Any]) -> _Made:
-    """Read the model in the language of the workbook: places have names of that language."""
+    """Read the model in the language of the workbook: places have names of that language.
+
+    Raises
+    ------
+    OutputError
+        If the workbook was saved meanwhile.
+    """
+    from assess.bim.import_record import ENDING
     from assess.bim.read_source import read_source
     from assess.bim.update_workbook import update_workbook
     from assess.i18n import load_catalogue, speaking
@@ -120,18 +127,34 @@ def _update(source: Path, out: Path, progress: Progress, choices: Mapping[str, A
         updated = progress.wait_for(lambda: update_workbook(data, found, out.name, progress, records=out.parent))
     is_whole = not updated.problems and not any(one.kind == "left_out" for one in updated.changes)
     lines = tuple(describe_changes(updated))
-    return _Made(updated.data, _place_plans(out, found), found, found.is_complete and is_whole, lines)
+    records = {name: text for name, text in found.files.items() if name.endswith(ENDING)}
+    plans = {out.parent / name: one for name, one in {**updated.plans, **records}.items()}
+    _check_unchanged(out, data)
+    written = updated.data if updated.is_changed else None
+    return _Made(written, plans, found, found.is_complete and is_whole, lines)
+
+
+def _check_unchanged(out: Path, data: bytes) -> None:
+    """Raise OutputError where a workbook no longer holds what was read of it."""
+    try:
+        is_same = out.read_bytes() == data
+    except OSError:
+        is_same = False
+    if not is_same:
+        raise OutputError(f"{out.name} was changed while the model was read: run the import again.")
 
 
 def _place_plans(out: Path, found: "ImportedBuilding") -> dict[Path, bytes]:
     return {out.parent / name: data for name, data in found.files.items()}
 
 
-def _describe_written(out: Path, plans: Mapping[Path, bytes], *, is_new: bool) -> str:
-    drawn = sum(path.suffix == ".svg" for path in plans)
-    beside = f", {count(drawn, 'plan')} and this list beside it" if drawn else " and this list beside it"
+def _describe_written(out: Path, made: _Made, *, is_new: bool) -> str:
+    drawn = sum(path.suffix == ".svg" for path in made.plans)
+    parts = [*([str(out)] if made.data is not None else ()), *([count(drawn, "plan")] if drawn else ())]
+    written = f"{', '.join(parts)} and this list beside it" if parts else "this list beside it"
     then = "Choose Shaking in Building or fill in Floors, then run" if is_new else "Now run"
-    return f"wrote {out}{beside}. {then}: assess check {_quote(out)}"
+    start = "" if made.data is not None else f"{out} stays as it is; "
+    return f"{start}wrote {written}. {then}: assess check {_quote(out)}"
 
 
 def _quote(path: Path) -> str:

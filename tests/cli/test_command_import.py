@@ -8,7 +8,7 @@ import pytest
 
 from assess.workbook.layout import PLACES
 from assess.workbook.patch import patch_workbook
-from assess.workbook.read import read_inventory
+from assess.workbook.read import read_inventory, read_tables
 from tests.bim.cobie_files import COMPONENTS, TYPES, one_type, write_cobie
 from tests.cli.calling import error, run
 from tests.workbooks import write
@@ -251,6 +251,61 @@ def test_an_update_without_changes_leaves_every_byte(duplex):
     before = duplex.read_bytes()
     done = run("import", MODELS / "duplex.ifc", "-o", duplex, "--update")
     assert "The workbook is up to date with the model: nothing was changed." in done.stdout
+    assert duplex.read_bytes() == before
+    assert done.stderr.startswith(f"{duplex} stays as it is; wrote this list beside it. Now run: assess check")
+
+
+def test_what_people_save_while_an_update_reads_the_model_is_not_lost(duplex, monkeypatch):
+    from assess.bim import read_source
+
+    real, record = read_source.read_source, duplex.with_name("duplex-import.txt")
+
+    def read_while_somebody_saves(*args, **choices):
+        found = real(*args, **choices)
+        set_item(duplex, 3, notes="typed meanwhile")
+        return found
+
+    set_item(duplex, 2, height=99.0)
+    record.write_text("of the first import", encoding="utf-8")
+    monkeypatch.setattr(read_source, "read_source", read_while_somebody_saves)
+    done = run("import", DUPLEX, "-o", duplex, "--update")
+    assert (done.exit_code, done.stdout) == (1, "")
+    assert "duplex.xlsx was changed while the model was read: run the import again." in done.stderr
+    assert record.read_text(encoding="utf-8") == "of the first import"
+    fill_in(duplex, shaking="MMI VII, very strong")
+    first, second = read_inventory(duplex).items[:2]
+    assert first.height == pytest.approx(0.99)
+    assert second.notes == "typed meanwhile"
+
+
+def test_an_update_replaces_plans_of_imports_alone(duplex):
+    folder = duplex.parent
+    plans = [folder / f"duplex-{name}.svg" for name in ("Level-1", "Level-2", "Roof")]
+    data = [plan.read_bytes() for plan in plans]
+    plans[0].write_bytes(b"<svg>drawn by people</svg>")
+    plans[1].unlink()
+    plans[2].write_bytes(data[2].replace(b"</svg>", b"<!-- of an older model --></svg>"))
+    before = duplex.read_bytes()
+    done = run("import", DUPLEX, "-o", duplex, "--update")
+    assert "stays as it is: duplex-Level-1.svg is not a plan of the import" in done.stdout
+    assert f"{duplex} stays as it is; wrote 2 plans and this list beside it" in done.stderr
+    assert [plan.read_bytes() for plan in plans] == [b"<svg>drawn by people</svg>", *data[1:]]
+    assert duplex.read_bytes() == before
+
+
+def test_an_update_writes_no_plan_over_one_of_people_that_the_workbook_does_not_name(duplex):
+    """The model has another name today, under which people have drawn a plan."""
+    model = duplex.with_name("house.ifc")
+    model.write_bytes(DUPLEX.read_bytes())
+    mine = duplex.with_name("house-Level-1.svg")
+    mine.write_bytes(b"mine")
+    run("import", model, "-o", duplex, "--update")
+    assert mine.read_bytes() == b"mine"
+    tables, _ = read_tables(duplex.read_bytes(), duplex.name)
+    named = [row.get("plan") for row in tables["Floors"].rows]
+    assert named == ["house-Level-1-2.svg", "house-Level-2.svg", "house-Roof.svg"]
+    before = duplex.read_bytes()
+    assert "is up to date" in run("import", model, "-o", duplex, "--update").stdout
     assert duplex.read_bytes() == before
 
 
