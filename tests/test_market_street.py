@@ -371,7 +371,7 @@ def test_as_a_scenario_of_a_code_it_sets_its_records_aside(inventory):
     aside = [str(one) for one in found.problem_rows if "Record" in one.message]
     assert len(aside) == 6
     warned = [one.sheet for one in found.problem_rows if one.severity == "warning"]
-    assert set(warned) == {"Items", "Places"}, "every profile value is above the recorded one; one room has no furniture"
+    assert set(warned) == {"Items", "Places"}, "every profile value is above the recorded one; a room has no furniture"
 
 
 def test_recorded_it_says_which_record_serves(tmp_path, inventory, results):
