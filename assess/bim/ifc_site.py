@@ -36,8 +36,8 @@ def find_unit(model: Any, name: str) -> float:
     units = [unit for one in assigned for unit in one.Units or ()]
     if not any(getattr(unit, "UnitType", "") == "LENGTHUNIT" for unit in units):
         raise ModelError(
-            fill("{name} has no unit of length, so its sizes are unknown. Set the unit in the program that made it, and "
-                 "export again.", name=name)
+            fill("{name} has no unit of length, so its sizes are unknown. Set the unit in the program that made "
+                 "it, and export again.", name=name)
         )  # fmt: skip
     scale = float(calculate_unit_scale(model))
     if not (math.isfinite(scale) and 1e-6 < scale < 1e4):

@@ -1,9 +1,9 @@
 """A building model as the rows of an inventory, with a plan of each storey beside it.
 
 Breadth is the distance between the outer supports where that is less than the body's, as pieces rock about their
-supports; where the supports stand closest along the longer side, Breadth lies along that. Where an edge of the base is
-nearer to the middle of the body than half of that, as with a plinth set back at the front only, on three legs or on a
-cross, Breadth is twice that distance and lies across that edge: the piece rocks most easily about it.
+supports; where the supports stand closest along the longer side, Breadth lies along that. Of a base with oblique edges,
+three legs or a cross, it is twice the distance from the middle of the body to the nearest edge. Supports off the
+middle, such as a plinth set back at the front only, are warned of, with the Breadth as which the piece tips there.
 """
 
 import math
@@ -84,7 +84,7 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
         routes=draft.routes,
         types=list(_list_types(model, types)),
         skipped=(*_list_skipped(model), *outside),
-        warnings=(*model.warnings, *_note_elevations(storeys, floors), *draft.warnings),
+        warnings=(*model.warnings, *_note_elevations(storeys, floors), *_warn_of_supports(pieces), *draft.warnings),
         remarks=(*model.remarks, *_note(model, storeys, pieces)),
         files={files[key]: plan.svg for key, plan in drawn.items()},
     )
@@ -104,8 +104,9 @@ def _keep_storeys(model: BuildingModel) -> list[Storey]:
 class Sized:
     """A piece with the sizes of its row [cm], the direction of Breadth [deg], and whether its supports stand inside.
 
-    `supports` is the least distance between its outer supports along its sides [cm]; `is_off_middle` tells that an edge
-    of its base is nearer to the middle than half of that, `is_oblique` that this edge is along neither of its sides.
+    `supports` is the least distance between its outer supports along its sides [cm]. Where an edge of its base is
+    nearer to the middle than half of that, `safe` is twice the distance to that edge, else `supports`; `is_oblique`
+    tells that this edge is along neither of its sides.
     """
 
     piece: Piece
@@ -115,8 +116,13 @@ class Sized:
     angle_deg: float
     is_inset: bool
     supports: float
-    is_off_middle: bool = False
+    safe: float
     is_oblique: bool = False
+
+    @property
+    def is_off_middle(self) -> bool:
+        """Whether it tips over one edge sooner than its Breadth says: its supports do not stand about its middle."""
+        return self.safe < self.breadth
 
     @property
     def sizes(self) -> dict[str, float]:
@@ -125,19 +131,24 @@ class Sized:
 
 
 def find_sizes(piece: Piece) -> Sized:
-    """Return the sizes with which a piece rocks."""
+    """Return the sizes with which a piece rocks.
+
+    Breadth is the distance between the outer supports, as people measure it; of a base with edges oblique to its sides,
+    such as a cross or three legs, twice the distance from the middle to the nearest edge.
+    """
     along = piece.support_breadth if piece.support_breadth < piece.breadth - SAME else piece.breadth
     across = piece.support_width if piece.support_width < piece.width - SAME else piece.width
     breadth, width, angle = along, piece.width, piece.angle_deg
     if across < along - SAME:
         breadth, width, angle = across, piece.breadth, piece.angle_deg + 90
     supports = breadth
-    is_off_middle = piece.support_reach is not None and 2 * piece.support_reach < breadth - SAME
-    if piece.support_reach is not None and is_off_middle:
-        breadth, angle = 2 * piece.support_reach, piece.support_angle_deg
-        width = _find_across(piece)
-    sizes = (breadth, width, piece.height, supports)
-    breadth_cm, width_cm, height_cm, supports_cm = (round(CENTIMETRES * one, 1) for one in sizes)
+    reach = piece.support_reach
+    safe = breadth if reach is None or 2 * reach >= breadth - SAME else 2 * reach
+    is_oblique = safe < breadth and _is_oblique(piece)
+    if is_oblique or safe == 0:
+        breadth, width, angle = safe, piece.support_across, piece.support_angle_deg
+    sizes = (breadth, width, piece.height, supports, safe)
+    breadth_cm, width_cm, height_cm, supports_cm, safe_cm = (round(CENTIMETRES * one, 1) for one in sizes)
     return Sized(
         piece,
         breadth_cm,
@@ -146,17 +157,9 @@ def find_sizes(piece: Piece) -> Sized:
         angle_deg=round((angle + 90) % 180 - 90, 1),
         is_inset=breadth < piece.breadth - SAME,
         supports=supports_cm,
-        is_off_middle=is_off_middle,
-        is_oblique=is_off_middle and _is_oblique(piece),
+        safe=safe_cm,
+        is_oblique=is_oblique,
     )
-
-
-def _find_across(piece: Piece) -> float:
-    """Return the size of a piece along the nearest edge of its base [m]."""
-    if _is_oblique(piece):
-        return piece.support_across
-    is_along = abs(math.cos(math.radians(piece.support_angle_deg - piece.angle_deg))) > 0.5
-    return piece.width if is_along else piece.breadth
 
 
 def _is_oblique(piece: Piece) -> bool:
@@ -274,8 +277,8 @@ def _note_supports(one: Sized) -> str:
         return gettext("{body}: Breadth is twice the distance from the middle to the nearest edge between them",
                        body=body)  # fmt: skip
     if one.is_off_middle:
-        return gettext("{body}, which are off the middle: Breadth is twice the distance from the middle to the nearer "
-                       "edge", body=body)  # fmt: skip
+        return gettext("{body}, which are off the middle: to one side it tips as with a Breadth of {safe:g} cm",
+                       body=body, safe=one.safe)  # fmt: skip
     return body
 
 
@@ -392,6 +395,18 @@ def _list_skipped(model: BuildingModel) -> Iterator[Skipped]:
         yield Skipped(kind[:LONGEST_NAME], one.count, one.reason, one.is_furniture)
 
 
+def _warn_of_supports(pieces: Sequence[Sized]) -> Iterator[Text]:
+    """Yield a warning of pieces that tip to one side sooner than their Breadth says."""
+    off = sum(one.is_off_middle for one in pieces)
+    if off:
+        yield nfill(
+            "{n:,} piece stands off the middle of its supports, and tips to one side sooner than its Breadth says. "
+            "Type the Breadth in its Notes to be on the safe side.",
+            "{n:,} pieces stand off the middle of their supports, and tip to one side sooner than their Breadth says. "
+            "Type the Breadth in their Notes to be on the safe side.", off,
+        )  # fmt: skip
+
+
 def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Sized]) -> Iterator[Text]:
     """Yield what else is to be checked."""
     fitted = sum(one.piece.is_fitted for one in pieces)
@@ -404,10 +419,8 @@ def _note(model: BuildingModel, storeys: Sequence[Storey], pieces: Sequence[Size
     inset = sum(one.is_inset for one in pieces)
     if inset:
         yield nfill(
-            "{n:,} piece stands on supports inside its body: Breadth is twice the distance from its middle to the "
-            "nearest edge of its base, and Notes give the body.",
-            "{n:,} pieces stand on supports inside their bodies: Breadth is twice the distance from the middle to the "
-            "nearest edge of the base, and Notes give the bodies.",
+            "{n:,} piece stands on supports inside its body: Breadth is between these, and Notes give the body.",
+            "{n:,} pieces stand on supports inside their bodies: Breadth is between these, and Notes give the bodies.",
             inset,
         )  # fmt: skip
     if model.doors:

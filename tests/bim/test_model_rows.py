@@ -47,19 +47,21 @@ def test_breadth_is_the_shortest_distance_between_outer_supports(supports, sizes
     assert found.breadth <= found.width
 
 
-def test_the_nearest_edge_of_the_base_leaves_less():
+def test_supports_off_the_middle_are_warned_of():
     """The plinth of a wardrobe is set back by 10 cm at its front only: its middle is 20 cm from that edge."""
     front = replace(PIECE, breadth=0.6, support_breadth=0.5, support_reach=0.2, support_angle_deg=30.0)
     found = find_sizes(front)
-    assert (found.breadth, found.width, found.angle_deg, found.supports) == (40.0, 80.0, 30.0, 50.0)
+    assert (found.breadth, found.width, found.angle_deg, found.safe) == (50.0, 80.0, 30.0, 40.0)
     assert (found.is_inset, found.is_off_middle, found.is_oblique) == (True, True, False)
-    side = replace(front, support_reach=0.15, support_angle_deg=-60.0)
-    assert (find_sizes(side).breadth, find_sizes(side).width, find_sizes(side).angle_deg) == (30.0, 60.0, -60.0)
-    (row,) = list_building(model(pieces=(front,))).items
+    side = find_sizes(replace(front, support_reach=0.15, support_angle_deg=-60.0))
+    assert (side.breadth, side.width, side.angle_deg, side.safe) == (50.0, 80.0, 30.0, 30.0)
+    building = list_building(model(pieces=(front,)))
+    (row,) = building.items
     assert row["notes"] == (
-        "body 60.0 x 80.0 x 190.0 cm, 50 cm between the outer supports, which are off the middle: Breadth is twice the "
-        "distance from the middle to the nearer edge"
+        "body 60.0 x 80.0 x 190.0 cm, 50 cm between the outer supports, which are off the middle: to one side it tips "
+        "as with a Breadth of 40 cm"
     )
+    assert any("1 piece stands off the middle of its supports" in text for text in building.warnings)
 
 
 def test_an_oblique_edge_of_the_base_gives_the_direction_of_breadth():

@@ -197,10 +197,10 @@ def test_the_wardrobes_have_their_supports_and_the_catalogue_their_type(duplex):
     found = [one for one in inventory.items if "Tall Cabinet" in one.description]
     assert len(found) == 8
     for one in found:
-        assert (one.breadth, one.width, one.height) == pytest.approx((0.425, 0.8, 2.0))  # set back at the front only
+        assert (one.breadth, one.width, one.height) == pytest.approx((0.485, 0.8, 2.0))
         assert one.notes.startswith(
-            "body 54.5 x 80.0 x 200.0 cm, 48.5 cm between the outer supports, which are off the middle: Breadth is "
-            "twice the distance from the middle to the nearer edge;"
+            "body 54.5 x 80.0 x 200.0 cm, 48.5 cm between the outer supports, which are off the middle: to one side it "
+            "tips as with a Breadth of 42.5 cm;"  # the plinth is set back at the front only
         )
         assert (one.sizes_from, one.type) == ("model", "M_Tall Cabinet-Single Door(2) 800 mm")
         assert len(one.more["source_id"]) == 22
