@@ -81,4 +81,4 @@ def test_the_house_itself_is_read_whole(tmp_path):
     assert [row["description"] for row in found.items] == ["Desk", "Shelf", "Shelf"] * 2
     assert {row["kind"] for row in found.places} >= {"room", "door", "exit", "stair"}
     assert [(one.type, one.count) for one in found.skipped] == [("IfcFurniture Wall unit", 2)]
-    assert len(found.files) == 2
+    assert len(found.files) == 3  # two plans and the record

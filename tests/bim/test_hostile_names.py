@@ -107,6 +107,7 @@ def test_plans_stay_in_the_folder_and_hold_no_names(folder):
     assert {path.name for path in folder.iterdir()} <= {
         *(one.name for one in plans),
         "a.ifc",
+        "a-import.txt",
         "book.xlsx",
         "said",
         "out",
