@@ -40,7 +40,7 @@ def find_unfurnished(inventory: Inventory) -> Iterator[Problem]:
     found, count = list_unfurnished(inventory), len(list_rooms_to_furnish(inventory))
     if found and inventory.items:
         message = nfill(
-            "Furniture is listed in {listed:,} of {n:,} room or corridor of Places: ways through it count as free of "
+            "No furniture is listed in {room}, the only room or corridor of Places: ways through it count as free of "
             "furniture.",
             "Furniture is listed in {listed:,} of {n:,} rooms and corridors of Places, not in {room}: ways through the "
             "others count as free of furniture.",

@@ -94,7 +94,7 @@ def test_no_direction_is_nearer_than_the_edge_that_is_found():
     for _ in range(50):
         feet = rng.uniform(-0.3, 0.3, (12, 2))
         found = find_box(draw((-0.3, -0.3, 0.5, 0.3, 0.3, 1.0), *(leg(x, y, 0.0) for x, y in feet)))
-        ring = list(shapely.MultiPoint(feet).convex_hull.exterior.coords)
+        ring = shapely.get_coordinates(shapely.MultiPoint(feet).convex_hull).tolist()
         steps = np.linspace(0, 1, 500)[:, None]
         around = np.vstack([np.array(one) + steps * np.subtract(other, one) for one, other in pairwise(ring)])
         nearest = around[np.hypot(*around.T).argmin()]

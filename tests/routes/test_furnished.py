@@ -56,7 +56,7 @@ def test_drafts_and_rooms_without_furniture_are_in_words(name, said):
     *drafts, furniture = say_reservations(found)
     assert drafts == ["1 of 2 routes is a draft from a building model that nobody has walked yet."] * said
     assert furniture == (
-        "Furniture is listed in 0 of 1 rooms and corridors. Ways through the others count as free of furniture."
+        "No furniture is listed in the only room or corridor: ways through it count as free of furniture."
     )
 
 

@@ -211,8 +211,8 @@ def test_a_route_needs_the_flight_that_it_includes(width, chance, state):
     found = evaluated(make_falls([chance]), [BESIDE_CORRIDOR], ways, [OFFICE, *STAIR_ENDS]).routes[0]
     assert (found.state, found.from_places, found.to_places) == (state, ("Office",), ("Down",))
     assert found.unevaluated_segments == (("flight",) if width is None else ())
-    space = [place("Stairwell", "stair", (1, 0), floor="2"), stretch("well", "Stairwell", "Up", floor="2")]
-    again = evaluated(make_falls([chance]), [BESIDE_CORRIDOR], [*ways, space[1]], [OFFICE, *STAIR_ENDS, space[0]])
+    well, way = place("Stairwell", "stair", (1, 0), floor="2"), stretch("well", "Stairwell", "Up", floor="2")
+    again = evaluated(make_falls([chance]), [BESIDE_CORRIDOR], [*ways, way], [OFFICE, *STAIR_ENDS, well])
     assert (again.routes[0].state, again.routes[0].to_places) == (state, ("Down",)), "nor does its space count"
 
 

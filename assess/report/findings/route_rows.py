@@ -64,8 +64,9 @@ def _say_furnished(routes: RouteTables) -> list[str]:
         return [_("No furniture is listed, so whether ways through rooms stay open is not known.")]
     if routes.furnished_rooms == routes.counted_rooms:
         return []
-    return [_("Furniture is listed in {listed:,} of {count:,} rooms and corridors. Ways through the others count as "
-              "free of furniture.", listed=routes.furnished_rooms, count=routes.counted_rooms)]  # fmt: skip
+    return [ngettext("No furniture is listed in the only room or corridor: ways through it count as free of furniture.",
+                     "Furniture is listed in {listed:,} of {n:,} rooms and corridors. Ways through the others count as "
+                     "free of furniture.", routes.counted_rooms, listed=routes.furnished_rooms)]  # fmt: skip
 
 
 def say_expected(routes: RouteTables) -> str:
