@@ -182,7 +182,7 @@ def test_what_is_not_known_of_a_piece_is_marked_and_leads_to_its_cell(page, serv
     expect(plan.page.locator(".fallen .unknown")).to_have_count(4)
     expect(plan.panel).to_contain_text("0.32 × ? × 1.8")
     plan.panel.get_by_role("button", name="Fill in Width: how far it reaches is not known.").click()
-    expect(plan.page.locator(".sheet-cell")).to_have_text(re.compile(rf"^[B-Z]{A1}$"))
+    expect(plan.page.locator(".sheet-cell")).to_have_text(re.compile(rf"![B-Z]{A1}$"))
     plan.sheet.type("80<Enter>")
     plan.open()
     expect(piece.locator(".unknown")).to_have_count(0)
