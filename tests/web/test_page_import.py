@@ -63,6 +63,21 @@ def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, serve
     expect(found.locator("#view-sheet")).to_be_visible()
 
 
+@pytest.mark.parametrize("slow", ["/api/import", "/api/book"])
+def test_what_was_taken_is_shown_after_a_reload_whichever_answer_comes_last(page, served, tmp_path, slow):
+    found = page(served())
+    _choose(found, write_cobie(tmp_path / "handover.xlsx"))
+    _see_list(found, "handover.xlsx")
+
+    def answer_late(route):
+        found.wait_for_timeout(500)
+        route.continue_()
+
+    found.route(f"**{slow}", answer_late)
+    found.reload()
+    _see_list(found, "handover.xlsx")
+
+
 def test_the_list_of_what_was_skipped_is_copied(page, served):
     found = page(served(), permissions=["clipboard-read", "clipboard-write"])
     _choose(found, DUPLEX)

@@ -51,7 +51,8 @@ class Frame {
   }
 
   async start() {
-    await Promise.all([this.#store.load(), imports.attach(this.#store)]);
+    await imports.attach(this.#store); // first: which view the address names depends on it
+    await this.#store.load();
     jobs.attach(this.#store);
     this.tabs.update();
     this.watch.start();
