@@ -8,7 +8,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from assess.i18n import Text
+from assess.i18n import Text, fill
+
+ON_FLOOR = 0.15
+"""Height of its lowest point above the floor up to which a piece stands on it [m]."""
+SILL = 0.3
+"""Height of its lower edge above the floor up to which people walk through an opening [m]."""
+NOT_ON_FLOOR = fill("not on the floor: its lowest point is more than 15 cm above it")
+IS_TILTED = fill("not upright")
 
 Point = tuple[float, float]
 Ring = tuple[Point, ...]

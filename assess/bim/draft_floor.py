@@ -10,12 +10,10 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from assess.bim.building_model import BuildingModel, Door, Piece, Point, Space, Storey
+from assess.bim.building_model import ON_FLOOR, BuildingModel, Door, Piece, Point, Space, Storey
 from assess.bim.door_sides import Sides, find_normal
 from assess.bim.plan_shapes import list_polygons, to_polygon
 
-ON_FLOOR = 0.15
-"""A piece whose lowest point is higher above the floor than this hangs: one passes below it or beside it [m]."""
 LOW = 0.1
 """A piece that is no higher than this is stepped over [m]."""
 JAMB = 0.1

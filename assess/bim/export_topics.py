@@ -49,7 +49,7 @@ class Topics:
     """A file of topics: its bytes, how many there are, and how many entries of the schedule it leaves out.
 
     `unplaced` have no piece in the model; `beyond` are more than a file holds. `doors` counts topics that select a
-    door. `is_shifted` tells whether the positions of workbook and model agree, so that doors could be found.
+    door. `is_placed` tells whether the positions of workbook and model agree, so that doors could be found.
     """
 
     data: bytes

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from assess.bim.building_model import LeftOut, Piece, Space, Storey
+from assess.bim.building_model import NOT_ON_FLOOR, ON_FLOOR, LeftOut, Piece, Space, Storey
 from assess.bim.ifc_elements import (
     Element,
     find_holders,
@@ -31,8 +31,6 @@ OTHERS = (
     "IfcFlowMovingDevice", "IfcFlowTreatmentDevice", "IfcEnergyConversionDevice", "IfcDistributionControlElement",
 )  # fmt: skip
 """Classes that may hold furniture or equipment, and mostly hold something else: they are listed, and taken by name."""
-ON_FLOOR = 0.15
-"""Height of its lowest point above the floor up to which a piece stands on it [m]."""
 FITTED = (
     "base cabinet", "casework", "kitchen", "counter", "vanity", "built-in", "builtin", "worktop", "einbau", "küche",
     "kueche", "cucina", "incasso",
@@ -40,7 +38,6 @@ FITTED = (
 """Words in names of fitted furniture, which is usually fixed."""
 MOST_PIECES = 20_000
 """Pieces of a model that are read."""
-NOT_ON_FLOOR = fill("not on the floor: its lowest point is more than 15 cm above it")
 NO_SHAPE = fill("no geometry")
 NO_PIECE = fill("its class is not furniture; it can be imported by the name of its class")
 _NEAR_FLOOR = 0.3

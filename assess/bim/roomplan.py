@@ -12,7 +12,18 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from assess.bim.building_model import BuildingModel, Door, LeftOut, Piece, Stair, Storey
+from assess.bim.building_model import (
+    IS_TILTED,
+    NOT_ON_FLOOR,
+    ON_FLOOR,
+    SILL,
+    BuildingModel,
+    Door,
+    LeftOut,
+    Piece,
+    Stair,
+    Storey,
+)
 from assess.bim.scan_plan import (
     Room,
     draw_walls,
@@ -24,14 +35,10 @@ from assess.bim.scan_plan import (
     place_in_rooms,
     turn_by,
 )
-from assess.bim.scan_values import Scan, Scanned, read_scan, say_word
+from assess.bim.scan_values import Scan, Scanned, parse_scan, say_word
 from assess.i18n import Text, fill, gettext, nfill
 
 SCHEMA = "RoomPlan"
-ON_FLOOR = 0.15
-"""Height of its base above the floor up to which a piece stands on it [m]."""
-PASSABLE = 0.3
-"""Height of the lower edge of an opening above the floor up to which people walk through [m]."""
 NEAR_STOREY = 0.5
 """How far from a storey's floor a stair may end to lead to it [m]."""
 FIXED = ("sink", "toilet", "bathtub", "fireplace")
@@ -45,8 +52,6 @@ LOW = "low"
 
 IS_FIXED = fill("fixed to the building")
 IS_BUILT_IN = fill("built into a cabinet, which is imported")
-IS_TILTED = fill("not upright")
-NOT_ON_FLOOR = fill("not on the floor: its base is more than 15 cm above it")
 
 EXPERIMENTAL = fill(
     "Scans of RoomPlan are read experimentally, as Apple does not document their files. Compare pieces, rooms and "
@@ -81,7 +86,7 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
     ModelError
         If it is no scan, damaged, or beyond a limit; the message names the place in the file, as ``objects[3]``.
     """
-    scan = read_scan(data, name)
+    scan = parse_scan(data, name)
     scan = scan.turned(turn_by(-find_turn(scan.walls)))
     storeys = _list_storeys(scan)
     levels = {int(one.key): one.level for one in storeys}
@@ -175,7 +180,7 @@ def _list_doors(scan: Scan, levels: dict[int, float]) -> Iterator[Door]:
     taken: set[str] = set()
     named = ((gettext("Door"), scan.doors), (gettext("Opening"), scan.openings))
     for name, one in ((name, one) for name, several in named for one in several):
-        is_passable = one.bottom - levels.get(one.story, one.bottom) <= PASSABLE
+        is_passable = one.bottom - levels.get(one.story, one.bottom) <= SILL
         if one.key not in taken and is_upright(one) and is_passable and one.sizes[0] > 0:
             taken.add(one.key)
             normal = math.degrees(math.atan2(one.axes[1, 2], one.axes[0, 2]))

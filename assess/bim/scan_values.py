@@ -125,7 +125,7 @@ class Scan:
         return replace(self, **lists)
 
 
-def read_scan(data: bytes, name: str) -> Scan:
+def parse_scan(data: bytes, name: str) -> Scan:
     """Return the values of a file.
 
     Raises

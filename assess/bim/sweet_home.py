@@ -19,7 +19,21 @@ from xml.parsers import expat
 import shapely
 from shapely import LineString, Polygon
 
-from assess.bim.building_model import Area, BuildingModel, Door, LeftOut, Piece, Point, Space, Stair, Storey
+from assess.bim.building_model import (
+    IS_TILTED,
+    NOT_ON_FLOOR,
+    ON_FLOOR,
+    SILL,
+    Area,
+    BuildingModel,
+    Door,
+    LeftOut,
+    Piece,
+    Point,
+    Space,
+    Stair,
+    Storey,
+)
 from assess.bim.plan_shapes import list_polygons, merge, to_area, to_polygon
 from assess.errors import ModelError
 from assess.i18n import Text, fill, gettext, nfill
@@ -35,17 +49,11 @@ MOST_PIECES, MOST_WALLS, MOST_LEVELS = 10_000, 1_000, 100
 FARTHEST = 1e6
 """Largest number of a length [cm]."""
 CENTIMETRE = 0.01
-ON_FLOOR = 0.15
-"""Height of its base above the floor up to which a piece stands on it [m]."""
-SILL = 0.3
-"""Height of its lower edge above the floor up to which people walk through a door or window [m]."""
 SMALLEST_ROOM = 0.5
 """Area below which an outline is no room [m2]."""
 FURNITURE = ("pieceOfFurniture", "light", "shelfUnit", "doorOrWindow")
 
-NOT_ON_FLOOR = fill("not on the floor: its base is more than 15 cm above it")
 IS_HIDDEN = fill("hidden in the plan")
-IS_TILTED = fill("not upright")
 IS_STAIR = fill("a stair, listed in Places")
 DRAWN_SIZES = fill(
     "Sizes are those of the drawing, which are often those of the program's catalogue: check them against the "

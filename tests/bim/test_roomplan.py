@@ -112,7 +112,7 @@ def test_what_is_no_piece_is_listed_with_its_reason():
     model = read(scan)
     assert pieces_of(model).keys() == pieces_of(read(office())).keys()
     found = {(one.type, str(one.reason), one.count, one.is_furniture) for one in model.left_out}
-    hanging = "not on the floor: its base is more than 15 cm above it"
+    hanging = "not on the floor: its lowest point is more than 15 cm above it"
     assert found == {
         *((kind, "fixed to the building", 1, False) for kind in ("Sink", "Toilet", "Bathtub", "Fireplace", "Stairs")),
         ("Oven", "built into a cabinet, which is imported", 1, False), ("Bed", "not upright", 1, True),

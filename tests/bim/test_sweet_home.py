@@ -86,7 +86,7 @@ def test_pieces_of_a_group_are_taken_one_by_one(home):
 
 
 def test_what_is_no_piece_is_listed_with_its_reason(home):
-    raised = "not on the floor: its base is more than 15 cm above it"
+    raised = "not on the floor: its lowest point is more than 15 cm above it"
     assert {(one.type, str(one.reason), one.count, one.is_furniture) for one in home.left_out} == {
         ("Laptop", raised, 1, True), ("Pendant lamp", raised, 1, True), ("Kitchen upper cabinet", raised, 1, True),
         ("Chair", "hidden in the plan", 1, True), ("Chest", "not upright", 1, True),
