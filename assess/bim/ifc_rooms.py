@@ -61,7 +61,8 @@ def list_doors(model: Any, storeys: Mapping[str, Storey], unit: float) -> Iterat
     """Yield the doors that have a plan: that of their opening, else their own."""
     doors = model.by_type("IfcDoor")
     keys = tell_apart(doors)
-    openings = {one.id(): fill.RelatingOpeningElement for one in doors for fill in one.FillsVoids}
+    fills = [(one.id(), fill.RelatingOpeningElement) for one in doors for fill in one.FillsVoids]
+    openings = {number: opening for number, opening in fills if opening is not None}
     shapes = dict(list_shapes(model, [*doors, *openings.values()]))
     for one in doors:
         storey = _find_known(one, storeys)

@@ -199,6 +199,14 @@ def test_a_door_in_a_wall_that_is_thicker_than_it_is_wide(tmp_path, deep, direct
     assert abs(door.normal_deg) == pytest.approx(direction)
 
 
+def test_a_door_whose_opening_the_model_lacks_has_the_sizes_of_its_leaf(tmp_path):
+    model, storey, _ = one_room()
+    leaf = model.element("IfcDoor", "D", (0, 0, 0, 0.9, 0.06, 2.1), within=storey, at=(3, 4, 0), OverallWidth=0.9)
+    model.root("IfcRelFillsElement", None, RelatedBuildingElement=leaf)
+    (door,) = read_model(model.write(tmp_path / "a.ifc"), "a.ifc").doors
+    assert (door.width, door.thickness) == pytest.approx((0.9, 0.06), abs=1e-4)
+
+
 def test_an_assembly_is_one_piece_with_its_parts(tmp_path):
     model, _, room = one_room()
     whole = model.piece("Desk", within=room, at=(3, 2, 0))
