@@ -399,6 +399,7 @@ def test_any_model_gives_a_draft_that_holds_together(model):
         assert line.length > 0.01
 
 
+@pytest.mark.slow
 def test_rooms_that_lie_in_each_other_are_bounded():
     """So are many doors at one place."""
     count = 60

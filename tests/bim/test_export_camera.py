@@ -38,6 +38,7 @@ def read_corners(element):
     return list(itertools.product(*zip(placed.min(axis=0), placed.max(axis=0), strict=True)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", [DUPLEX, OFFICE], ids=["duplex", "office"])
 def test_all_that_a_topic_selects_is_in_the_picture(tmp_path: Path, model: Path):
     found = export(import_results(tmp_path, model), model, with_properties=False).topics

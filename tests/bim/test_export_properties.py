@@ -290,6 +290,7 @@ def test_what_an_import_takes_by_name_may_be_a_piece(tmp_path, name):
     assert (found.written, found.is_complete) == (1, True)
 
 
+@pytest.mark.slow
 def test_of_two_pieces_with_one_source_id_the_worse_is_written(tmp_path):
     """The first stands on the ground floor and is low, the second very high."""
     items = [
@@ -325,6 +326,7 @@ def test_a_model_that_was_exported_before_is_refused(simulated, exported):
     assert export(simulated, exported, with_properties=False).topics.count > 0
 
 
+@pytest.mark.slow
 def test_pieces_of_another_workbook_can_join_a_model(tmp_path):
     """Two workbooks of one building: the sets of the second join those of the first."""
     first = export(write_results(tmp_path / "a", CUPBOARDS[:2]), DUPLEX, with_topics=False)

@@ -356,6 +356,7 @@ def test_without_a_date_of_the_report_the_topics_have_that_of_the_results(tmp_pa
 # ---------------------------------------------------------------- from the import to the topics
 
 
+@pytest.mark.slow
 def test_a_whole_building_comes_back_to_its_model(tmp_path):
     """All pieces of an import are found again, and the topics of those on drafted routes select doors of the model."""
     results = import_results(tmp_path, DUPLEX)

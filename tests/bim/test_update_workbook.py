@@ -285,6 +285,7 @@ def test_a_formula_of_people_stays_and_is_listed(book: bytes, tmp_path: Path) ->
     ]
 
 
+@pytest.mark.slow
 @settings(max_examples=10)
 @given(st.dictionaries(st.integers(0, 5), st.fixed_dictionaries({}, optional={
     **dict.fromkeys(("breadth", "width", "height"), st.integers(50, 6000).map(lambda one: one / 10)),

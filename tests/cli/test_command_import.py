@@ -293,6 +293,7 @@ def test_an_update_replaces_plans_of_imports_alone(duplex):
     assert duplex.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_an_update_writes_no_plan_over_one_of_people_that_the_workbook_does_not_name(duplex):
     """The model has another name today, under which people have drawn a plan."""
     model = duplex.with_name("house.ifc")
