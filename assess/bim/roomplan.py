@@ -21,21 +21,21 @@ from assess.bim.building_model import (
     Door,
     LeftOut,
     Piece,
+    Space,
     Stair,
     Storey,
 )
 from assess.bim.scan_plan import (
-    Room,
     draw_walls,
     draw_windows,
     find_level,
     find_rooms,
     find_turn,
     is_upright,
-    place_in_rooms,
     turn_by,
 )
 from assess.bim.scan_values import Scan, Scanned, parse_scan, say_word
+from assess.bim.space_search import find_rooms_at
 from assess.i18n import Text, fill, gettext, nfill
 
 SCHEMA = "RoomPlan"
@@ -98,7 +98,7 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
         schema=SCHEMA,
         sizes_from="scan",
         storeys=storeys,
-        spaces=tuple(one.space for one in rooms),
+        spaces=tuple(rooms),
         doors=doors,
         stairs=tuple(_list_stairs(scan, levels)),
         pieces=tuple(found.pieces),
@@ -140,11 +140,12 @@ class _Found:
         )
 
 
-def _find_pieces(scan: Scan, rooms: Sequence[Room], levels: dict[int, float]) -> _Found:
+def _find_pieces(scan: Scan, rooms: Sequence[Space], levels: dict[int, float]) -> _Found:
     found, kinds = _Found(), {one.key: one.kind for one in scan.objects}
-    for one, room in zip(scan.objects, place_in_rooms(scan.objects, rooms), strict=True):
+    places = [(str(one.story), (float(one.origin[0]), float(one.origin[1]))) for one in scan.objects]
+    for one, room in zip(scan.objects, find_rooms_at(places, rooms), strict=True):
         kind = say_word(one.kind) or gettext("Object")
-        bottom = one.bottom - (room.space.bottom if room else levels[one.story])
+        bottom = one.bottom - (room.bottom if room else levels[one.story])
         if one.kind in (*FIXED, STAIRS):
             found.left_out[kind, IS_FIXED, False] += 1
         elif one.kind in BUILT_IN and kinds.get(one.parent) == "storage":
@@ -159,13 +160,13 @@ def _find_pieces(scan: Scan, rooms: Sequence[Room], levels: dict[int, float]) ->
     return found
 
 
-def _to_piece(one: Scanned, kind: str, room: Room | None, bottom: float) -> Piece:
+def _to_piece(one: Scanned, kind: str, room: Space | None, bottom: float) -> Piece:
     width, height, depth = one.sizes
     axis = 0 if width <= depth else 2
     short, long = min(width, depth), max(width, depth)
     angle = math.degrees(math.atan2(one.axes[1, axis], one.axes[0, axis]))
     return Piece(
-        key=one.key, storey=str(one.story), space=room.space.key if room else "", ifc_class=SCHEMA,
+        key=one.key, storey=str(one.story), space=room.key if room else "", ifc_class=SCHEMA,
         name=kind, type=kind, x=float(one.origin[0]), y=float(one.origin[1]), breadth=short, width=long, height=height,
         angle_deg=(angle + 90) % 180 - 90, support_breadth=short, support_width=long, bottom=bottom,
         is_fitted=one.kind in FITTED,

@@ -2,13 +2,12 @@
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
 import numpy as np
 import shapely
-from shapely import LineString, Point, Polygon, STRtree
+from shapely import LineString, Point, Polygon
 
 from assess.bim.building_model import Area, Space
 from assess.bim.plan_shapes import list_polygons, merge, to_area
@@ -91,15 +90,7 @@ def _around(x: float, y: float) -> tuple[tuple[float, float], ...]:
 # ---------------------------------------------------------------- rooms
 
 
-@dataclass(frozen=True, slots=True)
-class Room:
-    """A room with its polygon."""
-
-    space: Space
-    polygon: Polygon
-
-
-def find_rooms(scan: Scan, stories: Iterable[int]) -> list[Room]:
+def find_rooms(scan: Scan, stories: Iterable[int]) -> list[Space]:
     """Return the rooms of the storeys: the outlines of floors, else those that walls close."""
     found = [
         (key, story, polygon, level)
@@ -113,22 +104,8 @@ def find_rooms(scan: Scan, stories: Iterable[int]) -> list[Room]:
         taken.add(own)
         name = _name(scan.labels, story, polygon, is_only=len(found) == 1) or gettext("Room {n}", n=number)
         # How high a ceiling lies says nothing of the roof of the building: a space without height tells none.
-        rooms.append(Room(Space(own, str(story), name, "", to_area(polygon), level, level), polygon))
+        rooms.append(Space(own, str(story), name, "", to_area(polygon), level, level))
     return rooms
-
-
-def place_in_rooms(objects: Sequence[Scanned], rooms: Sequence[Room]) -> list[Room | None]:
-    """Return for each object the smallest room of its storey in which it stands, None where there is none."""
-    points = [Point(one.origin[:2]) for one in objects]
-    found: list[Room | None] = [None] * len(objects)
-    if not points:
-        return found
-    for at, number in zip(*STRtree([one.polygon for one in rooms]).query(points, "covered_by").tolist(), strict=True):
-        room, known = rooms[number], found[at]
-        is_smaller = known is None or room.polygon.area < known.polygon.area
-        if room.space.storey == str(objects[at].story) and is_smaller:
-            found[at] = room
-    return found
 
 
 def _list_floors(scan: Scan, story: int) -> Iterator[tuple[str, Polygon, float]]:

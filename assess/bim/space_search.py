@@ -36,3 +36,22 @@ class SpaceSearch:
         for at, space in zip(*hits.tolist(), strict=True):
             found[at].append(space)
         return [[self.spaces[at] for at in sorted(own, key=lambda one: (self._sizes[one], one))] for own in found]
+
+
+def find_rooms_at(places: Sequence[tuple[str, Point]], spaces: Sequence[Space]) -> list[Space | None]:
+    """Return the smallest space that holds each place, None where there is none.
+
+    Parameters
+    ----------
+    places : sequence of (str, Point)
+        Key of the storey, and point in plan [m].
+    spaces : sequence of Space
+        Those of all storeys.
+    """
+    found: list[Space | None] = [None] * len(places)
+    for storey in {key for key, _ in places}:
+        own = [at for at, (key, _) in enumerate(places) if key == storey]
+        search = SpaceSearch([one for one in spaces if one.storey == storey])
+        for at, rooms in zip(own, search.find_all([places[one][1] for one in own]), strict=True):
+            found[at] = rooms[0] if rooms else None
+    return found

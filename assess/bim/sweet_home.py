@@ -35,6 +35,7 @@ from assess.bim.building_model import (
     Storey,
 )
 from assess.bim.plan_shapes import list_polygons, merge, to_area, to_polygon
+from assess.bim.space_search import find_rooms_at
 from assess.errors import ModelError
 from assess.i18n import Text, fill, gettext, nfill
 
@@ -305,10 +306,11 @@ class _Home:
         )
 
     def _list_pieces(self, boxes: Sequence["_Box"], spaces: Sequence[Space]) -> Iterator[Piece]:
-        for one, room in zip(boxes, _place(boxes, spaces), strict=True):
+        rooms = find_rooms_at([(one.storey, (one.x, one.y)) for one in boxes], spaces)
+        for one, room in zip(boxes, rooms, strict=True):
             reason = one.why_left_out()
             if reason is None:
-                yield one.to_piece(room)
+                yield one.to_piece(room.key if room else "")
             else:
                 self.left_out[one.name, reason, reason is not IS_STAIR] += 1
 
@@ -333,19 +335,6 @@ class _Home:
         """Return the compass direction of X [deg]; None where the compass was left as it was, up the plan."""
         north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
         return round((90 - math.degrees(north)) % 360, 1) if north else None
-
-
-def _place(boxes: Sequence["_Box"], spaces: Sequence[Space]) -> list[str]:
-    """Return the key of the smallest room of its level in which each stands, "" where there is none."""
-    polygons = [to_polygon(one.area) for one in spaces]
-    found = [(math.inf, "")] * len(boxes)
-    if not boxes:
-        return []
-    points = [shapely.Point(one.x, one.y) for one in boxes]
-    for at, room in zip(*shapely.STRtree(polygons).query(points, "covered_by").tolist(), strict=True):
-        if spaces[room].storey == boxes[at].storey:
-            found[at] = min(found[at], (polygons[room].area, spaces[room].key))
-    return [key for _, key in found]
 
 
 def _say(value: str | None) -> str:
