@@ -22,6 +22,14 @@ MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX = MODELS / "duplex.ifc"
 READ = 120_000
 """Time that a model may take to be read here [ms]."""
+ANSWER_LATE = """
+const ask = window.fetch;
+window.fetch = async (path, options) => {
+  if (path === "PATH") await new Promise((go) => setTimeout(go, 500));
+  return ask(path, options);
+};
+"""
+"""Has the page wait for the answers to one of its requests."""
 
 
 def _choose(page, *files):
@@ -68,12 +76,7 @@ def test_what_was_taken_is_shown_after_a_reload_whichever_answer_comes_last(page
     found = page(served())
     _choose(found, write_cobie(tmp_path / "handover.xlsx"))
     _see_list(found, "handover.xlsx")
-
-    def answer_late(route):
-        found.wait_for_timeout(500)
-        route.continue_()
-
-    found.route(f"**{slow}", answer_late)
+    found.add_init_script(ANSWER_LATE.replace("PATH", slow))
     found.reload()
     _see_list(found, "handover.xlsx")
 
