@@ -20,7 +20,7 @@ example: $(VENV)/.installed
 test: $(VENV)/.developing
 	$(PYTEST) -m "not ($(SLOW) or long)"
 
-# Full reports, browsers, LibreOffice, veraPDF, extremes, killed processes: 12 minutes at most.
+# Full reports, browsers, LibreOffice, veraPDF, extremes, killed processes.
 test-slow: $(VENV)/.developing
 	$(PYTEST) -m "($(SLOW)) and not long"
 
