@@ -1,6 +1,5 @@
 """Risk classes as property sets: read back by ifcopenshell from models of which every byte is still there."""
 
-import json
 import math
 import shutil
 from pathlib import Path
@@ -30,6 +29,7 @@ from tests.bim.export_runs import (
     export,
     piece,
     read_rows,
+    write_adopted,
     write_results,
 )
 from tests.bim.ifc_files import ModelWriter
@@ -107,11 +107,7 @@ def test_the_upper_class_stands_there_where_it_differs(simulated, exported):
 
 def test_a_class_by_which_programs_filter_tells_what_it_could_be(simulated, tmp_path):
     """Twenty draws leave the class of one of the two open; as which one is chance, the file is edited."""
-    record = json.loads(simulated.read_text(encoding="utf-8"))
-    for row in record["items"]:
-        row["adopted"] |= {"class": "low", "class_upper": "medium", "probability": 0.0}
-    results = tmp_path / "results.json"
-    results.write_text(json.dumps(record), encoding="utf-8")
+    results = write_adopted(simulated, tmp_path, {"class": "low", "class_upper": "medium", "probability": 0.0})
     out = tmp_path / "out.ifc"
     out.write_bytes(export(results, DUPLEX, with_topics=False).model)
     sets = read_sets(out)

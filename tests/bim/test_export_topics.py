@@ -31,6 +31,7 @@ from tests.bim.export_runs import (
     import_results,
     piece,
     read_rows,
+    write_adopted,
     write_results,
 )
 
@@ -169,11 +170,7 @@ def test_an_unconfirmed_piece_is_no_class_in_its_title(bcf):
 
 
 def test_titles_and_labels_have_the_upper_class_as_well(results, tmp_path):
-    record = json.loads(results.read_text(encoding="utf-8"))
-    for row in record["items"]:
-        row["adopted"] |= {"class": "medium", "class_upper": "high", "probability": 0.2}
-    changed = tmp_path / "results.json"
-    changed.write_text(json.dumps(record), encoding="utf-8")
+    changed = write_adopted(results, tmp_path, {"class": "medium", "class_upper": "high", "probability": 0.2})
     for topic in Bcf(export(changed, DUPLEX, with_properties=False).topics.data).topics:
         assert {"medium", "high"} <= set(topic.labels)
         assert ", could be high: " in topic.text("Title")
@@ -182,12 +179,12 @@ def test_titles_and_labels_have_the_upper_class_as_well(results, tmp_path):
 
 def test_a_topic_of_unlike_pieces_has_the_highest_class_of_any(tmp_path):
     """One is high; the other medium, but could be very high."""
-    results = write_pair(tmp_path)
-    record = json.loads(results.read_text(encoding="utf-8"))
-    for row, classes in zip(record["items"], (("medium", "very high"), ("high", "high")), strict=True):
-        row["adopted"] |= {"class": classes[0], "class_upper": classes[1], "probability": 0.5}
-    results.write_text(json.dumps(record), encoding="utf-8")
-    (topic,) = Bcf(export(results, DUPLEX, with_properties=False).topics.data).topics
+    classes = [
+        {"class": "medium", "class_upper": "very high", "probability": 0.5},
+        {"class": "high", "class_upper": "high", "probability": 0.5},
+    ]
+    changed = write_adopted(write_pair(tmp_path), tmp_path, *classes)
+    (topic,) = Bcf(export(changed, DUPLEX, with_properties=False).topics.data).topics
     assert topic.labels[:4] == ["earthquake", "high", "very high", "2"]
     assert topic.text("Title").startswith("high, could be very high: ")
     assert topic.text("Priority") == "Critical"

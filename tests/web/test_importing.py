@@ -36,6 +36,16 @@ def _read(client, name, data, query=""):
     return answer["import"]
 
 
+def _begin_sending(client, length, data):
+    """Send the head of a model and its first bytes, and return the line, which stays open."""
+    parts = urlsplit(client.base)
+    headers = "".join(f"{name}: {value}\r\n" for name, value in client.headers.items())
+    line = socket.create_connection((parts.hostname, parts.port))
+    head = f"POST /api/import?name=a.ifc HTTP/1.1\r\nHost: {parts.netloc}\r\n{headers}{length}\r\n\r\n"
+    line.sendall(head.encode() + data)
+    return line
+
+
 def _list_left(tmp_path):
     """Return the folders of models below the folders of the server."""
     return [path.name for path in (tmp_path / "tmp").rglob("import-*")]
@@ -181,11 +191,7 @@ def test_the_server_ends_while_a_model_is_read(served, tmp_path):
 
 def test_a_client_that_goes_away_while_it_sends_leaves_nothing(served, tmp_path):
     client = served().client
-    head = "".join(f"{name}: {value}\r\n" for name, value in client.headers.items())
-    parts = urlsplit(client.base)
-    with socket.create_connection((parts.hostname, parts.port)) as line:
-        text = f"POST /api/import?name=a.ifc HTTP/1.1\r\nHost: {parts.netloc}\r\n{head}Content-Length: 100000\r\n\r\n"
-        line.sendall(text.encode() + b"x" * 1000)
+    with _begin_sending(client, "Content-Length: 100000", b"x" * 1000):
         wait_until(lambda: _list_left(tmp_path), len)
     wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
     assert client.get("/api/import").json()["import"] is None
@@ -193,11 +199,7 @@ def test_a_client_that_goes_away_while_it_sends_leaves_nothing(served, tmp_path)
 
 def test_one_model_is_sent_at_a_time(served, tmp_path):
     client = served().client
-    head = "".join(f"{name}: {value}\r\n" for name, value in client.headers.items())
-    parts = urlsplit(client.base)
-    with socket.create_connection((parts.hostname, parts.port)) as line:
-        text = f"POST /api/import?name=a.ifc HTTP/1.1\r\nHost: {parts.netloc}\r\n{head}Transfer-Encoding: chunked\r\n"
-        line.sendall(text.encode() + b"\r\n3e8\r\n" + b"x" * 1000 + b"\r\n")
+    with _begin_sending(client, "Transfer-Encoding: chunked", b"3e8\r\n" + b"x" * 1000 + b"\r\n"):
         wait_until(lambda: _list_left(tmp_path), len)
         reply = client.request("POST", "/api/import?name=b.ifc", b"x")
         assert (reply.status, reply.json()["message"]) == (
