@@ -12,7 +12,7 @@ export PYTHONDONTWRITEBYTECODE :=
 PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist worksteal
 SLOW := slow or browser or libreoffice or verapdf
 
-.PHONY: example test test-slow test-long lint benchmark blank docs texts samples clean
+.PHONY: example test test-slow test-smoke test-long lint benchmark blank docs texts samples clean
 
 example: $(VENV)/.installed
 	$(BIN)/assess run inventories/market-street.xlsx --out out/market-street
@@ -24,7 +24,11 @@ test: $(VENV)/.developing
 test-slow: $(VENV)/.developing
 	$(PYTEST) -m "($(SLOW)) and not long"
 
-# Whole studies, fuzzing, the lowest and the newest dependencies: three quarters of an hour. Writes docs/tests.md.
+# Each command, one workbook through each format, the physics: whether another Python will do (VENV, PYTHON).
+test-smoke: $(VENV)/.developing
+	$(PYTEST) tests/test_smoke.py tests/validation tests/rocking -m "smoke or not ($(SLOW) or long)"
+
+# Whole studies, fuzzing, the lowest and the newest dependencies, other Pythons: an hour. Writes docs/tests.md.
 # There is no atheris for some systems: fuzzing then goes by its own engine alone.
 test-long: $(VENV)/.developing
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'uv>=0.5'

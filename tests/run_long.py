@@ -1,6 +1,7 @@
-"""The long tests, and the quick ones on the oldest and newest dependencies: ``make test-long`` writes docs/tests.md.
+"""The long tests, and the quick ones on the oldest and newest dependencies and on other versions of Python.
 
-Not part of the gate: three quarters of an hour on two cores. The page holds the last result with its date.
+``make test-long`` runs them and writes docs/tests.md, which holds the last result with its date. Not part of the gate:
+an hour on two cores.
 """
 
 import datetime
@@ -15,6 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 from docs.machine import describe_machine  # noqa: E402
+from tests.other_pythons import find_pythons  # noqa: E402
 
 PAGE = ROOT / "docs" / "tests.md"
 BUILD = ROOT / "build"
@@ -32,7 +34,9 @@ def main() -> int:
         run("whole studies and pages", sys.executable, "-m", "long", "-n", "auto"),
         draw_others(),
         *fuzz(),
-        *(run_with(name, resolution) for name, resolution in (("oldest", "lowest-direct"), ("newest", "highest"))),
+        run_with("the oldest dependencies", sys.executable, "lowest-direct"),
+        *(run_with(f"Python {version}", python) for version, python in find_pythons().items()),
+        run_with("the newest dependencies", sys.executable),
     ]
     PAGE.write_text("\n".join(describe(rows)) + "\n", encoding="utf-8")
     return int(any(re.search(r"\b(failed|errors?)\b", row[1]) for row in rows))
@@ -94,24 +98,24 @@ def draw_others() -> tuple[str, str, str]:
     return what, result, f"{(time.monotonic() - started) / 60:.0f}"
 
 
-def run_with(name: str, resolution: str) -> tuple[str, str, str]:
-    """Run the quick tests on the declared lowest or the newest versions of the dependencies."""
-    folder = BUILD / f"venv-{name}"
+def run_with(what: str, base: str, resolution: str = "highest") -> tuple[str, str, str]:
+    """Run the quick tests in an environment of its own, on an interpreter and the lowest or the newest dependencies."""
+    folder = BUILD / f"venv-{what.replace(' ', '-')}"
     uv = [sys.executable, "-m", "uv"]
     python = folder / "bin" / "python"
     for command in (
-        [*uv, "venv", "--quiet", "--clear", "--python", sys.executable, str(folder)],
+        [*uv, "venv", "--quiet", "--clear", "--python", base, str(folder)],
         [*uv, "pip", "install", "--quiet", "--python", str(python), "--resolution", resolution, "-e", ".[dev]"],
     ):
         done = subprocess.run(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, check=False)
         if done.returncode:
             print(done.stderr)
-            return f"{name} dependencies", "error: they cannot be installed", "0"
+            return what, "error: the dependencies cannot be installed", "0"
     code = (
         f"from importlib.metadata import version\nprint(*(f'{{one}} {{version(one)}}' for one in {LISTED!r}), sep=', ')"
     )
     listed = subprocess.run([python, "-c", code], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
-    return run(f"quick tests on the {name} dependencies: {listed}", python, "-m", QUICK, "-n", "auto")
+    return run(f"quick tests on {what}: {listed}", python, "-m", QUICK, "-n", "auto")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.other_pythons import find_pythons, list_versions
 from tests.workbooks import write
 
 ROOT = Path(__file__).parents[1]
@@ -105,3 +106,19 @@ def test_the_installed_wheel_does_a_study_and_reads_its_records_elsewhere(instal
     assert "27 printed OR" in told
     assert (tmp_path / "out" / "table3.md").is_file()
     assert _elsewhere(installed, tmp_path, "-c", READ_ALL).split() == ["21", "True"]
+
+
+def test_other_pythons_are_those_that_run_on_the_path_or_in_pyenv(tmp_path, monkeypatch):
+    this = "{}.{}".format(*sys.version_info)
+    supported = {"3.11", "3.12", "3.13"} - {this}
+    assert set(list_versions()) == supported
+    for version, status in {"3.11.2": 0, "3.12.0": 1, "3.12.4": 0, "3.13.1": 1, "3.99.0": 0}.items():
+        python = tmp_path / "versions" / version / "bin" / "python"
+        python.parent.mkdir(parents=True)
+        python.write_text(f"#!/bin/sh\nexit {status}\n")
+        python.chmod(0o755)
+    monkeypatch.setenv("PYENV_ROOT", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path / "empty"))
+    places = {"3.11": "3.11.2", "3.12": "3.12.4"}
+    expected = {one: str(tmp_path / "versions" / place / "bin/python") for one, place in places.items() if one != this}
+    assert find_pythons() == expected
