@@ -21,28 +21,43 @@ EAST_ASIAN = (
 
 
 @cache
-def font_faces() -> str:
-    """Return the fonts as @font-face rules, each with its whole file: a machine without fonts makes the same PDF.
+def print_fonts() -> dict[str, Path]:
+    """Return the files of the fonts of a PDF by the address under which its style rules name them."""
+    return {f"font:{family}-{style}".replace(" ", "-"): path for (family, style), path in _find_print_fonts().items()}
+
+
+def _find_print_fonts() -> dict[tuple[str, str], Path]:
+    """Return the fonts of a PDF by family and style: a machine without fonts makes the same PDF.
 
     Signs such as ⚓, which are emoji as well, are looked for in a family of the name emoji first: it is this font, too.
     """
     own = resources.fonts()
     signs = {("emoji", style): path for (family, style), path in own.items() if family == "Report Signs"}
-    return _write_faces(own | {key: path for key, path in signs.items() if key[1] == "regular"})
+    return own | {key: path for key, path in signs.items() if key[1] == "regular"}
+
+
+@cache
+def font_faces() -> str:
+    """Return the fonts of a PDF as @font-face rules that name `print_fonts`: as part of the CSS, files take seconds."""
+    return _write_faces(dict(zip(_find_print_fonts(), print_fonts(), strict=True)))
 
 
 @cache
 def web_font_faces() -> str:
     """Return the compressed fonts of an HTML report as @font-face rules, each with its whole file."""
-    return _write_faces(resources.web_fonts())
+    return _write_faces(
+        {
+            key: f"data:font/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode()}"
+            for key, path in resources.web_fonts().items()
+        }
+    )
 
 
-def _write_faces(fonts: Mapping[tuple[str, str], Path]) -> str:
+def _write_faces(addresses: Mapping[tuple[str, str], str]) -> str:
     return "\n".join(
         f"@font-face {{ font-family: '{family}'; font-weight: {'bold' if style == 'bold' else 'normal'}; "
-        f"font-style: {'italic' if style == 'italic' else 'normal'}; "
-        f"src: url(data:font/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode()}); }}"
-        for (family, style), path in fonts.items()
+        f"font-style: {'italic' if style == 'italic' else 'normal'}; src: url({address}); }}"
+        for (family, style), address in addresses.items()
     )
 
 

@@ -17,7 +17,7 @@ from assess.i18n import fill
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report.content import Content
-from assess.report.fonts import find_missing, find_nowhere, replace_signs
+from assess.report.fonts import find_missing, find_nowhere, print_fonts, replace_signs
 from assess.report.pages import glyphs
 from assess.report.pages.context import list_missing_figures
 from assess.report.pages.editions import Edition
@@ -109,12 +109,17 @@ def _pack_job(
 ) -> bytes:
     job = {
         "html": replace_signs(html, find_nowhere(find_missing(html))),
+        "fonts": _list_fonts(),
         "path": str(path),
         "variant": ACCESSIBLE if options.accessible else ARCHIVAL,
         "time": (moment or report_time()).isoformat(),
         "attachments": [asdict(file) for file in files],
     }
     return json.dumps(job).encode()
+
+
+def _list_fonts() -> dict[str, str]:
+    return {address: str(file) for address, file in print_fonts().items()}
 
 
 def list_problems(results: Results) -> list[Problem]:
@@ -195,6 +200,7 @@ def lay_out_page(html: str, path: Path, progress: Progress = SILENT) -> None:
     """
     job: dict[str, Any] = {
         "html": html,
+        "fonts": _list_fonts(),
         "path": str(path),
         "variant": None,
         "time": report_time().isoformat(),

@@ -5,8 +5,11 @@ belongs to nobody else. This module imports nothing of `assess`, so that it star
 """
 
 import datetime
+import gc
 import json
 import sys
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 MISSING = 3
@@ -24,6 +27,7 @@ def main() -> None:
         sys.stderr.write(f"\n{str(error).splitlines()[0]}")
         sys.exit(MISSING)
     if text:
+        gc.disable()  # the process ends with the file: looking for memory to give back takes a tenth of its time
         try:
             lay_out(json.loads(text))
         except OSError as error:
@@ -36,13 +40,14 @@ def main() -> None:
 def lay_out(job: dict[str, Any]) -> None:
     """Write a PDF.
 
-    `job` holds the page as ``html``, where to write to as ``path``, WeasyPrint's ``variant``, the ``time`` of the
-    document in ISO 8601, and ``attachments``: name, kind, relationship, description and data (base64) of each.
+    `job` holds the page as ``html``, the files of its ``fonts`` by address, where to write to as ``path``, WeasyPrint's
+    ``variant``, the ``time`` of the document in ISO 8601, and ``attachments``: name, kind, relationship, description
+    and data (base64) of each.
     """
     import weasyprint
 
     moment = datetime.datetime.fromisoformat(job["time"])
-    document = weasyprint.HTML(string=job["html"], url_fetcher=_closed_fetcher()).render()
+    document = weasyprint.HTML(string=job["html"], url_fetcher=_closed_fetcher(job["fonts"])).render()
     document.metadata.created = document.metadata.modified = f"{moment:%Y-%m-%dT%H:%M:%SZ}"
     document.write_pdf(
         job["path"],
@@ -52,11 +57,17 @@ def lay_out(job: dict[str, Any]) -> None:
     )
 
 
-def _closed_fetcher() -> Any:
-    """Return a fetcher that opens data: URIs and nothing else: a report never reads the network or the disk."""
-    from weasyprint.urls import URLFetcher
+def _closed_fetcher(fonts: Mapping[str, str]) -> Any:
+    """Return a fetcher that opens data: URIs and these fonts: nothing else of the network or the disk is read."""
+    from weasyprint.urls import URLFetcher, URLFetcherResponse
 
-    return URLFetcher(allowed_protocols={"data"}, allow_redirects=False, fail_on_errors=True)
+    class Fetcher(URLFetcher):  # type: ignore[misc]  # WeasyPrint has no types
+        def fetch(self, url: str, headers: Mapping[str, str] | None = None) -> Any:
+            if url in fonts:
+                return URLFetcherResponse(url, Path(fonts[url]).read_bytes(), {"Content-Type": "font/ttf"})
+            return super().fetch(url, headers)
+
+    return Fetcher(allowed_protocols={"data"}, allow_redirects=False, fail_on_errors=True)
 
 
 def _attachment(file: dict[str, str], moment: datetime.datetime) -> Any:
@@ -65,7 +76,7 @@ def _attachment(file: dict[str, str], moment: datetime.datetime) -> Any:
 
     return Attachment(
         url=f"data:{file['kind']};base64,{file['data']}",
-        url_fetcher=_closed_fetcher(),
+        url_fetcher=_closed_fetcher({}),
         name=file["name"],
         description=file["description"],
         relationship=file["relationship"],
