@@ -31,7 +31,7 @@ def test_two_modes_are_those_of_the_equation_of_motion(ground):
     u, v = done.y[:2], done.y[2:]
     expected = (1 - shares.sum()) * ground - shares @ (2 * DAMPING * omega[:, None] * v + omega[:, None] ** 2 * u)
     found = shake_beam(ground, STEP, 1.0, 0.5, modes=2)
-    assert found == pytest.approx(expected, abs=1e-6)
+    assert found == pytest.approx(expected, abs=1e-5)  # of 5 m/s2 and more: what the integrator keeps to anywhere
     assert np.abs(found).max() > 2 * np.abs(ground).max()
 
 
