@@ -9,6 +9,7 @@ from hypothesis import settings
 
 import assess
 from docs.screenshot import find_browser
+from tests.waiting import PATIENCE
 from tests.workbooks import UNVERIFIED
 
 EXAMPLE = Path(__file__).parents[1] / "inventories" / "market-street.xlsx"
@@ -24,21 +25,25 @@ settings.load_profile("same")
 
 
 def pytest_configure() -> None:
-    """Give commands that tests start what they would have in a plain terminal, and SIGINT its usual effect.
+    """Give commands that tests start what they would have in a plain terminal, and signals their usual effect.
 
-    A shell makes what it starts in the background ignore SIGINT, and programs hand that down.
+    A shell makes what it starts in the background ignore SIGINT, nohup SIGHUP, and programs hand that down. They do not
+    hand down a handler of their own, and this one keeps the tests running.
     """
     for name in FOREIGN_VARIABLES:
         os.environ.pop(name, None)
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: None)
 
 
 @pytest.fixture(scope="module")
 def browser():
     """Start a browser without a window; tests that take it are skipped where there is none."""
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
+    expect.set_options(timeout=1e3 * PATIENCE)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=find_browser())
         yield browser

@@ -25,6 +25,7 @@ from assess.units import GRAVITY
 from assess.workbook.template import Content, write_workbook
 from tests.cli.calling import error, run
 from tests.shaking import write_records
+from tests.waiting import PATIENCE
 
 SHAPE = {"width": 80, "axis": "X", "height": 180}
 ITEMS = [
@@ -349,7 +350,7 @@ def test_the_command_loads_nothing_heavy_before_it_is_used():
         "import sys\nimport assess.cli.command_fragility\n"
         "print([name for name in ('numpy', 'scipy', 'numba', 'matplotlib', 'assess.pipeline') if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.stdout.strip() == "[]", done.stderr
 
 

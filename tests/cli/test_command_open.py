@@ -7,6 +7,7 @@ import pytest
 
 from assess.extras import say_install
 from tests.cli.calling import run
+from tests.waiting import PATIENCE
 
 
 def test_a_file_that_is_no_workbook_is_refused(tmp_path):
@@ -43,6 +44,6 @@ def test_without_the_extra_it_says_what_to_install():
         "import sys\nsys.modules['uvicorn'] = None\nsys.argv = ['assess', 'open']\n"
         "from assess.cli.app import main\nmain()"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == (f"error  the page needs uvicorn, which is not installed. {say_install('web')}\n")

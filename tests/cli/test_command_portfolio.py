@@ -5,7 +5,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -20,9 +19,9 @@ from assess.portfolio.run_portfolio import PortfolioResult
 from assess.settings import Settings
 from tests.portfolio.staged import write_building, write_city
 from tests.portfolio.test_city_totals import view
+from tests.waiting import PATIENCE, wait_until
 
 run = CliRunner().invoke
-SOON = 60.0
 
 
 def _write(tmp_path, count=2):
@@ -145,13 +144,10 @@ def test_an_example_that_is_interrupted_leaves_nothing(tmp_path):
         "from assess.cli.app import main\nmain()"
     )
     with subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True, cwd=tmp_path) as process:
-        latest = time.monotonic() + SOON
-        while not list(tmp_path.glob(".assess-writing-*/new/*/*.xlsx")):
-            assert time.monotonic() < latest
-            time.sleep(0.02)
+        wait_until(lambda: list(tmp_path.glob(".assess-writing-*/new/*/*.xlsx")))
         process.send_signal(signal.SIGINT)
         try:
-            _printed, errors = process.communicate(timeout=SOON)
+            _printed, errors = process.communicate(timeout=PATIENCE)
         finally:
             process.kill()
     assert process.returncode == 128 + signal.SIGINT
@@ -194,13 +190,10 @@ def test_a_signal_ends_the_command_and_keeps_what_is_done(tmp_path, number):
     with subprocess.Popen(
         [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
-        latest = time.monotonic() + SOON
-        while not list(parts.glob("*/*.part")):
-            assert time.monotonic() < latest
-            time.sleep(0.02)
+        wait_until(lambda: list(parts.glob("*/*.part")))
         process.send_signal(number)
         try:
-            printed, errors = process.communicate(timeout=SOON)
+            printed, errors = process.communicate(timeout=PATIENCE)
         finally:
             process.kill()
     assert process.returncode == 128 + number

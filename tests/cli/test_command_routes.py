@@ -28,6 +28,7 @@ from assess.units import GRAVITY
 from assess.workbook.template import Content, write_workbook
 from tests.cli.calling import error, run
 from tests.shaking import write_records
+from tests.waiting import PATIENCE
 
 ROOT = Path(__file__).parents[2]
 CORRIDOR = {"segment": "corridor", "clear_width": 1.5, "required_width": 0.9}
@@ -505,5 +506,7 @@ def test_help_and_bad_values_load_nothing_heavy():
             f"try:\n    main()\nexcept SystemExit as stop:\n    assert stop.code == {status}\n"
             f"print([name for name in {heavy!r} if name in sys.modules])"
         )
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE, check=False
+        )
         assert done.stdout.splitlines()[-1] == "[]", done.stderr

@@ -15,6 +15,7 @@ from assess.resources import record
 from assess.studies import PAGE, PARTS, Finding, Options, Study, all_studies, check_folder, run_study, write_files
 from assess.studies.study_files import load_or_compute
 from tests.cli.calling import run
+from tests.waiting import PATIENCE
 
 NAMES = ["table1", "solver", "table2", "calibration", "contours", "table3", "fit"]
 OWN = {"calibration"}
@@ -270,7 +271,7 @@ def test_a_run_that_is_interrupted_says_where_it_goes_on(tmp_path, number, keeps
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
         assert run.stdout.readline() == "begun\n"
         run.send_signal(number)
-        _, told = run.communicate(timeout=30)
+        _, told = run.communicate(timeout=PATIENCE)
     assert run.returncode == 128 + number
     assert "Traceback" not in told
     parts = tmp_path / "out" / PARTS

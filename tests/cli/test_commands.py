@@ -18,6 +18,7 @@ from assess.cli.command_doctor import Requirement
 from assess.cli.console import _list_options
 from assess.extras import say_install
 from assess.methods import all_methods
+from tests.waiting import PATIENCE
 from tests.workbooks import write
 
 run = CliRunner().invoke
@@ -96,7 +97,7 @@ def test_help_loads_nothing_heavy():
         "import sys\nsys.argv = ['assess', '--help']\nfrom assess.cli.app import main\n"
         f"try:\n    main()\nexcept SystemExit:\n    print([name for name in {heavy!r} if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.stdout.splitlines()[-1] == "[]", done.stderr
 
 

@@ -12,6 +12,7 @@ from assess.cli import command_fragility, command_run, completion
 from assess.cli.app import list_names
 from assess.i18n import LANGUAGES
 from assess.settings import SCENARIOS, VERIFY, Settings
+from tests.waiting import PATIENCE
 
 ASSESS = (sys.executable, "-m", "assess")
 HEAVY = ("numpy", "scipy", "numba", "openpyxl", "jinja2", "matplotlib", "babel", "pandas", "assess.studies")
@@ -19,7 +20,9 @@ HEAVY = ("numpy", "scipy", "numba", "openpyxl", "jinja2", "matplotlib", "babel",
 
 def ask(variables, *command):
     environment = {name: value for name, value in os.environ.items() if not name.startswith("_TYPER")} | variables
-    done = subprocess.run(command or ASSESS, capture_output=True, text=True, env=environment, timeout=60, check=False)
+    done = subprocess.run(
+        command or ASSESS, capture_output=True, text=True, env=environment, timeout=PATIENCE, check=False
+    )
     assert done.stderr == ""
     return done.stdout
 

@@ -17,6 +17,7 @@ from assess.methods.housner_monte_carlo import evaluate
 from assess.progress import SILENT
 from assess.settings import Settings
 from tests.methods.ensembles import MadeUp
+from tests.waiting import PATIENCE
 from tests.workbooks import write
 
 FLOORS = [{"floor": str(at), "pfa_x": 0.1 + 0.05 * at, "pfa_y": 0.2} for at in range(1, 5)]
@@ -26,8 +27,6 @@ ITEMS = [
     for breadth in range(25, 85)
 ]
 HEAD = "import os, signal, sys, time\nfrom assess.cli import console, interrupts\n"
-SOON = 10
-"""Seconds within which a process of these tests has to end; it takes a fraction of one."""
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -46,7 +45,7 @@ def test_an_interrupted_verification_leaves_all_as_it_was(tmp_path, jobs):
         assert "Simulating 240 rows on 4 floors: 0 %\n" in process.stderr
         process.send_signal(signal.SIGINT)
         try:
-            printed, errors = process.communicate(timeout=SOON)
+            printed, errors = process.communicate(timeout=PATIENCE)
         finally:
             process.kill()
     assert process.returncode == 130
@@ -73,7 +72,7 @@ def test_a_signal_cancels_the_work_and_interrupts_work_that_goes_on(number):
     with pytest.raises(CancelledError):
         _interrupt(number, lambda progress: progress.check())
     with pytest.raises(KeyboardInterrupt):
-        _interrupt(number, lambda _: time.sleep(SOON))
+        _interrupt(number, lambda _: time.sleep(PATIENCE))
     assert [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)] == before
 
 
@@ -189,7 +188,7 @@ def test_a_signal_at_any_time_leaves_nothing_behind(tmp_path, number, first):
             assert any("assess/cli/interrupts.py" in line for line in process.stderr)  # -v: what is imported
             time.sleep(moment)
             process.send_signal(number)
-            _, errors = process.communicate(timeout=60)
+            _, errors = process.communicate(timeout=PATIENCE)
         assert "Traceback" not in errors, moment
         assert process.returncode in (0, -number, 128 + number)
         assert sorted(path.name for path in tmp_path.iterdir()) in (["tmp", "w.xlsx"], ["out", "tmp", "w.xlsx"])
@@ -220,7 +219,7 @@ def test_a_signal_at_the_first_imports_or_moves(tmp_path, number, event, at):
 def _run_code(code, *words):
     """Return exit status and stderr of a process that runs some code; the code sends the signal."""
     done = subprocess.run(
-        [sys.executable, "-c", HEAD + code, *words], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", HEAD + code, *words], capture_output=True, text=True, timeout=PATIENCE, check=False
     )
     return done.returncode, done.stderr
 

@@ -8,7 +8,6 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -32,12 +31,12 @@ from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
 from assess.settings import Settings
 from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
+from tests.waiting import PATIENCE, wait_until
 
 pytest.importorskip("distributed")
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")]
 ROOT = Path(__file__).parents[2]
 FORMULAS = Settings(verify="none")
-SOON = 60.0
 QUIET = {
     "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "false",
     "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s",
@@ -67,7 +66,7 @@ def _scheduler():
     words = ("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")
     with _started(*words) as process:
         address = f"tcp://127.0.0.1:{port}"
-        _wait_for(lambda: _answers(port))
+        wait_until(lambda: _answers(port))
         yield process, address
 
 
@@ -80,14 +79,6 @@ def _answers(port):
 def _workers(address, count, *options):
     words = ("distributed.cli.dask_worker", address, "--nworkers", str(count), "--no-dashboard", "--host", "127.0.0.1")
     return _started(*words, *(options or ("--nthreads", "1")))
-
-
-def _wait_for(find):
-    latest = time.monotonic() + SOON
-    while not (found := find()):
-        assert time.monotonic() < latest, "what was waited for did not come"
-        time.sleep(0.05)
-    return found
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +131,7 @@ def test_a_client_that_is_killed_is_followed_by_one_that_goes_on(tmp_path, addre
     )
     parts = tmp_path / "out" / FOLDER
     with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, env=os.environ | QUIET) as client:
-        _wait_for(lambda: len(list(parts.glob("*/*.part"))) == 20 and list(tmp_path.glob("held-*")))
+        wait_until(lambda: len(list(parts.glob("*/*.part"))) == 20 and list(tmp_path.glob("held-*")))
         client.send_signal(signal.SIGKILL)
     (tmp_path / "hold").unlink()
     assert _run(tmp_path, "out", address).kept >= 20
@@ -198,13 +189,11 @@ def _serving(data):
 
 
 def _fail(tmp_path, scheduler):
-    """Return what the command prints where no scheduler is; besides progress it has to be one line, in time."""
+    """Return what the command prints where no scheduler is; besides progress one line."""
     write_city(tmp_path / "city", [40.0])
     words = (tmp_path / "city", "--verify", "none", "--formats", "html", "--out", tmp_path / "out")
     command = [sys.executable, "-m", "assess", "portfolio", *map(str, words), "--scheduler", scheduler]
-    start = time.monotonic()
-    done = subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True, timeout=SOON)
-    assert time.monotonic() - start < 20, "10 s of it are the time that a scheduler has, the rest is to start"
+    done = subprocess.run(command, check=False, cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE)
     assert (done.returncode, done.stdout) == (2, "")
     progress = ("Working, ", "Assessing 0 of 1 buildings")
     lines = [line for line in done.stderr.splitlines() if not line.startswith(progress)]
@@ -230,7 +219,7 @@ def test_an_address_where_nobody_is_and_one_of_a_worker_are_told_in_one_line(tmp
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     with _scheduler() as (_, found), _workers(found, 1, "--nthreads", "1", "--worker-port", str(port)):
-        _wait_for(lambda: _answers(port))
+        wait_until(lambda: _answers(port))
         assert "what is there does not answer as a dask scheduler" in _fail(tmp_path, f"tcp://127.0.0.1:{port}")
 
 

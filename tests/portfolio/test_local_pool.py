@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,28 +20,19 @@ from assess.progress import Progress
 from assess.resources import city_file
 from assess.settings import Settings
 from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, write_city
+from tests.waiting import wait_until
 
 pytestmark = [
     pytest.mark.skipif(os.name == "nt", reason="signals of POSIX"),
     pytest.mark.slow,
 ]
 SETTINGS = Settings(verify="none", city=True)
-SOON = 30.0
-"""Seconds within which what is waited for has to come; it takes a fraction of one, or the start of a process."""
 
 
 def _list_tasks(tmp_path, latitudes):
     city = write_city(tmp_path / "city", latitudes)
     ground = StagedGround(tmp_path)
     return [Task(source=one, settings=SETTINGS, ground=ground, out=tmp_path / "out") for one in find_sources(city)]
-
-
-def _wait_for(find):
-    latest = time.monotonic() + SOON
-    while not (found := find()):
-        assert time.monotonic() < latest, "what was waited for did not come"
-        time.sleep(0.02)
-    return found
 
 
 def _is_alive(number):
@@ -87,7 +77,7 @@ def test_a_cancel_ends_the_processes_at_once(tmp_path):
     tasks, cancel = _list_tasks(tmp_path, [HOLDS, HOLDS]), threading.Event()
 
     def stop():
-        _wait_for(lambda: len(list(tmp_path.glob("held-*"))) == 2)
+        wait_until(lambda: len(list(tmp_path.glob("held-*"))) == 2)
         cancel.set()
 
     watch = threading.Thread(target=stop)
@@ -111,10 +101,10 @@ def test_processes_end_when_the_one_that_started_them_is_killed(tmp_path):
     )
     root = Path(__file__).parents[2]
     with subprocess.Popen([sys.executable, "-c", code], cwd=root) as parent:
-        held = _wait_for(lambda: list(tmp_path.glob("held-*")))
+        held = wait_until(lambda: list(tmp_path.glob("held-*")))
         parent.send_signal(signal.SIGKILL)
     number = int(held[0].name.partition("-")[2])
-    _wait_for(lambda: not _is_alive(number))
+    wait_until(lambda: not _is_alive(number))
 
 
 def test_processes_that_cannot_start_end_the_run_with_the_reason(tmp_path, monkeypatch):

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -23,11 +22,10 @@ from assess.portfolio.sources import find_sources
 from assess.progress import Report
 from assess.settings import Settings
 from tests.portfolio.staged import FILLS, HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
+from tests.waiting import wait_until
 
 ROOT = Path(__file__).parents[2]
 FORMULAS = Settings(verify="none")
-SOON = 60.0
-"""Seconds within which what is waited for has to come; it takes a few."""
 posix = pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 
 
@@ -36,14 +34,6 @@ def _run(tmp_path, out="out", *, settings=FORMULAS, formats=("parquet",), jobs=2
     return run_portfolio(
         tmp_path / "city", tmp_path / out, settings, ground=ground, jobs=jobs, formats=formats, **options
     )
-
-
-def _wait_for(find):
-    latest = time.monotonic() + SOON
-    while not (found := find()):
-        assert time.monotonic() < latest, "what was waited for did not come"
-        time.sleep(0.02)
-    return found
 
 
 # ---------------------------------------------------------------- the same bytes
@@ -130,7 +120,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(tmp_path, all_of_them):
     )
     parts = tmp_path / "out" / FOLDER
     with subprocess.Popen([sys.executable, "-c", code], cwd=ROOT) as command:
-        _wait_for(lambda: len(list(parts.glob("*/*.part"))) == 3 and list(tmp_path.glob("held-*")))
+        wait_until(lambda: len(list(parts.glob("*/*.part"))) == 3 and list(tmp_path.glob("held-*")))
         if all_of_them:
             for held in tmp_path.glob("held-*"):
                 os.kill(int(held.name.partition("-")[2]), signal.SIGKILL)
@@ -176,7 +166,7 @@ def test_a_cancel_writes_nothing_and_keeps_what_is_done(tmp_path):
     cancel, parts = threading.Event(), tmp_path / "out" / FOLDER
 
     def stop():
-        _wait_for(lambda: list(parts.glob("*/*.part")))
+        wait_until(lambda: list(parts.glob("*/*.part")))
         cancel.set()
 
     watch = threading.Thread(target=stop)

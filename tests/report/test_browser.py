@@ -11,6 +11,7 @@ import assess
 from assess.settings import Settings
 from assess.workbook.template import Content, write_workbook
 from docs.screenshot import HEIGHT, WIDTH, find_browser
+from tests.waiting import PATIENCE
 from tests.workbooks import FLOORS, UNVERIFIED
 
 pytestmark = [
@@ -53,6 +54,7 @@ def open_page(browser, report):
     def open_page(width=1280, height=900, **options):
         context = browser.new_context(viewport={"width": width, "height": height}, **options)
         contexts.append(context)
+        context.set_default_timeout(1e3 * PATIENCE)
         page = context.new_page()
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))

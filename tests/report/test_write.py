@@ -16,6 +16,7 @@ from assess.report import FILES, FORMATS, check_folder
 from assess.report.data import write_json
 from assess.report.ownership import read_list
 from tests.cli.calling import error, run
+from tests.waiting import PATIENCE
 from tests.workbooks import assessed, write
 
 DEFAULT = {FILES[name] for name in FORMATS}
@@ -293,7 +294,7 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path):
     while process.poll() is None and _measure_stage(tmp_path) < 0:
         os.sched_yield()
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert errors.endswith("\nInterrupted; nothing was written.\n")
     assert [path.name for path in tmp_path.iterdir()] == ["new.xlsx"]

@@ -4,6 +4,7 @@ from contextlib import ExitStack
 
 import pytest
 
+from tests.waiting import PATIENCE
 from tests.web.serving import Client, start
 
 
@@ -38,6 +39,7 @@ def page(browser):
         def open_page(server, *, width=1280, height=900, **options):
             context = browser.new_context(viewport={"width": width, "height": height}, **options)
             stack.callback(context.close)
+            context.set_default_timeout(1e3 * PATIENCE)
             found = context.new_page()
             found.errors = []
             found.on("pageerror", lambda error: found.errors.append(str(error)))

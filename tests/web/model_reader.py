@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.web.serving import wait_until
+from tests.waiting import wait_until
 
 linux = pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="processes are found in /proc")
 

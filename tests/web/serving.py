@@ -7,14 +7,13 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote, urlsplit
 
+from tests.waiting import PATIENCE, wait_until
+
 ADDRESS = re.compile(r"https?://\S+")
-PATIENCE = 60
-"""Time after which a process that does not end is taken to hang [s]."""
 
 
 @dataclass
@@ -109,15 +108,6 @@ def start(*words, cwd, temporary=None, environment=None, before=()):
             return Served(process, found[0], cwd)
     _, err = process.communicate(timeout=PATIENCE)
     raise AssertionError(f"no address was printed, exit status {process.returncode}: {err}")
-
-
-def wait_until(ask, is_so):
-    """Ask again and again until an answer is so, and return it."""
-    latest = time.monotonic() + PATIENCE
-    while not is_so(answer := ask()):
-        assert time.monotonic() < latest, answer
-        time.sleep(0.02)
-    return answer
 
 
 def wait_for_job(client):

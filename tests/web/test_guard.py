@@ -6,6 +6,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from tests.waiting import PATIENCE
 from tests.web.serving import Client, start
 
 PATHS = (
@@ -31,7 +32,7 @@ def client(running):
 def _send_raw(server, text):
     """Return the status of the answer to bytes as they are."""
     parts = urlsplit(server.url)
-    with socket.create_connection((parts.hostname, parts.port), timeout=20) as line:
+    with socket.create_connection((parts.hostname, parts.port), timeout=PATIENCE) as line:
         line.sendall(text.replace(b"HOST", f"{parts.hostname}:{parts.port}".encode()))
         answer = b""
         while b"\r\n" not in answer and (part := line.recv(65536)):

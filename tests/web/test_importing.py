@@ -18,8 +18,8 @@ from assess.web.sessions import HOSTED
 from assess.workbook.read import read_tables
 from tests.bim import scan_files
 from tests.bim.cobie_files import write_cobie
+from tests.waiting import wait_until
 from tests.web.model_reader import hold_reader, is_gone, linux
-from tests.web.serving import wait_until
 from tests.web.test_sessions import OPTIONS, _come
 from tests.workbooks import write
 

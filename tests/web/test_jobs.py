@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from assess.web.job_inputs import list_stale
-from tests.web.serving import start, wait_for_job, wait_until
+from tests.waiting import wait_until
+from tests.web.serving import start, wait_for_job
 from tests.workbooks import ITEMS, write
 
 LONG = {"verify": "all", "runs": 100_000, "formats": ["json"]}

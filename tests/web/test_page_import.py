@@ -8,9 +8,9 @@ from playwright.sync_api import expect
 
 from assess.web.guard import MOST_MODEL
 from tests.bim.cobie_files import write_cobie
+from tests.waiting import wait_until
 from tests.web.looking import examine
 from tests.web.model_reader import hold_reader, is_gone, linux
-from tests.web.serving import wait_until
 from tests.web.sheet_page import CLASS, SheetPage
 from tests.web.test_page_phone import HEIGHT, OVER_THE_EDGE, WIDTH
 from tests.web.test_page_shell import drop
@@ -20,7 +20,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 DUPLEX = MODELS / "duplex.ifc"
-READ = 120_000
 """Time that a model may take to be read here [ms]."""
 ANSWER_LATE = """
 const ask = window.fetch;
@@ -39,7 +38,7 @@ def _choose(page, *files):
 
 
 def _see_list(page, name="duplex.ifc"):
-    expect(page.get_by_role("heading", name=f"What was taken from {name}")).to_be_visible(timeout=READ)
+    expect(page.get_by_role("heading", name=f"What was taken from {name}")).to_be_visible()
     return page.locator("#view-import")
 
 
@@ -62,7 +61,7 @@ def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, serve
     _see_list(found)
     shown.get_by_label("Shaking of the ground").select_option(label="MMI VIII, severe")
     shown.get_by_role("button", name="Open the workbook").click()
-    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible(timeout=READ)
+    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible()
     expect(SheetPage(found, server).cell(CLASS, 2)).to_contain_text(re.compile("low|medium|high"))
     assert (server.folder / "duplex.xlsx").is_file()
     found.get_by_role("link", name="Imported").click()
@@ -114,7 +113,7 @@ def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try
     cut.write_bytes(DUPLEX.read_bytes()[:200_000])
     _choose(found, cut)
     fault = found.locator(".import-card [role=alert]")
-    expect(fault).to_contain_text("cut.ifc", timeout=READ)
+    expect(fault).to_contain_text("cut.ifc")
     expect(fault).to_contain_text("END-ISO-10303-21")
     expect(found.get_by_role("button", name="Choose a model")).to_be_focused()
     assert examine(found) == []
@@ -171,7 +170,7 @@ def test_a_model_dropped_on_an_open_workbook_becomes_another(page, served, tmp_p
     shown = _see_list(found)
     expect(found.get_by_role("link", name="Imported")).to_be_hidden()  # office.xlsx was not
     shown.get_by_role("button", name="Open the workbook").click()
-    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible(timeout=READ)
+    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible()
     expect(found.locator(".notice")).to_contain_text("choose Shaking in Building")
     found.locator(".notice").get_by_role("button", name="Choose the shaking").click()
     expect(found.locator(".sheet-tabs [data-sheet=Building]")).to_have_attribute("aria-selected", "true")
@@ -198,4 +197,4 @@ def test_on_a_phone(page, served, theme):
         assert found.evaluate(OVER_THE_EDGE, WIDTH) == []
         assert examine(found) == []
     found.get_by_role("button", name="Open the workbook").click()
-    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible(timeout=READ)
+    expect(found.get_by_role("heading", name="duplex.xlsx")).to_be_visible()

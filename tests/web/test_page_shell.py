@@ -205,7 +205,7 @@ def test_what_is_changed_while_the_server_is_gone_reaches_the_file(page, served,
     again = start(office, "--no-browser", "--port", port, cwd=office.parent)
     try:
         found.context.new_page().goto(again.url)
-        expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx", timeout=15_000)
+        expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
         expect(found.locator("#notices")).not_to_contain_text(re.compile("answer|connected|sent"))
     finally:
         again.stop()
@@ -227,9 +227,7 @@ def test_what_a_killed_server_had_taken_and_not_saved_is_sent_again(page, served
     again = start(office, "--no-browser", "--port", server.base.rpartition(":")[2], cwd=office.parent)
     try:
         found.context.new_page().goto(again.url)
-        expect(found.locator("#notices")).to_contain_text(
-            "1 change that it had not saved was sent again", timeout=15_000
-        )
+        expect(found.locator("#notices")).to_contain_text("1 change that it had not saved was sent again")
         expect(found.locator("#notices")).not_to_contain_text("another window")
         expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
     finally:
@@ -256,7 +254,7 @@ def test_a_change_by_another_program_is_read_and_asks_only_where_changes_would_b
     expect(found.locator(STATE)).to_contain_text("All changes saved")
     change_outside(office, "Cellar")
     said = found.locator(".notice").filter(has_text="changed by another program")
-    expect(said).to_contain_text("has been read again", timeout=15_000)
+    expect(said).to_contain_text("has been read again")
     assert value(found, "Items", 2, 3) == "Cellar"
     said.get_by_role("button", name="Close").click()
     found.evaluate(LOOK, True)
@@ -264,7 +262,7 @@ def test_a_change_by_another_program_is_read_and_asks_only_where_changes_would_b
     with found.expect_response("**/api/edit"):
         edit(found, "Items", 2, 3, "Attic")
     found.evaluate(LOOK, False)
-    expect(said.get_by_role("button", name="Download my version")).to_be_visible(timeout=15_000)
+    expect(said.get_by_role("button", name="Download my version")).to_be_visible()
     said.get_by_role("button", name="Read the file again").click()
     found.get_by_role("dialog").get_by_role("button", name="Read the file again").click()
     expect(said).to_have_count(0)
@@ -279,9 +277,9 @@ def test_what_stands_in_the_way_of_saving_is_told_until_it_is_gone(page, served,
     office.rename(office.with_name("moved.xlsx"))
     edit(found, "Items", 2, 3, "Attic")
     said = found.get_by_role("alert").filter(has_text="no longer in its folder: put it back")
-    expect(said.get_by_role("button", name="Download my version")).to_be_visible(timeout=15_000)
+    expect(said.get_by_role("button", name="Download my version")).to_be_visible()
     office.with_name("moved.xlsx").rename(office)
-    expect(said).to_have_count(0, timeout=15_000)
+    expect(said).to_have_count(0)
     expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
     assert load_workbook(office)["Items"].cell(2, 4).value == "Attic"
 
@@ -299,7 +297,7 @@ def test_a_folder_that_does_not_allow_writing_is_told_at_once(page, office):
         expect(found.locator(STATE)).to_contain_text("changes can be downloaded, not saved")
         edit(found, "Items", 2, 3, "Attic")
         told = found.get_by_role("alert").filter(has_text="does not allow writing")
-        expect(told.get_by_role("button", name="Download my version")).to_be_visible(timeout=15_000)
+        expect(told.get_by_role("button", name="Download my version")).to_be_visible()
     finally:
         _, _, err = server.stop()
         office.parent.chmod(0o755)

@@ -11,7 +11,6 @@ from tests.workbooks import ITEMS, write
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-LONG = 120_000
 SIMULATED = [4, 6]
 """Rows for which the simulation is adopted; the others are anchored, or keep the formula's class."""
 
@@ -34,7 +33,7 @@ def run(page, *formats, runs="100"):
     choose(page, *formats)
     page.get_by_label("Motions of each floor").select_option(runs)
     page.get_by_role("button", name=re.compile("Start the run|Simulate again")).click()
-    expect(page.get_by_role("heading", name="Results")).to_be_visible(timeout=LONG)
+    expect(page.get_by_role("heading", name="Results")).to_be_visible()
 
 
 def simulated(page):
@@ -47,7 +46,7 @@ def test_from_start_to_report(simulating):
     page = simulating
     run(page, "HTML", "CSV")
     frame = page.frame_locator("iframe[title=Report]")
-    expect(frame.locator("h1").first).to_be_visible(timeout=LONG)
+    expect(frame.locator("h1").first).to_be_visible()
     assert page.locator("iframe").get_attribute("sandbox") == "allow-scripts"
     rows = [row for row, _ in simulated(page)]
     assert rows == SIMULATED
@@ -79,7 +78,7 @@ def test_from_start_to_report(simulating):
     with zipfile.ZipFile(download.value.path()) as archive:
         assert {"items.csv", "report.html", "results.json"} <= set(archive.namelist())
     page.reload()
-    expect(page.frame_locator("iframe[title=Report]").locator("h1").first).to_be_visible(timeout=LONG)
+    expect(page.frame_locator("iframe[title=Report]").locator("h1").first).to_be_visible()
     assert [row for row, _ in simulated(page)] == SIMULATED
 
 

@@ -9,7 +9,7 @@ import sys
 import openpyxl
 import pytest
 
-from tests.web.serving import wait_until
+from tests.waiting import PATIENCE, wait_until
 from tests.workbooks import write
 
 posix = pytest.mark.skipif(os.name == "nt", reason="signals")
@@ -130,7 +130,7 @@ def test_stopping_does_not_wait_for_a_browser_that_is_silent(served):
 def test_a_port_that_is_taken_is_named(served, tmp_path):
     port = str(served().client.port)
     words = [sys.executable, "-m", "assess", "open", "--no-browser", "--port", port]
-    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=False)
+    done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, timeout=PATIENCE, check=False)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(f"error  --port: 127.0.0.1:{port} cannot be used: ")
 
@@ -154,6 +154,6 @@ def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
         assert first != second
     finally:
         process.terminate()
-        process.communicate(timeout=60)
+        process.communicate(timeout=PATIENCE)
         os.close(leader)
         os.close(follower)
