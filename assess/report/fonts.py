@@ -21,9 +21,10 @@ EAST_ASIAN = (
 
 
 @cache
-def print_fonts() -> dict[str, Path]:
+def print_fonts() -> dict[str, str]:
     """Return the files of the fonts of a PDF by the address under which its style rules name them."""
-    return {f"font:{family}-{style}".replace(" ", "-"): path for (family, style), path in _find_print_fonts().items()}
+    fonts = _find_print_fonts().items()
+    return {f"font:{family}-{style}".replace(" ", "-"): str(path) for (family, style), path in fonts}
 
 
 def _find_print_fonts() -> dict[tuple[str, str], Path]:

@@ -27,7 +27,9 @@ PARTS = """
 import json, sys, time
 import matplotlib.figure, weasyprint
 import assess
+from assess.report.fonts import print_fonts
 from assess.report.pages import context, html
+from assess.report.pages.pdf_layout import open_page
 from assess.report.content import build_content
 from assess.progress import SILENT
 from assess.report.report_options import ReportOptions
@@ -39,7 +41,7 @@ with options.spoken():
     figures = time.perf_counter() - start
     page = html.render(content, options, for_print=True)
 start = time.perf_counter()
-weasyprint.HTML(string=page).write_pdf(pdf_variant="pdf/a-3u", pdf_tags=True)
+open_page(page, print_fonts()).write_pdf(pdf_variant="pdf/a-3u", pdf_tags=True)
 print(json.dumps([figures, time.perf_counter() - start]))
 """
 

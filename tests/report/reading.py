@@ -3,11 +3,14 @@
 import html
 import re
 from pathlib import Path
+from typing import Any
 
 import assess
 from assess.report.content import build_content
+from assess.report.fonts import print_fonts
 from assess.report.pages import html as pages
 from assess.report.pages.editions import Edition
+from assess.report.pages.pdf_layout import open_page
 from assess.report.report_options import ReportOptions
 from assess.results import Results
 
@@ -24,6 +27,11 @@ def render(
     options = options or ReportOptions(language=results.provenance.language)
     with options.spoken():
         return pages.render(build_content(results), options, for_print=for_print, edition=edition)
+
+
+def lay_out(page: str) -> list[Any]:
+    """Return the boxes of the pages of a report that was rendered for print."""
+    return [one._page_box for one in open_page(page, print_fonts()).render().pages]
 
 
 def read_text(page: str) -> str:

@@ -5,12 +5,11 @@ import pytest
 import assess
 from assess.report.report_options import ReportOptions
 from assess.workbook.template import Content, write_workbook
-from tests.report.reading import render
+from tests.report.reading import lay_out, render
 from tests.workbooks import UNVERIFIED
 
 pytestmark = pytest.mark.slow
 
-weasyprint = pytest.importorskip("weasyprint")
 boxes = pytest.importorskip("weasyprint.formatting_structure.boxes")
 
 LONG = "Supercalifragilisticexpialidocious-wing"
@@ -47,7 +46,7 @@ def results(tmp_path_factory):
 @pytest.fixture(scope="module", params=["en", "it"])
 def pages(request, results):
     html = render(results, ReportOptions(language=request.param), for_print=True)
-    return [page._page_box for page in weasyprint.HTML(string=html).render().pages]
+    return lay_out(html)
 
 
 def _walk(box):

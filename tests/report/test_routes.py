@@ -5,7 +5,6 @@ import re
 from dataclasses import replace
 
 import pytest
-import weasyprint
 
 import assess
 from assess.report import words
@@ -16,7 +15,7 @@ from assess.report.pages.context import LIMITS
 from assess.route_results import FLAGS, RouteState
 from assess.routes.widths import RULES
 from assess.workbook.template import Content, write_workbook
-from tests.report.reading import render
+from tests.report.reading import lay_out, render
 from tests.workbooks import UNVERIFIED
 
 FLOORS = [
@@ -379,10 +378,10 @@ def test_the_section_prints_on_the_page(verified):
             yield from walk(child)
 
     tables = 0
-    for page in weasyprint.HTML(string=render(verified, for_print=True)).render().pages:
-        for table in (one for one in walk(page._page_box) if isinstance(one, boxes.TableBox)):
+    for page in lay_out(render(verified, for_print=True)):
+        for table in (one for one in walk(page) if isinstance(one, boxes.TableBox)):
             tables += table.element.get("class", "") in ("routes", "segments", "beside", "rooms", "steps")
-            assert table.position_x + table.margin_width() <= page._page_box.content_box_x() + page._page_box.width + 1
+            assert table.position_x + table.margin_width() <= page.content_box_x() + page.width + 1
             for cell in (one for one in walk(table) if isinstance(one, boxes.TableCellBox)):
                 for text in (one for one in walk(cell) if isinstance(one, boxes.TextBox)):
                     if table.element.get("class") != "short":

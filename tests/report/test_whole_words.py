@@ -7,10 +7,9 @@ import pytest
 
 import assess
 from assess.report.words import list_breaks
-from tests.report.reading import render
+from tests.report.reading import lay_out, render
 from tests.workbooks import assessed
 
-weasyprint = pytest.importorskip("weasyprint")
 boxes = pytest.importorskip("weasyprint.formatting_structure.boxes")
 
 FLOORS = [
@@ -62,7 +61,7 @@ def results(tmp_path_factory):
 @pytest.fixture(scope="module")
 def pages(results):
     html = render(results, for_print=True)
-    return [page._page_box for page in weasyprint.HTML(string=html).render().pages]
+    return lay_out(html)
 
 
 def broken(cell):

@@ -109,17 +109,13 @@ def _pack_job(
 ) -> bytes:
     job = {
         "html": replace_signs(html, find_nowhere(find_missing(html))),
-        "fonts": _list_fonts(),
+        "fonts": print_fonts(),
         "path": str(path),
         "variant": ACCESSIBLE if options.accessible else ARCHIVAL,
         "time": (moment or report_time()).isoformat(),
         "attachments": [asdict(file) for file in files],
     }
     return json.dumps(job).encode()
-
-
-def _list_fonts() -> dict[str, str]:
-    return {address: str(file) for address, file in print_fonts().items()}
 
 
 def list_problems(results: Results) -> list[Problem]:
@@ -200,7 +196,7 @@ def lay_out_page(html: str, path: Path, progress: Progress = SILENT) -> None:
     """
     job: dict[str, Any] = {
         "html": html,
-        "fonts": _list_fonts(),
+        "fonts": print_fonts(),
         "path": str(path),
         "variant": None,
         "time": report_time().isoformat(),

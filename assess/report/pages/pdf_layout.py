@@ -44,10 +44,8 @@ def lay_out(job: dict[str, Any]) -> None:
     ``variant``, the ``time`` of the document in ISO 8601, and ``attachments``: name, kind, relationship, description
     and data (base64) of each.
     """
-    import weasyprint
-
     moment = datetime.datetime.fromisoformat(job["time"])
-    document = weasyprint.HTML(string=job["html"], url_fetcher=_closed_fetcher(job["fonts"])).render()
+    document = open_page(job["html"], job["fonts"]).render()
     document.metadata.created = document.metadata.modified = f"{moment:%Y-%m-%dT%H:%M:%SZ}"
     document.write_pdf(
         job["path"],
@@ -55,6 +53,13 @@ def lay_out(job: dict[str, Any]) -> None:
         pdf_tags=True,
         attachments=[_attachment(one, moment) for one in job["attachments"]],
     )
+
+
+def open_page(html: str, fonts: Mapping[str, str]) -> Any:
+    """Return a page as `weasyprint.HTML`, which names the files of its `fonts` by their addresses."""
+    import weasyprint
+
+    return weasyprint.HTML(string=html, url_fetcher=_closed_fetcher(fonts))
 
 
 def _closed_fetcher(fonts: Mapping[str, str]) -> Any:
