@@ -23,8 +23,11 @@ EAST_ASIAN = (
 @cache
 def print_fonts() -> dict[str, str]:
     """Return the files of the fonts of a PDF by the address under which its style rules name them."""
-    fonts = _find_print_fonts().items()
-    return {f"font:{family}-{style}".replace(" ", "-"): str(path) for (family, style), path in fonts}
+    return {_name_address(*key): str(path) for key, path in _find_print_fonts().items()}
+
+
+def _name_address(family: str, style: str) -> str:
+    return f"font:{family}-{style}".replace(" ", "-")
 
 
 def _find_print_fonts() -> dict[tuple[str, str], Path]:
@@ -40,7 +43,7 @@ def _find_print_fonts() -> dict[tuple[str, str], Path]:
 @cache
 def font_faces() -> str:
     """Return the fonts of a PDF as @font-face rules that name `print_fonts`: as part of the CSS, files take seconds."""
-    return _write_faces(dict(zip(_find_print_fonts(), print_fonts(), strict=True)))
+    return _write_faces({key: _name_address(*key) for key in _find_print_fonts()})
 
 
 @cache
