@@ -110,6 +110,11 @@ def start(*words, cwd, temporary=None, environment=None, before=()):
     raise AssertionError(f"no address was printed, exit status {process.returncode}: {err}")
 
 
+def list_named(folder, start):
+    """Return the sorted names below a folder that start so; what a server removes meanwhile is no fault."""
+    return sorted(name for _, *found in os.walk(folder) for names in found for name in names if name.startswith(start))
+
+
 def wait_for_job(client):
     """Return the job once it has ended."""
     return wait_until(lambda: client.get("/api/job").json()["job"], lambda job: job["state"] != "running")

@@ -20,6 +20,7 @@ from tests.bim import scan_files
 from tests.bim.cobie_files import write_cobie
 from tests.waiting import wait_until
 from tests.web.model_reader import hold_reader, is_gone, linux
+from tests.web.serving import list_named
 from tests.web.test_sessions import OPTIONS, _come
 from tests.workbooks import write
 
@@ -48,7 +49,7 @@ def _begin_sending(client, length, data):
 
 def _list_left(tmp_path):
     """Return the folders of models below the folders of the server."""
-    return [path.name for path in (tmp_path / "tmp").rglob("import-*")]
+    return list_named(tmp_path / "tmp", "import-")
 
 
 def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
@@ -163,7 +164,7 @@ def test_a_reading_can_be_cancelled_and_the_server_answers_meanwhile(served, tmp
     assert client.post("/api/import/cancel").json()["import"]["state"] == "cancelled"
     wait_until(lambda: is_gone(reader), bool)
     wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
-    wait_until(lambda: list((tmp_path / "tmp").rglob("assess-model-*")), lambda left: left == [])
+    wait_until(lambda: list_named(tmp_path / "tmp", "assess-model-"), lambda left: left == [])
     assert client.post("/api/import/open").status == 404
     assert _read(client, "duplex.ifc", DUPLEX.read_bytes())["state"] == "done"
     assert client.post("/api/import/cancel").json()["import"] is None  # what was read is dropped

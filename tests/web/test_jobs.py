@@ -13,7 +13,7 @@ import pytest
 
 from assess.web.job_inputs import list_stale
 from tests.waiting import wait_until
-from tests.web.serving import start, wait_for_job
+from tests.web.serving import list_named, start, wait_for_job
 from tests.workbooks import ITEMS, write
 
 LONG = {"verify": "all", "runs": 100_000, "formats": ["json"]}
@@ -37,7 +37,7 @@ def running(tmp_path_factory):
 
 def _list_left(server):
     """Return the files of jobs below the folders of the server."""
-    return sorted(path.name for path in (server.folder.parent / "tmp").rglob("job-*"))
+    return list_named(server.folder.parent / "tmp", "job-")
 
 
 def _find_worker(server):
